@@ -1,0 +1,150 @@
+/* rt_types.h -- structs shared by host, plugins and kernels.
+ *
+ * C99 subset, scalars and arrays only: no vector types (float3 is 16 bytes wide and aligned on a device), no bool, no
+ * size_t, no pointers, no integer stored as a float. Sizes are checked on the host (static_assert), between host and plugin
+ * (RT_TYPES_DIGEST) and on every device (a probe kernel that the host generates). */
+#ifndef RT_TYPES_H
+#define RT_TYPES_H
+#ifdef __OPENCL_VERSION__
+typedef uint rt_u32;
+typedef int rt_i32;
+typedef float rt_f32;
+#else
+#include <stdint.h>
+typedef uint32_t rt_u32;
+typedef int32_t rt_i32;
+typedef float rt_f32;
+#endif
+
+#define RT_NONE 0xFFFFFFFFu
+
+/* A ref names one primitive: its kind in the top 4 bits, its index within that kind in the low 28. */
+#define RT_REF_TRIANGLE 0x00000000u
+#define RT_REF_SPHERE 0x10000000u
+#define RT_REF_POLYGON 0x20000000u
+#define RT_REF_INSTANCE 0x30000000u
+#define RT_REF_KIND(r) ((r)&0xF0000000u)
+#define RT_REF_INDEX(r) ((r)&0x0FFFFFFFu)
+#define RT_REF_INDEX_MAX 0x0FFFFFFFu
+
+/* One primitive as the leaf tests read it, packed by the host in the leaf order that the builder chose. 48 B.
+ *   triangle   a, b, c = corners in the group's space
+ *   sphere     a = centre, b[0] = radius
+ *   polygon    a = unit normal, b[0] = dot(normal, x) of its plane; corners in rt_polygon
+ *   instance   a, b, c unused */
+typedef struct rt_leaf {
+    rt_f32 a[3];
+    rt_u32 ref;
+    rt_f32 b[3];
+    rt_u32 material;
+    rt_f32 c[3];
+    rt_u32 prim; /* number shown as `prim`; within an instance it counts from rt_instance.first_prim */
+} rt_leaf;
+
+/* Corners of a triangle as indices into the vertex attributes (normals, uvs). 12 B. Read by shading only. */
+typedef struct rt_triangle {
+    rt_u32 v[3];
+} rt_triangle;
+
+/* Corners of a planar polygon, projected along the dominant axis of its normal: corner i is
+ * polygon_corners[2 * (first + i) .. + 1]. `axis` is the dropped axis, (axis+1)%3 and (axis+2)%3 are kept. 16 B. */
+typedef struct rt_polygon {
+    rt_u32 first, count, axis, pad;
+} rt_polygon;
+
+/* Unbounded, so outside every tree: dot(normal, x) = offset. normal has unit length. 32 B. */
+typedef struct rt_plane {
+    rt_f32 normal[3];
+    rt_f32 offset;
+    rt_u32 material, prim, pad[2];
+} rt_plane;
+
+/* A mesh placed in the world. object_from_world is row-major 3x4. 64 B. */
+typedef struct rt_instance {
+    rt_f32 object_from_world[12];
+    rt_u32 root;       /* of the mesh's tree, as the builder reported it */
+    rt_u32 first_prim; /* number of its first triangle */
+    rt_u32 material;   /* used for the whole instance; RT_NONE: each triangle's own */
+    rt_u32 pad;
+} rt_instance;
+
+/* Whitted material. Colours are linear RGB. What is neither reflected nor refracted is diffuse (times color). 64 B. */
+typedef struct rt_material {
+    rt_f32 color[3];    /* diffuse reflectance; also tints what is refracted */
+    rt_f32 reflect;     /* 0..1, mirror share */
+    rt_f32 emission[3]; /* added as it is */
+    rt_f32 refract;     /* 0..1, share handed to Fresnel reflection and refraction */
+    rt_f32 specular[3]; /* colour of the Blinn-Phong highlight */
+    rt_f32 shininess;   /* its exponent */
+    rt_f32 ior;         /* index of refraction of the inside, 1.5 for glass */
+    rt_u32 texture;     /* multiplies color; RT_NONE: none */
+    rt_u32 flags;       /* RT_MATERIAL_* */
+    rt_u32 pad;
+} rt_material;
+#define RT_MATERIAL_CHECKER 1u /* a unit checkerboard of color and a third of it, in world x and z; for planes */
+
+#define RT_LIGHT_POINT 0u
+#define RT_LIGHT_DIRECTIONAL 1u
+/* Light without falloff, as the thesis has it. 32 B. */
+typedef struct rt_light {
+    rt_f32 position[3]; /* point: where it is, world. directional: unit vector towards the light */
+    rt_u32 kind;
+    rt_f32 color[3]; /* linear RGB, intensity included */
+    rt_u32 pad;
+} rt_light;
+
+/* A picture in the texel buffer: width x height RGBA8, sRGB, top row first, starting at texel `first`. 16 B. */
+typedef struct rt_texture {
+    rt_u32 first, width, height, pad;
+} rt_texture;
+
+/* All that may change from frame to frame without touching program or scene. 160 B. */
+typedef struct rt_frame {
+    rt_f32 eye[3];
+    rt_f32 pixel_x; /* (2 (x + .5) pixel_x - 1): 1 / width */
+    rt_f32 right[3]; /* u * tan(fov / 2) * width / height */
+    rt_f32 pixel_y;  /* 1 / height */
+    rt_f32 up[3];    /* v * tan(fov / 2) */
+    rt_u32 width;
+    rt_f32 forward[3]; /* unit */
+    rt_u32 height;
+    rt_f32 background[3];
+    rt_u32 depth; /* generations of rays, 1 = camera rays only */
+    rt_f32 ambient[3];
+    rt_u32 light_count;
+    rt_u32 plane_count;
+    rt_u32 sample; /* number of this sample; 0 goes through the pixel's centre */
+    rt_u32 row_first;  /* this launch: first row and row count of packets */
+    rt_u32 row_count;
+    rt_f32 min_weight; /* rays that would add less than this are not spawned */
+    rt_u32 shadows;    /* 0: none */
+    rt_u32 instance_count;
+    rt_u32 root; /* of group 0 */
+    rt_f32 pad[8];
+} rt_frame;
+
+/* What the kernels count, added up with atomics once a packet. 32 B. */
+typedef struct rt_counters {
+    rt_u32 primary, shadow, secondary, dropped; /* rays */
+    rt_u32 overflow;                            /* a traversal stack was full (debug builds look) */
+    rt_u32 pad[3];
+} rt_counters;
+
+/* A ray and its answer, for tests and benches that bring their own rays. 32 B each. */
+typedef struct rt_ray {
+    rt_f32 origin[3], t_min, direction[3], t_max;
+} rt_ray;
+typedef struct rt_hit {
+    rt_f32 t, u, v;     /* t = INFINITY: nothing. any-hit: t = 0 where occluded */
+    rt_i32 prim;        /* -1: none */
+    rt_i32 instance;    /* -1: not instanced */
+    rt_u32 steps;
+    rt_u32 pad[2];
+} rt_hit;
+
+/* A mix of the sizes of all structs above: host and plugin must have been compiled from the same page. */
+#define RT_TYPES_DIGEST                                                                                                          \
+    ((rt_u32)(sizeof(rt_leaf) + 131u * sizeof(rt_triangle) + 17161u * sizeof(rt_polygon) + 2248091u * sizeof(rt_plane) +         \
+              294499921u * sizeof(rt_instance) + 31u * sizeof(rt_material) + 961u * sizeof(rt_light) +                           \
+              29791u * sizeof(rt_texture) + 923521u * sizeof(rt_frame) + 28629151u * sizeof(rt_hit)))
+#endif

@@ -1,0 +1,111 @@
+// scene.hpp -- a scene as the host holds it: flat arrays, the file's own units and axes, +Y up by convention of the cameras.
+#pragma once
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "rt_types.h"
+
+namespace clarity {
+
+// Row-major 3x4: x' = m[0] x + m[1] y + m[2] z + m[3].
+using Affine = std::array<float, 12>;
+inline constexpr Affine kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+struct Bounds {
+    std::array<float, 3> min{}, max{};
+    bool empty = true;
+    void add(const float* p);
+    float diagonal() const;
+};
+
+struct Mesh {
+    std::string name;
+    rt_u32 first_vertex = 0, vertex_count = 0;
+    rt_u32 first_triangle = 0, triangle_count = 0;
+    rt_u32 polygon_count = 0;  // faces of the file, before triangulation
+};
+
+struct Instance {
+    std::string name;
+    rt_u32 mesh = 0;
+    rt_u32 material = RT_NONE;  // for the whole instance; RT_NONE: the mesh's own
+    Affine world_from_object = kIdentity;
+};
+
+struct Sphere {
+    std::array<float, 3> center{};
+    float radius = 0;
+    rt_u32 material = 0;
+};
+struct Plane {
+    std::array<float, 3> normal{};  // unit
+    float offset = 0;               // dot(normal, x) = offset
+    rt_u32 material = 0;
+};
+struct Polygon {
+    rt_u32 first_corner = 0, corner_count = 0;  // in Scene::polygon_corners, in corners
+    rt_u32 material = 0;
+};
+struct Material {
+    std::string name;
+    rt_material values{};
+};
+struct Light {
+    std::string name;
+    rt_light values{};
+};
+struct Camera {
+    std::string name;
+    std::array<float, 3> eye{}, target{}, up{0, 1, 0};
+    float fov_y_rad = 0.7853982f;
+};
+
+// Valid once `validate` accepted it: every index in range, every number finite, materials[0] the default material.
+struct Scene {
+    std::vector<float> positions;               // 3 per vertex
+    std::vector<float> normals;                 // 3 per vertex, (0,0,0) where a mesh has none; or empty
+    std::vector<float> uvs;                     // 2 per vertex; or empty
+    std::vector<rt_u32> triangles;              // 3 per triangle, indices into the vertices of the whole scene
+    std::vector<rt_u32> triangle_materials;     // 1 per triangle
+    std::vector<Mesh> meshes;
+    std::vector<Instance> instances;            // meshes without an instance are not in the world
+    std::vector<Sphere> spheres;
+    std::vector<Plane> planes;
+    std::vector<Polygon> polygons;
+    std::vector<float> polygon_corners;         // 3 per corner
+    std::vector<Material> materials;
+    std::vector<rt_texture> textures;
+    std::vector<uint32_t> texels;               // RGBA8, R in the low byte
+    std::vector<Light> lights;
+    std::vector<Camera> cameras;
+    std::array<float, 3> background{0.12f, 0.16f, 0.22f}, ambient{0.08f, 0.08f, 0.08f};
+    rt_u32 up_axis = 1;
+    double unit_scale = 0;  // metres per unit, 0: the file does not say
+    std::vector<std::string> warnings;
+
+    rt_u32 vertex_count() const { return static_cast<rt_u32>(positions.size() / 3); }
+    rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
+    // Triangles in the world: those of every instance.
+    uint64_t placed_triangle_count() const;
+    // Everything finite, in world space; planes are left out.
+    Bounds bounds() const;
+    // World space, of all instances' triangles and of the polygons and spheres.
+    double surface_area() const;
+};
+
+rt_material default_material();
+
+// Empty if the scene is sound, else what is wrong ("triangle 12: vertex 99 of 80"). Linear in the scene's size.
+std::string validate(const Scene& scene);
+
+// The camera that shows all of the scene from the front, a little from above.
+Camera framing_camera(const Scene& scene, float aspect);
+
+// ---- transforms
+std::array<float, 3> transform_point(const Affine& m, const float* p);
+Affine multiply(const Affine& a, const Affine& b);  // a after b
+bool invert(const Affine& m, Affine& inverse);      // false if singular
+
+}  // namespace clarity

@@ -1,0 +1,233 @@
+/* rt_plugin.h -- the plugin ABI: all that a plugin may include, with rt_types.h. C99 and C++17.
+ *
+ * A plugin is one shared library that exports one symbol, the *data* `rt_plugin_v1`. The host checks abi_version, sizes and
+ * types_digest there before it runs any code of the plugin. Strings are UTF-8 and live as long as the library, which is never
+ * unloaded. Plugins keep no state: all that they produce is written into memory of the host, and nothing that the host hands
+ * them outlives the call. No C++ type, exception or allocator crosses this seam (rt_plugin.hpp wraps calls for C++).
+ *
+ * Growth: structs grow at the end only and carry their size; a reader tests struct_bytes before it reads a later field.
+ * Any other change bumps RT_ABI_VERSION.
+ * Version history:  1  first release. */
+#ifndef RT_PLUGIN_H
+#define RT_PLUGIN_H
+#include "rt_types.h"
+#define RT_ABI_VERSION 1u
+#ifdef _WIN32
+#define RT_EXPORT __declspec(dllexport)
+#else
+#define RT_EXPORT __attribute__((visibility("default")))
+#endif
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { RT_OK = 0, RT_FAILED = 1, RT_CANCELLED = 2 };
+enum { RT_LOG_DEBUG, RT_LOG_INFO, RT_LOG_WARNING };
+
+/* Services of the host; valid during the call that received them. All may be called from any thread of parallel_for. */
+typedef struct rt_host {
+    rt_u32 struct_bytes;
+    void *ctx;
+    int32_t (*fail)(void *ctx, const char *why); /* records why (the first wins) and returns RT_FAILED: `return host->fail(..)` */
+    void (*log)(void *ctx, int32_t level, const char *text);
+    int32_t (*progress)(void *ctx, float fraction); /* 0..1; returns 0 when the user cancelled: return RT_CANCELLED soon */
+    void (*parallel_for)(void *ctx, rt_u32 count, void (*body)(void *user, rt_u32 i), void *user); /* on all cores; nests */
+} rt_host;
+
+enum { RT_PARAM_INT, RT_PARAM_FLOAT, RT_PARAM_BOOL, RT_PARAM_ENUM };
+enum { RT_EFFECT_REBUILD, RT_EFFECT_RECOMPILE }; /* what the host must redo after a change */
+/* A parameter is data: the host draws its widget, parses `--accel bvh2,max_leaf=4`, stores it in presets and range-checks it. */
+typedef struct rt_param {
+    const char *key, *label, *help; /* "max_leaf", "Max leaf size", "primitives in a leaf, at most" (say the unit) */
+    int32_t kind, effect;
+    double min, max, def;
+    const char *const *choices; /* RT_PARAM_ENUM only, NULL-terminated; the value is the index */
+} rt_param;
+
+/* ---- acceleration structures -------------------------------------------------------------------------------------------- */
+
+/* One primitive to the builder: a box and an opaque ref. 32 B. */
+typedef struct rt_prim {
+    float lo[3];
+    rt_u32 ref;
+    float hi[3];
+    rt_u32 mesh; /* number of the mesh (as placed) it came from; prims of one mesh are contiguous within a group */
+} rt_prim;
+typedef struct rt_group {
+    rt_u32 first, count; /* range of prims; may be empty */
+} rt_group;
+
+/* Raw geometry, for builders that split or pack. Triangle ref i has its corners at triangle_corners[9 * i .. + 8], in the
+ * space of its group. */
+typedef struct rt_geometry {
+    rt_u32 struct_bytes;
+    const float *triangle_corners;
+    uint64_t triangle_count;
+} rt_geometry;
+
+typedef struct rt_build_input {
+    rt_u32 struct_bytes, group_count;
+    const rt_prim *prims;
+    const rt_group *groups; /* [0] world space, refs of any kind; [1..] one instanced mesh each, its own space, no instances */
+    const rt_geometry *geometry;
+    const double *params; /* in the order declared */
+} rt_build_input;
+
+typedef struct rt_build_output {
+    rt_u32 struct_bytes;
+    void *ctx;
+    /* Host-owned, zeroed, 64-byte aligned memory for `count` elements of a slot; once per slot. NULL: stop, return RT_FAILED. */
+    void *(*alloc)(void *ctx, rt_u32 slot, uint64_t count);
+    /* The refs in leaf order, once. The host packs the primitives in this order; RT_LEAF takes a position in it. A ref may
+     * stand in several places (spatial splits). NULL: stop. */
+    rt_u32 *(*leaves)(void *ctx, uint64_t count);
+    void (*root)(void *ctx, rt_u32 group, rt_u32 node); /* an element of slot 0; call for every group, also empty ones */
+    void (*define)(void *ctx, const char *name, rt_u32 value); /* for the kernel, e.g. BVH2_STACK; round up: a new value recompiles */
+    void (*stat)(void *ctx, const char *label, double value); /* "nodes", "depth", "sah_cost": panel, --stats, bench */
+} rt_build_output;
+
+/* A slot becomes a kernel argument and the member `name` of rt_ctx: `const global <cl_type> *<name>`. */
+typedef struct rt_slot {
+    const char *name, *cl_type;
+    rt_u32 elem_bytes; /* compared with sizeof(cl_type) on the device */
+} rt_slot;
+typedef struct rt_cl_file {
+    const char *name, *text; /* "bvh2.cl": looked up on disk in development, else the embedded text */
+} rt_cl_file;
+
+/* A finished build, read-only, for `levels`. */
+typedef struct rt_built {
+    rt_u32 struct_bytes, group_count;
+    const void *const *slots;    /* slot_count pointers */
+    const uint64_t *slot_counts; /* elements */
+    const rt_u32 *roots;         /* one per group */
+} rt_built;
+#define RT_LEVEL_BOTTOM 0xFFFFFFFFu
+typedef struct rt_volume_sink {
+    rt_u32 struct_bytes;
+    void *ctx;
+    void (*box)(void *ctx, const float lo[3], const float hi[3]);
+    void (*sphere)(void *ctx, const float center[3], float radius);
+} rt_volume_sink;
+
+typedef struct rt_accel {
+    rt_u32 struct_bytes, slot_count;
+    const rt_slot *slots;
+    rt_cl_file types;    /* structs shared with the builder; text may be NULL */
+    rt_cl_file traverse; /* see cl/CONTRACT.md */
+    int32_t (*build)(const rt_host *, const rt_build_input *, const rt_build_output *); /* [worker thread] */
+    /* Bounding volumes of level n of one group's tree (0 = root, RT_LEVEL_BOTTOM = leaves), in the group's space. [any thread] */
+    int32_t (*levels)(const rt_host *, const rt_built *, rt_u32 group, rt_u32 level, const rt_volume_sink *); /* or NULL */
+    int32_t (*refit)(const rt_host *, const rt_build_input *, void *const *slot_data);                       /* or NULL */
+} rt_accel;
+
+/* ---- importers ------------------------------------------------------------------------------------------------------------ */
+
+/* Strides are in bytes. The host copies all of it before it returns. Faces may have any number of corners: the host triangulates
+ * them (convex ones as a fan from the first corner, others by ear clipping), drops those of fewer than three, and keeps order. */
+typedef struct rt_mesh {
+    rt_u32 struct_bytes;
+    const char *name; /* or NULL */
+    const float *positions;
+    rt_u32 vertex_count, position_stride;
+    const float *normals; /* per vertex, or NULL */
+    rt_u32 normal_stride;
+    const float *uvs; /* per vertex, (0,0) at the bottom left; or NULL */
+    rt_u32 uv_stride;
+    const rt_u32 *indices; /* corners of all faces, one after the other */
+    uint64_t index_count;
+    const rt_u32 *face_sizes; /* corners of each face; NULL: all triangles */
+    uint64_t face_count;
+    const rt_u32 *face_materials; /* per face, ids that `material` gave; or NULL: `material` for all */
+    rt_u32 material;              /* RT_NONE: the default material */
+} rt_mesh;
+
+typedef struct rt_instance_desc {
+    rt_u32 struct_bytes;
+    const char *name; /* or NULL */
+    rt_u32 mesh;      /* id that `mesh` gave */
+    rt_u32 material;  /* for the whole instance; RT_NONE: the mesh's own */
+    float world_from_object[12]; /* row-major 3x4 */
+} rt_instance_desc;
+
+typedef struct rt_material_desc {
+    rt_u32 struct_bytes;
+    const char *name; /* or NULL */
+    rt_material values; /* .texture: an id that `texture` gave, or RT_NONE */
+} rt_material_desc;
+
+typedef struct rt_texture_desc {
+    rt_u32 struct_bytes;
+    const char *path;           /* relative to the file being imported; or NULL and an image in memory: */
+    const uint8_t *bytes;       /* encoded (PNG, JPEG, ...) if height is 0, else width x height RGBA8 */
+    uint64_t byte_count;
+    rt_u32 width, height;
+} rt_texture_desc;
+
+typedef struct rt_camera {
+    rt_u32 struct_bytes;
+    const char *name; /* or NULL */
+    float eye[3], target[3], up[3];
+    float fov_y_rad;
+} rt_camera;
+
+typedef struct rt_light_desc {
+    rt_u32 struct_bytes;
+    const char *name; /* or NULL */
+    rt_light values;
+} rt_light_desc;
+
+typedef struct rt_load {
+    rt_u32 struct_bytes;
+    const char *path;            /* relative to the file being imported */
+    const char *name;            /* or NULL */
+    float world_from_object[12]; /* applied after the file's own transforms */
+    rt_u32 material;             /* for all of it, or RT_NONE */
+} rt_load;
+
+typedef struct rt_scene_info {
+    rt_u32 struct_bytes;
+    rt_u32 up_axis;    /* 0 X, 1 Y, 2 Z: what the file says; geometry is handed over in the file's own axes */
+    double unit_scale; /* metres per file unit as the file says it; 0: it does not say */
+    const float *background; /* linear RGB, or NULL: not said */
+    const float *ambient;    /* linear RGB, or NULL */
+} rt_scene_info;
+
+/* Each id-returning call copies what it is given and returns an id, or RT_NONE after recording the error: then return RT_FAILED. */
+typedef struct rt_scene_sink {
+    rt_u32 struct_bytes;
+    void *ctx;
+    rt_u32 (*texture)(void *ctx, const rt_texture_desc *); /* a missing or broken image is a warning; RT_NONE then is no error */
+    rt_u32 (*material)(void *ctx, const rt_material_desc *);
+    rt_u32 (*mesh)(void *ctx, const rt_mesh *);
+    rt_u32 (*instance)(void *ctx, const rt_instance_desc *);
+    rt_u32 (*sphere)(void *ctx, const float center[3], float radius, rt_u32 material);
+    rt_u32 (*plane)(void *ctx, const float normal[3], float offset, rt_u32 material);
+    rt_u32 (*polygon)(void *ctx, const float *corners, rt_u32 corner_count, rt_u32 material); /* planar, 3 floats a corner */
+    rt_u32 (*light)(void *ctx, const rt_light_desc *);
+    rt_u32 (*camera)(void *ctx, const rt_camera *);
+    void (*info)(void *ctx, const rt_scene_info *);
+    void (*warn)(void *ctx, const char *text);         /* shown to the user, in `info` as warnings[] */
+    int32_t (*load)(void *ctx, const rt_load *);       /* another file through its importer; RT_OK or after recording the error RT_FAILED */
+} rt_scene_sink;
+
+typedef struct rt_importer {
+    rt_u32 struct_bytes;
+    const char *const *extensions; /* lower case, no dot, NULL-terminated */
+    int32_t (*probe)(const uint8_t *head, uint64_t bytes); /* 0..100 certainty by the first bytes; or NULL: extension only */
+    int32_t (*load)(const rt_host *, const char *path, const double *params, const rt_scene_sink *);
+} rt_importer;
+
+typedef struct rt_plugin {
+    rt_u32 abi_version, struct_bytes, types_digest, param_count; /* first, for ever */
+    const char *id, *name, *version, *reference; /* id: [a-z][a-z0-9_]*, also the prefix of its CL names; reference: paper, or NULL */
+    const rt_param *params;
+    const rt_accel *accel; /* exactly one of the two is not NULL */
+    const rt_importer *importer;
+} rt_plugin;
+
+RT_EXPORT extern const rt_plugin rt_plugin_v1; /* the only exported symbol; data, not code */
+#ifdef __cplusplus
+}
+#endif
+#endif
