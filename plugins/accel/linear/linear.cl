@@ -1,0 +1,12 @@
+/* linear.cl -- tests every primitive in order. */
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    const uint first = ctx->linear_runs[root].first, count = ctx->linear_runs[root].count;
+    RT_COUNT_STEP(hit);
+    for (uint i = 0; i < count; ++i) {
+        RT_LEAF(ctx, first + i, ray, hit);
+#if RT_ANY_HIT
+        if (!rt_any(RT_MASK(hit->t >= 0.0f))) return;
+#endif
+    }
+}
