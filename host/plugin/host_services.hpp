@@ -1,5 +1,6 @@
 // host_services.hpp -- what the host offers a plugin during one call (rt_host): errors, log, progress, threads.
 #pragma once
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <mutex>
@@ -10,7 +11,8 @@
 
 namespace clarity {
 
-// body(i) for i in [0, count), on all cores; returns when all are done. Nests. An exception of a body is rethrown here.
+// body(i) for i in [0, count), on all cores; returns when all are done. Nests. An exception of a body is rethrown here; of
+// several, the one of the lowest i, however the threads ran (bodies beyond it may then have been left out).
 void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body);
 
 // Lives for one call of a plugin.
@@ -28,7 +30,7 @@ class HostServices {
     std::string why() const;
 
     // Runs a call of the plugin, and turns its status, an exception that escaped it, or a call that reports success after fail()
-    // into an Error with the given exit code: "<who>: <why>". Cancelled if the plugin returned RT_CANCELLED.
+    // into an Error with the given exit code: "<who>: <why>". Cancelled if the plugin returned RT_CANCELLED after it was told so.
     void check(int exit_code, const std::function<int32_t()>& call);
 
  private:
@@ -38,6 +40,7 @@ class HostServices {
     mutable std::mutex mutex_;
     std::string why_;
     bool failed_ = false;
+    std::atomic<bool> told_to_stop_{false};  // progress answered 0
 };
 
 }  // namespace clarity
