@@ -37,20 +37,28 @@ LogState& state() {
 
 const char* level_name(LogLevel level) {
     switch (level) {
-        case LogLevel::debug: return "debug";
-        case LogLevel::info: return "info";
-        case LogLevel::warning: return "warning";
-        case LogLevel::error: return "error";
+        case LogLevel::debug:
+            return "debug";
+        case LogLevel::info:
+            return "info";
+        case LogLevel::warning:
+            return "warning";
+        case LogLevel::error:
+            return "error";
     }
     return "log";
 }
 
 const char* level_color(LogLevel level) {
     switch (level) {
-        case LogLevel::debug: return "\033[2m";
-        case LogLevel::info: return "";
-        case LogLevel::warning: return "\033[33m";
-        case LogLevel::error: return "\033[31m";
+        case LogLevel::debug:
+            return "\033[2m";
+        case LogLevel::info:
+            return "";
+        case LogLevel::warning:
+            return "\033[33m";
+        case LogLevel::error:
+            return "\033[31m";
     }
     return "";
 }

@@ -24,7 +24,8 @@ using Symbol = ElfW(Sym);
 constexpr uint32_t kMaxSteps = 1u << 20;
 constexpr uint64_t kMaxName = 4096;
 
-// A regular file, read piece by piece. A mapping would be shorter, but would raise SIGBUS if a linker rewrote the file meanwhile.
+// A regular file, read piece by piece. A mapping would be shorter, but would raise SIGBUS if a linker rewrote the file
+// meanwhile.
 class File {
  public:
     explicit File(const std::string& path) {
@@ -78,20 +79,31 @@ class File {
 
 std::string machine_name(unsigned machine) {
     switch (machine) {
-        case EM_386: return "x86 (32 bit)";
-        case EM_X86_64: return "x86-64";
-        case EM_ARM: return "ARM (32 bit)";
-        case EM_AARCH64: return "AArch64";
-        case EM_RISCV: return "RISC-V";
-        case EM_PPC64: return "PowerPC 64";
-        case EM_S390: return "S/390";
-        case EM_LOONGARCH: return "LoongArch";
-        default: return "machine number " + std::to_string(machine);
+        case EM_386:
+            return "x86 (32 bit)";
+        case EM_X86_64:
+            return "x86-64";
+        case EM_ARM:
+            return "ARM (32 bit)";
+        case EM_AARCH64:
+            return "AArch64";
+        case EM_RISCV:
+            return "RISC-V";
+        case EM_PPC64:
+            return "PowerPC 64";
+        case EM_S390:
+            return "S/390";
+        case EM_LOONGARCH:
+            return "LoongArch";
+        default:
+            return "machine number " + std::to_string(machine);
     }
 }
 
 // The header of this very program: the one sure source of what the machine can load.
-bool read_own_header(Header& header) { return File("/proc/self/exe").read(0, header); }
+bool read_own_header(Header& header) {
+    return File("/proc/self/exe").read(0, header);
+}
 
 // Dynamic tables give addresses; the loaded segments say where in the file these lie.
 class Image {
@@ -200,14 +212,15 @@ std::string check_header(const File& file, Header& header) {
     const std::string rebuild = "; build the plugin with cmake as docs/plugins.md shows, and name the .so that it makes";
     if (file.bytes() == 0) return "is an empty file, not a shared library" + rebuild;
     unsigned char ident[EI_NIDENT];
-    if (!file.read(0, ident) || std::memcmp(ident, ELFMAG, SELFMAG) != 0) return "is not a shared library (no ELF header)" + rebuild;
+    if (!file.read(0, ident) || std::memcmp(ident, ELFMAG, SELFMAG) != 0)
+        return "is not a shared library (no ELF header)" + rebuild;
     Header own{};
     if (!read_own_header(own)) return "cannot be compared with this program: /proc/self/exe is not readable; mount /proc";
     const char* for_this_machine = "; rebuild the plugin on, or for, this machine";
     if (ident[EI_CLASS] != own.e_ident[EI_CLASS] || ident[EI_DATA] != own.e_ident[EI_DATA])
-        return std::string("is a library for another kind of machine (") + (ident[EI_CLASS] == ELFCLASS32 ? "32" : "64") + " bit, " +
-               (ident[EI_DATA] == ELFDATA2MSB ? "big" : "little") + " endian; this program: " +
-               (own.e_ident[EI_CLASS] == ELFCLASS32 ? "32" : "64") + " bit, " +
+        return std::string("is a library for another kind of machine (") + (ident[EI_CLASS] == ELFCLASS32 ? "32" : "64") +
+               " bit, " + (ident[EI_DATA] == ELFDATA2MSB ? "big" : "little") +
+               " endian; this program: " + (own.e_ident[EI_CLASS] == ELFCLASS32 ? "32" : "64") + " bit, " +
                (own.e_ident[EI_DATA] == ELFDATA2MSB ? "big" : "little") + " endian)" + for_this_machine;
     if (!file.read(0, header)) return "is truncated: its ELF header is not whole; copy or build it again";
     if (header.e_machine != own.e_machine)
@@ -215,7 +228,10 @@ std::string check_header(const File& file, Header& header) {
                for_this_machine;
     if (header.e_type != ET_DYN)
         return std::string("is an ELF file, but not a shared library (") +
-               (header.e_type == ET_REL ? "an object file" : header.e_type == ET_EXEC ? "a program" : "some other type") + ")" + rebuild;
+               (header.e_type == ET_REL    ? "an object file"
+                : header.e_type == ET_EXEC ? "a program"
+                                           : "some other type") +
+               ")" + rebuild;
     return {};
 }
 
@@ -228,8 +244,9 @@ std::string read_segments(const File& file, const Header& header, std::vector<Se
         if (segment.p_type != PT_LOAD && segment.p_type != PT_DYNAMIC) continue;
         // The loader would map such a segment and die of SIGBUS on the first touch.
         if (segment.p_offset > file.bytes() || segment.p_filesz > file.bytes() - segment.p_offset)
-            return "is truncated: a segment of " + std::to_string(segment.p_filesz) + " bytes at " + std::to_string(segment.p_offset) +
-                   " does not fit into its " + std::to_string(file.bytes()) + " bytes; copy or build it again";
+            return "is truncated: a segment of " + std::to_string(segment.p_filesz) + " bytes at " +
+                   std::to_string(segment.p_offset) + " does not fit into its " + std::to_string(file.bytes()) +
+                   " bytes; copy or build it again";
     }
     return {};
 }
@@ -237,17 +254,30 @@ std::string read_segments(const File& file, const Header& header, std::vector<Se
 std::string read_dynamic(const File& file, const std::vector<Segment>& segments, DynamicTables& tables) {
     for (const Segment& segment : segments) {
         if (segment.p_type != PT_DYNAMIC) continue;
-        for (uint64_t at = 0; at + sizeof(Dynamic) <= segment.p_filesz && at / sizeof(Dynamic) < kMaxSteps; at += sizeof(Dynamic)) {
+        for (uint64_t at = 0; at + sizeof(Dynamic) <= segment.p_filesz && at / sizeof(Dynamic) < kMaxSteps;
+             at += sizeof(Dynamic)) {
             Dynamic entry{};
             if (!file.read(segment.p_offset + at, entry)) return "is a damaged ELF file: its dynamic section cannot be read";
             switch (entry.d_tag) {
-                case DT_NULL: return {};
-                case DT_SYMTAB: tables.symbols = entry.d_un.d_ptr; break;
-                case DT_STRTAB: tables.strings = entry.d_un.d_ptr; break;
-                case DT_STRSZ: tables.string_bytes = entry.d_un.d_val; break;
-                case DT_GNU_HASH: tables.gnu_hash = entry.d_un.d_ptr; break;
-                case DT_HASH: tables.hash = entry.d_un.d_ptr; break;
-                default: break;
+                case DT_NULL:
+                    return {};
+                case DT_SYMTAB:
+                    tables.symbols = entry.d_un.d_ptr;
+                    break;
+                case DT_STRTAB:
+                    tables.strings = entry.d_un.d_ptr;
+                    break;
+                case DT_STRSZ:
+                    tables.string_bytes = entry.d_un.d_val;
+                    break;
+                case DT_GNU_HASH:
+                    tables.gnu_hash = entry.d_un.d_ptr;
+                    break;
+                case DT_HASH:
+                    tables.hash = entry.d_un.d_ptr;
+                    break;
+                default:
+                    break;
             }
         }
         return {};

@@ -8,8 +8,8 @@ namespace clarity {
 // An exported symbol as the file describes it, and the first bytes of its value.
 struct ElfSymbol {
     bool found = false;
-    bool is_data = false;  // an object, not a function
-    uint64_t bytes = 0;    // size of the whole value
+    bool is_data = false;   // an object, not a function
+    uint64_t bytes = 0;     // size of the whole value
     uint32_t head[4] = {};  // its first 16 bytes; what the value lacks of them is zero
 };
 

@@ -73,7 +73,8 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
     host_.struct_bytes = sizeof(rt_host);
     host_.ctx = this;
     host_.fail = host_fail;
-    // No exception of ours may unwind through a plugin, which may be C: a log line or a report can be lost, a call cannot throw.
+    // No exception of ours may unwind through a plugin, which may be C: a log line or a report can be lost, a call cannot
+    // throw.
     host_.log = [](void* ctx, int32_t level, const char* text) {
         try {
             const LogLevel known = level <= RT_LOG_DEBUG  ? LogLevel::debug
@@ -146,10 +147,14 @@ void HostServices::check(int exit_code, const std::function<int32_t()>& call) {
     }
     if (!thrown.empty()) throw error(thrown);
     switch (status) {
-        case RT_OK: return;
-        case RT_FAILED: throw error("failed without saying why; the plugin should call host->fail");
-        case RT_CANCELLED: throw error("said it was cancelled, but nobody had cancelled it; a bug of the plugin");
-        default: throw error("returned " + std::to_string(status) + ", which is no status; a bug of the plugin");
+        case RT_OK:
+            return;
+        case RT_FAILED:
+            throw error("failed without saying why; the plugin should call host->fail");
+        case RT_CANCELLED:
+            throw error("said it was cancelled, but nobody had cancelled it; a bug of the plugin");
+        default:
+            throw error("returned " + std::to_string(status) + ", which is no status; a bug of the plugin");
     }
 }
 

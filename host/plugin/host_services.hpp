@@ -29,8 +29,9 @@ class HostServices {
     bool failed() const;
     std::string why() const;
 
-    // Runs a call of the plugin, and turns its status, an exception that escaped it, or a call that reports success after fail()
-    // into an Error with the given exit code: "<who>: <why>". Cancelled if the plugin returned RT_CANCELLED after it was told so.
+    // Runs a call of the plugin, and turns its status, an exception that escaped it, or a call that reports success after
+    // fail() into an Error with the given exit code: "<who>: <why>". Cancelled if the plugin returned RT_CANCELLED after it was
+    // told so.
     void check(int exit_code, const std::function<int32_t()>& call);
 
  private:

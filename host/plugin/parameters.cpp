@@ -26,7 +26,8 @@ bool parse_number(std::string_view text, double& value) {
 
 std::string choice_list(const rt_param& param) {
     std::string list;
-    for (const char* const* choice = param.choices; *choice; ++choice) list += (list.empty() ? "" : ", ") + std::string(*choice);
+    for (const char* const* choice = param.choices; *choice; ++choice)
+        list += (list.empty() ? "" : ", ") + std::string(*choice);
     return list;
 }
 
@@ -50,18 +51,25 @@ bool parse_choice(const rt_param& param, std::string_view text, double& value) {
 
 std::string expected(const rt_param& param) {
     switch (param.kind) {
-        case RT_PARAM_INT: return "a whole number from " + number_text(param.min) + " to " + number_text(param.max);
-        case RT_PARAM_FLOAT: return "a number from " + number_text(param.min) + " to " + number_text(param.max);
-        case RT_PARAM_BOOL: return "0, 1, true, false, on or off";
-        default: return "one of " + choice_list(param);
+        case RT_PARAM_INT:
+            return "a whole number from " + number_text(param.min) + " to " + number_text(param.max);
+        case RT_PARAM_FLOAT:
+            return "a number from " + number_text(param.min) + " to " + number_text(param.max);
+        case RT_PARAM_BOOL:
+            return "0, 1, true, false, on or off";
+        default:
+            return "one of " + choice_list(param);
     }
 }
 
 bool parse_value(const rt_param& param, std::string_view text, double& value) {
     switch (param.kind) {
-        case RT_PARAM_BOOL: return parse_bool(text, value);
-        case RT_PARAM_ENUM: return parse_choice(param, text, value);
-        default: break;
+        case RT_PARAM_BOOL:
+            return parse_bool(text, value);
+        case RT_PARAM_ENUM:
+            return parse_choice(param, text, value);
+        default:
+            break;
     }
     double number = 0;
     if (!parse_number(text, number) || number < param.min || number > param.max) return false;

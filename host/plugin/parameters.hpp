@@ -11,8 +11,8 @@ namespace clarity {
 using ParameterValues = std::vector<double>;
 
 ParameterValues default_parameters(const rt_plugin& plugin);
-// Sets one by key; BOOL takes 0/1/true/false/on/off, ENUM a choice's name or index. Throws Error(usage) that lists the keys, the range or
-// the choices.
+// Sets one by key; BOOL takes 0/1/true/false/on/off, ENUM a choice's name or index. Throws Error(usage) that lists the keys,
+// the range or the choices.
 void set_parameter(const rt_plugin& plugin, ParameterValues& values, const std::string& key, const std::string& value);
 // "max_leaf=4" / "split=sah": as set_parameter reads it.
 std::string parameter_text(const rt_plugin& plugin, const ParameterValues& values, size_t index);

@@ -1,0 +1,201 @@
+#include "plugin/plugin_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <set>
+
+namespace clarity {
+namespace {
+
+// Far above what any plugin needs, far below what a random word holds.
+constexpr rt_u32 kMaxParams = 64, kMaxSlots = 16, kMaxChoices = 64, kMaxExtensions = 256, kMaxStructBytes = 4096;
+constexpr size_t kMaxText = 4096;
+
+std::string hex(uint32_t word) {
+    char text[16];
+    std::snprintf(text, sizeof text, "0x%08x", word);
+    return text;
+}
+
+// Shown on terminals and in the window: one line, no control bytes.
+std::string check_text(const char* what, const char* text, bool required) {
+    if (!text) return required ? std::string(what) + " is missing (NULL)" : "";
+    const size_t bytes = strnlen(text, kMaxText);
+    if (bytes == kMaxText) return std::string(what) + " is longer than " + std::to_string(kMaxText) + " bytes, or has no end";
+    if (required && bytes == 0) return std::string(what) + " is empty";
+    if (std::any_of(text, text + bytes, [](unsigned char c) { return c < 0x20 || c == 0x7f; }))
+        return std::string(what) + " holds control characters";
+    return {};
+}
+
+// OpenCL C and JSON keys alike.
+bool is_identifier(const char* text) {
+    const size_t bytes = text ? strnlen(text, kMaxText) : 0;
+    if (bytes == 0 || bytes > 64) return false;
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    return letter(text[0]) && std::all_of(text, text + bytes, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
+
+// "uint", "float4", "bvh2_node", "unsigned int": identifiers with single blanks between them.
+bool is_type_name(const char* text) {
+    const size_t bytes = text ? strnlen(text, kMaxText) : 0;
+    if (bytes == 0 || bytes > 128) return false;
+    std::string word;
+    for (size_t i = 0; i <= bytes; ++i) {
+        if (i < bytes && text[i] != ' ') {
+            word += text[i];
+            continue;
+        }
+        if (!is_identifier(word.c_str())) return false;
+        word.clear();
+    }
+    return true;
+}
+
+std::string check_struct_bytes(const char* what, rt_u32 found, size_t expected) {
+    if (found >= expected && found <= kMaxStructBytes) return {};
+    return std::string(what) + " has struct_bytes " + std::to_string(found) + ", this host expects " +
+           std::to_string(expected) + " or, of a newer SDK, more: write sizeof(" + what +
+           ") there and rebuild it against this SDK";
+}
+
+std::string check_choices(const std::string& who, const rt_param& param) {
+    if (!param.choices) return who + " is an ENUM without choices";
+    std::set<std::string> seen;
+    rt_u32 count = 0;
+    for (; count <= kMaxChoices && param.choices[count]; ++count) {
+        if (std::string why = check_text("a choice", param.choices[count], true); !why.empty()) return who + ": " + why;
+        if (std::string(param.choices[count]).find_first_of(",= ") != std::string::npos)
+            return who + ": the choice '" + param.choices[count] +
+                   "' cannot be typed on the command line: no ',', '=' or blank in it";
+        if (!seen.insert(param.choices[count]).second) return who + " has the choice '" + param.choices[count] + "' twice";
+    }
+    if (count == 0) return who + " is an ENUM without choices";
+    if (count > kMaxChoices) return who + ": its choices have no NULL at the end";
+    if (param.min != 0 || param.max != count - 1)
+        return who + " is an ENUM of " + std::to_string(count) + " choices: its range must be 0.." + std::to_string(count - 1);
+    return {};
+}
+
+std::string check_param(const rt_param& param, rt_u32 number) {
+    if (!is_identifier(param.key)) return "parameter " + std::to_string(number) + " has no key, or one that is no identifier";
+    const std::string who = "parameter '" + std::string(param.key) + "'";
+    if (std::string why = check_text("label", param.label, true); !why.empty()) return who + ": " + why;
+    if (std::string why = check_text("help", param.help, true); !why.empty()) return who + ": " + why;
+    if (param.kind < RT_PARAM_INT || param.kind > RT_PARAM_ENUM)
+        return who + " has the unknown kind " + std::to_string(param.kind);
+    if (param.effect != RT_EFFECT_REBUILD && param.effect != RT_EFFECT_RECOMPILE)
+        return who + " has the unknown effect " + std::to_string(param.effect);
+    if (!std::isfinite(param.min) || !std::isfinite(param.max) || !(param.min <= param.def && param.def <= param.max))
+        return who + ": expected finite min <= def <= max, found " + std::to_string(param.min) + ", " +
+               std::to_string(param.def) + ", " + std::to_string(param.max);
+    if (param.kind == RT_PARAM_BOOL && (param.min != 0 || param.max != 1)) return who + " is a BOOL: its range must be 0..1";
+    if (param.kind != RT_PARAM_FLOAT)
+        for (const double value : {param.min, param.max, param.def})
+            if (value != std::floor(value)) return who + " takes whole numbers, but its range or default is none";
+    return param.kind == RT_PARAM_ENUM ? check_choices(who, param) : "";
+}
+
+std::string check_params(const rt_plugin& plugin) {
+    if (plugin.param_count > kMaxParams)
+        return "it declares " + std::to_string(plugin.param_count) + " parameters, at most " + std::to_string(kMaxParams) +
+               " are taken";
+    if (plugin.param_count > 0 && !plugin.params) return "param_count is not 0, but params is NULL";
+    std::set<std::string> keys;
+    for (rt_u32 i = 0; i < plugin.param_count; ++i) {
+        if (std::string why = check_param(plugin.params[i], i); !why.empty()) return why;
+        if (!keys.insert(plugin.params[i].key).second)
+            return std::string("it has two parameters '") + plugin.params[i].key + "'";
+    }
+    return {};
+}
+
+std::string check_accel(const rt_accel& accel) {
+    if (std::string why = check_struct_bytes("rt_accel", accel.struct_bytes, sizeof(rt_accel)); !why.empty()) return why;
+    if (accel.slot_count == 0 || accel.slot_count > kMaxSlots)
+        return "it declares " + std::to_string(accel.slot_count) + " slots, expected 1 to " + std::to_string(kMaxSlots) +
+               " (slot 0 holds the nodes)";
+    if (!accel.slots) return "slots is NULL";
+    std::set<std::string> names;
+    for (rt_u32 i = 0; i < accel.slot_count; ++i) {
+        const rt_slot& slot = accel.slots[i];
+        const std::string who = "slot " + std::to_string(i);
+        if (!is_identifier(slot.name)) return who + " has no name, or one that is no identifier";
+        if (!names.insert(slot.name).second) return "two slots are named '" + std::string(slot.name) + "'";
+        if (!is_type_name(slot.cl_type)) return who + " ('" + slot.name + "') has no cl_type, or one that is no type's name";
+        if (slot.elem_bytes == 0 || slot.elem_bytes > kMaxStructBytes)
+            return who + " ('" + slot.name + "') has elem_bytes " + std::to_string(slot.elem_bytes) +
+                   ", expected sizeof(its element), 1 to " + std::to_string(kMaxStructBytes);
+    }
+    if (accel.types.text && !accel.types.name) return "its types file has a text but no name";
+    if (std::string why = check_text("the name of its types file", accel.types.name, false); !why.empty()) return why;
+    if (std::string why = check_text("the name of its traversal file", accel.traverse.name, true); !why.empty()) return why;
+    if (!accel.traverse.text || !*accel.traverse.text)
+        return "its traversal has no text: embed <id>.cl (clarity_add_plugin does) and point traverse.text at it";
+    if (!accel.build) return "build is NULL";
+    return {};
+}
+
+std::string check_importer(const rt_importer& importer) {
+    if (std::string why = check_struct_bytes("rt_importer", importer.struct_bytes, sizeof(rt_importer)); !why.empty())
+        return why;
+    if (!importer.extensions) return "extensions is NULL";
+    rt_u32 count = 0;
+    for (; count <= kMaxExtensions && importer.extensions[count]; ++count) {
+        const char* extension = importer.extensions[count];
+        const size_t bytes = strnlen(extension, kMaxText);
+        const bool plain = bytes > 0 && bytes <= 32 && std::all_of(extension, extension + bytes, [](unsigned char c) {
+                               return c > 0x20 && c < 0x7f && c != '.' && c != '/' && !(c >= 'A' && c <= 'Z');
+                           });
+        if (!plain) return "extension " + std::to_string(count) + " is not plain: lower case, no dot, for example \"obj\"";
+    }
+    if (count > kMaxExtensions) return "its extensions have no NULL at the end";
+    if (count == 0 && !importer.probe) return "it has neither extensions nor probe, so that no file could be given to it";
+    if (!importer.load) return "load is NULL";
+    return {};
+}
+
+}  // namespace
+
+bool is_plugin_id(std::string_view text) {
+    if (text.empty() || text.size() > 32 || text[0] < 'a' || text[0] > 'z') return false;
+    return std::all_of(text.begin(), text.end(),
+                       [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
+}
+
+std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes) {
+    const char* rebuild = ": rebuild it against this SDK";
+    if (head[0] != RT_ABI_VERSION)
+        return "ABI version " + std::to_string(head[0]) + ", this host speaks " + std::to_string(RT_ABI_VERSION) +
+               (head[0] > RT_ABI_VERSION ? ": update clarity, or rebuild the plugin against this SDK" : rebuild);
+    if (head[1] < sizeof(rt_plugin) || head[1] > kMaxStructBytes)
+        return check_struct_bytes("rt_plugin", head[1], sizeof(rt_plugin));
+    if (object_bytes < head[1])
+        return "rt_plugin_v1 says struct_bytes " + std::to_string(head[1]) + ", but the library exports " +
+               std::to_string(object_bytes) + " bytes of it: declare it as `const rt_plugin rt_plugin_v1` and rebuild";
+    if (head[2] != RT_TYPES_DIGEST)
+        return "digest of the shared structs " + hex(head[2]) + ", this host has " + hex(RT_TYPES_DIGEST) +
+               " (its rt_types.h differs from ours)" + rebuild;
+    return {};
+}
+
+std::string check_plugin(const rt_plugin& plugin) {
+    const size_t id_bytes = plugin.id ? strnlen(plugin.id, kMaxText) : 0;
+    if (!is_plugin_id(std::string_view(plugin.id ? plugin.id : "", id_bytes)))
+        return "its id is " +
+               (check_text("id", plugin.id, true).empty() ? "'" + std::string(plugin.id) + "'" : "missing or unreadable") +
+               ", expected [a-z][a-z0-9_]* of at most 32 letters";
+    if (std::string why = check_text("name", plugin.name, true); !why.empty()) return why;
+    if (std::string why = check_text("version", plugin.version, true); !why.empty()) return why;
+    if (std::string why = check_text("reference", plugin.reference, false); !why.empty()) return why;
+    if (plugin.accel && plugin.importer)
+        return "it is both an accel and an importer, expected exactly one: make two libraries of it";
+    if (!plugin.accel && !plugin.importer)
+        return "it is neither an accel nor an importer, expected exactly one: set one of the two";
+    if (std::string why = check_params(plugin); !why.empty()) return why;
+    return plugin.accel ? check_accel(*plugin.accel) : check_importer(*plugin.importer);
+}
+
+}  // namespace clarity

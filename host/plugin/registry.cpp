@@ -1,0 +1,272 @@
+#include "plugin/registry.hpp"
+
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <set>
+
+#include "base/log.hpp"
+#include "plugin/elf_file.hpp"
+#include "plugin/plugin_check.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kSymbol = "rt_plugin_v1";
+
+std::string dlopen_advice(const std::string& error) {
+    if (error.find("undefined symbol") != std::string::npos) return "; link it with -Wl,--no-undefined to see what is missing";
+    if (error.find("No such file") != std::string::npos) return "; install the library that it needs (`ldd` on it lists them)";
+    return {};
+}
+
+PluginRecord load_checked(const std::string& path) {
+    PluginRecord record;
+    record.path = path;
+    // From the file first: dlopen would run the library's constructors before anyone could look at its version.
+    ElfSymbol symbol;
+    record.why = read_elf_symbol(path, kSymbol, symbol);
+    if (record.why.empty() && !symbol.found)
+        record.why = std::string("exports no symbol ") + kSymbol +
+                     ", so it is no plugin of clarity; define it (docs/plugins.md) and export it";
+    if (record.why.empty() && !symbol.is_data)
+        record.why =
+            std::string("exports ") + kSymbol + " as a function, expected data: declare it as `const rt_plugin rt_plugin_v1`";
+    if (record.why.empty()) record.why = check_plugin_head(symbol.head, symbol.bytes);
+    if (!record.why.empty()) return record;
+
+    const std::string full = fs::absolute(path).string();  // a bare name would be looked up in the system's library folders
+    void* library = dlopen(full.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (!library) {
+        const char* error = dlerror();
+        record.why =
+            std::string("cannot be loaded: ") + (error ? error : "no reason given") + dlopen_advice(error ? error : "");
+        return record;
+    }
+    const auto* plugin = static_cast<const rt_plugin*>(dlsym(library, kSymbol));
+    if (!plugin) {
+        record.why = std::string("exports no symbol ") + kSymbol + " once loaded";
+        return record;
+    }
+    // Again, on what is really mapped: the file may have been replaced in between, and a constructor may have written to it.
+    uint32_t head[4];
+    std::memcpy(head, plugin, sizeof head);
+    record.why = check_plugin_head(head, symbol.bytes);
+    if (record.why.empty()) record.why = check_plugin(*plugin);
+    if (record.why.empty()) record.plugin = plugin;
+    return record;
+}
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+std::string executable_folder() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    return error ? "" : program.parent_path().string();
+}
+
+// The ones of one folder, by name. `missing_ok`: the folder is a place where plugins may lie, nobody named it.
+std::vector<std::string> libraries_in(const fs::path& folder, bool missing_ok) {
+    std::vector<std::string> found;
+    std::error_code error;
+    fs::directory_iterator entry(folder, error), end;
+    if (error) {
+        if (!missing_ok || (error != std::errc::no_such_file_or_directory && error != std::errc::not_a_directory))
+            log(LogLevel::warning, folder.string() + ": no plugins are read from this folder: " + error.message());
+        return found;
+    }
+    for (; !error && entry != end; entry.increment(error))
+        if (entry->path().extension() == ".so") found.push_back(entry->path().string());
+    if (error) log(LogLevel::warning, folder.string() + ": the folder could not be read to its end: " + error.message());
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
+// Collects libraries, each file once however many ways lead to it.
+class Search {
+ public:
+    void add_file(const std::string& path) {
+        std::error_code error;
+        const fs::path real = fs::canonical(path, error);
+        if (seen_.insert(error ? path : real.string()).second) paths_.push_back(path);
+    }
+    // A folder may also be laid out as the build's: libraries in importers/ and accel/ below it.
+    void add_folder(const fs::path& folder, bool missing_ok) {
+        for (const std::string& path : libraries_in(folder, missing_ok)) add_file(path);
+        for (const char* kind : {"importers", "accel"})
+            for (const std::string& path : libraries_in(folder / kind, true)) add_file(path);
+    }
+    const std::vector<std::string>& paths() const { return paths_; }
+
+ private:
+    std::set<std::string> seen_;
+    std::vector<std::string> paths_;
+};
+
+void search_environment(Search& search) {
+    const std::string list = environment("CLARITY_PLUGIN_PATH");
+    for (size_t begin = 0; begin <= list.size();) {
+        const size_t end = std::min(list.find(':', begin), list.size());
+        // An empty element would mean the working directory, as in PATH; never that.
+        if (end > begin) search.add_folder(list.substr(begin, end - begin), false);
+        begin = end + 1;
+    }
+}
+
+void search_user_data(Search& search) {
+    std::string data = environment("XDG_DATA_HOME");
+    if (data.empty() || data[0] != '/') {  // the XDG specification ignores relative ones
+        const std::string home = environment("HOME");
+        if (home.empty() || home[0] != '/') return;
+        data = home + "/.local/share";
+    }
+    search.add_folder(fs::path(data) / "clarity" / "plugins", true);
+}
+
+void search_own_folders(Search& search) {
+    const fs::path program = executable_folder();
+    if (program.empty()) return;
+    const fs::path up = program / "..";
+#ifdef CLARITY_LIBDIR
+    // As installed: lib/x86_64-linux-gnu on Debian.
+    search.add_folder((up / CLARITY_LIBDIR / "clarity" / "plugins").lexically_normal(), true);
+#endif
+    search.add_folder((up / "lib" / "clarity" / "plugins").lexically_normal(), true);
+}
+
+std::string key_of(const rt_plugin& plugin) {
+    return std::string(plugin.accel ? "accel " : "importer ") + plugin.id;
+}
+
+std::string lower_extension(const std::string& path) {
+    std::string extension = fs::path(path).extension().string();
+    if (!extension.empty()) extension.erase(0, 1);
+    for (char& c : extension)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return extension;
+}
+
+std::vector<uint8_t> read_head(const std::string& path) {
+    std::vector<uint8_t> head(4096);
+    size_t bytes = 0;
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe must not block
+    struct stat status {};
+    if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
+        for (ssize_t got = 0; bytes < head.size(); bytes += static_cast<size_t>(got)) {
+            got = read(file, head.data() + bytes, head.size() - bytes);
+            if (got < 0 && errno == EINTR)
+                got = 0;
+            else if (got <= 0)
+                break;
+        }
+    }
+    if (file >= 0) close(file);
+    head.resize(bytes);
+    return head;
+}
+
+// What a file begins with says more than its name; the name decides where the content says nothing.
+int certainty(const rt_importer& importer, const std::string& extension, const std::vector<uint8_t>& head) {
+    constexpr int kByName = 30, kWithoutName = 50;
+    bool named = false;
+    for (const char* const* e = importer.extensions; *e && !named; ++e) named = extension == *e;
+    int probed = 0;
+    try {
+        if (importer.probe && !head.empty()) probed = std::clamp(importer.probe(head.data(), head.size()), 0, 100);
+    } catch (...) {  // no plugin may throw, but one that does only loses its say
+        probed = 0;
+    }
+    if (named) return kByName + probed;
+    return probed >= kWithoutName ? probed : 0;
+}
+
+}  // namespace
+
+PluginRecord load_plugin(const std::string& path) {
+    try {
+        return load_checked(path);
+    } catch (const std::exception& e) {
+        PluginRecord record;
+        record.path = path;
+        record.why = std::string("could not be examined: ") + e.what();
+        return record;
+    }
+}
+
+PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files) {
+    Search search;
+    for (const std::string& file : plugin_files) search.add_file(file);
+    const size_t named = search.paths().size();
+    search_environment(search);
+    search_user_data(search);
+    search_own_folders(search);
+
+    PluginRegistry registry;
+    std::set<std::string> taken;
+    for (size_t i = 0; i < search.paths().size(); ++i) {
+        PluginRecord record = load_plugin(search.paths()[i]);
+        if (!record.plugin)
+            log(i < named ? LogLevel::error : LogLevel::warning, "plugin refused: " + record.path + ": " + record.why);
+        else
+            record.shadowed = !taken.insert(key_of(*record.plugin)).second;
+        registry.records_.push_back(std::move(record));
+    }
+    return registry;
+}
+
+const rt_plugin* PluginRegistry::accel(std::string_view id) const {
+    for (const PluginRecord& record : records_)
+        if (record.plugin && !record.shadowed && record.plugin->accel && id == record.plugin->id) return record.plugin;
+    return nullptr;
+}
+
+const rt_plugin* PluginRegistry::importer(std::string_view id) const {
+    for (const PluginRecord& record : records_)
+        if (record.plugin && !record.shadowed && record.plugin->importer && id == record.plugin->id) return record.plugin;
+    return nullptr;
+}
+
+static std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, bool accel) {
+    std::vector<const rt_plugin*> list;
+    for (const PluginRecord& record : records)
+        if (record.plugin && !record.shadowed && (record.plugin->accel != nullptr) == accel) list.push_back(record.plugin);
+    std::sort(list.begin(), list.end(), [](const rt_plugin* a, const rt_plugin* b) { return std::strcmp(a->id, b->id) < 0; });
+    return list;
+}
+
+std::vector<const rt_plugin*> PluginRegistry::accels() const {
+    return usable(records_, true);
+}
+std::vector<const rt_plugin*> PluginRegistry::importers() const {
+    return usable(records_, false);
+}
+
+const rt_plugin* PluginRegistry::importer_for(const std::string& path) const {
+    const std::string extension = lower_extension(path);
+    const std::vector<uint8_t> head = read_head(path);
+    const rt_plugin* best = nullptr;
+    int best_certainty = 0;
+    for (const PluginRecord& record : records_) {
+        if (!record.plugin || record.shadowed || !record.plugin->importer) continue;
+        const int sure = certainty(*record.plugin->importer, extension, head);
+        if (sure > best_certainty) {
+            best_certainty = sure;
+            best = record.plugin;
+        }
+    }
+    return best;
+}
+
+}  // namespace clarity
