@@ -1,0 +1,92 @@
+/* camera.h -- which pixels a work-item computes, and the camera rays through them.
+ *
+ * A packet of RT_PACKET_W x RT_PACKET_H pixels is one work-item's, as in the thesis. It is looped in blocks of
+ * RT_BLOCK_W x RT_BLOCK_H = RT_LANES pixels. A work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture
+ * run close in time. */
+#ifndef RT_CAMERA_H
+#define RT_CAMERA_H
+
+#define RT_BLOCKS_X ((RT_PACKET_W + RT_BLOCK_W - 1) / RT_BLOCK_W)
+#define RT_BLOCKS_Y ((RT_PACKET_H + RT_BLOCK_H - 1) / RT_BLOCK_H)
+
+/* First pixel of this work-item's packet. group: number of the work-group, row by row over the picture. */
+RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group)
+{
+    const uint groups_x = (frame->width + RT_PACKET_W * RT_GROUP_W - 1) / (RT_PACKET_W * RT_GROUP_W);
+    const uint local_id = (uint)get_local_id(0);
+    const uint x = (group % groups_x) * RT_GROUP_W + local_id % RT_GROUP_W;
+    const uint y = (group / groups_x) * RT_GROUP_H + local_id / RT_GROUP_W;
+    return (uint2)(x * RT_PACKET_W, y * RT_PACKET_H);
+}
+
+/* Pixel of each lane within the packet, and whether packet and picture hold it. */
+RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, uint block, vint *in_x, vint *in_y)
+{
+    const vint lane = rt_lane_index();
+    const vint x = rt_vint((block % RT_BLOCKS_X) * RT_BLOCK_W) + (lane & rt_vint(RT_BLOCK_W - 1));
+    const vint y = rt_vint((block / RT_BLOCKS_X) * RT_BLOCK_H) + (lane >> rt_vint(RT_BLOCK_W_LOG2));
+    *in_x = x;
+    *in_y = y;
+    return RT_MASK(x < rt_vint(RT_PACKET_W)) & RT_MASK(y < rt_vint(RT_PACKET_H)) &
+           RT_MASK(x + rt_vint((int)origin.x) < rt_vint((int)frame->width)) &
+           RT_MASK(y + rt_vint((int)origin.y) < rt_vint((int)frame->height));
+}
+
+/* lowbias32, a full-avalanche integer hash (Wellons 2018). */
+RT_INLINE vuint rt_hash(vuint x)
+{
+    x ^= x >> 16;
+    x *= 0x7feb352du;
+    x ^= x >> 15;
+    x *= 0x846ca68bu;
+    x ^= x >> 16;
+    return x;
+}
+
+/* Camera rays through pixels (x, y) of the picture: their centres for sample 0, else a point that depends on pixel and sample
+ * alone, so that pictures do not depend on who renders what when. */
+RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
+{
+    vfloat px = rt_to_float(x) + rt_vfloat(0.5f), py = rt_to_float(y) + rt_vfloat(0.5f);
+    if (frame->sample != 0u) {
+#if RT_LANES == 1
+        const vuint seed = (uint)(x + y * (int)frame->width) * 4099u + frame->sample * 2u;
+        const vuint a = rt_hash(seed), b = rt_hash(seed + 0x9e3779b9u);
+        px = (float)x + (float)(a >> 8) * 5.9604645e-8f;
+        py = (float)y + (float)(b >> 8) * 5.9604645e-8f;
+#else
+        const vuint seed = RT_CAT(convert_uint, RT_LANES)(x + y * rt_vint((int)frame->width)) * 4099u + frame->sample * 2u;
+        const vuint a = rt_hash(seed), b = rt_hash(seed + 0x9e3779b9u);
+        px = rt_to_float(x) + RT_CAT(convert_float, RT_LANES)(a >> 8) * 5.9604645e-8f;
+        py = rt_to_float(y) + RT_CAT(convert_float, RT_LANES)(b >> 8) * 5.9604645e-8f;
+#endif
+    }
+    const vfloat sx = fma(px, rt_vfloat(2.0f * frame->pixel_x), rt_vfloat(-1.0f));
+    const vfloat sy = fma(py, rt_vfloat(-2.0f * frame->pixel_y), rt_vfloat(1.0f));
+    const vfloat dx = fma(sx, rt_vfloat(frame->right[0]), fma(sy, rt_vfloat(frame->up[0]), rt_vfloat(frame->forward[0])));
+    const vfloat dy = fma(sx, rt_vfloat(frame->right[1]), fma(sy, rt_vfloat(frame->up[1]), rt_vfloat(frame->forward[1])));
+    const vfloat dz = fma(sx, rt_vfloat(frame->right[2]), fma(sy, rt_vfloat(frame->up[2]), rt_vfloat(frame->forward[2])));
+    const vfloat scale = rt_vfloat(1.0f) / sqrt(fma(dx, dx, fma(dy, dy, dz * dz)));
+    r->ox = rt_vfloat(frame->eye[0]);
+    r->oy = rt_vfloat(frame->eye[1]);
+    r->oz = rt_vfloat(frame->eye[2]);
+    r->dx = dx * scale;
+    r->dy = dy * scale;
+    r->dz = dz * scale;
+    r->t_min = rt_vfloat(0.0f);
+}
+
+RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
+{
+    h->t = rt_select(active, RT_INFINITY, rt_vfloat(-1.0f));
+    h->u = h->v = h->nx = h->ny = h->nz = rt_vfloat(0.0f);
+    h->leaf = h->instance = rt_vint(-1);
+#ifdef RT_COUNT_STEPS
+    h->steps = 0;
+#endif
+#ifdef RT_DEBUG
+    h->overflow = 0;
+#endif
+}
+
+#endif

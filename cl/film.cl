@@ -1,0 +1,32 @@
+/* film.cl -- from the film to what a screen shows, and sums over the counters. A program of its own, built once a device. */
+
+float rt_srgb_from_linear(float c) { return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 1.0f / 2.4f) - 0.055f; }
+
+/* Narkowicz 2015, ACES Filmic Tone Mapping Curve (a fit). */
+float rt_aces(float x) { return clamp(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 0.0f, 1.0f); }
+
+/* film: sums of samples, w counts them. display: RGBA8, sRGB, top row first. tone: 0 linear (clipped), 1 Reinhard, 2 ACES-like. */
+kernel void map_tones(const global float4 *film, global uchar4 *display, const uint pixels, const float exposure, const uint tone)
+{
+    const uint i = (uint)get_global_id(0);
+    if (i >= pixels) return;
+    const float4 sum = film[i];
+    float4 c = sum * (exposure / max(sum.w, 1.0f));
+    c = max(c, (float4)(0.0f));
+    if (tone == 1u) c = c / (1.0f + c);
+    if (tone == 2u) c = (float4)(rt_aces(c.x), rt_aces(c.y), rt_aces(c.z), 1.0f);
+    c = min(c, (float4)(1.0f));
+    const float3 s = (float3)(rt_srgb_from_linear(c.x), rt_srgb_from_linear(c.y), rt_srgb_from_linear(c.z));
+    display[i] = (uchar4)((uchar)(s.x * 255.0f + 0.5f), (uchar)(s.y * 255.0f + 0.5f), (uchar)(s.z * 255.0f + 0.5f), 255);
+}
+
+/* sums: 4 zeroed uints. */
+kernel void sum_counters(const global uint4 *counters, const uint count, global uint *sums)
+{
+    uint4 mine = (uint4)(0u);
+    for (uint i = (uint)get_global_id(0); i < count; i += (uint)get_global_size(0)) mine += counters[i];
+    if (mine.x) atomic_add(sums + 0, mine.x);
+    if (mine.y) atomic_add(sums + 1, mine.y);
+    if (mine.z) atomic_add(sums + 2, mine.z);
+    if (mine.w) atomic_add(sums + 3, mine.w);
+}

@@ -1,0 +1,101 @@
+/* lanes.h -- one kernel source, any SIMD width. OpenCL C 1.2.
+ *
+ * RT_LANES is 1 on GPUs (a work-item is a thread) and 4, 8 or 16 on CPUs (a work-item drives one vector register). vfloat, vint
+ * and vmask are then scalars or vectors; a mask's lane is 0 or -1. All control flow is uniform over the lanes.
+ * Why not leave it to the compiler: no OpenCL CPU compiler vectorises a divergent tree traversal across work-items. */
+#ifndef RT_LANES_H
+#define RT_LANES_H
+
+#define RT_INLINE static inline __attribute__((always_inline))
+#define RT_CAT_(a, b) a##b
+#define RT_CAT(a, b) RT_CAT_(a, b)
+
+#if RT_LANES == 1
+
+typedef float vfloat;
+typedef int vint;
+typedef uint vuint;
+typedef int vmask;
+#define RT_MASK(c) (-(int)(c))
+#define rt_any(m) ((m) != 0)
+#define rt_bits(m) ((uint)(m)&1u)
+#define rt_select(m, a, b) ((m) ? (a) : (b))
+#define rt_vfloat(x) ((float)(x))
+#define rt_vint(x) ((int)(x))
+#define rt_load(p) (*(p))
+#define rt_store(v, p) (*(p) = (v))
+#define rt_to_float(v) ((float)(v))
+#define rt_to_int(v) ((int)(v))
+#define rt_as_vint(v) as_int(v)
+#define rt_as_vfloat(v) as_float(v)
+#define rt_lane_index() 0
+
+#else
+
+typedef RT_CAT(float, RT_LANES) vfloat;
+typedef RT_CAT(int, RT_LANES) vint;
+typedef RT_CAT(uint, RT_LANES) vuint;
+typedef RT_CAT(int, RT_LANES) vmask;
+#define RT_MASK(c) (c) /* a vector compare gives 0 / -1 */
+#define rt_select(m, a, b) ((m) ? (a) : (b))
+#define rt_vfloat(x) ((vfloat)(x))
+#define rt_vint(x) ((vint)(x))
+#define rt_load(p) RT_CAT(vload, RT_LANES)(0, p)
+#define rt_store(v, p) RT_CAT(vstore, RT_LANES)(v, 0, p)
+#define rt_to_float(v) RT_CAT(convert_float, RT_LANES)(v)
+#define rt_to_int(v) RT_CAT(RT_CAT(convert_int, RT_LANES), _rtz)(v)
+#define rt_as_vint(v) RT_CAT(as_int, RT_LANES)(v)
+#define rt_as_vfloat(v) RT_CAT(as_float, RT_LANES)(v)
+#if RT_LANES == 16
+#define rt_lane_index() ((int16)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#elif RT_LANES == 8
+#define rt_lane_index() ((int8)(0, 1, 2, 3, 4, 5, 6, 7))
+#else
+#define rt_lane_index() ((int4)(0, 1, 2, 3))
+#endif
+
+/* Mask to bits, lane 0 in bit 0. PoCL 3.1's any() walks the lanes one by one and costs a third of a frame; the movemask
+ * instruction is one cycle. RT_PORTABLE (a setting for tests) takes the fallback everywhere. */
+#if !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX512DQ__)
+#define rt_bits(m) ((uint)(ushort)__builtin_ia32_cvtd2mask512(m))
+#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 8 && defined(__AVX__)
+#define rt_bits(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
+#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 4
+#define rt_bits(m) ((uint)__builtin_ia32_movmskps(as_float4(m)))
+#elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX__)
+#define rt_bits(m)                                                                                                               \
+    ((uint)__builtin_ia32_movmskps256(as_float8((m).lo)) | (uint)__builtin_ia32_movmskps256(as_float8((m).hi)) << 8)
+#else
+RT_INLINE uint rt_bits4(int4 m)
+{
+    const int4 weighted = m & (int4)(1, 2, 4, 8);
+    const int2 pair = weighted.lo | weighted.hi;
+    return (uint)(pair.x | pair.y);
+}
+#if RT_LANES == 4
+#define rt_bits(m) rt_bits4(m)
+#elif RT_LANES == 8
+#define rt_bits(m) (rt_bits4((m).lo) | rt_bits4((m).hi) << 4)
+#else
+#define rt_bits(m) (rt_bits4((m).lo.lo) | rt_bits4((m).lo.hi) << 4 | rt_bits4((m).hi.lo) << 8 | rt_bits4((m).hi.hi) << 12)
+#endif
+#endif
+#define rt_any(m) (rt_bits(m) != 0u)
+
+#endif
+
+/* One instruction each; fmin and fmax have to look for NaN and take three. */
+#define rt_min(a, b) ((a) < (b) ? (a) : (b))
+#define rt_max(a, b) ((a) > (b) ? (a) : (b))
+#define rt_all_bits ((uint)((1ul << RT_LANES) - 1ul))
+
+#define RT_INFINITY ((vfloat)(INFINITY))
+
+/* Debug builds stop a traversal whose stack would overflow and count it; see CONTRACT.md. */
+#ifdef RT_DEBUG
+#define RT_STACK_OK(top, size, hit) ((top) < (size) ? 1 : ((hit)->overflow = 1, 0))
+#else
+#define RT_STACK_OK(top, size, hit) 1
+#endif
+
+#endif

@@ -1,0 +1,51 @@
+/* leaf_scene.h -- RT_LEAF in world space: any kind of primitive, and instances, which start a traversal of their mesh's tree
+ * with the ray in object space. Kinds that the scene does not hold are compiled out. A template, see CONTRACT.md. */
+#if RT_HAS_INSTANCES
+RT_INLINE void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint index, const rt_rays *r, rt_hits *h)
+{
+    const global rt_instance *instance = ctx->instances + index;
+    const global float *m = instance->object_from_world;
+    const uint active = rt_bits(RT_MASK(h->t >= rt_vfloat(0.0f)));
+    rt_rays local;
+    local.ox = fma(rt_vfloat(m[0]), r->ox, fma(rt_vfloat(m[1]), r->oy, fma(rt_vfloat(m[2]), r->oz, rt_vfloat(m[3]))));
+    local.oy = fma(rt_vfloat(m[4]), r->ox, fma(rt_vfloat(m[5]), r->oy, fma(rt_vfloat(m[6]), r->oz, rt_vfloat(m[7]))));
+    local.oz = fma(rt_vfloat(m[8]), r->ox, fma(rt_vfloat(m[9]), r->oy, fma(rt_vfloat(m[10]), r->oz, rt_vfloat(m[11]))));
+    local.dx = fma(rt_vfloat(m[0]), r->dx, fma(rt_vfloat(m[1]), r->dy, rt_vfloat(m[2]) * r->dz));
+    local.dy = fma(rt_vfloat(m[4]), r->dx, fma(rt_vfloat(m[5]), r->dy, rt_vfloat(m[6]) * r->dz));
+    local.dz = fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz));
+    local.t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
+    rt_prepare(&local, active);
+    const vfloat before = h->t;
+    RT_FN(rt_mesh)(ctx, instance->root, &local, h);
+#if !RT_ANY_HIT
+    h->instance = rt_select(RT_MASK(h->t < before), rt_vint(index), h->instance);
+#endif
+}
+#endif
+
+RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    const global rt_leaf *leaf = ctx->leaves + at;
+#if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_INSTANCES
+    const uint kind = RT_REF_KIND(leaf->ref);
+#if RT_HAS_SPHERES
+    if (kind == RT_REF_SPHERE) {
+        RT_FN(rt_hit_sphere)(leaf, at, ray, hit);
+        return;
+    }
+#endif
+#if RT_HAS_POLYGONS
+    if (kind == RT_REF_POLYGON) {
+        RT_FN(rt_hit_polygon)(ctx, leaf, at, ray, hit);
+        return;
+    }
+#endif
+#if RT_HAS_INSTANCES
+    if (kind == RT_REF_INSTANCE) {
+        RT_FN(rt_hit_instance)(ctx, RT_REF_INDEX(leaf->ref), ray, hit);
+        return;
+    }
+#endif
+#endif
+    RT_FN(rt_hit_triangle)(leaf, at, ray, hit);
+}

@@ -1,0 +1,25 @@
+/* plane.h -- unbounded planes on lanes. No tree can hold them: all are tested before traversal, which also shortens the rays. */
+RT_INLINE void RT_FN(rt_hit_planes)(const rt_ctx *ctx, uint count, const rt_rays *r, rt_hits *h)
+{
+    for (uint i = 0; i < count; ++i) {
+        const global rt_plane *plane = ctx->planes + i;
+        const vfloat nx = rt_vfloat(plane->normal[0]), ny = rt_vfloat(plane->normal[1]), nz = rt_vfloat(plane->normal[2]);
+        const vfloat facing = fma(nx, r->dx, fma(ny, r->dy, nz * r->dz));
+        const vfloat height = rt_vfloat(plane->offset) - fma(nx, r->ox, fma(ny, r->oy, nz * r->oz));
+        const vfloat t = height / facing, zero = rt_vfloat(0.0f);
+        const vmask closer = RT_MASK(facing != zero) & RT_MASK(t > r->t_min) & RT_MASK(t < h->t) & RT_MASK(h->t >= zero);
+        if (!rt_any(closer)) continue;
+#if RT_ANY_HIT
+        h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
+#else
+        h->t = rt_select(closer, t, h->t);
+        h->u = rt_select(closer, zero, h->u);
+        h->v = rt_select(closer, zero, h->v);
+        h->nx = rt_select(closer, nx, h->nx);
+        h->ny = rt_select(closer, ny, h->ny);
+        h->nz = rt_select(closer, nz, h->nz);
+        h->leaf = rt_select(closer, rt_vint(-2 - (int)i), h->leaf);
+        h->instance = rt_select(closer, rt_vint(-1), h->instance);
+#endif
+    }
+}

@@ -1,0 +1,37 @@
+/* sphere.h -- ray/sphere on lanes. The discriminant is the squared distance of the centre from the ray's line, not b^2 - 4ac,
+ * which cancels for far or small spheres (Haines, Guenther, Akenine-Moeller 2019, Precision Improvements for Ray/Sphere
+ * Intersection, Ray Tracing Gems ch. 7). Seen from inside, the far side is the hit. */
+RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+{
+    const float radius = leaf->b[0];
+    const vfloat fx = r->ox - rt_vfloat(leaf->a[0]), fy = r->oy - rt_vfloat(leaf->a[1]), fz = r->oz - rt_vfloat(leaf->a[2]);
+    const vfloat a = fma(r->dx, r->dx, fma(r->dy, r->dy, r->dz * r->dz));
+    const vfloat b = -fma(fx, r->dx, fma(fy, r->dy, fz * r->dz)); /* half of the textbook's, sign turned */
+    const vfloat along = b / a;
+    const vfloat lx = fma(along, r->dx, fx), ly = fma(along, r->dy, fy), lz = fma(along, r->dz, fz);
+    const vfloat room = rt_vfloat(radius * radius) - fma(lx, lx, fma(ly, ly, lz * lz));
+    const vfloat zero = rt_vfloat(0.0f);
+    const vmask meets = RT_MASK(room >= zero) & RT_MASK(h->t >= zero);
+    if (!rt_any(meets)) return;
+
+    const vfloat root = sqrt(rt_max(room, zero) * a);
+    const vfloat q = b + copysign(root, b); /* no cancellation: both have the same sign */
+    const vfloat c = fma(fx, fx, fma(fy, fy, fz * fz)) - rt_vfloat(radius * radius);
+    const vfloat t_a = rt_select(RT_MASK(q != zero), c / q, zero), t_b = q / a;
+    const vfloat t_near = rt_min(t_a, t_b), t_far = rt_max(t_a, t_b);
+    const vfloat t = rt_select(RT_MASK(t_near >= r->t_min) & RT_MASK(t_near > zero), t_near, t_far);
+    const vmask closer = meets & RT_MASK(t >= r->t_min) & RT_MASK(t > zero) & RT_MASK(t < h->t);
+    if (!rt_any(closer)) return;
+#if RT_ANY_HIT
+    h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
+#else
+    h->t = rt_select(closer, t, h->t);
+    h->u = rt_select(closer, zero, h->u);
+    h->v = rt_select(closer, zero, h->v);
+    h->nx = rt_select(closer, fma(t, r->dx, fx), h->nx);
+    h->ny = rt_select(closer, fma(t, r->dy, fy), h->ny);
+    h->nz = rt_select(closer, fma(t, r->dz, fz), h->nz);
+    h->leaf = rt_select(closer, rt_vint(at), h->leaf);
+    h->instance = rt_select(closer, rt_vint(-1), h->instance);
+#endif
+}

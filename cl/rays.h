@@ -1,0 +1,154 @@
+/* rays.h -- rays and hits of all lanes, and the box test that every traversal shares. */
+#ifndef RT_RAYS_H
+#define RT_RAYS_H
+
+typedef struct rt_rays {
+    vfloat ox, oy, oz;             /* origin */
+    vfloat dx, dy, dz;             /* direction; unit in world space, not inside instances, so t stays comparable */
+    vfloat t_min;
+    vfloat ix, iy, iz;             /* 1 / direction, finite: components are clamped away from zero */
+    vfloat near_x, near_y, near_z; /* -origin / direction, rounded down */
+    vfloat far_ix, far_iy, far_iz; /* 1 / direction, a little larger in magnitude */
+    vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up */
+    vmask neg_x, neg_y, neg_z;     /* where the direction's component is negative */
+    vfloat px, py, pz;             /* two vectors across the ray: the plane in which triangles are tested */
+    vfloat qx, qy, qz;
+    vfloat rx, ry, rz;             /* dot(x - origin, r) = t on the ray */
+    int coherent;                  /* all active lanes have the same signs: then */
+    uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
+    int same_axis;                 /* all active lanes have the same dominant axis: then */
+    uint kx, ky, kz;               /* kz is it, and the shear below replaces p, q, r */
+    vfloat sx, sy, sz;
+} rt_rays;
+
+/* The nearest hit so far. A lane that is inactive, or occluded in an any-hit query, has t = -1: every test then fails for it. */
+typedef struct rt_hits {
+    vfloat t;
+    vfloat u, v;       /* weights of corners b and c of a triangle */
+    vfloat nx, ny, nz; /* geometric normal in the space of the hit's group, not unit, either side */
+    vint leaf;         /* position in leaf order; -1: none; -2 - i: plane i */
+    vint instance;     /* -1: none */
+#ifdef RT_COUNT_STEPS
+    uint steps;
+#endif
+#ifdef RT_DEBUG
+    uint overflow;
+#endif
+} rt_hits;
+
+#ifdef RT_COUNT_STEPS
+#define RT_COUNT_STEP(hit) ((hit)->steps++)
+#else
+#define RT_COUNT_STEP(hit) ((void)0)
+#endif
+
+#define RT_EPS 5.9604645e-8f /* 2^-24, half an ulp of 1 */
+
+RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
+{
+    const vfloat tiny = rt_vfloat(1e-18f);
+    const vfloat magnitude = rt_max(fabs(d), tiny);
+    return rt_vfloat(1.0f) / copysign(magnitude, d);
+}
+
+/* Fills in what follows from origin and direction. `bits`: the active lanes, by whose signs and axes the packet is judged. */
+RT_INLINE void rt_prepare(rt_rays *r, uint bits)
+{
+    /* The planes of a box are crossed at (plane - origin) * (1 / d). Computed as fma(1 / d, plane, -origin / d) that has an
+     * absolute error of about half an ulp of origin / d and a relative one of a few ulp. Widening every interval by that much
+     * keeps traversal watertight (Ize 2013, Robust BVH Ray Traversal) at no cost per node. */
+    r->ix = rt_safe_reciprocal(r->dx);
+    r->iy = rt_safe_reciprocal(r->dy);
+    r->iz = rt_safe_reciprocal(r->dz);
+    const vfloat wide = rt_vfloat(1.0f + 16.0f * RT_EPS), slack = rt_vfloat(8.0f * RT_EPS);
+    const vfloat nx = -r->ox * r->ix, ny = -r->oy * r->iy, nz = -r->oz * r->iz;
+    r->near_x = fma(fabs(nx), -slack, nx);
+    r->near_y = fma(fabs(ny), -slack, ny);
+    r->near_z = fma(fabs(nz), -slack, nz);
+    r->far_ix = r->ix * wide;
+    r->far_iy = r->iy * wide;
+    r->far_iz = r->iz * wide;
+    r->far_x = fma(fabs(nx), slack, nx * wide);
+    r->far_y = fma(fabs(ny), slack, ny * wide);
+    r->far_z = fma(fabs(nz), slack, nz * wide);
+    r->neg_x = RT_MASK(r->ix < rt_vfloat(0.0f));
+    r->neg_y = RT_MASK(r->iy < rt_vfloat(0.0f));
+    r->neg_z = RT_MASK(r->iz < rt_vfloat(0.0f));
+
+    /* Across the ray: p and q are the axes other than the dominant one, sheared along the direction (Woop, Benthin, Wald 2013,
+     * Watertight Ray/Triangle Intersection). Any two vectors across d would do; these keep coordinates exact where they can be. */
+    const vfloat ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
+    const vmask is_z = RT_MASK(az >= ax) & RT_MASK(az >= ay), is_y = ~is_z & RT_MASK(ay >= ax), is_x = ~is_z & ~is_y;
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    const vfloat along = rt_select(is_z, r->iz, rt_select(is_y, r->iy, r->ix));
+    /* x: p = y, q = z;  y: p = z, q = x;  z: p = x, q = y */
+    const vfloat shear_p = -along * rt_select(is_z, r->dx, rt_select(is_y, r->dz, r->dy));
+    const vfloat shear_q = -along * rt_select(is_z, r->dy, rt_select(is_y, r->dx, r->dz));
+#if RT_LANES == 1
+    const uint any_x = is_x, any_y = is_y;
+    r->coherent = 1;
+    r->same_axis = 0;
+#else
+    const uint any_x = rt_bits(is_x) & bits, any_y = rt_bits(is_y) & bits, any_z = rt_bits(is_z) & bits;
+    const uint neg_x = rt_bits(r->neg_x) & bits, neg_y = rt_bits(r->neg_y) & bits, neg_z = rt_bits(r->neg_z) & bits;
+    r->coherent = (neg_x == 0u || neg_x == bits) && (neg_y == 0u || neg_y == bits) && (neg_z == 0u || neg_z == bits);
+    r->lo_x = neg_x ? 3u : 0u;
+    r->lo_y = neg_y ? 4u : 1u;
+    r->lo_z = neg_z ? 5u : 2u;
+    r->same_axis = (any_x == bits) || (any_y == bits) || (any_z == bits);
+#endif
+    r->kz = any_x ? 0u : any_y ? 1u : 2u;
+    r->kx = r->kz == 2u ? 0u : r->kz + 1u;
+    r->ky = r->kz == 0u ? 2u : r->kz - 1u;
+    r->sx = shear_p;
+    r->sy = shear_q;
+    r->sz = along;
+    r->px = rt_select(is_x, shear_p, rt_select(is_y, zero, one));
+    r->py = rt_select(is_x, one, rt_select(is_y, shear_p, zero));
+    r->pz = rt_select(is_x, zero, rt_select(is_y, one, shear_p));
+    r->qx = rt_select(is_x, shear_q, rt_select(is_y, one, zero));
+    r->qy = rt_select(is_x, zero, rt_select(is_y, shear_q, one));
+    r->qz = rt_select(is_x, one, rt_select(is_y, zero, shear_q));
+    r->rx = rt_select(is_x, along, zero);
+    r->ry = rt_select(is_y, along, zero);
+    r->rz = rt_select(is_z, along, zero);
+}
+
+/* Which lanes enter the box lo..hi before their nearest hit; *entry is where. Rounding never loses a lane. */
+RT_INLINE vmask rt_enter_bounds(vfloat lo_x, vfloat lo_y, vfloat lo_z, vfloat hi_x, vfloat hi_y, vfloat hi_z, const rt_rays *r,
+                                const rt_hits *h, vfloat *entry)
+{
+    const vfloat ax = fma(r->ix, rt_select(r->neg_x, hi_x, lo_x), r->near_x);
+    const vfloat ay = fma(r->iy, rt_select(r->neg_y, hi_y, lo_y), r->near_y);
+    const vfloat az = fma(r->iz, rt_select(r->neg_z, hi_z, lo_z), r->near_z);
+    const vfloat bx = fma(r->far_ix, rt_select(r->neg_x, lo_x, hi_x), r->far_x);
+    const vfloat by = fma(r->far_iy, rt_select(r->neg_y, lo_y, hi_y), r->far_y);
+    const vfloat bz = fma(r->far_iz, rt_select(r->neg_z, lo_z, hi_z), r->far_z);
+    const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
+    const vfloat out = rt_min(rt_min(bx, by), rt_min(bz, h->t));
+    *entry = in;
+    return RT_MASK(in <= out);
+}
+
+/* The same for a box {lo.xyz, hi.xyz} in memory. Packets whose lanes agree in sign pick near and far planes by address. */
+RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry)
+{
+#if RT_LANES > 1
+    if (r->coherent) {
+        const vfloat ax = fma(r->ix, rt_vfloat(box[r->lo_x]), r->near_x);
+        const vfloat ay = fma(r->iy, rt_vfloat(box[r->lo_y]), r->near_y);
+        const vfloat az = fma(r->iz, rt_vfloat(box[r->lo_z]), r->near_z);
+        const vfloat bx = fma(r->far_ix, rt_vfloat(box[3u - r->lo_x]), r->far_x);
+        const vfloat by = fma(r->far_iy, rt_vfloat(box[5u - r->lo_y]), r->far_y);
+        const vfloat bz = fma(r->far_iz, rt_vfloat(box[7u - r->lo_z]), r->far_z);
+        const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
+        const vfloat out = rt_min(rt_min(bx, by), rt_min(bz, h->t));
+        *entry = in;
+        return RT_MASK(in <= out);
+    }
+#endif
+    return rt_enter_bounds(rt_vfloat(box[0]), rt_vfloat(box[1]), rt_vfloat(box[2]), rt_vfloat(box[3]), rt_vfloat(box[4]),
+                           rt_vfloat(box[5]), r, h, entry);
+}
+
+#endif

@@ -1,0 +1,52 @@
+/* aov.cl -- what the camera rays meet, without shading: one kernel a quantity (RT_AOV, chosen when the program is built).
+ * out: RT_AOV_CHANNELS floats a pixel, top row first. prim and instance are ints in the same bits. */
+#define RT_AOV_T 1
+#define RT_AOV_PRIM 2
+#define RT_AOV_INSTANCE 3
+#define RT_AOV_NORMAL 4
+#define RT_AOV_UV 5
+#define RT_AOV_STEPS 6
+
+kernel __attribute__((reqd_work_group_size(RT_GROUP_W *RT_GROUP_H, 1, 1))) void
+trace_aov(const constant rt_frame *frame, const uint first_group, global float *out, RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0));
+    for (uint block = 0; block < RT_BLOCKS_X * RT_BLOCKS_Y; ++block) {
+        vint in_x, in_y;
+        const vmask active = rt_block_pixels(frame, origin, block, &in_x, &in_y);
+        const uint bits = rt_bits(active);
+        if (bits == 0u) continue;
+        const vint x = in_x + rt_vint((int)origin.x), y = in_y + rt_vint((int)origin.y);
+        rt_rays ray;
+        rt_hits hit;
+        rt_camera_rays(frame, x, y, &ray);
+        rt_prepare(&ray, bits);
+        rt_clear_hits(&hit, active);
+        rt_trace_closest(&ctx, frame, &ray, &hit);
+
+        const vint at = y * rt_vint((int)frame->width) + x;
+#if RT_AOV == RT_AOV_T
+        RT_FOR_LANES_STORE(out, at, hit.t, bits)
+#elif RT_AOV == RT_AOV_STEPS
+        RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit.steps), bits)
+#else
+        const rt_surface s = rt_resolve(&ctx, &ray, &hit, bits);
+#if RT_AOV == RT_AOV_PRIM
+        RT_FOR_LANES_STORE(out, at, rt_as_vfloat(s.prim), bits)
+#elif RT_AOV == RT_AOV_INSTANCE
+        RT_FOR_LANES_STORE(out, at, rt_as_vfloat(hit.instance), bits)
+#elif RT_AOV == RT_AOV_NORMAL
+        const vint at3 = at * 3;
+        RT_FOR_LANES_STORE(out, at3, s.nx, bits)
+        RT_FOR_LANES_STORE(out, at3 + 1, s.ny, bits)
+        RT_FOR_LANES_STORE(out, at3 + 2, s.nz, bits)
+#else
+        const vint at3 = at * 3;
+        RT_FOR_LANES_STORE(out, at3, s.tex_u, bits)
+        RT_FOR_LANES_STORE(out, at3 + 1, s.tex_v, bits)
+        RT_FOR_LANES_STORE(out, at3 + 2, rt_vfloat(0.0f), bits)
+#endif
+#endif
+    }
+}
