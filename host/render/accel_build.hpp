@@ -1,0 +1,85 @@
+// accel_build.hpp -- one acceleration structure over one scene: what the builder reads, what it wrote, checked and packed.
+#pragma once
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "plugin/parameters.hpp"
+#include "rt_plugin.h"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// Uninitialised storage aligned to 64 bytes, which builders and devices like; grows never.
+class AlignedBytes {
+ public:
+    AlignedBytes() = default;
+    explicit AlignedBytes(size_t bytes, bool zero);
+    void* data() { return data_.get(); }
+    const void* data() const { return data_.get(); }
+    size_t bytes() const { return bytes_; }
+
+ private:
+    struct Free {
+        void operator()(void* p) const;
+    };
+    std::unique_ptr<void, Free> data_;
+    size_t bytes_ = 0;
+};
+
+// A scene as builders see it: boxes in groups, one group for the world and one for each mesh that is instanced. Meshes placed
+// once are flattened into the world.
+struct BuildScene {
+    std::vector<rt_prim> prims;
+    std::vector<rt_group> groups;
+    std::vector<float> corners;                // 9 per triangle ref, in the space of its group
+    std::vector<rt_leaf> leaf_of_triangle;     // unused corners; material and prim of each triangle ref
+    std::vector<rt_instance> instances;        // roots unset
+    std::vector<uint32_t> group_of_instance;
+    std::vector<Affine> world_from_object;     // per instance
+    std::vector<uint32_t> attribute_triangle;  // triangle ref -> triangle of the Scene
+    std::vector<rt_leaf> spheres, polygons;    // by ref index
+    std::vector<rt_polygon> polygon_table;
+    std::vector<float> polygon_corners;        // 2 per corner
+    std::vector<rt_plane> planes;
+};
+BuildScene make_build_scene(const Scene& scene, Progress& progress);
+
+// A finished structure, immutable.
+struct AccelData {
+    const rt_plugin* plugin = nullptr;
+    ParameterValues params;
+    struct Slot {
+        AlignedBytes memory;
+        uint64_t count = 0;
+    };
+    std::vector<Slot> slots;
+    AlignedBytes leaves;  // rt_leaf, in leaf order
+    uint64_t leaf_count = 0;
+    std::vector<rt_u32> roots;  // one a group
+    std::map<std::string, rt_u32> defines;
+    std::vector<std::pair<std::string, double>> stats;  // as the plugin reported them, in its order
+    std::vector<rt_instance> instances;                 // with roots
+    BuildScene scene;
+    double build_ms = 0;  // the plugin's build() alone
+    double pack_ms = 0;
+    uint64_t bytes = 0;  // slots and leaves
+    double stat(const std::string& label, double otherwise = 0) const;
+};
+
+// Runs a plugin's builder on a scene. Throws Error(failed) "accel bvh2: why", also where the builder broke the contract: no
+// root for a group, a root or a ref out of range, a slot allocated twice, an exception. Cancelled.
+AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress);
+
+// Bounding volumes of one level in world space, for drawing.
+struct Volumes {
+    std::vector<std::array<std::array<float, 3>, 8>> boxes;  // corners; bit 0 of the index: x high, bit 1: y, bit 2: z
+    std::vector<std::array<float, 4>> spheres;               // centre, radius
+};
+// level 0 is the root, RT_LEVEL_BOTTOM the leaves. At most `limit` volumes.
+Volumes accel_volumes(const AccelData& accel, rt_u32 level, size_t limit);
+
+}  // namespace clarity

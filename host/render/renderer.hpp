@@ -1,0 +1,98 @@
+// renderer.hpp -- from a scene and settings to a picture.
+//
+// Two steps. prepare() does what is slow - build, upload, compile - and gives an immutable Prepared; it may run on any thread
+// while frames go on with the last one. Frames::trace() does one sample of one frame with a Prepared. What did not change
+// between two prepare() calls is shared between their results, so nothing is redone without need.
+#pragma once
+#include <array>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "device/device.hpp"
+#include "plugin/registry.hpp"
+#include "render/accel_build.hpp"
+#include "render/image_io.hpp"
+#include "render/settings.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+class DeviceScene;   // buffers of one scene in one structure
+class TraceProgram;  // compiled kernels of one specialisation
+class ProgramCache;
+
+struct Prepared {
+    std::shared_ptr<const Scene> scene;
+    std::shared_ptr<const AccelData> accel;
+    std::shared_ptr<const DeviceScene> on_device;
+    std::shared_ptr<const TraceProgram> program;
+    Settings settings;  // as asked for, with 0 = automatic resolved
+    double compile_ms = 0, upload_ms = 0;  // 0 if shared with an earlier one
+    bool compile_cached = false;
+};
+
+// Thread-safe; one prepare() at a time per object.
+class Preparer {
+ public:
+    Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device);
+    ~Preparer();
+    // Throws Error(failed) for a build, Error(kernel_build_failed) with the compiler's log in details(), Cancelled; then what was prepared before stays
+    // valid.
+    std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress);
+
+ private:
+    const PluginRegistry& plugins_;
+    std::shared_ptr<Device> device_;
+    std::unique_ptr<ProgramCache> programs_;
+    std::shared_ptr<const Prepared> last_;
+    std::mutex mutex_;
+};
+
+// What may change from frame to frame for nothing.
+struct View {
+    Camera camera;
+    std::vector<rt_light> lights;
+    std::array<float, 3> background{}, ambient{};
+};
+// The scene's first camera (or the one of that name; or a framing one), its lights (or two that suit its size), background.
+// camera: "" or a name or "ex,ey,ez,tx,ty,tz[,fov_deg]". light: "" or "x,y,z", which moves the first light. Throws Error(usage).
+View make_view(const Scene& scene, float aspect, const std::string& camera = {}, const std::string& light = {});
+
+struct FrameStats {
+    double device_ms = 0;  // the kernels of the last sample, by the device's clock
+    double wall_ms = 0;    // the same by the host's, waiting included
+    uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0;  // rays of the last sample; counted if asked for
+    uint64_t overflowed = 0;  // traversal stacks that were full (debug programs)
+    unsigned samples = 0;  // in the film now
+};
+
+// Owns the film of one device. Used from one thread.
+class Frames {
+ public:
+    explicit Frames(std::shared_ptr<Device> device);
+    ~Frames();
+
+    // One sample of the picture. sample 0 starts the film anew, n adds the n-th. settings: width, height, depth, shadows and the like
+    // are taken from here; what needs a rebuild or recompile from `prepared`. Cut into launches under half a second; between
+    // them `progress` is asked, and a cancel throws Cancelled.
+    FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
+                     Progress& progress);
+
+    // The film's mean as floats: 3 channels for color, normal, uv; 1 for t, steps, prim and instance (as numbers, -1 for none).
+    FloatImage read_values();
+    // Tone-mapped sRGB; AOVs in false colours.
+    ByteImage read_display(const Settings& settings);
+
+    // Rays of the caller's own, for tests and benches; any_hit: only whether something lies between t_min and t_max.
+    std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, bool any_hit, double* device_ms = nullptr);
+
+ private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace clarity
