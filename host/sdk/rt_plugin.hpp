@@ -1,0 +1,201 @@
+// rt_plugin.hpp -- C++17 comfort over rt_plugin.h, for plugins. Header only; all of it is compiled into the plugin, so that
+// nothing but the C structs of rt_plugin.h crosses the seam.
+//
+//   static int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) { ...may throw... }
+//   constexpr rt_accel accel = {sizeof(rt_accel), ..., rt::guarded<build>, nullptr, nullptr};
+//   const rt_plugin rt_plugin_v1 = rt::accel_plugin("mine", "My structure", "1.0.0", nullptr, params, accel);
+//
+// rt_plugin_v1 must be a constant (all that is here is constexpr): the host reads its first words from the file.
+#pragma once
+#include <atomic>
+#include <exception>
+#include <mutex>
+#include <new>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "rt_plugin.h"
+
+namespace rt {
+
+// ---- errors -----------------------------------------------------------------------------------------------------------------
+
+// Thrown where the host has recorded the reason already (alloc answered NULL): nothing more to say.
+struct Stopped : std::exception {
+    const char* what() const noexcept override { return "stopped by the host"; }
+};
+// Thrown where the user cancelled.
+struct Cancelled : std::exception {
+    const char* what() const noexcept override { return "cancelled"; }
+};
+
+namespace detail {
+
+template <auto F>
+struct Guard;
+template <class... Args, int32_t (*F)(const rt_host*, Args...)>
+struct Guard<F> {
+    static int32_t call(const rt_host* host, Args... args) noexcept {
+        try {
+            return F(host, args...);
+        } catch (const Cancelled&) {
+            return RT_CANCELLED;
+        } catch (const Stopped&) {
+            return RT_FAILED;
+        } catch (const std::bad_alloc&) {
+            return host->fail(host->ctx, "out of memory");
+        } catch (const std::exception& e) {
+            return host->fail(host->ctx, e.what());
+        } catch (...) {
+            return host->fail(host->ctx, "an exception of unknown type");
+        }
+    }
+};
+
+constexpr bool same_text(const char* a, const char* b) {
+    for (; *a && *a == *b; ++a, ++b) {
+    }
+    return *a == *b;
+}
+
+}  // namespace detail
+
+// The function as the host may call it: what it throws becomes host->fail(what).
+template <auto F>
+inline constexpr auto guarded = &detail::Guard<F>::call;
+
+// throw rt::fail(host, "vertex 7 is not finite") -- recorded by the host, and unwinds to `guarded`.
+[[nodiscard]] inline Stopped fail(const rt_host* host, const std::string& why) {
+    host->fail(host->ctx, why.c_str());
+    return {};
+}
+
+// ---- services ---------------------------------------------------------------------------------------------------------------
+
+inline void log(const rt_host* host, int32_t level, const std::string& text) {
+    host->log(host->ctx, level, text.c_str());
+}
+
+// 0..1; throws Cancelled once the user no longer wants the result.
+inline void progress(const rt_host* host, float fraction) {
+    if (!host->progress(host->ctx, fraction)) throw Cancelled();
+}
+
+// body(i) for i in [0, count) on all cores; nests. The first exception of a body ends the loop early and is thrown here.
+template <class Body>
+void parallel_for(const rt_host* host, rt_u32 count, Body&& body) {
+    struct Loop {
+        std::remove_reference_t<Body>& body;
+        std::atomic<bool> failed{false};
+        std::mutex mutex;
+        std::exception_ptr exception;
+    } loop{body, {}, {}, {}};
+    host->parallel_for(
+        host->ctx, count,
+        [](void* user, rt_u32 i) {
+            Loop& l = *static_cast<Loop*>(user);
+            if (l.failed.load(std::memory_order_relaxed)) return;
+            try {
+                l.body(i);
+            } catch (...) {
+                const std::lock_guard<std::mutex> lock(l.mutex);
+                if (!l.failed.exchange(true)) l.exception = std::current_exception();
+            }
+        },
+        &loop);
+    if (loop.exception) std::rethrow_exception(loop.exception);
+}
+
+// ---- parameters -------------------------------------------------------------------------------------------------------------
+
+constexpr rt_param int_param(const char* key, const char* label, const char* help, int min, int max, int def,
+                             int32_t effect = RT_EFFECT_REBUILD) {
+    return {key, label, help, RT_PARAM_INT, effect, double(min), double(max), double(def), nullptr};
+}
+constexpr rt_param float_param(const char* key, const char* label, const char* help, double min, double max, double def,
+                               int32_t effect = RT_EFFECT_REBUILD) {
+    return {key, label, help, RT_PARAM_FLOAT, effect, min, max, def, nullptr};
+}
+constexpr rt_param bool_param(const char* key, const char* label, const char* help, bool def,
+                              int32_t effect = RT_EFFECT_REBUILD) {
+    return {key, label, help, RT_PARAM_BOOL, effect, 0, 1, def ? 1.0 : 0.0, nullptr};
+}
+// choices: a static array that ends with nullptr.
+template <size_t N>
+constexpr rt_param enum_param(const char* key, const char* label, const char* help, const char* const (&choices)[N], int def,
+                              int32_t effect = RT_EFFECT_REBUILD) {
+    return {key, label, help, RT_PARAM_ENUM, effect, 0, double(N) - 2, double(def), choices};
+}
+
+// ---- acceleration structures ------------------------------------------------------------------------------------------------
+
+// Element type and its size belong together: rt::slot<bvh2_node>("nodes", "bvh2_node").
+template <class T>
+constexpr rt_slot slot(const char* name, const char* cl_type) {
+    static_assert(std::is_trivially_copyable_v<T>, "slots are copied to a device byte by byte");
+    return {name, cl_type, rt_u32(sizeof(T))};
+}
+
+// One of the files that clarity_add_plugin embedded: constexpr rt_cl_file files[] = {
+// #include "mine.inc"
+// };  rt::file(files, "mine.cl"). {nullptr, nullptr} if it is not there.
+template <size_t N>
+constexpr rt_cl_file file(const rt_cl_file (&files)[N], const char* name) {
+    for (const rt_cl_file& f : files)
+        if (detail::same_text(f.name, name)) return f;
+    return {nullptr, nullptr};
+}
+
+// Zeroed memory of the host for `count` elements of a slot; once per slot.
+template <class T>
+T* alloc(const rt_build_output* out, rt_u32 slot, uint64_t count) {
+    auto* memory = static_cast<T*>(out->alloc(out->ctx, slot, count));
+    if (!memory) throw Stopped();
+    return memory;
+}
+inline rt_u32* leaves(const rt_build_output* out, uint64_t count) {
+    rt_u32* refs = out->leaves(out->ctx, count);
+    if (!refs) throw Stopped();
+    return refs;
+}
+inline void root(const rt_build_output* out, rt_u32 group, rt_u32 node) {
+    out->root(out->ctx, group, node);
+}
+inline void define(const rt_build_output* out, const char* name, rt_u32 value) {
+    out->define(out->ctx, name, value);
+}
+inline void stat(const rt_build_output* out, const char* label, double value) {
+    out->stat(out->ctx, label, value);
+}
+
+// ---- importers --------------------------------------------------------------------------------------------------------------
+
+// An id, or Stopped: rt::id(sink->mesh(sink->ctx, &mesh)). Not for textures, which may be missing without an error.
+inline rt_u32 id(rt_u32 answer) {
+    if (answer == RT_NONE) throw Stopped();
+    return answer;
+}
+
+// ---- the description --------------------------------------------------------------------------------------------------------
+
+template <size_t N>
+constexpr rt_plugin accel_plugin(const char* id, const char* name, const char* version, const char* reference,
+                                 const rt_param (&params)[N], const rt_accel& accel) {
+    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, N, id, name, version, reference, params, &accel, nullptr};
+}
+constexpr rt_plugin accel_plugin(const char* id, const char* name, const char* version, const char* reference,
+                                 const rt_accel& accel) {
+    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, 0, id, name, version, reference, nullptr, &accel, nullptr};
+}
+template <size_t N>
+constexpr rt_plugin importer_plugin(const char* id, const char* name, const char* version, const char* reference,
+                                    const rt_param (&params)[N], const rt_importer& importer) {
+    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, N, id, name, version, reference, params, nullptr, &importer};
+}
+constexpr rt_plugin importer_plugin(const char* id, const char* name, const char* version, const char* reference,
+                                    const rt_importer& importer) {
+    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, 0, id, name, version, reference, nullptr, nullptr, &importer};
+}
+
+}  // namespace rt
