@@ -1,0 +1,25 @@
+#include "device/device.hpp"
+
+#include "base/error.hpp"
+
+namespace clarity {
+
+Device::Device(DeviceInfo info) : info_(std::move(info)) {
+    try {
+        context_ = cl::Context(info_.cl_device);
+        queue_ = cl::CommandQueue(context_, info_.cl_device, CL_QUEUE_PROFILING_ENABLE);
+    } catch (const cl::Error& e) {
+        throw Error(Exit::no_device, "device " + info_.id() + " (" + info_.name + ") cannot be opened: " + e.what() +
+                                         " failed with OpenCL error " + std::to_string(e.err()) +
+                                         "; try another one of `clarity devices`");
+    }
+}
+
+unsigned Device::preferred_lanes() const {
+    if (!info_.cpu) return 1;
+    if (info_.float_width >= 16) return 16;
+    if (info_.float_width >= 8) return 8;
+    return 4;
+}
+
+}  // namespace clarity
