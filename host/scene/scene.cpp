@@ -1,0 +1,203 @@
+// scene.cpp -- what a scene measures: bounds, areas, a camera that frames it; the default material.
+#include "scene/scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clarity {
+namespace {
+
+using Vec = std::array<double, 3>;
+
+Vec operator-(const Vec& a, const Vec& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+double dot(const Vec& a, const Vec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec cross(const Vec& a, const Vec& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+double length(const Vec& a) {
+    return std::sqrt(dot(a, a));
+}
+Vec scaled(const Vec& a, double s) {
+    return {a[0] * s, a[1] * s, a[2] * s};
+}
+Vec normalized(const Vec& a) {
+    return scaled(a, 1 / length(a));
+}
+Vec to_vec(const std::array<float, 3>& a) {
+    return {a[0], a[1], a[2]};
+}
+Vec to_vec(const float* p) {
+    return {p[0], p[1], p[2]};
+}
+
+Vec linear(const Affine& m, const Vec& v) {
+    return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
+            m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
+}
+
+// The factor by which a map scales every length, or a negative number if there is none.
+double uniform_scale(const Affine& m) {
+    const Vec x = {m[0], m[4], m[8]}, y = {m[1], m[5], m[9]}, z = {m[2], m[6], m[10]};
+    const double s = dot(x, x), tolerance = 1e-6 * s;
+    const bool uniform = std::abs(dot(y, y) - s) <= tolerance && std::abs(dot(z, z) - s) <= tolerance &&
+                         std::abs(dot(x, y)) <= tolerance && std::abs(dot(y, z)) <= tolerance &&
+                         std::abs(dot(z, x)) <= tolerance;
+    return uniform ? std::sqrt(s) : -1;
+}
+
+// Sum of a mesh's triangle areas under the linear part of a map.
+double mesh_area(const Scene& scene, const Mesh& mesh, const Affine& m) {
+    double sum = 0;
+    for (rt_u32 t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t) {
+        const rt_u32* v = &scene.triangles[3 * size_t(t)];
+        const Vec a = to_vec(&scene.positions[3 * size_t(v[0])]);
+        const Vec b = to_vec(&scene.positions[3 * size_t(v[1])]), c = to_vec(&scene.positions[3 * size_t(v[2])]);
+        sum += 0.5 * length(cross(linear(m, b - a), linear(m, c - a)));
+    }
+    return sum;
+}
+
+// The vertices that a mesh's triangles use, each once: files hold stray vertices that nobody sees.
+std::vector<rt_u32> used_vertices(const Scene& scene, const Mesh& mesh) {
+    std::vector<bool> used(mesh.vertex_count, false);
+    const size_t first = 3 * size_t(mesh.first_triangle);
+    for (size_t i = first; i < first + 3 * size_t(mesh.triangle_count); ++i)
+        used[scene.triangles[i] - mesh.first_vertex] = true;
+    std::vector<rt_u32> vertices;
+    for (rt_u32 v = 0; v < mesh.vertex_count; ++v) {
+        if (used[v]) vertices.push_back(mesh.first_vertex + v);
+    }
+    return vertices;
+}
+
+}  // namespace
+
+void Bounds::add(const float* p) {
+    for (int i = 0; i < 3; ++i) {
+        min[i] = empty ? p[i] : std::min(min[i], p[i]);
+        max[i] = empty ? p[i] : std::max(max[i], p[i]);
+    }
+    empty = false;
+}
+
+float Bounds::diagonal() const {
+    return empty ? 0.f : static_cast<float>(length(to_vec(max) - to_vec(min)));
+}
+
+uint64_t Scene::placed_triangle_count() const {
+    uint64_t sum = 0;
+    for (const Instance& instance : instances) sum += meshes[instance.mesh].triangle_count;
+    return sum;
+}
+
+Bounds Scene::bounds() const {
+    Bounds box;
+    std::vector<std::vector<rt_u32>> vertices_of(meshes.size());
+    for (const Instance& instance : instances) {
+        const Mesh& mesh = meshes[instance.mesh];
+        std::vector<rt_u32>& vertices = vertices_of[instance.mesh];
+        if (vertices.empty() && mesh.triangle_count != 0) vertices = used_vertices(*this, mesh);
+        for (const rt_u32 v : vertices) {
+            const std::array<float, 3> p = transform_point(instance.world_from_object, &positions[3 * size_t(v)]);
+            box.add(p.data());
+        }
+    }
+    for (const Polygon& polygon : polygons) {
+        for (rt_u32 i = 0; i < polygon.corner_count; ++i) box.add(&polygon_corners[3 * (size_t(polygon.first_corner) + i)]);
+    }
+    for (const Sphere& sphere : spheres) {
+        for (const float sign : {-1.f, 1.f}) {
+            const std::array<float, 3> p = {sphere.center[0] + sign * sphere.radius, sphere.center[1] + sign * sphere.radius,
+                                            sphere.center[2] + sign * sphere.radius};
+            box.add(p.data());
+        }
+    }
+    return box;
+}
+
+double Scene::surface_area() const {
+    double sum = 0;
+    std::vector<double> unscaled(meshes.size(), -1);
+    for (const Instance& instance : instances) {
+        const Mesh& mesh = meshes[instance.mesh];
+        const double scale = uniform_scale(instance.world_from_object);
+        if (scale < 0) {
+            sum += mesh_area(*this, mesh, instance.world_from_object);
+            continue;
+        }
+        double& area = unscaled[instance.mesh];
+        if (area < 0) area = mesh_area(*this, mesh, kIdentity);
+        sum += area * scale * scale;
+    }
+    for (const Polygon& polygon : polygons) {
+        const float* corners = &polygon_corners[3 * size_t(polygon.first_corner)];
+        Vec doubled{};
+        for (rt_u32 i = 2; i < polygon.corner_count; ++i) {
+            const Vec origin = to_vec(corners);
+            const Vec n = cross(to_vec(corners + 3 * (size_t(i) - 1)) - origin, to_vec(corners + 3 * size_t(i)) - origin);
+            doubled = {doubled[0] + n[0], doubled[1] + n[1], doubled[2] + n[2]};
+        }
+        sum += 0.5 * length(doubled);
+    }
+    const double pi = 3.14159265358979323846;
+    for (const Sphere& sphere : spheres) sum += 4 * pi * double(sphere.radius) * sphere.radius;
+    return sum;
+}
+
+rt_material default_material() {
+    rt_material m{};
+    for (float& channel : m.color) channel = 0.7f;
+    for (float& channel : m.specular) channel = 0.15f;
+    m.shininess = 32;
+    m.ior = 1.5f;
+    m.texture = RT_NONE;
+    return m;
+}
+
+Camera framing_camera(const Scene& scene, float aspect) {
+    Camera camera;
+    camera.name = "framing";
+    const int up_axis = scene.up_axis < 3 ? static_cast<int>(scene.up_axis) : 1;
+    Vec up{}, front{};
+    up[up_axis] = 1;
+    // Modelling programs with Z up look along +Y from the front, all others along -Z.
+    if (up_axis == 2) {
+        front[1] = -1;
+    } else {
+        front[2] = 1;
+    }
+    const Bounds box = scene.bounds();
+    Vec center{}, half{};
+    for (int i = 0; i < 3 && !box.empty; ++i) {
+        center[i] = 0.5 * (double(box.min[i]) + box.max[i]);
+        half[i] = 0.5 * (double(box.max[i]) - box.min[i]);
+    }
+    const double raise = 0.35;  // 19 degrees above the horizon
+    const Vec forward = normalized({-front[0] - raise * up[0], -front[1] - raise * up[1], -front[2] - raise * up[2]});
+    const Vec right = normalized(cross(forward, up)), above = cross(right, forward);
+    const double tan_y = std::tan(0.5 * camera.fov_y_rad);
+    const double tan_x = tan_y * (aspect > 0 && std::isfinite(aspect) ? double(aspect) : 1.0);
+    // The least distance at which all eight corners of the box are within the frustum.
+    double distance = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec offset = {corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1], corner & 4 ? half[2] : -half[2]};
+        const double beside = std::max(std::abs(dot(offset, right)) / tan_x, std::abs(dot(offset, above)) / tan_y);
+        distance = std::max(distance, beside - dot(offset, forward));
+    }
+    // A point, or planes only: there is nothing to measure by, so stand where a scene in metres is seen from eye level.
+    const bool pointlike = !(distance > 0);
+    distance = pointlike ? 5 : 1.05 * distance;
+    for (int i = 0; i < 3; ++i) {
+        const double lift = box.empty ? up[i] : 0;
+        camera.eye[i] = static_cast<float>(center[i] - distance * forward[i] + lift);
+        camera.target[i] = static_cast<float>(center[i] + lift);
+        camera.up[i] = static_cast<float>(up[i]);
+    }
+    return camera;
+}
+
+}  // namespace clarity

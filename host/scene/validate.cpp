@@ -1,0 +1,181 @@
+// validate.cpp -- is a scene sound? Linear in its size; the hot loops are reductions that the compiler vectorises, and only a
+// failed one is searched for its first offender.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace clarity {
+namespace {
+
+bool all_finite(const float* values, size_t count) {
+    uint32_t bad = 0;
+    for (size_t i = 0; i < count; ++i) {
+        uint32_t bits;
+        std::memcpy(&bits, values + i, sizeof bits);
+        bad |= static_cast<uint32_t>((bits & 0x7F800000u) == 0x7F800000u);
+    }
+    return bad == 0;
+}
+template <class Array>
+bool all_finite(const Array& values) {
+    return all_finite(std::data(values), std::size(values));
+}
+
+std::string text(const char* what, uint64_t index, const std::string& why) {
+    return std::string(what) + " " + std::to_string(index) + ": " + why;
+}
+std::string of(uint64_t index, uint64_t count) {
+    return std::to_string(index) + " of " + std::to_string(count);
+}
+
+std::string check_arrays(const Scene& s) {
+    const size_t vertices = s.positions.size() / 3;
+    if (s.positions.size() % 3 != 0) return "positions: " + std::to_string(s.positions.size()) + " numbers, not 3 per vertex";
+    if (vertices >= RT_NONE) return "positions: " + std::to_string(vertices) + " vertices are more than an index can name";
+    if (!s.normals.empty() && s.normals.size() != s.positions.size()) return "normals: not 3 numbers per vertex";
+    if (!s.uvs.empty() && s.uvs.size() != 2 * vertices) return "uvs: not 2 numbers per vertex";
+    if (s.triangles.size() % 3 != 0) return "triangles: " + std::to_string(s.triangles.size()) + " indices, not 3 per triangle";
+    if (s.triangle_materials.size() != s.triangles.size() / 3) return "triangle materials: not one per triangle";
+    if (s.polygon_corners.size() % 3 != 0) return "polygon corners: not 3 numbers per corner";
+    // A ref holds the index within its kind in 28 bits.
+    for (const size_t count : {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size()}) {
+        if (count > RT_REF_INDEX_MAX) return std::to_string(count) + " primitives of one kind are more than a ref can name";
+    }
+    const std::pair<const char*, const std::vector<float>*> numbers[] = {
+        {"position", &s.positions}, {"normal", &s.normals}, {"uv", &s.uvs}, {"polygon corner", &s.polygon_corners}};
+    for (const auto& [what, values] : numbers) {
+        if (all_finite(*values)) continue;
+        const auto bad = std::find_if(values->begin(), values->end(), [](float x) { return !std::isfinite(x); });
+        const size_t per_element = values == &s.uvs ? 2 : 3;
+        return text(what, static_cast<uint64_t>(bad - values->begin()) / per_element, "not a finite number");
+    }
+    return {};
+}
+
+std::string check_meshes(const Scene& s) {
+    const uint64_t vertices = s.positions.size() / 3, triangles = s.triangles.size() / 3;
+    for (size_t i = 0; i < s.meshes.size(); ++i) {
+        const Mesh& m = s.meshes[i];
+        if (uint64_t(m.first_vertex) + m.vertex_count > vertices)
+            return text("mesh", i, "its vertices reach past the last one");
+        if (uint64_t(m.first_triangle) + m.triangle_count > triangles)
+            return text("mesh", i, "its triangles reach past the last one");
+        const rt_u32* v = s.triangles.data() + 3 * size_t(m.first_triangle);
+        const size_t corners = 3 * size_t(m.triangle_count);
+        rt_u32 outside = 0;
+        for (size_t k = 0; k < corners; ++k) outside |= static_cast<rt_u32>(v[k] - m.first_vertex >= m.vertex_count);
+        if (outside == 0) continue;
+        const rt_u32* bad = std::find_if(v, v + corners, [&](rt_u32 x) { return x - m.first_vertex >= m.vertex_count; });
+        return text("triangle", m.first_triangle + static_cast<uint64_t>(bad - v) / 3,
+                    "vertex " + std::to_string(*bad) + " is not of its mesh (" + std::to_string(m.first_vertex) + " to " +
+                        std::to_string(uint64_t(m.first_vertex) + m.vertex_count) + ")");
+    }
+    rt_u32 highest = 0;
+    for (const rt_u32 v : s.triangles) highest = std::max(highest, v);
+    if (!s.triangles.empty() && highest >= vertices) {
+        const auto bad = std::find_if(s.triangles.begin(), s.triangles.end(), [&](rt_u32 v) { return v >= vertices; });
+        return text("triangle", static_cast<uint64_t>(bad - s.triangles.begin()) / 3, "vertex " + of(*bad, vertices));
+    }
+    rt_u32 material = 0;
+    for (const rt_u32 m : s.triangle_materials) material = std::max(material, m);
+    if (!s.triangle_materials.empty() && material >= s.materials.size()) {
+        return "triangle materials: material " + of(material, s.materials.size());
+    }
+    for (size_t i = 0; i < s.instances.size(); ++i) {
+        const Instance& instance = s.instances[i];
+        if (instance.mesh >= s.meshes.size()) return text("instance", i, "mesh " + of(instance.mesh, s.meshes.size()));
+        if (instance.material != RT_NONE && instance.material >= s.materials.size()) {
+            return text("instance", i, "material " + of(instance.material, s.materials.size()));
+        }
+        if (!all_finite(instance.world_from_object)) return text("instance", i, "its transform is not finite");
+    }
+    return {};
+}
+
+std::string check_analytic(const Scene& s) {
+    const auto bad_material = [&](rt_u32 m) { return m >= s.materials.size(); };
+    for (size_t i = 0; i < s.spheres.size(); ++i) {
+        const Sphere& sphere = s.spheres[i];
+        if (!all_finite(sphere.center)) return text("sphere", i, "its centre is not finite");
+        if (!std::isfinite(sphere.radius) || sphere.radius < 0) return text("sphere", i, "its radius is not a positive number");
+        if (bad_material(sphere.material)) return text("sphere", i, "material " + of(sphere.material, s.materials.size()));
+    }
+    for (size_t i = 0; i < s.planes.size(); ++i) {
+        const Plane& plane = s.planes[i];
+        const float* n = plane.normal.data();
+        const float squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        if (!(std::abs(squared - 1) < 1e-3f)) return text("plane", i, "its normal is not of unit length");
+        if (!std::isfinite(plane.offset)) return text("plane", i, "its offset is not finite");
+        if (bad_material(plane.material)) return text("plane", i, "material " + of(plane.material, s.materials.size()));
+    }
+    const uint64_t corners = s.polygon_corners.size() / 3;
+    for (size_t i = 0; i < s.polygons.size(); ++i) {
+        const Polygon& polygon = s.polygons[i];
+        if (polygon.corner_count < 3) return text("polygon", i, "fewer than three corners");
+        if (uint64_t(polygon.first_corner) + polygon.corner_count > corners)
+            return text("polygon", i, "corners past the last one");
+        if (bad_material(polygon.material)) return text("polygon", i, "material " + of(polygon.material, s.materials.size()));
+    }
+    return {};
+}
+
+std::string check_looks(const Scene& s) {
+    if (s.materials.empty()) return "materials: the default material is missing";
+    for (size_t i = 0; i < s.materials.size(); ++i) {
+        const rt_material& m = s.materials[i].values;
+        const float scalars[] = {m.reflect, m.refract, m.shininess, m.ior};
+        if (!all_finite(m.color) || !all_finite(m.emission) || !all_finite(m.specular) || !all_finite(scalars)) {
+            return text("material", i, "not a finite number");
+        }
+        if (m.reflect < 0 || m.reflect > 1 || m.refract < 0 || m.refract > 1)
+            return text("material", i, "a share outside 0..1");
+        if (!(m.ior > 0)) return text("material", i, "its index of refraction is not positive");
+        if (m.texture != RT_NONE && m.texture >= s.textures.size()) {
+            return text("material", i, "texture " + of(m.texture, s.textures.size()));
+        }
+    }
+    for (size_t i = 0; i < s.textures.size(); ++i) {
+        const rt_texture& t = s.textures[i];
+        const uint64_t texels = uint64_t(t.width) * t.height;
+        if (texels == 0) return text("texture", i, "it is empty");
+        if (texels > s.texels.size() || t.first > s.texels.size() - texels)
+            return text("texture", i, "texels past the last one");
+    }
+    return {};
+}
+
+std::string check_view(const Scene& s) {
+    for (size_t i = 0; i < s.lights.size(); ++i) {
+        const rt_light& light = s.lights[i].values;
+        if (light.kind != RT_LIGHT_POINT && light.kind != RT_LIGHT_DIRECTIONAL) return text("light", i, "unknown kind");
+        if (!all_finite(light.position) || !all_finite(light.color)) return text("light", i, "not a finite number");
+    }
+    for (size_t i = 0; i < s.cameras.size(); ++i) {
+        const Camera& camera = s.cameras[i];
+        if (!all_finite(camera.eye) || !all_finite(camera.target) || !all_finite(camera.up)) {
+            return text("camera", i, "not a finite number");
+        }
+        if (!(camera.fov_y_rad > 0 && camera.fov_y_rad < 3.1415927f))
+            return text("camera", i, "field of view outside 0..180 degrees");
+        if (camera.eye == camera.target) return text("camera", i, "it looks at its own eye");
+    }
+    if (!all_finite(s.background) || !all_finite(s.ambient)) return "background or ambient light is not a finite number";
+    if (s.up_axis > 2) return "up axis " + std::to_string(s.up_axis) + " of 3";
+    if (!std::isfinite(s.unit_scale) || s.unit_scale < 0) return "unit scale is not a positive number";
+    return {};
+}
+
+}  // namespace
+
+std::string validate(const Scene& scene) {
+    for (const auto check : {check_arrays, check_meshes, check_analytic, check_looks, check_view}) {
+        std::string why = check(scene);
+        if (!why.empty()) return why;
+    }
+    return {};
+}
+
+}  // namespace clarity
