@@ -1,0 +1,183 @@
+#include "emit.hpp"
+
+#include <algorithm>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace scene_format {
+namespace {
+
+template <class T>
+T sized() {
+    T value{};
+    value.struct_bytes = sizeof(T);
+    return value;
+}
+
+const char* name_or_null(const std::string& name) {
+    return name.empty() ? nullptr : name.c_str();
+}
+
+class Emitter {
+ public:
+    Emitter(const Document& document, const rt_scene_sink& sink) : document_(document), sink_(sink) {}
+
+    void info() const;
+    bool materials();
+    bool lights_and_cameras();
+    // One item, or a run of triangles; moves `at` behind it.
+    bool item(size_t& at);
+    Position position() const { return position_; }
+
+ private:
+    rt_u32 material(const NameUse& use) const { return use.name.empty() ? RT_NONE : material_ids_.at(use.name); }
+    bool triangles(size_t first, size_t count);
+    bool load(const Load& load);
+
+    const Document& document_;
+    const rt_scene_sink& sink_;
+    std::unordered_map<std::string, rt_u32> material_ids_;
+    Position position_;  // of what is being handed over
+};
+
+void Emitter::info() const {
+    auto info = sized<rt_scene_info>();
+    info.up_axis = 1;
+    if (document_.background_position.line != 0) info.background = document_.background.data();
+    if (document_.ambient_position.line != 0) info.ambient = document_.ambient.data();
+    sink_.info(sink_.ctx, &info);
+}
+
+bool Emitter::materials() {
+    std::unordered_map<std::string, rt_u32> texture_ids;
+    for (const Material& material : document_.materials) {
+        position_ = material.position;
+        auto desc = sized<rt_material_desc>();
+        desc.name = material.name.c_str();
+        desc.values = material.values;
+        if (!material.texture.empty()) {
+            auto [known, is_new] = texture_ids.emplace(material.texture, RT_NONE);
+            if (is_new) {
+                auto texture = sized<rt_texture_desc>();
+                texture.path = material.texture.c_str();
+                known->second = sink_.texture(sink_.ctx, &texture);  // RT_NONE: the host has warned
+            }
+            desc.values.texture = known->second;
+        }
+        const rt_u32 id = sink_.material(sink_.ctx, &desc);
+        if (id == RT_NONE) return false;
+        material_ids_.emplace(material.name, id);
+    }
+    return true;
+}
+
+bool Emitter::lights_and_cameras() {
+    for (const Light& light : document_.lights) {
+        auto desc = sized<rt_light_desc>();
+        desc.name = name_or_null(light.name);
+        desc.values = light.values;
+        if (sink_.light(sink_.ctx, &desc) == RT_NONE) return false;
+    }
+    constexpr float rad_per_deg = 3.14159265358979323846f / 180.0f;
+    for (const Camera& camera : document_.cameras) {
+        position_ = camera.position;
+        auto desc = sized<rt_camera>();
+        desc.name = camera.name.c_str();
+        std::copy(camera.eye.begin(), camera.eye.end(), desc.eye);
+        std::copy(camera.target.begin(), camera.target.end(), desc.target);
+        std::copy(camera.up.begin(), camera.up.end(), desc.up);
+        desc.fov_y_rad = camera.fov_deg * rad_per_deg;
+        if (sink_.camera(sink_.ctx, &desc) == RT_NONE) return false;
+    }
+    return true;
+}
+
+bool Emitter::triangles(size_t first, size_t count) {
+    std::vector<float> corners;
+    std::vector<rt_u32> indices, face_materials;
+    for (size_t i = first; i < first + count; ++i) {
+        const Triangle& triangle = document_.triangles[i];
+        corners.insert(corners.end(), triangle.corners.begin(), triangle.corners.end());
+        for (int corner = 0; corner < 3; ++corner) indices.push_back(static_cast<rt_u32>(indices.size()));
+        face_materials.push_back(material(triangle.material));
+    }
+    auto mesh = sized<rt_mesh>();
+    mesh.name = "triangles";
+    mesh.positions = corners.data();
+    mesh.vertex_count = static_cast<rt_u32>(indices.size());
+    mesh.position_stride = 3 * sizeof(float);
+    mesh.indices = indices.data();
+    mesh.index_count = indices.size();
+    mesh.face_count = count;
+    mesh.face_materials = face_materials.data();
+    mesh.material = RT_NONE;
+    auto instance = sized<rt_instance_desc>();
+    instance.mesh = sink_.mesh(sink_.ctx, &mesh);
+    if (instance.mesh == RT_NONE) return false;
+    instance.material = RT_NONE;
+    for (int i = 0; i < 3; ++i) instance.world_from_object[5 * i] = 1;
+    return sink_.instance(sink_.ctx, &instance) != RT_NONE;
+}
+
+bool Emitter::load(const Load& load) {
+    position_ = load.position;
+    auto desc = sized<rt_load>();
+    desc.path = load.path.c_str();
+    desc.name = name_or_null(load.name);
+    std::copy(load.world_from_object.begin(), load.world_from_object.end(), desc.world_from_object);
+    desc.material = material(load.material);
+    return sink_.load(sink_.ctx, &desc) == RT_OK;
+}
+
+bool Emitter::item(size_t& at) {
+    const Item& item = document_.items[at++];
+    position_ = item.position;
+    switch (item.kind) {
+        case ItemKind::sphere: {
+            const Sphere& sphere = document_.spheres[item.index];
+            return sink_.sphere(sink_.ctx, sphere.center.data(), sphere.radius, material(sphere.material)) != RT_NONE;
+        }
+        case ItemKind::plane: {
+            const Plane& plane = document_.planes[item.index];
+            return sink_.plane(sink_.ctx, plane.normal.data(), plane.offset, material(plane.material)) != RT_NONE;
+        }
+        case ItemKind::polygon: {
+            const Polygon& polygon = document_.polygons[item.index];
+            return sink_.polygon(sink_.ctx, polygon.corners.data(), static_cast<rt_u32>(polygon.corners.size() / 3),
+                                 material(polygon.material)) != RT_NONE;
+        }
+        case ItemKind::triangle: {
+            const size_t first = at - 1;
+            while (at < document_.items.size() && document_.items[at].kind == ItemKind::triangle) ++at;
+            return triangles(item.index, at - first);
+        }
+        case ItemKind::load:
+            return load(document_.loads[item.index]);
+    }
+    return false;
+}
+
+}  // namespace
+
+int32_t emit(const Document& document, std::string_view file, const rt_host& host, const rt_scene_sink& sink) {
+    Emitter emitter(document, sink);
+    emitter.info();
+    bool ok = emitter.materials() && emitter.lights_and_cameras();
+    constexpr size_t items_between_reports = 1024;
+    for (size_t at = 0, reported = 0; ok && at < document.items.size();) {
+        const bool is_slow = document.items[at].kind == ItemKind::load;
+        if (is_slow || at >= reported) {
+            const float fraction = 0.5f + 0.5f * static_cast<float>(at) / static_cast<float>(document.items.size());
+            if (host.progress(host.ctx, fraction) == 0) return RT_CANCELLED;
+            reported = at + items_between_reports;
+        }
+        ok = emitter.item(at);
+    }
+    if (ok) return RT_OK;
+    const std::string where = located(file, {emitter.position(), "the import stopped at this statement"});
+    host.log(host.ctx, RT_LOG_WARNING, where.c_str());
+    return RT_FAILED;
+}
+
+}  // namespace scene_format

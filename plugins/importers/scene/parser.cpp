@@ -1,0 +1,109 @@
+// Names may be used before the line that defines them, so they are resolved when all lines are read (check_names).
+#include "parser.hpp"
+
+#include <map>
+#include <string>
+#include <utility>
+
+#include "lexer.hpp"
+#include "statements.hpp"
+
+namespace scene_format {
+namespace {
+
+constexpr uint32_t kLinesBetweenReports = 4096;
+
+using ReadFunction = void (*)(Statement&, Document&, Diagnostics&);
+const std::vector<std::pair<std::string_view, ReadFunction>>& statements() {
+    static const std::vector<std::pair<std::string_view, ReadFunction>> table = {
+        {"camera", read_camera},     {"light", read_light},   {"background", read_background}, {"ambient", read_ambient},
+        {"material", read_material}, {"sphere", read_sphere}, {"plane", read_plane},           {"polygon", read_polygon},
+        {"triangle", read_triangle}, {"load", read_load},     {"animate", read_animate},
+    };
+    return table;
+}
+
+void read_statement(Statement& statement, const Token& first, Document& document, Diagnostics& diagnostics) {
+    std::vector<std::string_view> words;
+    for (const auto& [word, read] : statements()) {
+        if (!first.is_quoted && word == first.text) {
+            read(statement, document, diagnostics);
+            ++document.statement_count;
+            return;
+        }
+        words.push_back(word);
+    }
+    throw StatementError{first.position, "unknown statement " + quoted(first.text) + ";" + suggestion(first.text, words) +
+                                             " (statements: " + listed(words) + ")"};
+}
+
+// Positions of names, each of which may be defined once.
+using Names = std::map<std::string, Position, std::less<>>;
+
+template <class Things>
+Names defined_names(const Things& things, const char* kind, Diagnostics& diagnostics) {
+    Names names;
+    for (const auto& thing : things) {
+        if (thing.name.empty() || diagnostics.full()) continue;
+        const auto [first, is_new] = names.emplace(thing.name, thing.position);
+        if (!is_new) {
+            diagnostics.error({thing.position, std::string(kind) + " " + quoted(thing.name) +
+                                                   " for the second time; the first is in line " +
+                                                   std::to_string(first->second.line)});
+        }
+    }
+    return names;
+}
+
+void check_use(const NameUse& use, const Names& names, const char* kind, Diagnostics& diagnostics) {
+    if (use.name.empty() || diagnostics.full() || names.count(use.name) != 0) return;
+    std::vector<std::string_view> known;
+    for (const auto& [name, position] : names) known.push_back(name);
+    const std::string nearest = suggestion(use.name, known);
+    constexpr size_t most_listed = 20;
+    const bool is_cut = known.size() > most_listed;
+    if (is_cut) known.resize(most_listed);
+    const std::string all = known.empty() ? "none" : listed(known) + (is_cut ? ", ..." : "");
+    diagnostics.error({use.position, "unknown " + std::string(kind) + " " + quoted(use.name) + ";" + nearest +
+                                         " (defined in this file: " + all + ")"});
+}
+
+void check_names(const Document& document, Diagnostics& diagnostics) {
+    defined_names(document.cameras, "camera", diagnostics);
+    const Names materials = defined_names(document.materials, "material", diagnostics);
+    const Names loads = defined_names(document.loads, "name", diagnostics);
+    const auto check_materials = [&](const auto& things) {
+        for (const auto& thing : things) check_use(thing.material, materials, "material", diagnostics);
+    };
+    check_materials(document.spheres);
+    check_materials(document.planes);
+    check_materials(document.polygons);
+    check_materials(document.triangles);
+    check_materials(document.loads);
+    for (const NameUse& target : document.animated) check_use(target, loads, "name", diagnostics);
+}
+
+}  // namespace
+
+bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, const std::function<bool(float)>& proceed) {
+    Lexer lexer(text);
+    std::vector<Token> tokens;
+    uint32_t lines = 0;
+    while (!diagnostics.full()) {
+        if (lines++ % kLinesBetweenReports == 0 && !proceed(lexer.fraction())) return false;
+        try {
+            if (!lexer.next_line(tokens)) break;
+            Statement statement(tokens, lexer.line_end());
+            read_statement(statement, tokens[0], document, diagnostics);
+        } catch (const StatementError& error) {
+            diagnostics.error(error);
+        }
+    }
+    if (!diagnostics.full()) check_names(document, diagnostics);
+    if (document.statement_count == 0 && !diagnostics.failed()) {
+        diagnostics.error({{1, 1}, "the file holds no statement; expected at least one, like `sphere center 0 0 0 radius 1`"});
+    }
+    return true;
+}
+
+}  // namespace scene_format

@@ -1,0 +1,85 @@
+// The importer `scene`: the text format of docs/scene_format.md.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+
+#include "emit.hpp"
+#include "lexer.hpp"
+#include "parser.hpp"
+#include "rt_plugin.h"
+
+namespace scene_format {
+namespace {
+
+struct FileCloser {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+// Empty on success, else why not.
+std::string read_file(const char* path, std::string& text) {
+    const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path, "rb"));
+    if (!file) return std::string("cannot open the file: ") + std::strerror(errno);
+    constexpr size_t piece_bytes = 1u << 16;
+    for (;;) {
+        const size_t size = text.size();
+        text.resize(size + piece_bytes);
+        const size_t got = std::fread(&text[size], 1, piece_bytes, file.get());
+        text.resize(size + got);
+        if (std::ferror(file.get()) != 0) return std::string("cannot read the file: ") + std::strerror(errno);
+        if (text.size() > kMaxFileBytes) {
+            return "the file is larger than " + std::to_string(kMaxFileBytes >> 20) +
+                   " MiB; give large meshes as PLY or OBJ and `load` them";
+        }
+        if (got < piece_bytes) return {};
+    }
+}
+
+// The first error is the one that the user is told; the others, which the same reading found, go to the log.
+int32_t report(const Diagnostics& diagnostics, const char* path, const rt_host& host) {
+    const std::vector<Diagnostic> errors = diagnostics.errors();
+    for (size_t i = 1; i < errors.size(); ++i) host.log(host.ctx, RT_LOG_WARNING, located(path, errors[i]).c_str());
+    std::string first = located(path, errors[0]);
+    if (errors.size() > 1) {
+        const bool stopped = diagnostics.full();
+        first += " [and " + std::to_string(errors.size() - 1) + (stopped ? " or more" : "") + " further " +
+                 (errors.size() == 2 && !stopped ? "error" : "errors") + ", in the log]";
+    }
+    return host.fail(host.ctx, first.c_str());
+}
+
+int32_t load_file(const rt_host& host, const char* path, const rt_scene_sink& sink) {
+    std::string text;
+    if (const std::string why = read_file(path, text); !why.empty())
+        return host.fail(host.ctx, (std::string(path) + ": " + why).c_str());
+    Document document;
+    Diagnostics diagnostics;
+    const auto proceed = [&](float fraction) { return host.progress(host.ctx, 0.5f * fraction) != 0; };
+    if (!parse(text, document, diagnostics, proceed)) return RT_CANCELLED;
+    if (diagnostics.failed()) return report(diagnostics, path, host);
+    for (const Diagnostic& warning : diagnostics.warnings()) sink.warn(sink.ctx, located(path, warning).c_str());
+    return emit(document, path, host, sink);
+}
+
+int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
+    try {
+        return load_file(*host, path, *sink);
+    } catch (const std::bad_alloc&) {
+        return host->fail(host->ctx, (std::string(path) + ": not enough memory to read the file").c_str());
+    } catch (const std::exception& error) {
+        return host->fail(host->ctx, (std::string(path) + ": internal error: " + error.what()).c_str());
+    }
+}
+
+const char* const kExtensions[] = {"scene", nullptr};
+const rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, load};
+
+}  // namespace
+}  // namespace scene_format
+
+extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = {
+    RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST,         0, "scene", "Text scene", "1.0", nullptr,
+    nullptr,        nullptr,           &scene_format::kImporter};

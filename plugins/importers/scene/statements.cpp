@@ -1,0 +1,335 @@
+#include "statements.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "geometry.hpp"
+
+namespace scene_format {
+namespace {
+
+constexpr float kNoLimit = kMaxNumber;
+
+void copy(const Vec3& from, float (&to)[3]) {
+    std::copy(from.begin(), from.end(), to);
+}
+
+void add_item(Document& document, ItemKind kind, size_t index, Position position) {
+    document.items.push_back({kind, static_cast<uint32_t>(index), position});
+}
+
+void once(Statement& s, Position first) {
+    if (first.line != 0) {
+        throw StatementError{s.position(), "statement " + quoted(s.word()) + " for the second time; the first is in line " +
+                                               std::to_string(first.line)};
+    }
+}
+
+}  // namespace
+
+void read_camera(Statement& s, Document& document, Diagnostics&) {
+    enum { kEye, kTarget, kUp, kFov };
+    s.expect_keys({{"eye"}, {"target"}, {"up"}, {"fov"}});
+    Camera camera;
+    camera.name = s.name("the camera's name");
+    camera.position = s.last();
+    while (!s.done()) {
+        switch (s.key()) {
+            case kEye:
+                camera.eye = s.vector("`eye` (x y z)");
+                break;
+            case kTarget:
+                camera.target = s.vector("`target` (x y z)");
+                break;
+            case kUp:
+                camera.up = s.direction("`up` (x y z)");
+                break;
+            case kFov:
+                camera.fov_deg = s.number_between("`fov` (vertical, degrees)", 0.01f, 179.0f);
+                break;
+        }
+    }
+    std::array<double, 3> view{};
+    for (size_t i = 0; i < 3; ++i) view[i] = double{camera.target[i]} - double{camera.eye[i]};
+    const double distance = std::hypot(view[0], view[1], view[2]);
+    if (!(distance > 0))
+        throw StatementError{camera.position, "`eye` and `target` are the same point; expected different ones"};
+    const Vec3& up = camera.up;
+    const double side =
+        std::hypot(view[1] * up[2] - view[2] * up[1], view[2] * up[0] - view[0] * up[2], view[0] * up[1] - view[1] * up[0]);
+    if (!(side > 1e-6 * distance)) {
+        throw StatementError{camera.position,
+                             "the camera looks along its `up` vector; expected another `up` (0 0 -1, say, to look down)"};
+    }
+    document.cameras.push_back(std::move(camera));
+}
+
+void read_light(Statement& s, Document& document, Diagnostics&) {
+    enum { kColor, kIntensity, kName, kWhere };
+    const bool is_point = s.choice("kind of light", {"point", "directional"}) == 0;
+    s.expect_keys({{"color"}, {"intensity"}, {"name"}, {is_point ? "position" : "direction"}});
+    Light light;
+    light.values.kind = is_point ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL;
+    Vec3 color{1, 1, 1}, position{0, 10, 0}, direction{0, -1, 0};
+    float intensity = 1;
+    while (!s.done()) {
+        switch (s.key()) {
+            case kColor:
+                color = s.color("`color` (r g b)", kNoLimit);
+                break;
+            case kIntensity:
+                intensity = s.number_between("`intensity`", 0, 1e9f);
+                break;
+            case kName:
+                light.name = s.name("the light's name");
+                break;
+            case kWhere:
+                if (is_point) {
+                    position = s.vector("`position` (x y z)");
+                } else {
+                    direction = s.direction("`direction` (x y z, in which the light travels)");
+                }
+                break;
+        }
+    }
+    for (float& c : color) c = std::min(c * intensity, kMaxNumber);
+    copy(color, light.values.color);
+    // The renderer wants the way to the light.
+    copy(is_point ? position : Vec3{-direction[0], -direction[1], -direction[2]}, light.values.position);
+    document.lights.push_back(std::move(light));
+}
+
+void read_background(Statement& s, Document& document, Diagnostics&) {
+    once(s, document.background_position);
+    const Vec3 color = s.color("`background` (r g b)", kNoLimit);
+    s.expect_end();
+    document.background = color;
+    document.background_position = s.position();
+}
+
+void read_ambient(Statement& s, Document& document, Diagnostics&) {
+    once(s, document.ambient_position);
+    const Vec3 color = s.color("`ambient` (r g b)", kNoLimit);
+    s.expect_end();
+    document.ambient = color;
+    document.ambient_position = s.position();
+}
+
+void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
+    enum { kColor, kReflect, kRefract, kIor, kSpecular, kShininess, kEmission, kTexture, kChecker };
+    s.expect_keys(
+        {{"color"}, {"reflect"}, {"refract"}, {"ior"}, {"specular"}, {"shininess"}, {"emission"}, {"texture"}, {"checker"}});
+    Material material;
+    material.name = s.name("the material's name");
+    material.position = s.last();
+    rt_material& values = material.values;
+    copy({0.8f, 0.8f, 0.8f}, values.color);
+    values.ior = 1.5f;
+    values.shininess = 32;
+    values.texture = RT_NONE;
+    Position refract_position = material.position;
+    while (!s.done()) {
+        switch (s.key()) {
+            case kColor:
+                copy(s.color("`color` (r g b)", 1), values.color);
+                break;
+            case kReflect:
+                values.reflect = s.number_between("`reflect`", 0, 1);
+                break;
+            case kRefract:
+                values.refract = s.number_between("`refract`", 0, 1);
+                refract_position = s.last();
+                break;
+            case kIor:
+                values.ior = s.number_between("`ior` (index of refraction)", 0.1f, 10);
+                break;
+            case kSpecular:
+                copy(s.color("`specular` (r g b, or one grey)", 1), values.specular);
+                break;
+            case kShininess:
+                values.shininess = s.number_between("`shininess` (exponent of the highlight)", 0, 100000);
+                break;
+            case kEmission:
+                copy(s.color("`emission` (r g b)", kNoLimit), values.emission);
+                break;
+            case kTexture:
+                material.texture = s.path("the texture's file");
+                break;
+            case kChecker:
+                values.flags |= RT_MATERIAL_CHECKER;
+                break;
+        }
+    }
+    // A texture multiplies the colour: alone, it shows as it is.
+    if (!material.texture.empty() && !s.given(kColor)) copy({1, 1, 1}, values.color);
+    const float sum = values.reflect + values.refract;
+    if (sum > 1) {
+        // .1 + .9 is not exactly 1: what only rounding adds is no reason to complain.
+        if (sum > 1.0001f) {
+            char text[160];
+            std::snprintf(text, sizeof text,
+                          "`reflect` and `refract` of material %s add up to %g; both are scaled down to add up to 1",
+                          quoted(material.name).c_str(), static_cast<double>(sum));
+            diagnostics.warning(refract_position, text);
+        }
+        values.reflect /= sum;
+        values.refract = 1 - values.reflect;
+    }
+    document.materials.push_back(std::move(material));
+}
+
+void read_sphere(Statement& s, Document& document, Diagnostics&) {
+    enum { kCenter, kRadius, kMaterial };
+    s.expect_keys({{"center"}, {"radius"}, {"material"}});
+    Sphere sphere;
+    while (!s.done()) {
+        switch (s.key()) {
+            case kCenter:
+                sphere.center = s.vector("`center` (x y z)");
+                break;
+            case kRadius:
+                sphere.radius = s.number("`radius`");
+                if (!(sphere.radius > 0)) s.fail_at_last("a radius is positive; expected a number greater than 0 for `radius`");
+                break;
+            case kMaterial:
+                sphere.material = s.name_use("a material's name");
+                break;
+        }
+    }
+    add_item(document, ItemKind::sphere, document.spheres.size(), s.position());
+    document.spheres.push_back(std::move(sphere));
+}
+
+void read_plane(Statement& s, Document& document, Diagnostics&) {
+    enum { kNormal, kOffset, kMaterial };
+    s.expect_keys({{"normal"}, {"offset"}, {"material"}});
+    Plane plane;
+    while (!s.done()) {
+        switch (s.key()) {
+            case kNormal:
+                plane.normal = s.direction("`normal` (x y z)");
+                break;
+            case kOffset:
+                plane.offset = s.number("`offset` (distance from the origin along the normal)");
+                break;
+            case kMaterial:
+                plane.material = s.name_use("a material's name");
+                break;
+        }
+    }
+    add_item(document, ItemKind::plane, document.planes.size(), s.position());
+    document.planes.push_back(std::move(plane));
+}
+
+void read_polygon(Statement& s, Document& document, Diagnostics&) {
+    enum { kVertices, kMaterial };
+    s.expect_keys({{"vertices"}, {"material"}});
+    Polygon polygon;
+    Position start = s.position();
+    while (!s.done()) {
+        switch (s.key()) {
+            case kVertices:
+                start = s.last();
+                polygon.corners = s.points("`vertices` (x y z of each corner)");
+                break;
+            case kMaterial:
+                polygon.material = s.name_use("a material's name");
+                break;
+        }
+    }
+    if (polygon.corners.empty())
+        throw StatementError{start, "a polygon without `vertices`; expected x y z of 3 corners or more"};
+    if (const std::string fault = polygon_fault(polygon.corners); !fault.empty()) throw StatementError{start, fault};
+    add_item(document, ItemKind::polygon, document.polygons.size(), s.position());
+    document.polygons.push_back(std::move(polygon));
+}
+
+void read_triangle(Statement& s, Document& document, Diagnostics& diagnostics) {
+    enum { kVertices, kMaterial };
+    s.expect_keys({{"vertices"}, {"material"}});
+    Triangle triangle;
+    Position start = s.position();
+    while (!s.done()) {
+        switch (s.key()) {
+            case kVertices: {
+                start = s.last();
+                const std::vector<float> corners = s.points("`vertices` (x y z of each corner)");
+                if (corners.size() != 9) {
+                    throw StatementError{
+                        start, std::to_string(corners.size() / 3) + " corners; a triangle has 3 (`polygon` takes more)"};
+                }
+                std::copy(corners.begin(), corners.end(), triangle.corners.begin());
+                break;
+            }
+            case kMaterial:
+                triangle.material = s.name_use("a material's name");
+                break;
+        }
+    }
+    if (!s.given(kVertices)) throw StatementError{start, "a triangle without `vertices`; expected x y z of 3 corners"};
+    // Meshes have such triangles too, and no ray meets them; one warning for the file is enough.
+    if (triangle_is_degenerate(triangle.corners) && !document.has_degenerate_triangle) {
+        diagnostics.warning(start, "a triangle without area is invisible (further ones are not reported)");
+        document.has_degenerate_triangle = true;
+    }
+    add_item(document, ItemKind::triangle, document.triangles.size(), s.position());
+    document.triangles.push_back(std::move(triangle));
+}
+
+void read_load(Statement& s, Document& document, Diagnostics&) {
+    enum { kTranslate, kRotate, kScale, kMaterial, kName };
+    s.expect_keys({{"translate"}, {"rotate", true}, {"scale"}, {"material"}, {"name"}});
+    Load load;
+    load.path = s.path("the file to load");
+    load.position = s.last();
+    Placement placement;
+    while (!s.done()) {
+        switch (s.key()) {
+            case kTranslate:
+                placement.translate(s.vector("`translate` (x y z)"));
+                break;
+            case kRotate: {
+                const Vec3 axis = s.direction("`rotate` (axis x y z, then degrees)");
+                placement.rotate(axis, s.number("`rotate`'s angle (degrees)"));
+                break;
+            }
+            case kScale:
+                placement.scale(s.scale("`scale` (one factor, or x y z)"));
+                break;
+            case kMaterial:
+                load.material = s.name_use("a material's name");
+                break;
+            case kName:
+                load.name = s.name("the object's name");
+                break;
+        }
+    }
+    load.world_from_object = placement.world_from_object();
+    add_item(document, ItemKind::load, document.loads.size(), s.position());
+    document.loads.push_back(std::move(load));
+}
+
+void read_animate(Statement& s, Document& document, Diagnostics& diagnostics) {
+    NameUse target = s.name_use("the name of a loaded object");
+    const size_t channel = s.choice("motion", {"translate", "rotate", "scale"});
+    constexpr const char* what[] = {"`translate` (time x y z)", "`rotate` (time, axis x y z, degrees)", "`scale` (time x y z)"};
+    const size_t numbers_per_key = channel == 1 ? 5 : 4;
+    float last_time = 0;
+    size_t keys = 0;
+    do {
+        for (size_t i = 0; i < numbers_per_key; ++i) {
+            const float value = s.number(what[channel], i, numbers_per_key);
+            if (i > 0) continue;
+            if (keys > 0 && !(value > last_time)) s.fail_at_last("times must grow; expected a later time than the one before");
+            last_time = value;
+        }
+        ++keys;
+    } while (!s.done());
+    if (document.animated.empty()) {
+        diagnostics.warning(s.position(), "animation is not supported yet: `animate` is ignored, the scene is shown at rest");
+    }
+    document.animated.push_back(std::move(target));
+}
+
+}  // namespace scene_format
