@@ -1,5 +1,6 @@
 // accel_build.hpp -- one acceleration structure over one scene: what the builder reads, what it wrote, checked and packed.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -13,7 +14,7 @@
 
 namespace clarity {
 
-// Uninitialised storage aligned to 64 bytes, which builders and devices like; grows never.
+// Uninitialised storage aligned to 64 bytes, which builders and devices like; never grows.
 class AlignedBytes {
  public:
     AlignedBytes() = default;
@@ -24,6 +25,8 @@ class AlignedBytes {
 
  private:
     struct Free {
+        explicit Free(size_t bytes = 0) : mapped(bytes) {}
+        size_t mapped;  // bytes; 0: from the heap
         void operator()(void* p) const;
     };
     std::unique_ptr<void, Free> data_;
@@ -35,8 +38,7 @@ class AlignedBytes {
 struct BuildScene {
     std::vector<rt_prim> prims;
     std::vector<rt_group> groups;
-    std::vector<float> corners;                // 9 per triangle ref, in the space of its group
-    std::vector<rt_leaf> leaf_of_triangle;     // unused corners; material and prim of each triangle ref
+    std::vector<rt_leaf> triangles;            // by ref index, in the space of its group
     std::vector<rt_instance> instances;        // roots unset
     std::vector<uint32_t> group_of_instance;
     std::vector<Affine> world_from_object;     // per instance

@@ -57,11 +57,11 @@ typedef struct rt_group {
     rt_u32 first, count; /* range of prims; may be empty */
 } rt_group;
 
-/* Raw geometry, for builders that split or pack. Triangle ref i has its corners at triangle_corners[9 * i .. + 8], in the
- * space of its group. */
+/* Raw geometry, for builders that split or pack: corners a, b, c of triangle ref i are those of triangles[i], in the space of its
+ * group. */
 typedef struct rt_geometry {
     rt_u32 struct_bytes;
-    const float *triangle_corners;
+    const rt_leaf *triangles;
     uint64_t triangle_count;
 } rt_geometry;
 

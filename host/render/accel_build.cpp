@@ -1,0 +1,215 @@
+// accel_build.cpp -- running a builder, and distrusting what it wrote.
+#include "render/accel_build.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+
+#include "base/error.hpp"
+#include "plugin/host_services.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr size_t kMapped = 1u << 20;  // from this size on memory is mapped, which zeroes pages when they are first touched
+constexpr uint64_t kSlotLimit = uint64_t(1) << 40;
+
+double since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+// What the plugin's calls write into.
+struct Output {
+    const rt_accel& accel;
+    AccelData& data;
+    HostServices& services;
+    rt_u32 group_count;
+    std::mutex mutex;
+    std::vector<bool> allocated, rooted;
+    bool leaves_given = false;
+
+    Output(const rt_accel& a, AccelData& d, HostServices& s, rt_u32 groups)
+        : accel(a), data(d), services(s), group_count(groups), allocated(a.slot_count), rooted(groups) {
+        data.slots.resize(accel.slot_count);
+        data.roots.assign(groups, 0);
+    }
+
+    void* alloc(rt_u32 slot, uint64_t count) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (slot >= accel.slot_count) return refuse("asked for slot " + std::to_string(slot) + " of " + std::to_string(accel.slot_count));
+        const std::string name = accel.slots[slot].name;
+        if (allocated[slot]) return refuse("allocated slot " + name + " twice");
+        if (count > kSlotLimit / accel.slots[slot].elem_bytes) return refuse("asked for " + std::to_string(count) + " elements of slot " + name);
+        allocated[slot] = true;
+        try {
+            data.slots[slot].memory = AlignedBytes(std::max<uint64_t>(count, 1) * accel.slots[slot].elem_bytes, true);
+        } catch (const std::bad_alloc&) {
+            return refuse("no memory for " + std::to_string(count) + " elements of slot " + name);
+        }
+        data.slots[slot].count = count;
+        return data.slots[slot].memory.data();
+    }
+
+    rt_u32* leaves(uint64_t count) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (leaves_given) return static_cast<rt_u32*>(refuse("asked for the leaves twice"));
+        if (count > RT_REF_INDEX_MAX) return static_cast<rt_u32*>(refuse("asked for " + std::to_string(count) + " leaves"));
+        leaves_given = true;
+        try {
+            refs = AlignedBytes(std::max<uint64_t>(count, 1) * sizeof(rt_u32), true);
+        } catch (const std::bad_alloc&) {
+            return static_cast<rt_u32*>(refuse("no memory for " + std::to_string(count) + " leaves"));
+        }
+        data.leaf_count = count;
+        return static_cast<rt_u32*>(refs.data());
+    }
+
+    void root(rt_u32 group, rt_u32 node) {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (group >= group_count) {
+            refuse("reported a root for group " + std::to_string(group) + " of " + std::to_string(group_count));
+            return;
+        }
+        rooted[group] = true;
+        data.roots[group] = node;
+    }
+
+    void* refuse(const std::string& why) {
+        services.fail("the builder " + why);
+        return nullptr;
+    }
+
+    AlignedBytes refs;
+};
+
+Output& output(void* ctx) { return *static_cast<Output*>(ctx); }
+
+// Everything that a builder may get wrong, said in its terms.
+std::string contract_breach(const Output& out, const BuildScene& scene) {
+    for (rt_u32 s = 0; s < out.accel.slot_count; ++s)
+        if (!out.allocated[s]) return std::string("never allocated slot ") + out.accel.slots[s].name;
+    if (!out.leaves_given) return "never asked for the leaves";
+    for (rt_u32 g = 0; g < out.group_count; ++g) {
+        if (!out.rooted[g]) return "reported no root for group " + std::to_string(g);
+        if (out.data.roots[g] >= out.data.slots[0].count)
+            return "reported root " + std::to_string(out.data.roots[g]) + " for group " + std::to_string(g) + ", but slot " +
+                   out.accel.slots[0].name + " has " + std::to_string(out.data.slots[0].count) + " elements";
+    }
+    const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
+    for (uint64_t i = 0; i < out.data.leaf_count; ++i) {
+        const rt_u32 index = RT_REF_INDEX(refs[i]);
+        size_t known = 0;
+        switch (RT_REF_KIND(refs[i])) {
+            case RT_REF_TRIANGLE: known = scene.triangles.size(); break;
+            case RT_REF_SPHERE: known = scene.spheres.size(); break;
+            case RT_REF_POLYGON: known = scene.polygons.size(); break;
+            case RT_REF_INSTANCE: known = scene.instances.size(); break;
+        }
+        if (index >= known) return "put a ref at leaf " + std::to_string(i) + " that it was not given";
+    }
+    return {};
+}
+
+void pack_leaves(const Output& out, AccelData& data) {
+    data.leaves = AlignedBytes(std::max<uint64_t>(data.leaf_count, 1) * sizeof(rt_leaf), false);
+    const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
+    rt_leaf* leaves = static_cast<rt_leaf*>(data.leaves.data());
+    if (data.leaf_count == 0) std::memset(leaves, 0, sizeof(rt_leaf));
+    constexpr uint64_t chunk = 1u << 15;
+    parallel_for(static_cast<uint32_t>((data.leaf_count + chunk - 1) / chunk), [&](uint32_t c) {
+        for (uint64_t i = c * chunk; i < std::min<uint64_t>(data.leaf_count, (c + 1) * chunk); ++i) {
+            const rt_u32 index = RT_REF_INDEX(refs[i]);
+            switch (RT_REF_KIND(refs[i])) {
+                case RT_REF_TRIANGLE: leaves[i] = data.scene.triangles[index]; break;
+                case RT_REF_SPHERE: leaves[i] = data.scene.spheres[index]; break;
+                case RT_REF_POLYGON: leaves[i] = data.scene.polygons[index]; break;
+                default:
+                    leaves[i] = rt_leaf{};
+                    leaves[i].ref = refs[i];
+            }
+        }
+    });
+}
+
+}  // namespace
+
+AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
+    if (bytes >= kMapped) {
+        void* p = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        if (p == MAP_FAILED) throw std::bad_alloc();
+        madvise(p, bytes, MADV_HUGEPAGE);
+        data_ = std::unique_ptr<void, Free>(p, Free{bytes});
+        return;
+    }
+    void* p = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!p) throw std::bad_alloc();
+    data_ = std::unique_ptr<void, Free>(p, Free{0});
+    if (zero) std::memset(p, 0, bytes);
+}
+
+void AlignedBytes::Free::operator()(void* p) const {
+    if (mapped)
+        munmap(p, mapped);
+    else
+        std::free(p);
+}
+
+double AccelData::stat(const std::string& label, double otherwise) const {
+    for (const auto& [name, value] : stats)
+        if (name == label) return value;
+    return otherwise;
+}
+
+AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress) {
+    AccelData data;
+    data.plugin = &plugin;
+    data.params = params;
+    auto start = std::chrono::steady_clock::now();
+    data.scene = make_build_scene(scene, progress);
+    data.pack_ms = since(start);
+
+    HostServices services(std::string("accel ") + plugin.id, progress);
+    Output out(*plugin.accel, data, services, static_cast<rt_u32>(data.scene.groups.size()));
+    rt_geometry geometry{sizeof(rt_geometry), data.scene.triangles.data(), data.scene.triangles.size()};
+    rt_build_input input{sizeof(rt_build_input),
+                         out.group_count,
+                         data.scene.prims.data(),
+                         data.scene.groups.data(),
+                         &geometry,
+                         data.params.data()};
+    rt_build_output output_table{};
+    output_table.struct_bytes = sizeof output_table;
+    output_table.ctx = &out;
+    output_table.alloc = [](void* ctx, rt_u32 slot, uint64_t count) { return output(ctx).alloc(slot, count); };
+    output_table.leaves = [](void* ctx, uint64_t count) { return output(ctx).leaves(count); };
+    output_table.root = [](void* ctx, rt_u32 group, rt_u32 node) { output(ctx).root(group, node); };
+    output_table.define = [](void* ctx, const char* name, rt_u32 value) {
+        const std::lock_guard<std::mutex> lock(output(ctx).mutex);
+        output(ctx).data.defines[name] = value;
+    };
+    output_table.stat = [](void* ctx, const char* label, double value) {
+        const std::lock_guard<std::mutex> lock(output(ctx).mutex);
+        output(ctx).data.stats.emplace_back(label, value);
+    };
+    start = std::chrono::steady_clock::now();
+    services.check(static_cast<int>(Exit::failed), [&] { return plugin.accel->build(services.host(), &input, &output_table); });
+    data.build_ms = since(start);
+
+    start = std::chrono::steady_clock::now();
+    if (const std::string why = contract_breach(out, data.scene); !why.empty())
+        throw Error(Exit::failed, std::string("accel ") + plugin.id + ": the builder " + why + "; this is a fault of the plugin");
+    pack_leaves(out, data);
+    data.instances = data.scene.instances;
+    for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
+    data.bytes = data.leaf_count * sizeof(rt_leaf) + data.instances.size() * sizeof(rt_instance);
+    for (rt_u32 s = 0; s < plugin.accel->slot_count; ++s) data.bytes += data.slots[s].count * plugin.accel->slots[s].elem_bytes;
+    data.pack_ms += since(start);
+    return data;
+}
+
+}  // namespace clarity

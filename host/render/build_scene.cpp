@@ -1,0 +1,241 @@
+// build_scene.cpp -- from a Scene to boxes in groups.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "plugin/host_services.hpp"
+#include "render/accel_build.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr uint32_t kChunk = 1u << 14;  // triangles that one task copies
+
+rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
+    rt_prim prim;
+    for (int k = 0; k < 3; ++k) {
+        prim.lo[k] = INFINITY;
+        prim.hi[k] = -INFINITY;
+    }
+    prim.ref = ref;
+    prim.mesh = mesh;
+    return prim;
+}
+
+void grow(rt_prim& prim, const float* p) {
+    for (int k = 0; k < 3; ++k) {
+        prim.lo[k] = std::min(prim.lo[k], p[k]);
+        prim.hi[k] = std::max(prim.hi[k], p[k]);
+    }
+}
+
+// Room for the rounding of whoever computes with the box's contents in another order.
+void widen(rt_prim& prim, float relative) {
+    for (int k = 0; k < 3; ++k) {
+        const float room = relative * std::max(std::fabs(prim.lo[k]), std::fabs(prim.hi[k]));
+        prim.lo[k] -= room;
+        prim.hi[k] += room;
+    }
+}
+
+// Writes the triangles of one mesh as refs first.., transformed unless world is nullptr.
+void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim, rt_u32 first_ref,
+                   rt_u32 run, uint64_t prim_at, BuildScene& out) {
+    const uint32_t chunks = (mesh.triangle_count + kChunk - 1) / kChunk;
+    parallel_for(chunks, [&](uint32_t chunk) {
+        const rt_u32 end = std::min(mesh.triangle_count, (chunk + 1) * kChunk);
+        for (rt_u32 i = chunk * kChunk; i < end; ++i) {
+            const rt_u32 source = mesh.first_triangle + i;
+            rt_leaf& leaf = out.triangles[first_ref + i];
+            leaf.ref = RT_REF_TRIANGLE | (first_ref + i);
+            leaf.material = material != RT_NONE ? material : scene.triangle_materials[source];
+            leaf.prim = first_prim + i;
+            rt_prim prim = empty_prim(leaf.ref, run);
+            float* const corners[3] = {leaf.a, leaf.b, leaf.c};
+            for (int c = 0; c < 3; ++c) {
+                const float* position = &scene.positions[3 * size_t(scene.triangles[3 * size_t(source) + c])];
+                if (world) {
+                    const auto p = transform_point(*world, position);
+                    std::memcpy(corners[c], p.data(), sizeof p);
+                } else {
+                    std::memcpy(corners[c], position, 3 * sizeof(float));
+                }
+                grow(prim, corners[c]);
+            }
+            out.prims[prim_at + i] = prim;
+            out.attribute_triangle[first_ref + i] = source;
+        }
+    });
+}
+
+void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
+    for (size_t i = 0; i < scene.spheres.size(); ++i) {
+        const Sphere& sphere = scene.spheres[i];
+        rt_leaf leaf{};
+        leaf.ref = RT_REF_SPHERE | static_cast<rt_u32>(i);
+        std::memcpy(leaf.a, sphere.center.data(), sizeof leaf.a);
+        leaf.b[0] = sphere.radius;
+        leaf.material = sphere.material;
+        leaf.prim = next_prim++;
+        rt_prim prim = empty_prim(leaf.ref, run);
+        for (int k = 0; k < 3; ++k) {
+            prim.lo[k] = sphere.center[k] - sphere.radius;
+            prim.hi[k] = sphere.center[k] + sphere.radius;
+        }
+        widen(prim, 1e-6f);
+        out.spheres.push_back(leaf);
+        out.prims[at++] = prim;
+    }
+}
+
+void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
+    for (size_t i = 0; i < scene.polygons.size(); ++i) {
+        const Polygon& polygon = scene.polygons[i];
+        const float* corners = &scene.polygon_corners[3 * size_t(polygon.first_corner)];
+        // Newell's normal and the centroid: the plane that suits slightly unflat corners best.
+        double normal[3] = {}, centroid[3] = {};
+        for (rt_u32 c = 0; c < polygon.corner_count; ++c) {
+            const float *p = corners + 3 * c, *q = corners + 3 * ((c + 1) % polygon.corner_count);
+            for (int k = 0; k < 3; ++k) {
+                const int a = (k + 1) % 3, b = (k + 2) % 3;
+                normal[k] += (double(p[a]) - q[a]) * (double(p[b]) + q[b]);
+                centroid[k] += p[k];
+            }
+        }
+        const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        rt_leaf leaf{};
+        double offset = 0;
+        for (int k = 0; k < 3; ++k) {
+            const double n = length > 0 ? normal[k] / length : (k == 1);
+            leaf.a[k] = static_cast<float>(n);
+            offset += n * centroid[k] / polygon.corner_count;
+        }
+        leaf.b[0] = static_cast<float>(offset);
+        leaf.ref = RT_REF_POLYGON | static_cast<rt_u32>(i);
+        leaf.material = polygon.material;
+        leaf.prim = next_prim++;
+        const float x = std::fabs(leaf.a[0]), y = std::fabs(leaf.a[1]), z = std::fabs(leaf.a[2]);
+        const rt_u32 axis = z >= x && z >= y ? 2 : y >= x ? 1 : 0;
+        out.polygon_table.push_back({static_cast<rt_u32>(out.polygon_corners.size() / 2), polygon.corner_count, axis, 0});
+        rt_prim prim = empty_prim(leaf.ref, run);
+        for (rt_u32 c = 0; c < polygon.corner_count; ++c) {
+            grow(prim, corners + 3 * c);
+            out.polygon_corners.push_back(corners[3 * c + (axis + 1) % 3]);
+            out.polygon_corners.push_back(corners[3 * c + (axis + 2) % 3]);
+        }
+        widen(prim, 1e-6f);
+        out.polygons.push_back(leaf);
+        out.prims[at++] = prim;
+    }
+}
+
+// The box of a mesh's group, placed.
+rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, rt_u32 index) {
+    rt_prim box = empty_prim(0, 0), prim = empty_prim(RT_REF_INSTANCE | index, index);
+    for (rt_u32 i = 0; i < scene.groups[group].count; ++i) {
+        grow(box, scene.prims[scene.groups[group].first + i].lo);
+        grow(box, scene.prims[scene.groups[group].first + i].hi);
+    }
+    for (int corner = 0; corner < 8; ++corner) {
+        const float p[3] = {corner & 1 ? box.hi[0] : box.lo[0], corner & 2 ? box.hi[1] : box.lo[1], corner & 4 ? box.hi[2] : box.lo[2]};
+        grow(prim, transform_point(world, p).data());
+    }
+    widen(prim, 1e-6f);
+    return prim;
+}
+
+}  // namespace
+
+BuildScene make_build_scene(const Scene& scene, Progress& progress) {
+    BuildScene out;
+    // A mesh that is placed once is flattened: a tree of its own would only lengthen the way of each ray.
+    std::vector<rt_u32> uses(scene.meshes.size(), 0);
+    for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+    std::vector<Affine> inverse(scene.instances.size());
+    std::vector<bool> flat(scene.instances.size());
+    uint64_t world_prims = scene.spheres.size() + scene.polygons.size(), refs = 0;
+    std::vector<rt_u32> group_of_mesh(scene.meshes.size(), 0);
+    rt_u32 group_count = 1;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
+        flat[i] = uses[instance.mesh] == 1 || !invert(instance.world_from_object, inverse[i]) || count == 0;
+        if (flat[i]) {
+            world_prims += count;
+            refs += count;
+        } else {
+            ++world_prims;
+            if (group_of_mesh[instance.mesh] == 0) {
+                group_of_mesh[instance.mesh] = group_count++;
+                refs += count;
+            }
+        }
+    }
+    uint64_t prim_total = world_prims;
+    out.groups.assign(group_count, rt_group{0, 0});
+    out.groups[0] = {0, static_cast<rt_u32>(world_prims)};
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        if (group_of_mesh[m]) {
+            out.groups[group_of_mesh[m]] = {static_cast<rt_u32>(prim_total), scene.meshes[m].triangle_count};
+            prim_total += scene.meshes[m].triangle_count;
+        }
+    if (refs > RT_REF_INDEX_MAX || prim_total > 0xFFFFFFF0u)
+        throw Error(Exit::failed, "the scene has " + std::to_string(refs) + " triangles; this build can hold " +
+                                      std::to_string(RT_REF_INDEX_MAX));
+    out.prims.resize(prim_total);
+    out.triangles.resize(refs);
+    out.attribute_triangle.resize(refs);
+
+    // Meshes of their own first: instances need their boxes.
+    rt_u32 next_ref = 0;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        if (group_of_mesh[m]) {
+            add_triangles(scene, scene.meshes[m], nullptr, RT_NONE, 0, next_ref, static_cast<rt_u32>(m), out.groups[group_of_mesh[m]].first,
+                          out);
+            next_ref += scene.meshes[m].triangle_count;
+        }
+    uint64_t at = 0;
+    rt_u32 next_prim = 0;
+    std::vector<rt_prim> instance_prims;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (flat[i]) {
+            const bool identity = instance.world_from_object == kIdentity;
+            add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material, next_prim, next_ref,
+                          static_cast<rt_u32>(i), at, out);
+            next_ref += mesh.triangle_count;
+            at += mesh.triangle_count;
+        } else {
+            rt_instance placed{};
+            std::memcpy(placed.object_from_world, inverse[i].data(), sizeof placed.object_from_world);
+            placed.first_prim = next_prim;
+            placed.material = instance.material;
+            const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
+            rt_prim prim = instance_prim(out, group, instance.world_from_object, index);
+            prim.mesh = static_cast<rt_u32>(i);
+            instance_prims.push_back(prim);
+            out.instances.push_back(placed);
+            out.group_of_instance.push_back(group);
+            out.world_from_object.push_back(instance.world_from_object);
+        }
+        next_prim += mesh.triangle_count;
+        if (!progress.report(-1)) throw Cancelled();
+    }
+    for (const rt_prim& prim : instance_prims) out.prims[at++] = prim;
+    const rt_u32 runs = static_cast<rt_u32>(scene.instances.size());
+    add_spheres(scene, runs, next_prim, at, out);
+    add_polygons(scene, runs + 1, next_prim, at, out);
+    for (const Plane& plane : scene.planes) {
+        rt_plane p{};
+        std::memcpy(p.normal, plane.normal.data(), sizeof p.normal);
+        p.offset = plane.offset;
+        p.material = plane.material;
+        p.prim = next_prim++;
+        out.planes.push_back(p);
+    }
+    return out;
+}
+
+}  // namespace clarity
