@@ -143,16 +143,16 @@ AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
         void* p = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         if (p == MAP_FAILED) throw std::bad_alloc();
         madvise(p, bytes, MADV_HUGEPAGE);
-        data_ = std::unique_ptr<void, Free>(p, Free{bytes});
+        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{bytes});
         return;
     }
     void* p = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
     if (!p) throw std::bad_alloc();
-    data_ = std::unique_ptr<void, Free>(p, Free{0});
+    data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{});
     if (zero) std::memset(p, 0, bytes);
 }
 
-void AlignedBytes::Free::operator()(void* p) const {
+void FreeMemory::operator()(void* p) const {
     if (mapped)
         munmap(p, mapped);
     else

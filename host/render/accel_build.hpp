@@ -14,7 +14,12 @@
 
 namespace clarity {
 
-// Uninitialised storage aligned to 64 bytes, which builders and devices like; never grows.
+struct FreeMemory {
+    size_t mapped = 0;  // bytes; 0: from the heap
+    void operator()(void* p) const;
+};
+
+// Storage aligned to 64 bytes, which builders and devices like; never grows.
 class AlignedBytes {
  public:
     AlignedBytes() = default;
@@ -24,12 +29,7 @@ class AlignedBytes {
     size_t bytes() const { return bytes_; }
 
  private:
-    struct Free {
-        explicit Free(size_t bytes = 0) : mapped(bytes) {}
-        size_t mapped;  // bytes; 0: from the heap
-        void operator()(void* p) const;
-    };
-    std::unique_ptr<void, Free> data_;
+    std::unique_ptr<void, FreeMemory> data_;
     size_t bytes_ = 0;
 };
 
