@@ -1,0 +1,198 @@
+// assimp.cpp -- importer plugin: FBX first of all, glTF, COLLADA, 3DS and what else the Open Asset Import Library reads.
+//
+// The scene comes over as the file stores it: undeformed, in its own units and axes, polygons whole, a mesh once however many
+// nodes show it.
+#include <assimp/config.h>
+#include <assimp/scene.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "file_kind.hpp"
+#include "lights_cameras.hpp"
+#include "materials.hpp"
+#include "meshes.hpp"
+#include "nodes.hpp"
+#include "rt_plugin.hpp"
+
+namespace assimp_import {
+namespace {
+
+// assimp reports 0..0.5 while it reads the file and goes on to 1 in its post-processing, which is hardly used here.
+constexpr float kReadShare = 0.8f;
+
+class HostProgress : public Assimp::ProgressHandler {
+ public:
+    explicit HostProgress(const rt_host& host) : host_(host) {}
+    bool Update(float fraction) override {
+        const float share = fraction < 0 ? 0 : std::min(fraction, 1.0f) * kReadShare;
+        cancelled_ = cancelled_ || !host_.progress(host_.ctx, share);
+        return !cancelled_;
+    }
+    bool cancelled() const { return cancelled_; }
+
+ private:
+    const rt_host& host_;
+    bool cancelled_ = false;
+};
+
+std::string lower_extension(const std::string& path) {
+    const size_t dot = path.find_last_of("./");
+    std::string extension = dot == path.npos || path[dot] == '/' ? "" : path.substr(dot + 1);
+    for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    return extension;
+}
+
+std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
+    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!file) throw rt::fail(host, "cannot open the file for reading");
+    std::vector<uint8_t> head(16384);
+    head.resize(std::fread(head.data(), 1, head.size(), file.get()));
+    if (head.empty()) throw rt::fail(host, "the file is empty");
+    return head;
+}
+
+Format format_of(const std::string& extension) {
+    if (extension == "fbx") return Format::fbx;
+    return extension == "gltf" || extension == "glb" || extension == "vrm" ? Format::gltf : Format::other;
+}
+
+// What the file says of its axes and unit.
+struct Units {
+    rt_u32 up_axis = 1;
+    double unit_scale = 0;
+};
+
+Units units_of(aiScene& scene, Format format, const std::string& extension, const std::vector<uint8_t>& head) {
+    Units units;
+    if (format == Format::gltf) {
+        units.unit_scale = 1;
+    } else if (format == Format::fbx && scene.mMetaData) {
+        int up = 1;
+        float centimetres = 0;
+        if (scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) units.up_axis = static_cast<rt_u32>(up);
+        if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) units.unit_scale = 0.01 * centimetres;
+    } else if (extension == "dae" && scene.mRootNode) {
+        // The importer scales the root to metres: take that back, and report it instead.
+        const std::string text(head.begin(), head.end());
+        if (text.find("Z_UP") != text.npos) units.up_axis = 2;
+        if (text.find("X_UP") != text.npos) units.up_axis = 0;
+        aiMatrix4x4& root = scene.mRootNode->mTransformation;
+        const float scale = root.a1;
+        if (scale > 0 && root.b2 == scale && root.c3 == scale) {
+            units.unit_scale = scale;
+            root = aiMatrix4x4();
+        }
+    }
+    return units;
+}
+
+void warn(const rt_scene_sink& sink, const std::string& text) {
+    sink.warn(sink.ctx, text.c_str());
+}
+
+// One instance for each node that shows polygons.
+void add_instances(const aiScene& scene, const NodeTree& tree, MeshTable& meshes, const rt_host* host,
+                   const rt_scene_sink& sink) {
+    size_t done = 0, strayed = 0;
+    for (const PlacedNode& placed : tree.nodes()) {
+        rt::progress(host, kReadShare + (1 - kReadShare) * float(++done) / float(tree.nodes().size()));
+        if (placed.node->mNumMeshes == 0) continue;
+        if (!is_finite(placed.world_geometry)) {
+            ++strayed;
+            continue;
+        }
+        const rt_u32 mesh = meshes.id(*placed.node);
+        if (mesh == RT_NONE) continue;
+        rt_instance_desc out{};
+        out.struct_bytes = sizeof out;
+        out.name = placed.node->mName.C_Str();
+        out.mesh = mesh;
+        out.material = RT_NONE;
+        std::transform(placed.world_geometry.begin(), placed.world_geometry.end(), out.world_from_object,
+                       [](double x) { return static_cast<float>(x); });
+        rt::id(sink.instance(sink.ctx, &out));
+    }
+    if (strayed) warn(sink, std::to_string(strayed) + " nodes were left out: their transforms are not finite");
+    if (meshes.broken_faces()) {
+        warn(sink,
+             std::to_string(meshes.broken_faces()) + " faces were left out: they name vertices that are missing or not finite");
+    }
+    if (meshes.faces() == 0) {
+        // What holds vertices but no sound face is damaged; what never had polygons (NURBS, curves, cameras) is not.
+        if (meshes.broken_faces() || (scene.mNumMeshes > 0 && meshes.points_and_lines() == 0)) {
+            throw rt::fail(host, "contains no usable polygons: it is damaged, or not all of it was written");
+        }
+        warn(sink, "contains no polygons (points, lines, NURBS and the like were skipped)");
+    } else if (meshes.points_and_lines()) {
+        warn(sink, std::to_string(meshes.points_and_lines()) + " points and lines were skipped");
+    }
+}
+
+int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
+    const std::vector<uint8_t> head = read_head(host, path);
+    const std::string extension = lower_extension(path);
+    const Format format = format_of(extension);
+    if (format == Format::fbx) {
+        const std::string refusal = fbx_refusal(head.data(), head.size());
+        if (!refusal.empty()) throw rt::fail(host, refusal);
+        if (fbx_version(head.data(), head.size()) >= 8000)
+            warn(*sink, "the file's FBX version is newer than 7.7, the newest known");
+    }
+
+    Assimp::Importer importer;
+    HostProgress* progress = new HostProgress(*host);  // the importer deletes it
+    importer.SetProgressHandler(progress);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
+    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, false);
+    importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
+    importer.ReadFile(path, 0);
+    if (progress->cancelled()) return RT_CANCELLED;
+    const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
+    if (!scene || !scene->mRootNode) {
+        std::string why = importer.GetErrorString();
+        why.erase(std::remove(why.begin(), why.end(), '\n'), why.end());
+        throw rt::fail(host, why.empty() ? "assimp cannot read it and does not say why" : "assimp cannot read it: " + why);
+    }
+
+    const Units units = units_of(*scene, format, extension, head);
+    const NodeTree tree(*scene, format == Format::fbx);
+    MaterialTable materials(*scene, format, path, *sink);
+    MeshTable meshes(*scene, materials, *sink);
+    add_instances(*scene, tree, meshes, host, *sink);
+    add_lights(*scene, tree, *host, *sink);
+    add_cameras(*scene, tree, format, *sink);
+    rt_scene_info info{};
+    info.struct_bytes = sizeof info;
+    info.up_axis = units.up_axis;
+    info.unit_scale = units.unit_scale;
+    sink->info(sink->ctx, &info);
+    return RT_OK;
+}
+
+int32_t probe(const uint8_t* head, uint64_t bytes) {
+    return certainty(head, bytes);
+}
+
+// Formats that users expect; assimp reads more, of which many are rare, unsafe or not meshes.
+constexpr const char* extensions[] = {"fbx",  "gltf", "glb",     "dae",  "3ds", "blend",   "ac",  "ase", "b3d",
+                                      "bvh",  "dxf",  "hmp",     "ifc",  "irr", "irrmesh", "lwo", "lws", "lxo",
+                                      "md2",  "md3",  "md5mesh", "ms3d", "nff", "q3o",     "smd", "ter", "vrm",
+                                      "x",    "x3d",  "xgl",     "zgl",  "3mf", "amf",     "cob", "scn",
+#ifdef ASSIMP_TAKES_MESH_FORMATS
+                                      "obj",  "ply",  "stl",     "off",
+#endif
+                                      nullptr};
+constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>};
+
+}  // namespace
+}  // namespace assimp_import
+
+extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::importer_plugin(
+    "assimp", "FBX, glTF, COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);

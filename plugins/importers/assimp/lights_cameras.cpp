@@ -1,0 +1,131 @@
+#include "lights_cameras.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "rt_plugin.hpp"
+
+namespace assimp_import {
+namespace {
+
+using Vec = std::array<double, 3>;
+
+constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+// The n-th light (or camera) of a name belongs to the n-th node of that name.
+class Placement {
+ public:
+    explicit Placement(const NodeTree& tree) : tree_(tree) {}
+    Transform next(const aiString& name) {
+        const std::string key(name.data, name.length);
+        const PlacedNode* node = tree_.find(key, seen_[key]++);
+        return node && is_finite(node->world) ? node->world : kIdentity;
+    }
+
+ private:
+    const NodeTree& tree_;
+    std::map<std::string, size_t> seen_;
+};
+
+// False for a vector without length.
+bool normalize(Vec& v) {
+    const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    if (!(length > 1e-30) || !std::isfinite(length)) return false;
+    for (double& x : v) x /= length;
+    return true;
+}
+
+void store(const Vec& v, float out[3]) {
+    for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
+}
+
+bool all_finite(const float v[3]) {
+    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
+}
+
+std::string quoted(const aiString& name) {
+    return "'" + std::string(name.data, name.length) + "'";
+}
+
+}  // namespace
+
+void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host, const rt_scene_sink& sink) {
+    Placement placement(tree);
+    std::vector<rt_light_desc> lights;
+    float brightest = 0;
+    for (unsigned i = 0; i < scene.mNumLights; ++i) {
+        const aiLight& light = *scene.mLights[i];
+        const Transform world = placement.next(light.mName);
+        if (light.mType == aiLightSource_AMBIENT) continue;
+        rt_light_desc desc{};
+        desc.struct_bytes = sizeof desc;
+        desc.name = light.mName.C_Str();
+        rt_light& out = desc.values;
+        if (light.mType == aiLightSource_DIRECTIONAL) {
+            Vec direction = transform_vector(world, light.mDirection);
+            if (!normalize(direction)) direction = {0, -1, 0};
+            out.kind = RT_LIGHT_DIRECTIONAL;
+            store({-direction[0], -direction[1], -direction[2]}, out.position);
+        } else {
+            if (light.mType != aiLightSource_POINT) {
+                const char* kind = light.mType == aiLightSource_SPOT ? "spot" : "area";
+                const std::string text = "the " + std::string(kind) + " light " + quoted(light.mName) + " became a point light";
+                sink.warn(sink.ctx, text.c_str());
+            }
+            out.kind = RT_LIGHT_POINT;
+            store(transform_point(world, light.mPosition), out.position);
+        }
+        for (int k = 0; k < 3; ++k) {
+            const float c = light.mColorDiffuse[k];
+            out.color[k] = std::isfinite(c) ? std::max(c, 0.0f) : 0;
+            brightest = std::max(brightest, out.color[k]);
+        }
+        if (all_finite(out.position)) lights.push_back(desc);
+    }
+    // Physical intensities (watts, candela) count on falloff, and light here has none: the brightest light becomes 1.
+    if (brightest > 1) {
+        rt::log(&host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest));
+        for (rt_light_desc& light : lights) {
+            for (float& c : light.values.color) c /= brightest;
+        }
+    }
+    for (const rt_light_desc& light : lights) rt::id(sink.light(sink.ctx, &light));
+}
+
+void add_cameras(const aiScene& scene, const NodeTree& tree, Format format, const rt_scene_sink& sink) {
+    Placement placement(tree);
+    for (unsigned i = 0; i < scene.mNumCameras; ++i) {
+        const aiCamera& camera = *scene.mCameras[i];
+        const Transform world = placement.next(camera.mName);
+        Vec forward = transform_vector(world, camera.mLookAt), up = transform_vector(world, camera.mUp);
+        if (!normalize(forward)) forward = {0, 0, -1};
+        if (!normalize(up)) up = {0, 1, 0};
+        rt_camera out{};
+        out.struct_bytes = sizeof out;
+        out.name = camera.mName.C_Str();
+        const Vec eye = transform_point(world, camera.mPosition);
+        store(eye, out.eye);
+        store({eye[0] + forward[0], eye[1] + forward[1], eye[2] + forward[2]}, out.target);
+        store(up, out.up);
+        if (!all_finite(out.eye) || !all_finite(out.target)) continue;
+        // mHorizontalFOV is the whole angle, whatever its comment says; for glTF assimp stores yfov times aspect.
+        const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? camera.mAspect
+                              : format == Format::gltf                            ? 1
+                                                                                  : 4.0 / 3;
+        double fov_y = format == Format::gltf ? camera.mHorizontalFOV / aspect
+                                              : 2 * std::atan(std::tan(0.5 * camera.mHorizontalFOV) / aspect);
+        if (!(fov_y > 0.001) || fov_y > 3.1) {
+            const std::string text =
+                "the camera " + quoted(camera.mName) + " has no angle of view (orthographic?): 45 degrees are used";
+            sink.warn(sink.ctx, text.c_str());
+            fov_y = 0.7853982;
+        }
+        out.fov_y_rad = static_cast<float>(fov_y);
+        rt::id(sink.camera(sink.ctx, &out));
+    }
+}
+
+}  // namespace assimp_import

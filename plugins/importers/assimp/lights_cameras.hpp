@@ -1,0 +1,14 @@
+// lights_cameras.hpp -- lights and cameras, placed by the nodes of their names.
+#pragma once
+#include <assimp/scene.h>
+
+#include "materials.hpp"
+#include "nodes.hpp"
+#include "rt_plugin.h"
+
+namespace assimp_import {
+
+void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host, const rt_scene_sink& sink);
+void add_cameras(const aiScene& scene, const NodeTree& tree, Format format, const rt_scene_sink& sink);
+
+}  // namespace assimp_import

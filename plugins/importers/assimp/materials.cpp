@@ -1,0 +1,214 @@
+#include "materials.hpp"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "rt_plugin.hpp"
+
+namespace assimp_import {
+namespace {
+
+float finite(float x, float low, float high, float otherwise) {
+    return std::isfinite(x) ? std::clamp(x, low, high) : otherwise;
+}
+
+float number(const aiMaterial& m, const char* key, unsigned type, unsigned index, float otherwise) {
+    ai_real value = otherwise;
+    return m.Get(key, type, index, value) == aiReturn_SUCCESS && std::isfinite(value) ? value : otherwise;
+}
+
+aiColor3D color(const aiMaterial& m, const char* key, unsigned type, unsigned index, const aiColor3D& otherwise) {
+    aiColor3D value = otherwise;
+    return m.Get(key, type, index, value) == aiReturn_SUCCESS ? value : otherwise;
+}
+
+void store(const aiColor3D& c, float high, float out[3]) {
+    for (int k = 0; k < 3; ++k) out[k] = finite(c[k], 0, high, 0);
+}
+
+float brightest(const aiColor3D& c) {
+    return std::max({c.r, c.g, c.b});
+}
+
+// glTF and other metallic-roughness materials: a smooth metal mirrors, a rough one stays diffuse in its colour.
+void apply_metallic(const aiMaterial& m, rt_material& out) {
+    const float metallic = finite(number(m, AI_MATKEY_METALLIC_FACTOR, 0), 0, 1, 0);
+    const float roughness = finite(number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1), 0, 1, 1);
+    const float smooth = 1 - roughness;
+    out.reflect = metallic * smooth;
+    // Blinn's exponent for a GGX roughness (alpha = roughness^2): 2 / alpha^2 - 2.
+    const float alpha2 = std::max(1e-3f, roughness * roughness * roughness * roughness);
+    out.shininess = std::clamp(2 / alpha2 - 2, 1.0f, 1000.0f);
+    for (int k = 0; k < 3; ++k) out.specular[k] = smooth * (0.04f + metallic * (out.color[k] - 0.04f));
+}
+
+void apply_phong(const aiMaterial& m, rt_material& out) {
+    const aiColor3D specular = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
+    const float strength = finite(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
+    store(specular * strength, 1, out.specular);
+    out.shininess = finite(number(m, AI_MATKEY_SHININESS, 0), 1, 10000, 1);
+    // FBX and COLLADA keep a reflection colour beside its factor; black is how "no reflection" is written.
+    out.reflect =
+        finite(number(m, AI_MATKEY_REFLECTIVITY, 0) * brightest(color(m, AI_MATKEY_COLOR_REFLECTIVE, {0, 0, 0})), 0, 1, 0);
+}
+
+// Opacity and transmission become refraction: bent only if the file names an index of refraction or says "transmission".
+void apply_transparency(const aiMaterial& m, Format format, rt_material& out) {
+    float opacity = finite(number(m, AI_MATKEY_OPACITY, 1), 0, 1, 1);
+    if (format == Format::gltf) {
+        aiString mode;
+        if (m.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS || std::string(mode.C_Str()) != "BLEND") opacity = 1;
+    }
+    const float transmission = finite(number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0), 0, 1, 0);
+    const float stated = finite(number(m, AI_MATKEY_REFRACTI, 0), 0, 10, 0);
+    out.refract = std::max(1 - opacity, transmission);
+    out.ior = stated > 1 ? stated : transmission > 0 ? 1.5f : 1.0f;
+    if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
+}
+
+// What stands behind the last slash of either kind.
+std::string base_name(const std::string& path) {
+    const size_t slash = path.find_last_of('/');
+    return slash == path.npos ? path : path.substr(slash + 1);
+}
+
+bool is_readable(const std::string& path) {
+    if (FILE* file = std::fopen(path.c_str(), "rb")) {
+        std::fclose(file);
+        return true;
+    }
+    return false;
+}
+
+}  // namespace
+
+MaterialTable::MaterialTable(const aiScene& scene, Format format, const std::string& file, const rt_scene_sink& sink)
+    : scene_(scene),
+      format_(format),
+      folder_(file.find_last_of('/') == file.npos ? "" : file.substr(0, file.find_last_of('/') + 1)),
+      stem_(base_name(file).substr(0, base_name(file).find_last_of('.'))),
+      sink_(sink),
+      ids_(scene.mNumMaterials, RT_NONE),
+      done_(scene.mNumMaterials, false) {}
+
+rt_u32 MaterialTable::id(unsigned material) {
+    if (material >= scene_.mNumMaterials || !scene_.mMaterials[material]) return RT_NONE;
+    if (done_[material]) return ids_[material];
+    done_[material] = true;
+    const aiMaterial& m = *scene_.mMaterials[material];
+
+    rt_material_desc desc{};
+    desc.struct_bytes = sizeof desc;
+    aiString name;
+    if (m.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name.length > 0) desc.name = name.C_Str();
+    // What assimp makes up where the file has none is the host's default material.
+    if (std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME) return RT_NONE;
+    rt_material& out = desc.values;
+    out.texture = texture(m);
+    aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
+    base = color(m, AI_MATKEY_BASE_COLOR, base);
+    // In FBX a texture takes the colour's place (programs leave any value there); elsewhere the two are multiplied.
+    if (format_ == Format::fbx && out.texture != RT_NONE) base = {1, 1, 1};
+    store(base, 1, out.color);
+    aiColor3D emission = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
+    emission = emission * finite(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0, 1000, 1);
+    store(emission, 1000, out.emission);
+    ai_real metallic = 0;
+    const bool is_metallic = format_ != Format::fbx && m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS;
+    is_metallic ? apply_metallic(m, out) : apply_phong(m, out);
+    apply_transparency(m, format_, out);
+    return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));
+}
+
+TextureMapping MaterialTable::mapping(unsigned material) const {
+    TextureMapping mapping;
+    if (material >= scene_.mNumMaterials || !scene_.mMaterials[material]) return mapping;
+    const aiMaterial& m = *scene_.mMaterials[material];
+    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+        if (m.GetTextureCount(type) == 0) continue;
+        int channel = 0;
+        if (m.Get(AI_MATKEY_UVWSRC(type, 0), channel) == aiReturn_SUCCESS && channel > 0 &&
+            channel < AI_MAX_NUMBER_OF_TEXTURECOORDS) {
+            mapping.channel = static_cast<unsigned>(channel);
+        }
+        aiUVTransform t;
+        if (m.Get(AI_MATKEY_UVTRANSFORM(type, 0), t) == aiReturn_SUCCESS) {
+            mapping.transform = t;
+            mapping.has_transform =
+                t.mTranslation.x != 0 || t.mTranslation.y != 0 || t.mScaling.x != 1 || t.mScaling.y != 1 || t.mRotation != 0;
+        }
+        return mapping;
+    }
+    return mapping;
+}
+
+rt_u32 MaterialTable::texture(const aiMaterial& material) {
+    for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE}) {
+        aiString path;
+        if (material.GetTextureCount(type) == 0 || material.GetTexture(type, 0, &path) != aiReturn_SUCCESS) continue;
+        if (path.length == 0) continue;
+        return add_texture(path.C_Str());
+    }
+    return RT_NONE;
+}
+
+rt_u32 MaterialTable::add_texture(const std::string& reference) {
+    const auto known = textures_.find(reference);
+    if (known != textures_.end()) return known->second;
+    rt_u32 id = RT_NONE;
+    if (const aiTexture* embedded = scene_.GetEmbeddedTexture(reference.c_str())) {
+        id = embedded_texture(*embedded);
+    } else {
+        const std::string path = existing_path(reference);
+        rt_texture_desc desc{};
+        desc.struct_bytes = sizeof desc;
+        desc.path = path.c_str();
+        id = sink_.texture(sink_.ctx, &desc);
+    }
+    return textures_[reference] = id;
+}
+
+rt_u32 MaterialTable::embedded_texture(const aiTexture& texture) {
+    rt_texture_desc desc{};
+    desc.struct_bytes = sizeof desc;
+    if (!texture.pcData || texture.mWidth == 0) return RT_NONE;
+    if (texture.mHeight == 0) {  // encoded, mWidth is its size in bytes
+        desc.bytes = reinterpret_cast<const uint8_t*>(texture.pcData);
+        desc.byte_count = texture.mWidth;
+        return sink_.texture(sink_.ctx, &desc);
+    }
+    const size_t count = size_t(texture.mWidth) * texture.mHeight;
+    std::vector<uint8_t> rgba(4 * count);
+    for (size_t i = 0; i < count; ++i) {
+        const aiTexel& t = texture.pcData[i];
+        const uint8_t texel[4] = {t.r, t.g, t.b, t.a};
+        std::copy(texel, texel + 4, &rgba[4 * i]);
+    }
+    desc.bytes = rgba.data();
+    desc.byte_count = rgba.size();
+    desc.width = texture.mWidth;
+    desc.height = texture.mHeight;
+    return sink_.texture(sink_.ctx, &desc);
+}
+
+// Files name textures as the author's machine had them: look where modelling programs put them beside the scene.
+std::string MaterialTable::existing_path(const std::string& reference) const {
+    std::string path = reference;
+    std::replace(path.begin(), path.end(), '\\', '/');
+    while (path.substr(0, 2) == "./") path.erase(0, 2);
+    const std::string name = base_name(path);
+    const bool is_absolute = !path.empty() && (path[0] == '/' || (path.size() > 1 && path[1] == ':'));
+    std::vector<std::string> candidates;
+    if (!is_absolute) candidates.push_back(path);
+    for (const std::string& folder : {std::string(), std::string("textures/"), stem_ + ".fbm/"})
+        candidates.push_back(folder + name);
+    for (const std::string& candidate : candidates) {
+        if (is_readable(folder_ + candidate)) return candidate;
+    }
+    return candidates.front();
+}
+
+}  // namespace assimp_import

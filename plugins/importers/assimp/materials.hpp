@@ -1,0 +1,44 @@
+// materials.hpp -- assimp's material properties as Whitted materials and textures.
+#pragma once
+#include <assimp/scene.h>
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "rt_plugin.h"
+
+namespace assimp_import {
+
+// Where a material's colour texture takes its coordinates.
+struct TextureMapping {
+    unsigned channel = 0;
+    bool has_transform = false;
+    aiUVTransform transform;
+};
+
+enum class Format { fbx, gltf, other };
+
+// Hands materials to the sink when they are first used.
+class MaterialTable {
+ public:
+    MaterialTable(const aiScene& scene, Format format, const std::string& file, const rt_scene_sink& sink);
+    rt_u32 id(unsigned material);  // RT_NONE: the default material
+    TextureMapping mapping(unsigned material) const;
+
+ private:
+    rt_u32 texture(const aiMaterial& material);
+    rt_u32 add_texture(const std::string& reference);
+    rt_u32 embedded_texture(const aiTexture& texture);
+    std::string existing_path(const std::string& reference) const;
+
+    const aiScene& scene_;
+    const Format format_;
+    const std::string folder_, stem_;
+    const rt_scene_sink& sink_;
+    std::vector<rt_u32> ids_;
+    std::vector<bool> done_;
+    std::unordered_map<std::string, rt_u32> textures_;
+};
+
+}  // namespace assimp_import

@@ -1,0 +1,174 @@
+#include "meshes.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+#include "rt_plugin.hpp"
+
+namespace assimp_import {
+namespace {
+
+// Position, normal, uv; compared bit by bit.
+using Vertex = std::array<float, 8>;
+
+// Gives equal vertices one index: open addressing over the list itself.
+class VertexSet {
+ public:
+    explicit VertexSet(size_t expected) {
+        size_t slots = 64;
+        while (slots < 2 * expected) slots *= 2;
+        slots_.assign(slots, RT_NONE);
+        vertices.reserve(expected / 2);
+    }
+    rt_u32 add(const Vertex& vertex) {
+        size_t slot = hash(vertex) & (slots_.size() - 1);
+        while (slots_[slot] != RT_NONE) {
+            if (std::memcmp(&vertices[slots_[slot]], &vertex, sizeof vertex) == 0) return slots_[slot];
+            slot = (slot + 1) & (slots_.size() - 1);
+        }
+        slots_[slot] = static_cast<rt_u32>(vertices.size());
+        vertices.push_back(vertex);
+        return slots_[slot];
+    }
+    std::vector<Vertex> vertices;
+
+ private:
+    static size_t hash(const Vertex& vertex) {
+        uint64_t words[4], h = 0;
+        std::memcpy(words, &vertex, sizeof words);
+        for (const uint64_t word : words) {
+            h = (h ^ word) * 0x9E3779B97F4A7C15u;
+            h ^= h >> 32;
+        }
+        return h;
+    }
+    std::vector<rt_u32> slots_;
+};
+
+bool is_finite(const aiVector3D& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+// assimp's order: rotated about the picture's centre, then scaled and moved.
+void transform_uv(const aiUVTransform& t, float& u, float& v) {
+    const float c = std::cos(t.mRotation), s = std::sin(t.mRotation);
+    const float x = u - 0.5f, y = v - 0.5f;
+    u = (c * x - s * y + 0.5f) * t.mScaling.x + t.mTranslation.x;
+    v = (s * x + c * y + 0.5f) * t.mScaling.y + t.mTranslation.y;
+}
+
+class CornerReader {
+ public:
+    CornerReader(const aiMesh& mesh, const TextureMapping& mapping) : mesh_(mesh), mapping_(mapping) {
+        uvs_ = mesh.mTextureCoords[mapping.channel] ? mesh.mTextureCoords[mapping.channel] : mesh.mTextureCoords[0];
+    }
+    bool has_uvs() const { return uvs_ != nullptr; }
+    Vertex read(unsigned index) const {
+        Vertex vertex{};
+        const auto put = [&](int at, float x) { vertex[at] = std::isfinite(x) ? x + 0.0f : 0; };  // -0 + 0 is +0
+        const aiVector3D& p = mesh_.mVertices[index];
+        for (int k = 0; k < 3; ++k) put(k, p[k]);
+        if (mesh_.mNormals && is_finite(mesh_.mNormals[index])) {
+            for (int k = 0; k < 3; ++k) put(3 + k, mesh_.mNormals[index][k]);
+        }
+        if (uvs_) {
+            float u = uvs_[index].x, v = uvs_[index].y;
+            if (mapping_.has_transform) transform_uv(mapping_.transform, u, v);
+            put(6, u);
+            put(7, v);
+        }
+        return vertex;
+    }
+
+ private:
+    const aiMesh& mesh_;
+    TextureMapping mapping_;
+    const aiVector3D* uvs_ = nullptr;
+};
+
+// In range and finite.
+bool is_sound(const aiMesh& mesh, const aiFace& face) {
+    for (unsigned i = 0; i < face.mNumIndices; ++i) {
+        if (face.mIndices[i] >= mesh.mNumVertices || !is_finite(mesh.mVertices[face.mIndices[i]])) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+rt_u32 MeshTable::id(const aiNode& node) {
+    std::vector<unsigned> parts;
+    for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+        const unsigned mesh = node.mMeshes[i];
+        if (mesh < scene_.mNumMeshes && scene_.mMeshes[mesh] && scene_.mMeshes[mesh]->mVertices) parts.push_back(mesh);
+    }
+    if (parts.empty()) return RT_NONE;
+    const auto known = ids_.find(parts);
+    if (known != ids_.end()) return known->second;
+    const aiString& name = scene_.mMeshes[parts[0]]->mName;
+    return ids_[parts] = add(parts, name.length > 0 ? name.C_Str() : node.mName.C_Str());
+}
+
+rt_u32 MeshTable::add(const std::vector<unsigned>& parts, const char* name) {
+    size_t corner_count = 0;
+    for (const unsigned part : parts) corner_count += scene_.mMeshes[part]->mNumVertices;
+    VertexSet set(corner_count);
+    std::vector<rt_u32> indices, sizes, materials;
+    bool has_normals = false, has_uvs = false, all_triangles = true;
+    for (const unsigned part : parts) {
+        const aiMesh& mesh = *scene_.mMeshes[part];
+        const CornerReader corners(mesh, materials_.mapping(mesh.mMaterialIndex));
+        rt_u32 material = RT_NONE;
+        bool is_used = false;
+        std::vector<rt_u32> seen(mesh.mNumVertices, RT_NONE);
+        for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+            const aiFace& face = mesh.mFaces[f];
+            if (face.mNumIndices < 3) {
+                ++points_and_lines_;
+                continue;
+            }
+            if (!is_sound(mesh, face)) {
+                ++broken_faces_;
+                continue;
+            }
+            if (!is_used) material = materials_.id(mesh.mMaterialIndex);
+            is_used = true;
+            for (unsigned i = 0; i < face.mNumIndices; ++i) {
+                rt_u32& index = seen[face.mIndices[i]];
+                if (index == RT_NONE) index = set.add(corners.read(face.mIndices[i]));
+                indices.push_back(index);
+            }
+            sizes.push_back(face.mNumIndices);
+            materials.push_back(material);
+            all_triangles = all_triangles && face.mNumIndices == 3;
+        }
+        if (is_used) {
+            has_normals = has_normals || mesh.mNormals;
+            has_uvs = has_uvs || corners.has_uvs();
+        }
+    }
+    if (sizes.empty()) return RT_NONE;
+    faces_ += sizes.size();
+
+    rt_mesh out{};
+    out.struct_bytes = sizeof out;
+    out.name = name;
+    out.positions = set.vertices[0].data();
+    out.vertex_count = static_cast<rt_u32>(set.vertices.size());
+    out.position_stride = out.normal_stride = out.uv_stride = sizeof(Vertex);
+    if (has_normals) out.normals = set.vertices[0].data() + 3;
+    if (has_uvs) out.uvs = set.vertices[0].data() + 6;
+    out.indices = indices.data();
+    out.index_count = indices.size();
+    if (!all_triangles) out.face_sizes = sizes.data();
+    out.face_count = sizes.size();
+    out.material = materials[0];
+    if (std::any_of(materials.begin(), materials.end(), [&](rt_u32 m) { return m != materials[0]; })) {
+        out.face_materials = materials.data();
+    }
+    return rt::id(sink_.mesh(sink_.ctx, &out));
+}
+
+}  // namespace assimp_import
