@@ -1,0 +1,185 @@
+// device_list.cpp -- which OpenCL devices there are, which is the best, and which one a user means.
+//
+// A machine may have platforms without devices (Mesa's rusticl without a GPU), drivers that fail, or no driver at all: each of
+// them is one line of warning, never the end.
+#include <algorithm>
+#include <cstdlib>
+#include <functional>
+#include <tuple>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "device/device.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr const char* kInstallDriver =
+    "install an OpenCL driver: on Debian `apt-get install pocl-opencl-icd` runs on every CPU, a GPU needs its vendor's "
+    "(`clinfo -l` shows what is found)";
+
+std::string lower(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+bool contains(const std::string& text, const std::string& part) {
+    return lower(text).find(lower(part)) != std::string::npos;
+}
+
+// Drivers pad their names with blanks and zero bytes.
+std::string trimmed(std::string text) {
+    while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
+    text.erase(0, std::min(text.find_first_not_of(' '), text.size()));
+    return text;
+}
+
+std::string error_name(int code) {
+    switch (code) {
+        case CL_DEVICE_NOT_FOUND:
+            return "it has no device";
+        case CL_DEVICE_NOT_AVAILABLE:
+            return "its device is not available";
+        case CL_OUT_OF_HOST_MEMORY:
+            return "it ran out of host memory";
+        case CL_OUT_OF_RESOURCES:
+            return "it ran out of resources";
+        default:
+            return "it answers with OpenCL error " + std::to_string(code);
+    }
+}
+
+template <class Value>
+Value ask(const cl::Device& device, cl_device_info what) {
+    Value value{};
+    const cl_int status = device.getInfo(what, &value);
+    if (status != CL_SUCCESS) throw cl::Error(status, "clGetDeviceInfo");
+    return value;
+}
+
+DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, unsigned platform_index, unsigned device_index) {
+    DeviceInfo info;
+    info.platform_index = platform_index;
+    info.device_index = device_index;
+    info.cl_platform = platform;
+    info.cl_device = device;
+    info.platform = trimmed(platform.getInfo<CL_PLATFORM_NAME>());
+    info.name = trimmed(ask<std::string>(device, CL_DEVICE_NAME));
+    info.vendor = trimmed(ask<std::string>(device, CL_DEVICE_VENDOR));
+    info.version = trimmed(ask<std::string>(device, CL_DEVICE_VERSION));
+    info.driver = trimmed(ask<std::string>(device, CL_DRIVER_VERSION));
+    const auto type = ask<cl_device_type>(device, CL_DEVICE_TYPE);
+    info.cpu = type & CL_DEVICE_TYPE_CPU;
+    info.gpu = type & CL_DEVICE_TYPE_GPU;
+    info.compute_units = ask<cl_uint>(device, CL_DEVICE_MAX_COMPUTE_UNITS);
+    info.clock_mhz = ask<cl_uint>(device, CL_DEVICE_MAX_CLOCK_FREQUENCY);
+    info.float_width = std::max(1u, ask<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT));
+    info.global_bytes = ask<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
+    info.max_allocation_bytes = ask<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    info.pocl = contains(info.platform, "Portable Computing Language");
+    info.nvidia = contains(info.vendor, "NVIDIA");
+    return info;
+}
+
+// Why a device cannot serve; empty if it can.
+std::string why_unusable(const cl::Device& device) {
+    if (!ask<cl_bool>(device, CL_DEVICE_AVAILABLE)) return "its driver says that it is not available";
+    if (!ask<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE)) return "its driver has no compiler";
+    return {};
+}
+
+void list_platform(const cl::Platform& platform, unsigned index, std::vector<DeviceInfo>& found,
+                   const std::function<void(const std::string&)>& warn) {
+    std::string who = "platform " + std::to_string(index);
+    std::vector<cl::Device> devices;
+    try {
+        who += " (" + trimmed(platform.getInfo<CL_PLATFORM_NAME>()) + ")";
+        platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
+        if (devices.empty()) throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
+    } catch (const cl::Error& e) {
+        warn(who + " is skipped: " + error_name(e.err()));
+        return;
+    }
+    for (unsigned i = 0; i < devices.size(); ++i) {
+        std::string why;
+        try {
+            why = why_unusable(devices[i]);
+            if (why.empty()) found.push_back(describe(platform, devices[i], index, i));
+        } catch (const cl::Error& e) {
+            why = error_name(e.err());
+        }
+        if (!why.empty())
+            warn("device " + std::to_string(index) + ":" + std::to_string(i) + " of " + who + " is skipped: " + why);
+    }
+}
+
+std::string table_of(const std::vector<DeviceInfo>& devices) {
+    std::string text;
+    for (const DeviceInfo& device : devices)
+        text += (text.empty() ? "" : ", ") + device.id() + " " + device.name +
+                (device.gpu   ? " (gpu)"
+                 : device.cpu ? " (cpu)"
+                              : "");
+    return text;
+}
+
+bool matches(const DeviceInfo& device, const std::string& choice) {
+    const std::string wanted = lower(choice);
+    if (wanted == "cpu") return device.cpu;
+    if (wanted == "gpu") return device.gpu;
+    if (choice.find_first_not_of("0123456789:") == std::string::npos) return device.id() == choice;
+    return contains(device.name, choice) || contains(device.platform, choice);
+}
+
+}  // namespace
+
+std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
+    const auto warn = [&](const std::string& text) {
+        if (warnings) warnings->push_back(text);
+    };
+    std::vector<DeviceInfo> found;
+    std::vector<cl::Platform> platforms;
+    try {
+        cl::Platform::get(&platforms);
+    } catch (const cl::Error& e) {
+        // The loader's own answer where no driver is installed (CL_PLATFORM_NOT_FOUND_KHR) is no failure.
+        constexpr int kPlatformNotFound = -1001;
+        if (e.err() != kPlatformNotFound)
+            warn("the OpenCL loader answers clGetPlatformIDs with error " + std::to_string(e.err()));
+    }
+    if (platforms.empty()) warn(std::string("there is no OpenCL platform; ") + kInstallDriver);
+    for (unsigned i = 0; i < platforms.size(); ++i) list_platform(platforms[i], i, found, warn);
+
+    // A driver that does not know its clock (virtual machines) still counts its units.
+    const auto rank = [](const DeviceInfo& d) {
+        return std::make_tuple(d.gpu ? 2 : d.cpu ? 1 : 0, uint64_t(d.compute_units) * std::max(1u, d.clock_mhz));
+    };
+    std::stable_sort(found.begin(), found.end(), [&](const DeviceInfo& a, const DeviceInfo& b) { return rank(a) > rank(b); });
+    return found;
+}
+
+DeviceInfo choose_device(const std::string& choice) {
+    std::vector<std::string> warnings;
+    const std::vector<DeviceInfo> devices = list_devices(&warnings);
+    const char* variable = std::getenv("CLARITY_DEVICE");
+    const std::string wanted = choice.empty() && variable ? variable : choice;
+    if (devices.empty()) {
+        std::string why;
+        for (const std::string& warning : warnings) why += "; " + warning;
+        if (why.find(kInstallDriver) == std::string::npos) why += std::string("; ") + kInstallDriver;
+        throw Error(Exit::no_device, "no OpenCL device" + why);
+    }
+    for (const std::string& warning : warnings) log(LogLevel::warning, warning);
+    if (wanted.empty()) return devices.front();
+    for (const DeviceInfo& device : devices)
+        if (matches(device, wanted)) return device;
+    const std::string from = choice.empty() ? "CLARITY_DEVICE=" : "--device ";
+    if (wanted.find(',') != std::string::npos)
+        throw Error(Exit::no_device,
+                    from + wanted + ": one device at a time traces a picture; choose one of " + table_of(devices));
+    throw Error(Exit::no_device, from + wanted + ": no such device; there are " + table_of(devices) +
+                                     ". Write P:D as listed, cpu, gpu or part of a name");
+}
+
+}  // namespace clarity

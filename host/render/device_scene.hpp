@@ -1,0 +1,32 @@
+// device_scene.hpp -- a scene in one structure as buffers of a device.
+#pragma once
+#include <CL/opencl.hpp>
+#include <memory>
+#include <vector>
+
+#include "device/device.hpp"
+#include "render/accel_build.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// Immutable once made. On a CPU the buffers are the host's own memory, which it keeps alive.
+class DeviceScene {
+ public:
+    // Throws Error(failed) with the numbers where it does not fit.
+    DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel);
+
+    // Sets the context's arguments from `first` on (see kernel_source.cpp for their order); lights come from the frame.
+    void bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights) const;
+    uint64_t bytes() const { return bytes_; }
+
+ private:
+    std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const AccelData> accel_;
+    std::vector<rt_material> materials_;
+    std::vector<rt_triangle> attributes_;
+    std::vector<cl::Buffer> before_lights_, slots_;
+    uint64_t bytes_ = 0;
+};
+
+}  // namespace clarity

@@ -1,0 +1,182 @@
+#include "render/kernel_source.hpp"
+
+#include <algorithm>
+#include <sstream>
+
+#include "device/kernel_files.hpp"
+
+namespace clarity {
+namespace {
+
+// The scene's buffers in the order of the kernels' arguments; the plugin's slots follow.
+struct Member {
+    const char *type, *name;
+};
+constexpr Member kMembers[] = {
+    {"rt_leaf", "leaves"},       {"rt_instance", "instances"}, {"rt_polygon", "polygons"}, {"float", "polygon_corners"},
+    {"rt_plane", "planes"},      {"rt_material", "materials"}, {"rt_triangle", "triangles"}, {"float", "normals"},
+    {"float", "uvs"},            {"rt_texture", "textures"},   {"uint", "texels"},          {"rt_light", "lights"},
+};
+
+void define(std::ostream& out, const std::string& name, unsigned value) { out << "#define " << name << ' ' << value << "u\n"; }
+void define_int(std::ostream& out, const std::string& name, unsigned value) { out << "#define " << name << ' ' << value << "\n"; }
+
+// #line keeps the compiler's messages at the author's file.
+void part(std::ostream& out, const std::string& name, const std::string& text) {
+    out << "#line 1 \"" << name << "\"\n" << text << "\n";
+}
+void include(std::ostream& out, const std::string& name) { part(out, "cl/" + name, kernel_text(name)); }
+
+void context(std::ostream& out, const rt_accel& accel) {
+    out << "#line 1 \"generated context\"\ntypedef struct rt_ctx {\n";
+    std::string params, init;
+    const auto add = [&](const std::string& type, const std::string& name) {
+        out << "    const global " << type << " *" << name << ";\n";
+        params += (params.empty() ? "" : ", ") + ("const global " + type + " *restrict ctx_" + name);
+        init += " ctx." + name + " = ctx_" + name + ";";
+    };
+    for (const Member& member : kMembers) add(member.type, member.name);
+    for (rt_u32 s = 0; s < accel.slot_count; ++s) add(accel.slots[s].cl_type, accel.slots[s].name);
+    out << "} rt_ctx;\n";
+    // Layouts that differ between host and device stop the compiler with a name that says which.
+    const auto check = [&](const std::string& type, const std::string& name, size_t bytes) {
+        out << "typedef char " << name << "_has_" << bytes << "_bytes_on_the_host[sizeof(" << type << ") == " << bytes << " ? 1 : -1];\n";
+    };
+    check("rt_leaf", "rt_leaf", sizeof(rt_leaf));
+    check("rt_instance", "rt_instance", sizeof(rt_instance));
+    check("rt_material", "rt_material", sizeof(rt_material));
+    check("rt_frame", "rt_frame", sizeof(rt_frame));
+    for (rt_u32 s = 0; s < accel.slot_count; ++s) check(accel.slots[s].cl_type, std::string("slot_") + accel.slots[s].name, accel.slots[s].elem_bytes);
+    out << "#define RT_CTX_PARAMS " << params << "\n#define RT_CTX_INIT(ctx) rt_ctx ctx;" << init << "\n";
+}
+
+// One inclusion of the plugin's template. The prototype makes it inline whatever the author wrote.
+void traversal(std::ostream& out, const std::string& name, const std::string& leaf, const std::string& file, const std::string& text) {
+    out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
+        << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
+    part(out, file, text);
+    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n";
+}
+
+void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const std::string& file, const std::string& text) {
+    out << "#define RT_ANY_HIT " << any_hit << "\n#define RT_FN(name) RT_CAT(name, " << (any_hit ? "_any" : "_closest") << ")\n";
+    include(out, "primitives/triangle.h");
+    if (features.spheres) include(out, "primitives/sphere.h");
+    if (features.polygons) include(out, "primitives/polygon.h");
+    if (features.planes) include(out, "primitives/plane.h");
+    if (features.instances) {
+        include(out, "leaf_mesh.h");
+        traversal(out, "rt_mesh", "rt_leaf_mesh", file, text);
+    }
+    include(out, "leaf_scene.h");
+    traversal(out, "rt_scene", "rt_leaf_scene", file, text);
+    include(out, "query.h");
+    out << "#undef RT_ANY_HIT\n#undef RT_FN\n";
+}
+
+unsigned log2_of(unsigned x) {
+    unsigned n = 0;
+    while (x >>= 1) ++n;
+    return n;
+}
+
+}  // namespace
+
+SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
+    SceneFeatures f;
+    f.instances = !build.instances.empty();
+    f.spheres = !build.spheres.empty();
+    f.polygons = !build.polygons.empty();
+    f.planes = !build.planes.empty();
+    f.normals = !scene.normals.empty() && !build.triangles.empty();
+    f.textures = std::any_of(scene.materials.begin(), scene.materials.end(),
+                             [](const Material& m) { return m.values.texture != RT_NONE; });
+    f.uvs = !scene.uvs.empty() && !build.triangles.empty();
+    return f;
+}
+
+Layout make_layout(const Settings& settings) {
+    Layout layout;
+    layout.lanes = static_cast<unsigned>(settings.lanes);
+    layout.packet_w = static_cast<unsigned>(settings.packet_w);
+    layout.packet_h = static_cast<unsigned>(settings.packet_h);
+    // As square as can be, but no wider or higher than twice the packet while the other side still has use for the lanes.
+    layout.block_w = layout.lanes >= 8 ? 4 : layout.lanes == 4 ? 2 : 1;
+    layout.block_h = layout.lanes / layout.block_w;
+    while (layout.block_w >= 2 * layout.packet_w && layout.block_h < layout.packet_h) layout.block_w /= 2, layout.block_h *= 2;
+    while (layout.block_h >= 2 * layout.packet_h && layout.block_w < layout.packet_w) layout.block_h /= 2, layout.block_w *= 2;
+    // One lane: 64 neighbouring pixels, of which a warp has 8x4. Else about 16x16 pixels, so that a group is a few microseconds.
+    const unsigned side = layout.lanes == 1 ? 8 : 16;
+    layout.group_w = std::max(1u, side / layout.packet_w);
+    layout.group_h = std::max(1u, side / layout.packet_h);
+    return layout;
+}
+
+KernelSource assemble_kernel(const Settings& settings, KernelKind kind, const SceneFeatures& features, const rt_plugin& accel,
+                             const std::map<std::string, rt_u32>& defines) {
+    const Layout layout = make_layout(settings);
+    std::ostringstream out;
+    define_int(out, "RT_LANES", layout.lanes);
+    define_int(out, "RT_PACKET_W", layout.packet_w);
+    define_int(out, "RT_PACKET_H", layout.packet_h);
+    define_int(out, "RT_BLOCK_W", layout.block_w);
+    define_int(out, "RT_BLOCK_H", layout.block_h);
+    define_int(out, "RT_BLOCK_W_LOG2", log2_of(layout.block_w));
+    define_int(out, "RT_GROUP_W", layout.group_w);
+    define_int(out, "RT_GROUP_H", layout.group_h);
+    define_int(out, "RT_HAS_INSTANCES", features.instances);
+    define_int(out, "RT_HAS_SPHERES", features.spheres);
+    define_int(out, "RT_HAS_POLYGONS", features.polygons);
+    define_int(out, "RT_HAS_PLANES", features.planes);
+    define_int(out, "RT_HAS_NORMALS", features.normals);
+    define_int(out, "RT_HAS_UVS", features.uvs);
+    define_int(out, "RT_HAS_ATTRIBUTES", features.normals || features.uvs);
+    define_int(out, "RT_HAS_TEXTURES", features.textures);
+    if (settings.portable) out << "#define RT_PORTABLE\n";
+    if (settings.debug) out << "#define RT_DEBUG\n";
+    KernelSource source;
+    std::string kernel_file;
+    switch (kind) {
+        case KernelKind::color:
+            define_int(out, "RT_RAY_SLOTS", settings.ray_slots);
+            kernel_file = "tracers/" + settings.tracer + ".cl";
+            source.entry = "trace_" + settings.tracer;
+            break;
+        case KernelKind::aov: {
+            static const std::map<std::string, unsigned> numbers = {{"t", 1}, {"prim", 2}, {"instance", 3}, {"normal", 4}, {"uv", 5}, {"steps", 6}};
+            define_int(out, "RT_AOV", numbers.at(settings.aov));
+            if (settings.aov == "steps") out << "#define RT_COUNT_STEPS\n";
+            kernel_file = "tracers/aov.cl";
+            source.entry = "trace_aov";
+            break;
+        }
+        case KernelKind::rays:
+            out << "#define RT_COUNT_STEPS\n";
+            kernel_file = "tracers/rays.cl";
+            source.entry = "trace_rays";
+            break;
+    }
+    for (const auto& [name, value] : defines) define(out, name, value);
+
+    const std::string folder = std::string("plugins/accel/") + accel.id + "/";
+    const rt_cl_file &types = accel.accel->types, &traverse = accel.accel->traverse;
+    include(out, "rt_types.h");
+    include(out, "lanes.h");
+    include(out, "rays.h");
+    if (types.text) part(out, folder + types.name, plugin_kernel_text(accel.id, types.name, types.text));
+    context(out, *accel.accel);
+    const std::string text = plugin_kernel_text(accel.id, traverse.name, traverse.text);
+    query(out, false, features, folder + traverse.name, text);
+    if (kind != KernelKind::aov) query(out, true, features, folder + traverse.name, text);
+    include(out, "surface.h");
+    if (kind == KernelKind::color) include(out, "material.h");
+    include(out, "camera.h");
+    include(out, kernel_file);
+
+    source.text = out.str();
+    source.options = "-cl-std=CL1.2";
+    if (settings.fast_math) source.options += " -cl-fast-relaxed-math";
+    return source;
+}
+
+}  // namespace clarity

@@ -1,0 +1,38 @@
+// kernel_source.hpp -- one source string for one specialisation of the tracer: shared types, lanes, primitives, the generated
+// context, the plugin's traversal included as a template, and the kernel. What may be included where: cl/CONTRACT.md.
+#pragma once
+#include <map>
+#include <string>
+
+#include "render/accel_build.hpp"
+#include "render/settings.hpp"
+
+namespace clarity {
+
+// What of the scene decides which code is compiled in.
+struct SceneFeatures {
+    bool instances = false, spheres = false, polygons = false, planes = false, normals = false, uvs = false, textures = false;
+};
+SceneFeatures features_of(const Scene& scene, const BuildScene& build);
+
+enum class KernelKind { color, aov, rays };
+
+// Pixels and work-items: how a picture is cut.
+struct Layout {
+    unsigned lanes = 1;
+    unsigned packet_w = 1, packet_h = 1;  // pixels of a work-item
+    unsigned block_w = 1, block_h = 1;    // pixels traced side by side, block_w * block_h = lanes
+    unsigned group_w = 8, group_h = 8;    // packets of a work-group
+    unsigned groups_x(unsigned width) const { return (width + packet_w * group_w - 1) / (packet_w * group_w); }
+    unsigned groups_y(unsigned height) const { return (height + packet_h * group_h - 1) / (packet_h * group_h); }
+    unsigned group_size() const { return group_w * group_h; }
+};
+Layout make_layout(const Settings& settings);  // packet and lanes resolved
+
+struct KernelSource {
+    std::string text, options, entry;  // entry: name of the kernel
+};
+KernelSource assemble_kernel(const Settings& settings, KernelKind kind, const SceneFeatures& features, const rt_plugin& accel,
+                             const std::map<std::string, rt_u32>& defines);
+
+}  // namespace clarity

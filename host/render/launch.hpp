@@ -1,0 +1,25 @@
+// launch.hpp -- running a kernel over work-groups in pieces short enough to be cancelled and not to trip a display driver.
+#pragma once
+#include <CL/opencl.hpp>
+#include <functional>
+
+namespace clarity {
+
+struct LaunchTimes {
+    double device_ms = 0, wall_ms = 0;
+};
+
+// Keeps the pace of one kernel from launch to launch.
+class Launcher {
+ public:
+    // Runs groups [0, group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of a piece's
+    // first group. Global offsets stay zero: PoCL compiles a kernel anew for others. go_on is asked between pieces and stops by throwing.
+    LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count, unsigned group_size,
+                    const std::function<void()>& go_on);
+    void forget() { groups_per_ms_ = 0; }
+
+ private:
+    double groups_per_ms_ = 0;  // 0: unknown
+};
+
+}  // namespace clarity

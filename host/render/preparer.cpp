@@ -1,0 +1,103 @@
+// preparer.cpp -- what is slow between settings and frames, and what of it can be kept.
+#include "base/error.hpp"
+#include "render/device_scene.hpp"
+#include "render/frame_constants.hpp"
+#include "render/renderer.hpp"
+#include "render/trace_program.hpp"
+
+#include <chrono>
+
+namespace clarity {
+namespace {
+
+double since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
+Settings resolve(const Settings& asked, const Device& device) {
+    Settings s = asked;
+    if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
+    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? 4 : 1;
+    return s;
+}
+
+// PoCL compiles when a kernel first runs with a work-group size, so the first frame would wait for it: one pixel is traced
+// here, with a queue of its own, while frames go on elsewhere.
+void warm_up(Device& device, const TraceProgram& program, const Prepared& prepared) {
+    Settings tiny = prepared.settings;
+    tiny.width = tiny.height = 1;
+    tiny.depth = 1;
+    View view;
+    view.camera.eye = {0, 0, 1e6f};
+    const rt_frame frame = make_frame(view, tiny, *prepared.accel, 0);
+    cl::CommandQueue queue(device.context(), device.info().cl_device);
+    cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame, const_cast<rt_frame*>(&frame));
+    const unsigned size = program.layout.group_size();
+    cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 4096), counters(device.context(), CL_MEM_READ_WRITE, size_t(size) * 16),
+        lights(device.context(), CL_MEM_READ_ONLY, 256);
+    cl::Kernel kernel = program.kernel();
+    cl_uint at = 0;
+    kernel.setArg(at++, frame_buffer);
+    kernel.setArg(at++, cl_uint(0));
+    kernel.setArg(at++, out);
+    if (program.kind == KernelKind::color) kernel.setArg(at++, counters);
+    prepared.on_device->bind(kernel, at, lights);
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size), cl::NDRange(size));
+    queue.finish();
+}
+
+}  // namespace
+
+Preparer::Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device)
+    : plugins_(plugins), device_(device), programs_(std::make_unique<ProgramCache>(device)) {}
+Preparer::~Preparer() = default;
+
+std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const rt_plugin* plugin = plugins_.accel(settings.accel);
+    if (!plugin) {
+        std::string known;
+        for (const rt_plugin* p : plugins_.accels()) known += (known.empty() ? "" : ", ") + std::string(p->id);
+        throw Error(Exit::usage, "no acceleration structure `" + settings.accel + "`; there " +
+                                     (known.empty() ? "are none: `clarity plugins` says why" : "are " + known));
+    }
+    auto next = std::make_shared<Prepared>();
+    next->scene = scene;
+    next->settings = resolve(settings, *device_);
+    ParameterValues params = settings.accel_params.empty() ? default_parameters(*plugin) : settings.accel_params;
+    try {
+        const bool same_structure = last_ && last_->scene == scene && last_->accel->plugin == plugin && last_->accel->params == params;
+        if (same_structure) {
+            next->accel = last_->accel;
+            next->on_device = last_->on_device;
+        } else {
+            progress.stage(std::string("building ") + plugin->id);
+            next->accel = std::make_shared<AccelData>(build_accel(*scene, *plugin, params, progress));
+            progress.stage("uploading the scene");
+            const auto start = std::chrono::steady_clock::now();
+            next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel);
+            next->upload_ms = since(start);
+        }
+        if (progress.cancelled()) throw Cancelled();
+        progress.stage("compiling kernels");
+        progress.report(-1);
+        const KernelKind kind = next->settings.aov == "color" ? KernelKind::color : KernelKind::aov;
+        const auto start = std::chrono::steady_clock::now();
+        const KernelSource source =
+            assemble_kernel(next->settings, kind, features_of(*scene, next->accel->scene), *plugin, next->accel->defines);
+        bool fresh = false;
+        const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
+        auto program = programs_->get(source, kind, make_layout(next->settings), what, &fresh);
+        if (fresh) warm_up(*device_, *program, *next);
+        next->program = program;
+        next->compile_ms = fresh ? since(start) : 0;
+        next->compile_cached = !fresh;
+    } catch (const cl::Error& e) {
+        throw Error(Exit::failed, std::string("preparing ") + plugin->id + " on " + device_->info().name + ": " + e.what() +
+                                      " failed with OpenCL error " + std::to_string(e.err()));
+    }
+    last_ = next;
+    return next;
+}
+
+}  // namespace clarity

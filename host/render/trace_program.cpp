@@ -1,0 +1,29 @@
+#include "render/trace_program.hpp"
+
+#include "device/program.hpp"
+
+namespace clarity {
+
+std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, KernelKind kind, const Layout& layout, const std::string& what,
+                                                bool* fresh) {
+    const std::string key = source.options + "\n" + source.text;
+    for (auto it = entries_.begin(); it != entries_.end(); ++it)
+        if (it->key == key) {
+            entries_.splice(entries_.begin(), entries_, it);
+            *fresh = false;
+            return it->program;
+        }
+    const BuildResult built = build_program(*device_, source.text, source.options, what);
+    auto program = std::make_shared<TraceProgram>();
+    program->program = built.program;
+    program->entry = source.entry;
+    program->kind = kind;
+    program->layout = layout;
+    program->compile_ms = built.ms;
+    entries_.push_front({key, program});
+    if (entries_.size() > kKept) entries_.pop_back();
+    *fresh = true;
+    return program;
+}
+
+}  // namespace clarity
