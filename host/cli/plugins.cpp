@@ -1,0 +1,139 @@
+// clarity plugins: every library that was seen, what it offers, and why one was refused.
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "plugin/parameters.hpp"
+#include "plugin/registry.hpp"
+
+namespace clarity {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kind_name(int32_t kind) {
+    switch (kind) {
+        case RT_PARAM_INT:
+            return "int";
+        case RT_PARAM_FLOAT:
+            return "float";
+        case RT_PARAM_BOOL:
+            return "bool";
+        default:
+            return "enum";
+    }
+}
+
+const char* effect_name(int32_t effect) {
+    return effect == RT_EFFECT_RECOMPILE ? "recompile" : "rebuild";
+}
+
+const char* status_name(const PluginRecord& record) {
+    return !record.plugin ? "refused" : record.shadowed ? "shadowed" : "loaded";
+}
+
+Json param_json(const rt_param& param) {
+    Json json = {{"key", param.key},
+                 {"label", param.label},
+                 {"help", param.help},
+                 {"kind", kind_name(param.kind)},
+                 {"effect", effect_name(param.effect)}};
+    switch (param.kind) {
+        case RT_PARAM_BOOL:
+            json["default"] = param.def != 0;
+            break;
+        case RT_PARAM_ENUM:
+            for (const char* const* choice = param.choices; *choice; ++choice) json["choices"].push_back(*choice);
+            json["default"] = param.choices[static_cast<size_t>(param.def)];
+            break;
+        case RT_PARAM_INT:
+            json["min"] = static_cast<int64_t>(param.min);
+            json["max"] = static_cast<int64_t>(param.max);
+            json["default"] = static_cast<int64_t>(param.def);
+            break;
+        default:
+            json["min"] = param.min;
+            json["max"] = param.max;
+            json["default"] = param.def;
+    }
+    return json;
+}
+
+Json record_json(const PluginRecord& record) {
+    Json json = {{"path", record.path}, {"status", status_name(record)}};
+    if (!record.plugin) {
+        json["why"] = record.why;
+        return json;
+    }
+    const rt_plugin& plugin = *record.plugin;
+    json["kind"] = plugin.accel ? "accel" : "importer";
+    json["id"] = plugin.id;
+    json["name"] = plugin.name;
+    json["version"] = plugin.version;
+    json["reference"] = plugin.reference ? Json(plugin.reference) : Json();
+    if (plugin.importer) {
+        json["extensions"] = Json::array();
+        for (const char* const* e = plugin.importer->extensions; *e; ++e) json["extensions"].push_back(*e);
+    }
+    json["parameters"] = Json::array();
+    for (rt_u32 i = 0; i < plugin.param_count; ++i) json["parameters"].push_back(param_json(plugin.params[i]));
+    return json;
+}
+
+std::string range_text(const rt_param& param) {
+    if (param.kind == RT_PARAM_BOOL) return "true, false";
+    if (param.kind == RT_PARAM_ENUM) {
+        std::string text;
+        for (const char* const* choice = param.choices; *choice; ++choice)
+            text += (text.empty() ? "" : ", ") + std::string(*choice);
+        return text;
+    }
+    char text[64];
+    std::snprintf(text, sizeof text, "%.9g to %.9g", param.min, param.max);
+    return text;
+}
+
+constexpr const char* kIndent = "          ";
+
+void print_plugin(const PluginRecord& record) {
+    const rt_plugin& plugin = *record.plugin;
+    std::printf("%-9s %s  (%s, %s)%s\n%s%s\n", plugin.accel ? "accel" : "importer", plugin.id, plugin.name, plugin.version,
+                record.shadowed ? "  SHADOWED: a library above has the same id, this one is not used" : "", kIndent,
+                record.path.c_str());
+    if (plugin.reference) std::printf("%sreference: %s\n", kIndent, plugin.reference);
+    if (plugin.importer && plugin.importer->extensions[0]) {
+        std::printf("%sfiles:", kIndent);
+        for (const char* const* e = plugin.importer->extensions; *e; ++e) std::printf(" .%s", *e);
+        std::printf("\n");
+    }
+    const ParameterValues defaults = default_parameters(plugin);
+    for (rt_u32 i = 0; i < plugin.param_count; ++i) {
+        const rt_param& param = plugin.params[i];
+        std::printf("%s%-20s %s (%s; needs a %s)\n", kIndent, parameter_text(plugin, defaults, i).c_str(), param.help,
+                    range_text(param).c_str(), effect_name(param.effect));
+    }
+}
+
+}  // namespace
+
+int run_plugins(const PluginRegistry& plugins, bool json) {
+    if (json) {
+        Json list = {{"abi_version", RT_ABI_VERSION}, {"plugins", Json::array()}};
+        for (const PluginRecord& record : plugins.records()) list["plugins"].push_back(record_json(record));
+        // A path need not be UTF-8; JSON must.
+        std::printf("%s\n", list.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+        return 0;
+    }
+    for (const PluginRecord& record : plugins.records()) {
+        if (record.plugin)
+            print_plugin(record);
+        else
+            std::printf("REFUSED   %s\n%s%s\n", record.path.c_str(), kIndent, record.why.c_str());
+    }
+    if (plugins.records().empty())
+        std::printf("no plugins found; name a folder of them in CLARITY_PLUGIN_PATH, or a library with --plugin FILE\n");
+    return 0;
+}
+
+}  // namespace clarity

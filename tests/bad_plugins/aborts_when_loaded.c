@@ -1,0 +1,9 @@
+/* Of a wrong ABI, and its constructor would end the process: passes the tests only if the library is never loaded. */
+#define ABI (RT_ABI_VERSION + 1)
+#include <stdlib.h>
+
+#include "sound.h"
+__attribute__((constructor)) static void end_the_process(void) {
+    abort();
+}
+PLUGIN

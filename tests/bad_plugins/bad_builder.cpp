@@ -1,0 +1,106 @@
+// A linear list whose builder breaks the contract in the way that its parameter names; "none" builds it properly.
+#include <cstring>
+#include <stdexcept>
+
+#include "rt_plugin.hpp"
+
+namespace {
+
+const char* const kDefects[] = {"none",
+                                "fails",
+                                "fails_silently",
+                                "ok_after_fail",
+                                "odd_status",
+                                "cancelled_by_nobody",
+                                "throws",
+                                "throws_no_exception_class",
+                                "throws_in_loop",
+                                "fails_in_loop",
+                                "alloc_twice",
+                                "alloc_of_no_slot",
+                                "alloc_too_much",
+                                "no_slot",
+                                "no_leaves",
+                                "leaves_twice",
+                                "leaves_too_many",
+                                "ref_of_no_primitive",
+                                "ref_of_no_kind",
+                                "ref_of_other_group",
+                                "missing_root",
+                                "root_twice",
+                                "root_out_of_range",
+                                "root_of_no_group",
+                                "define_of_odd_name",
+                                "stat_not_a_number",
+                                nullptr};
+
+struct Run {
+    rt_u32 first, count;
+};
+
+int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
+    const char* defect = kDefects[static_cast<size_t>(in->params[0])];
+    const auto is = [&](const char* name) { return std::strcmp(defect, name) == 0; };
+    if (is("fails")) return host->fail(host->ctx, "this builder always fails");
+    if (is("fails_silently")) return RT_FAILED;
+    if (is("ok_after_fail")) host->fail(host->ctx, "this builder failed and goes on");
+    if (is("odd_status")) return 77;
+    if (is("cancelled_by_nobody")) return RT_CANCELLED;
+    if (is("throws")) throw std::runtime_error("thrown by the builder");
+    if (is("throws_no_exception_class")) throw 42;
+    if (is("throws_in_loop"))
+        host->parallel_for(
+            host->ctx, 1000,
+            [](void*, rt_u32 i) {
+                if (i >= 7) throw std::runtime_error("thrown in iteration " + std::to_string(i));
+            },
+            nullptr);
+    if (is("fails_in_loop"))
+        host->parallel_for(
+            host->ctx, 1000,
+            [](void* user, rt_u32) {
+                static_cast<const rt_host*>(user)->fail(static_cast<const rt_host*>(user)->ctx, "one of many");
+            },
+            const_cast<rt_host*>(host));
+
+    rt_u32 total = 0;
+    for (rt_u32 g = 0; g < in->group_count; ++g) total += in->groups[g].count;
+    if (is("alloc_of_no_slot")) out->alloc(out->ctx, 1, 4);
+    if (is("alloc_too_much")) out->alloc(out->ctx, 0, UINT64_MAX / 4);
+    auto* runs = is("no_slot") ? nullptr : static_cast<Run*>(out->alloc(out->ctx, 0, in->group_count));
+    if (!runs && !is("no_slot")) return RT_FAILED;
+    if (is("alloc_twice")) out->alloc(out->ctx, 0, in->group_count);
+    if (is("leaves_too_many")) out->leaves(out->ctx, UINT64_MAX / 8);
+    rt_u32* leaves = is("no_leaves") ? nullptr : out->leaves(out->ctx, total);
+    if (!leaves && !is("no_leaves")) return RT_FAILED;
+    if (is("leaves_twice")) out->leaves(out->ctx, total);
+    rt_u32 next = 0;
+    for (rt_u32 g = 0; g < in->group_count; ++g) {
+        const rt_group group = in->groups[g];
+        if (runs) runs[g] = {next, group.count};
+        for (rt_u32 i = 0; i < group.count && leaves; ++i) leaves[next++] = in->prims[group.first + i].ref;
+        if (is("missing_root") && g + 1 == in->group_count) continue;
+        out->root(out->ctx, g, is("root_out_of_range") ? in->group_count + 1000 : g);
+        if (is("root_twice")) out->root(out->ctx, g, g);
+    }
+    if (is("root_of_no_group")) out->root(out->ctx, in->group_count, 0);
+    if (leaves && total > 0) {
+        if (is("ref_of_no_primitive")) leaves[0] = RT_REF_INDEX_MAX;
+        if (is("ref_of_no_kind")) leaves[0] = 0x90000000u;
+        if (is("ref_of_other_group")) leaves[total - 1] = RT_REF_INSTANCE;
+    }
+    if (is("define_of_odd_name")) out->define(out->ctx, "1 ); abort(", 1);
+    if (is("stat_not_a_number")) out->stat(out->ctx, nullptr, 1);
+    return RT_OK;
+}
+
+constexpr rt_slot kSlots[] = {rt::slot<Run>("bad_builder_runs", "uint2")};
+constexpr rt_param kParams[] = {rt::enum_param("defect", "Defect", "what the builder does wrong", kDefects, 0)};
+// Not wrapped in rt::guarded: what a careless plugin throws has to be stopped by the host.
+constexpr rt_accel kAccel = {sizeof(rt_accel), 1,      kSlots, {}, {"bad_builder.cl", "void RT_TRAVERSE() {}"}, build,
+                             nullptr,          nullptr};
+
+}  // namespace
+
+const rt_plugin rt_plugin_v1 =
+    rt::accel_plugin("bad_builder", "A builder that breaks its contract", "1.0", nullptr, kParams, kAccel);

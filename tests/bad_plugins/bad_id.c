@@ -1,0 +1,3 @@
+#define ID "Sound-1"
+#include "sound.h"
+PLUGIN

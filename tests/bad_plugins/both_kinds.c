@@ -1,0 +1,3 @@
+#define IMPORTER &importer
+#include "sound.h"
+PLUGIN

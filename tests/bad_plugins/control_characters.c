@@ -1,0 +1,3 @@
+#define NAME "sound\033[2J"
+#include "sound.h"
+PLUGIN

@@ -1,0 +1,3 @@
+#define PLUGIN_BYTES (sizeof(rt_plugin) + 64) /* more than the library exports */
+#include "sound.h"
+PLUGIN

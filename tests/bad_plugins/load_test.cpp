@@ -1,0 +1,223 @@
+// What the loader refuses, and how well it says why.
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <random>
+
+#include "plugin/elf_file.hpp"
+#include "plugin/registry.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string library(const std::string& name) {
+    return std::string(BAD_PLUGINS) + "/" + name + ".so";
+}
+
+std::string read_file(const std::string& path) {
+    std::ifstream in(path, std::ios::binary);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+}
+
+// A folder that is gone after the test.
+class Scratch {
+ public:
+    Scratch() {
+        std::string name = (fs::temp_directory_path() / "clarity-bad-plugins-XXXXXX").string();
+        if (!mkdtemp(name.data())) throw std::runtime_error("no scratch folder");
+        folder_ = name;
+    }
+    ~Scratch() { fs::remove_all(folder_); }
+    std::string write(const std::string& name, const std::string& content) const {
+        const std::string path = (folder_ / name).string();
+        std::ofstream(path, std::ios::binary) << content;
+        return path;
+    }
+    std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+    fs::path folder_;
+};
+
+struct Refusal {
+    const char* library;
+    std::vector<const char*> says;
+};
+void PrintTo(const Refusal& refusal, std::ostream* out) {
+    *out << refusal.library;
+}
+
+class BadPlugin : public testing::TestWithParam<Refusal> {};
+
+TEST_P(BadPlugin, IsRefusedAndSaysWhy) {
+    const std::string path = library(GetParam().library);
+    ASSERT_TRUE(fs::exists(path)) << path;
+    const clarity::PluginRecord record = clarity::load_plugin(path);
+    EXPECT_EQ(record.plugin, nullptr);
+    EXPECT_EQ(record.path, path);
+    for (const char* words : GetParam().says)
+        EXPECT_NE(record.why.find(words), std::string::npos) << words << "\nin: " << record.why;
+    EXPECT_EQ(record.why.find('\n'), std::string::npos) << "one line: " << record.why;
+    EXPECT_EQ(record.why.find('\033'), std::string::npos) << "no control characters";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Defects, BadPlugin,
+    testing::Values(
+        Refusal{"wrong_abi", {"ABI version 2", "this host speaks 1", "rebuild"}},
+        Refusal{"old_abi", {"ABI version 0", "this host speaks 1", "rebuild"}},
+        Refusal{"aborts_when_loaded", {"ABI version 2", "this host speaks 1"}},
+        Refusal{"wrong_digest", {"digest", "0x", "rt_types.h", "rebuild"}},
+        Refusal{"small_struct", {"rt_plugin has struct_bytes", "expects", "rebuild"}},
+        Refusal{"large_struct", {"struct_bytes", "exports", "bytes"}},
+        Refusal{"no_symbol", {"no symbol rt_plugin_v1", "docs/plugins.md"}},
+        Refusal{"hidden_symbol", {"no symbol rt_plugin_v1"}}, Refusal{"function_symbol", {"as a function", "expected data"}},
+        Refusal{"undefined_function", {"cannot be loaded", "sound_function_that_nobody_has", "--no-undefined"}},
+        Refusal{"bad_id", {"'Sound-1'", "[a-z][a-z0-9_]*"}}, Refusal{"null_id", {"id", "[a-z][a-z0-9_]*"}},
+        Refusal{"control_characters", {"name holds control characters"}}, Refusal{"both_kinds", {"both", "exactly one"}},
+        Refusal{"neither_kind", {"neither", "exactly one"}},
+        Refusal{"small_accel", {"rt_accel has struct_bytes", "expects", "rebuild"}},
+        Refusal{"small_importer", {"rt_importer has struct_bytes 8", "expects"}}, Refusal{"no_build", {"build is NULL"}},
+        Refusal{"no_traversal", {"traversal has no text", "embed"}},
+        Refusal{"slots_of_one_name", {"two slots", "'sound_nodes'"}},
+        Refusal{"slot_of_no_size", {"'sound_nodes'", "elem_bytes 0"}}, Refusal{"slot_of_odd_name", {"slot 0", "identifier"}},
+        Refusal{"slot_of_no_type", {"'sound_nodes'", "cl_type"}}, Refusal{"params_of_one_key", {"two parameters 'leaf'"}},
+        Refusal{"param_out_of_range", {"'leaf'", "min <= def <= max", "17"}},
+        Refusal{"param_not_a_number", {"'leaf'", "finite", "nan"}}, Refusal{"param_not_whole", {"'leaf'", "whole"}},
+        Refusal{"param_of_unknown_kind", {"'leaf'", "kind 9"}}, Refusal{"param_without_help", {"'leaf'", "help is missing"}},
+        Refusal{"enum_without_choices", {"'split'", "choices"}},
+        Refusal{"enum_of_wrong_range", {"'split'", "range must be 0..1"}}, Refusal{"null_params", {"params is NULL"}}),
+    [](const testing::TestParamInfo<Refusal>& info) { return info.param.library; });
+
+// The same parts without a defect are taken: it is the defect that is refused above.
+TEST(GoodPlugin, IsTaken) {
+    for (const char* name : {"sound", "bad_builder"}) {
+        const clarity::PluginRecord record = clarity::load_plugin(library(name));
+        ASSERT_NE(record.plugin, nullptr) << record.why;
+        EXPECT_EQ(record.why, "");
+        EXPECT_STREQ(record.plugin->id, name);
+    }
+}
+
+TEST(GoodPlugin, MayComeFromALaterSdkWithLongerStructs) {
+    const clarity::PluginRecord record = clarity::load_plugin(library("grown_struct"));
+    ASSERT_NE(record.plugin, nullptr) << record.why;
+    EXPECT_GT(record.plugin->struct_bytes, sizeof(rt_plugin));
+}
+
+// Were it loaded, it would end this process; so its refusal above means that it was not.
+TEST(AbortsWhenLoadedDeathTest, IsArmed) {
+    EXPECT_DEATH(dlopen(library("aborts_when_loaded").c_str(), RTLD_NOW | RTLD_LOCAL), "");
+}
+
+// Every source beside this one is covered above: a defect that nobody tests would look like one that is refused.
+TEST(BadPlugins, AllAreTested) {
+    size_t libraries = 0, tests = 0;
+    for (const auto& entry : fs::directory_iterator(fs::path(CLARITY_SOURCE_DIR) / "tests/bad_plugins"))
+        libraries += entry.path().extension() == ".c";
+    const testing::UnitTest& all = *testing::UnitTest::GetInstance();
+    for (int i = 0; i < all.total_test_suite_count(); ++i)
+        if (std::string(all.GetTestSuite(i)->name()) == "Defects/BadPlugin")
+            tests = static_cast<size_t>(all.GetTestSuite(i)->total_test_count());
+    EXPECT_EQ(tests + 2, libraries) << "sound.c and grown_struct.c are the two without a defect";
+}
+
+TEST(NoPlugin, TextFile) {
+    const Scratch scratch;
+    const clarity::PluginRecord record = clarity::load_plugin(scratch.write("text.so", "INPUT(libreal.so)\n"));
+    EXPECT_EQ(record.plugin, nullptr);
+    EXPECT_NE(record.why.find("not a shared library"), std::string::npos) << record.why;
+}
+
+TEST(NoPlugin, EmptyFile) {
+    const Scratch scratch;
+    const clarity::PluginRecord record = clarity::load_plugin(scratch.write("empty.so", ""));
+    EXPECT_EQ(record.plugin, nullptr);
+    EXPECT_NE(record.why.find("empty file"), std::string::npos) << record.why;
+}
+
+TEST(NoPlugin, MissingFile) {
+    const Scratch scratch;
+    const clarity::PluginRecord record = clarity::load_plugin(scratch.path("none.so"));
+    EXPECT_EQ(record.plugin, nullptr);
+    EXPECT_NE(record.why.find("No such file"), std::string::npos) << record.why;
+}
+
+TEST(NoPlugin, FolderAndPipe) {
+    const Scratch scratch;
+    fs::create_directory(scratch.path("folder.so"));
+    ASSERT_EQ(mkfifo(scratch.path("pipe.so").c_str(), 0600), 0);
+    EXPECT_NE(clarity::load_plugin(scratch.path("folder.so")).why.find("folder"), std::string::npos);
+    EXPECT_NE(clarity::load_plugin(scratch.path("pipe.so")).why.find("regular file"), std::string::npos);
+}
+
+TEST(NoPlugin, ThisVeryProgram) {
+    const clarity::PluginRecord record = clarity::load_plugin("/proc/self/exe");
+    EXPECT_EQ(record.plugin, nullptr);
+    EXPECT_NE(record.why, "");
+}
+
+TEST(NoPlugin, OtherMachine) {
+    const Scratch scratch;
+    std::string bytes = read_file(library("sound"));
+    ASSERT_GT(bytes.size(), 64u);
+    std::string other = bytes;
+    other[18] = 22;  // e_machine: S/390
+    other[19] = 0;
+    const clarity::PluginRecord record = clarity::load_plugin(scratch.write("other.so", other));
+    EXPECT_EQ(record.plugin, nullptr);
+    EXPECT_NE(record.why.find("library for S/390, this program runs on"), std::string::npos) << record.why;
+
+    std::string narrow = bytes;
+    narrow[4] = narrow[4] == 1 ? 2 : 1;  // EI_CLASS
+    EXPECT_NE(clarity::load_plugin(scratch.write("narrow.so", narrow)).why.find("another kind of machine"), std::string::npos);
+}
+
+// Cut anywhere, a library is either refused, or loaded because only what nobody needs (its section headers) is gone.
+TEST(NoPlugin, TruncatedAnywhere) {
+    const Scratch scratch;
+    const std::string bytes = read_file(library("sound"));
+    size_t refused = 0, truncated = 0;
+    for (size_t size = 0; size < bytes.size(); size += 97) {
+        clarity::ElfSymbol symbol;
+        const std::string why =
+            clarity::read_elf_symbol(scratch.write("cut.so", bytes.substr(0, size)), "rt_plugin_v1", symbol);
+        refused += !why.empty();
+        truncated += why.find("truncated") != std::string::npos;
+    }
+    EXPECT_GT(refused, 10u);
+    EXPECT_GT(truncated, 10u);
+    const clarity::PluginRecord half = clarity::load_plugin(scratch.write("half.so", bytes.substr(0, bytes.size() / 2)));
+    EXPECT_EQ(half.plugin, nullptr);
+    EXPECT_NE(half.why.find("truncated"), std::string::npos) << half.why;
+}
+
+// Reading the tables of a damaged file gives an answer, never a crash or an endless walk; nothing is loaded here.
+TEST(NoPlugin, DamagedTables) {
+    const Scratch scratch;
+    const std::string bytes = read_file(library("sound"));
+    std::mt19937 random(1);
+    size_t refused = 0;
+    for (int round = 0; round < 3000; ++round) {
+        std::string damaged = bytes;
+        // The headers, the dynamic section and the hash tables lie at the ends; the text in the middle is not read.
+        const size_t changes = 1 + random() % 4;
+        for (size_t i = 0; i < changes; ++i) {
+            const size_t at = random() % 2 ? random() % 0x400 : random() % damaged.size();
+            damaged[at] = static_cast<char>(random() % 3 == 0 ? 0xff : random());
+        }
+        clarity::ElfSymbol symbol;
+        refused +=
+            !clarity::read_elf_symbol(scratch.write("damaged.so", damaged), "rt_plugin_v1", symbol).empty() || !symbol.found;
+    }
+    EXPECT_GT(refused, 100u);
+}
+
+}  // namespace

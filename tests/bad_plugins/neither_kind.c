@@ -1,0 +1,3 @@
+#define ACCEL NULL
+#include "sound.h"
+PLUGIN

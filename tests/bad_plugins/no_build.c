@@ -1,0 +1,3 @@
+#define BUILD NULL
+#include "sound.h"
+PLUGIN

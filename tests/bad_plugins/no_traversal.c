@@ -1,0 +1,3 @@
+#define TRAVERSE "sound.cl", NULL
+#include "sound.h"
+PLUGIN

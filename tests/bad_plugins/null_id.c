@@ -1,0 +1,3 @@
+#define ID NULL
+#include "sound.h"
+PLUGIN

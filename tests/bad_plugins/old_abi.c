@@ -1,0 +1,3 @@
+#define ABI 0
+#include "sound.h"
+PLUGIN

@@ -1,0 +1,4 @@
+#define SLOTS \
+    { "sound_nodes", "uint", 0 }
+#include "sound.h"
+PLUGIN

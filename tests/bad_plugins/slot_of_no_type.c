@@ -1,0 +1,4 @@
+#define SLOTS \
+    { "sound_nodes", NULL, 4 }
+#include "sound.h"
+PLUGIN

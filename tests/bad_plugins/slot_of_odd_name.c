@@ -1,0 +1,4 @@
+#define SLOTS \
+    { "nodes; }", "uint", 4 }
+#include "sound.h"
+PLUGIN

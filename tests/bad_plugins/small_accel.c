@@ -1,0 +1,3 @@
+#define ACCEL_BYTES (sizeof(rt_accel) - 8)
+#include "sound.h"
+PLUGIN

@@ -1,0 +1,3 @@
+#define PLUGIN_BYTES (sizeof(rt_plugin) - 8)
+#include "sound.h"
+PLUGIN

@@ -1,0 +1,2 @@
+#include "sound.h"
+PLUGIN

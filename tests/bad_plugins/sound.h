@@ -1,0 +1,77 @@
+/* sound.h -- the parts of a sound plugin. Each library beside it takes them and spoils exactly one thing; sound.c, which
+ * spoils nothing, proves that it is that thing which is refused. A defect redefines one of the macros before it includes this
+ * page, and PLUGIN at the end writes out the description. */
+#ifndef SOUND_H
+#define SOUND_H
+#include <stddef.h>
+
+#include "rt_plugin.h"
+
+#ifndef ABI
+#define ABI RT_ABI_VERSION
+#endif
+#ifndef PLUGIN_BYTES
+#define PLUGIN_BYTES sizeof(rt_plugin)
+#endif
+#ifndef DIGEST
+#define DIGEST RT_TYPES_DIGEST
+#endif
+#ifndef ID
+#define ID "sound"
+#endif
+#ifndef NAME
+#define NAME "A sound plugin"
+#endif
+#ifndef ACCEL_BYTES
+#define ACCEL_BYTES sizeof(rt_accel)
+#endif
+#ifndef IMPORTER_BYTES
+#define IMPORTER_BYTES sizeof(rt_importer)
+#endif
+#ifndef TRAVERSE
+#define TRAVERSE "sound.cl", "void RT_TRAVERSE() {}"
+#endif
+#ifndef BUILD
+#define BUILD build
+#endif
+#ifndef SLOTS
+#define SLOTS \
+    { "sound_nodes", "uint", sizeof(rt_u32) }
+#endif
+#ifndef PARAMS
+#define PARAMS \
+    { "max_leaf", "Max leaf size", "primitives in a leaf, at most", RT_PARAM_INT, RT_EFFECT_REBUILD, 1, 16, 4, NULL }
+#endif
+#ifndef ACCEL
+#define ACCEL &accel
+#endif
+#ifndef IMPORTER
+#define IMPORTER NULL
+#endif
+#ifndef PARAM_COUNT
+#define PARAM_COUNT sizeof params / sizeof params[0]
+#endif
+
+/* Code of a refused plugin must not run, whatever it does. */
+static int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
+    (void)in, (void)out;
+    return host->fail(host->ctx, "the test plugin builds nothing");
+}
+static int32_t load(const rt_host* host, const char* path, const double* p, const rt_scene_sink* sink) {
+    (void)path, (void)p, (void)sink;
+    return host->fail(host->ctx, "the test plugin loads nothing");
+}
+
+static const char* const choices[] = {"fast", "good", NULL};
+static const char* const no_choices[] = {NULL};
+static const rt_param params[] = {PARAMS};
+static const rt_slot slots[] = {SLOTS};
+static const rt_accel accel = {ACCEL_BYTES, sizeof slots / sizeof slots[0], slots, {NULL, NULL}, {TRAVERSE}, BUILD, NULL, NULL};
+static const char* const extensions[] = {"sound", NULL};
+static const rt_importer importer = {IMPORTER_BYTES, extensions, NULL, load};
+/* Not every defect uses every part. */
+const void* const sound_parts[] = {choices, no_choices, &accel, &importer, params, (const void*)&build};
+
+#define PLUGIN \
+    const rt_plugin rt_plugin_v1 = {ABI, PLUGIN_BYTES, DIGEST, PARAM_COUNT, ID, NAME, "1.0", NULL, params, ACCEL, IMPORTER};
+#endif

@@ -1,0 +1,3 @@
+#define ABI (RT_ABI_VERSION + 1)
+#include "sound.h"
+PLUGIN

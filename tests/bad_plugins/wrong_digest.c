@@ -1,0 +1,3 @@
+#define DIGEST (RT_TYPES_DIGEST ^ 1u)
+#include "sound.h"
+PLUGIN

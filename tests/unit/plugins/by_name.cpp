@@ -1,0 +1,11 @@
+// An importer that knows its files by their extension alone.
+#include "rt_plugin.hpp"
+
+static int32_t load(const rt_host*, const char*, const double*, const rt_scene_sink*) {
+    return RT_OK;
+}
+
+static const char* const kExtensions[] = {"shape", nullptr};
+static const rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, rt::guarded<load>};
+
+const rt_plugin rt_plugin_v1 = rt::importer_plugin("by_name", "By extension", "1.0", nullptr, kImporter);
