@@ -76,7 +76,7 @@ std::string suggestion(std::string_view read, const std::vector<std::string_view
             nearest_distance = distance;
         }
     }
-    return nearest.empty() ? std::string() : " did you mean `" + std::string(nearest) + "`?";
+    return nearest.empty() ? std::string() : "; did you mean `" + std::string(nearest) + "`?";
 }
 
 }  // namespace scene_format

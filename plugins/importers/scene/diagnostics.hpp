@@ -47,7 +47,7 @@ std::string located(std::string_view file, const Diagnostic& diagnostic);
 std::string quoted(std::string_view text);
 // "a, b, c"
 std::string listed(const std::vector<std::string_view>& words);
-// " did you mean `radius`?" for the word nearest to what was read, or nothing if none is near. Optimal string alignment
+// "; did you mean `radius`?" for the word nearest to what was read, or nothing if none is near. Optimal string alignment
 // distance (insertions, deletions, substitutions, swapped neighbours), letters compared without case.
 std::string suggestion(std::string_view read, const std::vector<std::string_view>& words);
 

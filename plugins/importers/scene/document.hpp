@@ -11,15 +11,14 @@ namespace scene_format {
 
 using Vec3 = std::array<float, 3>;
 
-// Use of a name that another line defines, maybe further down. Empty: none was given.
-struct NameUse {
-    std::string name;
+// A name as it is defined, or used on another line (which may come first). Empty: none was given.
+struct Name {
+    std::string text;
     Position position;
 };
 
 struct Camera {
-    std::string name;
-    Position position;
+    Name name;
     Vec3 eye{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
     float fov_deg = 45;  // vertical
 };
@@ -28,34 +27,34 @@ struct Light {
     rt_light values{};
 };
 struct Material {
-    std::string name;
-    Position position;
+    Name name;
     rt_material values{};
     std::string texture;  // path, or empty
 };
 struct Sphere {
     Vec3 center{0, 0, 0};
     float radius = 1;
-    NameUse material;
+    Name material;
 };
 struct Plane {
     Vec3 normal{0, 1, 0};  // unit
     float offset = 0;      // distance from the origin along the normal
-    NameUse material;
+    Name material;
 };
 struct Polygon {
     std::vector<float> corners;  // 3 per corner
-    NameUse material;
+    Name material;
 };
 struct Triangle {
     std::array<float, 9> corners{};
-    NameUse material;
+    Name material;
 };
 struct Load {
-    std::string path, name;
-    Position position;
+    std::string path;
+    Position position;  // of the path
+    Name name;
     std::array<float, 12> world_from_object{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row-major 3x4
-    NameUse material;
+    Name material;
 };
 
 enum class ItemKind : uint8_t { sphere, plane, polygon, triangle, load };
@@ -75,7 +74,7 @@ struct Document {
     std::vector<Triangle> triangles;
     std::vector<Load> loads;
     std::vector<Item> items;  // all of the geometry in the order of the file, which numbers the primitives
-    std::vector<NameUse> animated;
+    std::vector<Name> animated;
     Vec3 background{}, ambient{};
     Position background_position, ambient_position;  // line 0: not said
     uint32_t statement_count = 0;

@@ -31,7 +31,7 @@ class Emitter {
     Position position() const { return position_; }
 
  private:
-    rt_u32 material(const NameUse& use) const { return use.name.empty() ? RT_NONE : material_ids_.at(use.name); }
+    rt_u32 material(const Name& use) const { return use.text.empty() ? RT_NONE : material_ids_.at(use.text); }
     bool triangles(size_t first, size_t count);
     bool load(const Load& load);
 
@@ -52,9 +52,9 @@ void Emitter::info() const {
 bool Emitter::materials() {
     std::unordered_map<std::string, rt_u32> texture_ids;
     for (const Material& material : document_.materials) {
-        position_ = material.position;
+        position_ = material.name.position;
         auto desc = sized<rt_material_desc>();
-        desc.name = material.name.c_str();
+        desc.name = material.name.text.c_str();
         desc.values = material.values;
         if (!material.texture.empty()) {
             auto [known, is_new] = texture_ids.emplace(material.texture, RT_NONE);
@@ -67,7 +67,7 @@ bool Emitter::materials() {
         }
         const rt_u32 id = sink_.material(sink_.ctx, &desc);
         if (id == RT_NONE) return false;
-        material_ids_.emplace(material.name, id);
+        material_ids_.emplace(material.name.text, id);
     }
     return true;
 }
@@ -81,9 +81,9 @@ bool Emitter::lights_and_cameras() {
     }
     constexpr float rad_per_deg = 3.14159265358979323846f / 180.0f;
     for (const Camera& camera : document_.cameras) {
-        position_ = camera.position;
+        position_ = camera.name.position;
         auto desc = sized<rt_camera>();
-        desc.name = camera.name.c_str();
+        desc.name = camera.name.text.c_str();
         std::copy(camera.eye.begin(), camera.eye.end(), desc.eye);
         std::copy(camera.target.begin(), camera.target.end(), desc.target);
         std::copy(camera.up.begin(), camera.up.end(), desc.up);
@@ -124,7 +124,7 @@ bool Emitter::load(const Load& load) {
     position_ = load.position;
     auto desc = sized<rt_load>();
     desc.path = load.path.c_str();
-    desc.name = name_or_null(load.name);
+    desc.name = name_or_null(load.name.text);
     std::copy(load.world_from_object.begin(), load.world_from_object.end(), desc.world_from_object);
     desc.material = material(load.material);
     return sink_.load(sink_.ctx, &desc) == RT_OK;

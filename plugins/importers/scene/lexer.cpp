@@ -115,7 +115,11 @@ void Lexer::split(std::string_view line, std::vector<Token>& tokens) {
         if (token.is_quoted) {
             cursor.step();
             const size_t start = cursor.at;
-            while (!cursor.done() && cursor.look() != '"') cursor.step();
+            while (!cursor.done() && cursor.look() != '"') {
+                // Names go into messages and listings, where a tab would be taken for a separator.
+                if (cursor.look() == '\t') throw StatementError{cursor.position, "a tab inside quotes; expected a space"};
+                cursor.step();
+            }
             if (cursor.done())
                 throw StatementError{token.position, "the line ends inside the quotes that open here; expected `\"`"};
             token.text = line.substr(start, cursor.at - start);

@@ -25,15 +25,19 @@ const std::vector<std::pair<std::string_view, ReadFunction>>& statements() {
 
 void read_statement(Statement& statement, const Token& first, Document& document, Diagnostics& diagnostics) {
     std::vector<std::string_view> words;
+    if (first.is_quoted) {
+        throw StatementError{first.position,
+                             "text in quotes, " + quoted(first.text) + "; expected a statement, without quotes"};
+    }
     for (const auto& [word, read] : statements()) {
-        if (!first.is_quoted && word == first.text) {
+        if (word == first.text) {
             read(statement, document, diagnostics);
             ++document.statement_count;
             return;
         }
         words.push_back(word);
     }
-    throw StatementError{first.position, "unknown statement " + quoted(first.text) + ";" + suggestion(first.text, words) +
+    throw StatementError{first.position, "unknown statement " + quoted(first.text) + suggestion(first.text, words) +
                                              " (statements: " + listed(words) + ")"};
 }
 
@@ -44,27 +48,27 @@ template <class Things>
 Names defined_names(const Things& things, const char* kind, Diagnostics& diagnostics) {
     Names names;
     for (const auto& thing : things) {
-        if (thing.name.empty() || diagnostics.full()) continue;
-        const auto [first, is_new] = names.emplace(thing.name, thing.position);
-        if (!is_new) {
-            diagnostics.error({thing.position, std::string(kind) + " " + quoted(thing.name) +
-                                                   " for the second time; the first is in line " +
-                                                   std::to_string(first->second.line)});
-        }
+        const Name& name = thing.name;
+        if (name.text.empty() || diagnostics.full()) continue;
+        const auto [first, is_new] = names.emplace(name.text, name.position);
+        if (is_new) continue;
+        diagnostics.error({name.position, std::string(kind) + " " + quoted(name.text) +
+                                              " for the second time; the first is in line " +
+                                              std::to_string(first->second.line)});
     }
     return names;
 }
 
-void check_use(const NameUse& use, const Names& names, const char* kind, Diagnostics& diagnostics) {
-    if (use.name.empty() || diagnostics.full() || names.count(use.name) != 0) return;
+void check_use(const Name& use, const Names& names, const char* kind, Diagnostics& diagnostics) {
+    if (use.text.empty() || diagnostics.full() || names.count(use.text) != 0) return;
     std::vector<std::string_view> known;
     for (const auto& [name, position] : names) known.push_back(name);
-    const std::string nearest = suggestion(use.name, known);
+    const std::string nearest = suggestion(use.text, known);
     constexpr size_t most_listed = 20;
     const bool is_cut = known.size() > most_listed;
     if (is_cut) known.resize(most_listed);
     const std::string all = known.empty() ? "none" : listed(known) + (is_cut ? ", ..." : "");
-    diagnostics.error({use.position, "unknown " + std::string(kind) + " " + quoted(use.name) + ";" + nearest +
+    diagnostics.error({use.position, "unknown " + std::string(kind) + " " + quoted(use.text) + nearest +
                                          " (defined in this file: " + all + ")"});
 }
 
@@ -80,7 +84,7 @@ void check_names(const Document& document, Diagnostics& diagnostics) {
     check_materials(document.polygons);
     check_materials(document.triangles);
     check_materials(document.loads);
-    for (const NameUse& target : document.animated) check_use(target, loads, "name", diagnostics);
+    for (const Name& target : document.animated) check_use(target, loads, "name", diagnostics);
 }
 
 }  // namespace

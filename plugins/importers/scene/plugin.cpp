@@ -2,15 +2,13 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <exception>
 #include <memory>
-#include <new>
 #include <string>
 
 #include "emit.hpp"
 #include "lexer.hpp"
 #include "parser.hpp"
-#include "rt_plugin.h"
+#include "rt_plugin.hpp"
 
 namespace scene_format {
 namespace {
@@ -65,21 +63,14 @@ int32_t load_file(const rt_host& host, const char* path, const rt_scene_sink& si
 }
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    try {
-        return load_file(*host, path, *sink);
-    } catch (const std::bad_alloc&) {
-        return host->fail(host->ctx, (std::string(path) + ": not enough memory to read the file").c_str());
-    } catch (const std::exception& error) {
-        return host->fail(host->ctx, (std::string(path) + ": internal error: " + error.what()).c_str());
-    }
+    return load_file(*host, path, *sink);
 }
 
-const char* const kExtensions[] = {"scene", nullptr};
-const rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, load};
+constexpr const char* kExtensions[] = {"scene", nullptr};
+constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, rt::guarded<load>};
 
 }  // namespace
 }  // namespace scene_format
 
-extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = {
-    RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST,         0, "scene", "Text scene", "1.0", nullptr,
-    nullptr,        nullptr,           &scene_format::kImporter};
+extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 =
+    rt::importer_plugin("scene", "Text scene", "1.0.0", nullptr, scene_format::kImporter);

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 namespace scene_format {
 namespace {
@@ -63,8 +64,7 @@ size_t Statement::key() {
         throw StatementError{token.position,
                              "number " + quoted(token.text) + " is one too many; expected a key or the line's end" + keys};
     }
-    throw StatementError{token.position,
-                         "unknown key " + quoted(token.text) + ";" + suggestion(token.text, key_names()) + keys};
+    throw StatementError{token.position, "unknown key " + quoted(token.text) + suggestion(token.text, key_names()) + keys};
 }
 
 void Statement::expect_end() {
@@ -88,16 +88,12 @@ std::string Statement::text(std::string_view what, size_t most_bytes) {
     return std::string(token.text);
 }
 
-std::string Statement::name(std::string_view what) {
+Name Statement::name(std::string_view what) {
     if (!done() && !tokens_[at_].is_quoted && parse_number(tokens_[at_].text).error != NumberError::not_a_number) {
         throw StatementError{tokens_[at_].position, "number " + quoted(tokens_[at_].text) + "; expected " + std::string(what) +
                                                         " (in quotes, if it looks like a number)"};
     }
-    return text(what, kMaxNameBytes);
-}
-
-NameUse Statement::name_use(std::string_view what) {
-    std::string read = name(what);
+    std::string read = text(what, kMaxNameBytes);
     return {std::move(read), last()};
 }
 
@@ -110,8 +106,8 @@ size_t Statement::choice(std::string_view what, const std::vector<std::string_vi
     for (size_t i = 0; i < words.size(); ++i) {
         if (!token.is_quoted && words[i] == token.text) return i;
     }
-    throw StatementError{token.position, quoted(token.text) + " is no " + std::string(what) + ";" +
-                                             suggestion(token.text, words) + " (expected: " + listed(words) + ")"};
+    throw StatementError{token.position, quoted(token.text) + " is no " + std::string(what) + suggestion(token.text, words) +
+                                             " (expected: " + listed(words) + ")"};
 }
 
 // ---- numbers
@@ -130,7 +126,9 @@ float Statement::number(std::string_view what, size_t index, size_t count) {
         case NumberError::not_a_number:
             throw StatementError{token.position, quoted(token.text) + " is no number; expected " + expected};
         case NumberError::trailing_text:
-            throw StatementError{token.position, quoted(token.text) + " goes on behind a number; expected " + expected};
+            throw StatementError{token.position,
+                                 quoted(token.text) + " goes on behind a number; expected " + expected +
+                                     (token.text.find(',') != std::string_view::npos ? " (the decimal sign is a point)" : "")};
         case NumberError::out_of_range:
             break;
     }

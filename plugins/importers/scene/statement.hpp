@@ -33,8 +33,7 @@ class Statement {
     bool given(size_t key) const { return (seen_ & (1u << key)) != 0; }
 
     // `what` tells in errors what it is: "the material's name".
-    std::string name(std::string_view what);
-    NameUse name_use(std::string_view what);
+    Name name(std::string_view what);
     std::string path(std::string_view what);
     // One of these words; its index.
     size_t choice(std::string_view what, const std::vector<std::string_view>& words);

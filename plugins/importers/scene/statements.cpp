@@ -33,7 +33,6 @@ void read_camera(Statement& s, Document& document, Diagnostics&) {
     s.expect_keys({{"eye"}, {"target"}, {"up"}, {"fov"}});
     Camera camera;
     camera.name = s.name("the camera's name");
-    camera.position = s.last();
     while (!s.done()) {
         switch (s.key()) {
             case kEye:
@@ -54,12 +53,12 @@ void read_camera(Statement& s, Document& document, Diagnostics&) {
     for (size_t i = 0; i < 3; ++i) view[i] = double{camera.target[i]} - double{camera.eye[i]};
     const double distance = std::hypot(view[0], view[1], view[2]);
     if (!(distance > 0))
-        throw StatementError{camera.position, "`eye` and `target` are the same point; expected different ones"};
+        throw StatementError{camera.name.position, "`eye` and `target` are the same point; expected different ones"};
     const Vec3& up = camera.up;
     const double side =
         std::hypot(view[1] * up[2] - view[2] * up[1], view[2] * up[0] - view[0] * up[2], view[0] * up[1] - view[1] * up[0]);
     if (!(side > 1e-6 * distance)) {
-        throw StatementError{camera.position,
+        throw StatementError{camera.name.position,
                              "the camera looks along its `up` vector; expected another `up` (0 0 -1, say, to look down)"};
     }
     document.cameras.push_back(std::move(camera));
@@ -82,7 +81,7 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
                 intensity = s.number_between("`intensity`", 0, 1e9f);
                 break;
             case kName:
-                light.name = s.name("the light's name");
+                light.name = s.name("the light's name").text;
                 break;
             case kWhere:
                 if (is_point) {
@@ -120,15 +119,17 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
     enum { kColor, kReflect, kRefract, kIor, kSpecular, kShininess, kEmission, kTexture, kChecker };
     s.expect_keys(
         {{"color"}, {"reflect"}, {"refract"}, {"ior"}, {"specular"}, {"shininess"}, {"emission"}, {"texture"}, {"checker"}});
-    Material material;
+    // Known from here on: a mistake behind its name must not make every use of it a mistake.
+    Material& material = document.materials.emplace_back();
     material.name = s.name("the material's name");
-    material.position = s.last();
     rt_material& values = material.values;
-    copy({0.8f, 0.8f, 0.8f}, values.color);
+    // The same as the host's material for objects that name none.
+    copy({0.7f, 0.7f, 0.7f}, values.color);
+    copy({0.15f, 0.15f, 0.15f}, values.specular);
     values.ior = 1.5f;
     values.shininess = 32;
     values.texture = RT_NONE;
-    Position refract_position = material.position;
+    Position refract_position = material.name.position;
     while (!s.done()) {
         switch (s.key()) {
             case kColor:
@@ -170,13 +171,12 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
             char text[160];
             std::snprintf(text, sizeof text,
                           "`reflect` and `refract` of material %s add up to %g; both are scaled down to add up to 1",
-                          quoted(material.name).c_str(), static_cast<double>(sum));
+                          quoted(material.name.text).c_str(), static_cast<double>(sum));
             diagnostics.warning(refract_position, text);
         }
         values.reflect /= sum;
         values.refract = 1 - values.reflect;
     }
-    document.materials.push_back(std::move(material));
 }
 
 void read_sphere(Statement& s, Document& document, Diagnostics&) {
@@ -193,7 +193,7 @@ void read_sphere(Statement& s, Document& document, Diagnostics&) {
                 if (!(sphere.radius > 0)) s.fail_at_last("a radius is positive; expected a number greater than 0 for `radius`");
                 break;
             case kMaterial:
-                sphere.material = s.name_use("a material's name");
+                sphere.material = s.name("a material's name");
                 break;
         }
     }
@@ -214,7 +214,7 @@ void read_plane(Statement& s, Document& document, Diagnostics&) {
                 plane.offset = s.number("`offset` (distance from the origin along the normal)");
                 break;
             case kMaterial:
-                plane.material = s.name_use("a material's name");
+                plane.material = s.name("a material's name");
                 break;
         }
     }
@@ -234,7 +234,7 @@ void read_polygon(Statement& s, Document& document, Diagnostics&) {
                 polygon.corners = s.points("`vertices` (x y z of each corner)");
                 break;
             case kMaterial:
-                polygon.material = s.name_use("a material's name");
+                polygon.material = s.name("a material's name");
                 break;
         }
     }
@@ -263,7 +263,7 @@ void read_triangle(Statement& s, Document& document, Diagnostics& diagnostics) {
                 break;
             }
             case kMaterial:
-                triangle.material = s.name_use("a material's name");
+                triangle.material = s.name("a material's name");
                 break;
         }
     }
@@ -298,7 +298,7 @@ void read_load(Statement& s, Document& document, Diagnostics&) {
                 placement.scale(s.scale("`scale` (one factor, or x y z)"));
                 break;
             case kMaterial:
-                load.material = s.name_use("a material's name");
+                load.material = s.name("a material's name");
                 break;
             case kName:
                 load.name = s.name("the object's name");
@@ -311,7 +311,7 @@ void read_load(Statement& s, Document& document, Diagnostics&) {
 }
 
 void read_animate(Statement& s, Document& document, Diagnostics& diagnostics) {
-    NameUse target = s.name_use("the name of a loaded object");
+    Name target = s.name("the name of a loaded object");
     const size_t channel = s.choice("motion", {"translate", "rotate", "scale"});
     constexpr const char* what[] = {"`translate` (time x y z)", "`rotate` (time, axis x y z, degrees)", "`scale` (time x y z)"};
     const size_t numbers_per_key = channel == 1 ? 5 : 4;

@@ -5,7 +5,8 @@
 
 namespace scene_format {
 
-// All of them read the rest of the statement into the document, or throw StatementError and leave the document as it was.
+// All of them read the rest of the statement into the document, or throw StatementError; the document is then only good for
+// finding further errors.
 void read_camera(Statement&, Document&, Diagnostics&);
 void read_light(Statement&, Document&, Diagnostics&);
 void read_background(Statement&, Document&, Diagnostics&);

@@ -1,0 +1,73 @@
+// recorder.hpp -- a host and a sink that write down what the scene importer says and hands over.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "rt_plugin.h"
+
+struct RecordedMaterial {
+    std::string name;
+    rt_material values;
+};
+struct RecordedMesh {
+    std::vector<float> positions;
+    std::vector<rt_u32> indices, face_materials;
+};
+struct RecordedSphere {
+    std::array<float, 3> center;
+    float radius;
+    rt_u32 material;
+};
+struct RecordedPlane {
+    std::array<float, 3> normal;
+    float offset;
+    rt_u32 material;
+};
+struct RecordedPolygon {
+    std::vector<float> corners;
+    rt_u32 material;
+};
+struct RecordedLight {
+    std::string name;
+    rt_light values;
+};
+struct RecordedCamera {
+    std::string name;
+    rt_camera values;  // its name is not valid any more
+};
+struct RecordedLoad {
+    std::string path, name;
+    std::array<float, 12> world_from_object;
+    rt_u32 material;
+};
+
+struct Recording {
+    int32_t status = RT_OK;
+    std::string why;  // the first failure
+    std::vector<std::string> log, warnings;
+    std::vector<std::string> textures;
+    std::vector<RecordedMaterial> materials;
+    std::vector<RecordedMesh> meshes;
+    std::vector<rt_u32> instanced_meshes;
+    std::vector<RecordedSphere> spheres;
+    std::vector<RecordedPlane> planes;
+    std::vector<RecordedPolygon> polygons;
+    std::vector<RecordedLight> lights;
+    std::vector<RecordedCamera> cameras;
+    std::vector<RecordedLoad> loads;
+    std::vector<std::string> order;  // "sphere", "mesh", "load", ... as they came
+    bool has_background = false, has_ambient = false;
+    std::array<float, 3> background{}, ambient{};
+
+    // What the sink and the host answer.
+    bool refuse_textures = false, refuse_loads = false;
+    int32_t reports_before_cancel = -1;  // negative: never
+
+    // Everything that was said or handed over is sound: finite numbers, known ids, texts without control characters.
+    std::string unsound() const;
+};
+
+// Imports a file with this content (its name is test.scene in every message) into `recording`.
+void import_text(const std::string& text, Recording& recording);
+Recording import_text(const std::string& text);

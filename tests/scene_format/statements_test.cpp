@@ -1,0 +1,258 @@
+// What each statement hands over, its defaults, and how names and transforms work: docs/scene_format.md.
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <cmath>
+
+#include "recorder.hpp"
+
+namespace {
+
+std::array<float, 3> transformed(const std::array<float, 12>& m, const std::array<float, 3>& p) {
+    std::array<float, 3> q{};
+    for (size_t row = 0; row < 3; ++row)
+        q[row] = m[4 * row] * p[0] + m[4 * row + 1] * p[1] + m[4 * row + 2] * p[2] + m[4 * row + 3];
+    return q;
+}
+
+void expect_near(const std::array<float, 3>& actual, const std::array<float, 3>& expected) {
+    for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(actual[i], expected[i], 1e-5) << "component " << i;
+}
+
+void expect_near(const float (&actual)[3], const std::array<float, 3>& expected) {
+    expect_near(std::array<float, 3>{actual[0], actual[1], actual[2]}, expected);
+}
+
+Recording import_good(const std::string& text) {
+    Recording r = import_text(text);
+    EXPECT_EQ(r.status, RT_OK) << r.why;
+    EXPECT_EQ(r.unsound(), "");
+    return r;
+}
+
+TEST(SceneFormat, ReadsTheExampleOfTheDesign) {
+    const Recording r = import_good(R"(
+camera   main  eye 0 2 8  target 0 1 0  up 0 1 0  fov 45
+light    point  position 5 10 5  color 1 1 1
+background 0.2 0.3 0.5
+material glass  color .9 1 1  reflect .1  refract .9  ior 1.5
+sphere   center 0 1 0  radius 1  material glass
+plane    normal 0 1 0  offset 0  material floor
+polygon  material mirror  vertices  0 0 0  2 0 0  2 2 0  0 2 0
+load     "car.fbx"  translate 1 0 0  rotate 0 1 0 45  scale .01  material chrome  name car
+material floor   # defined below its use
+material mirror
+material chrome
+animate  car  translate  0 0 0 0   2 1 0 0        # time x y z ...
+)");
+    ASSERT_EQ(r.cameras.size(), 1u);
+    EXPECT_EQ(r.cameras[0].name, "main");
+    expect_near(r.cameras[0].values.eye, {0, 2, 8});
+    expect_near(r.cameras[0].values.target, {0, 1, 0});
+    EXPECT_NEAR(r.cameras[0].values.fov_y_rad, std::acos(-1.0) / 4, 1e-6);
+    ASSERT_EQ(r.lights.size(), 1u);
+    EXPECT_EQ(r.lights[0].values.kind, RT_LIGHT_POINT);
+    expect_near(r.lights[0].values.position, {5, 10, 5});
+    EXPECT_TRUE(r.has_background);
+    EXPECT_FALSE(r.has_ambient);
+    expect_near(r.background, {0.2f, 0.3f, 0.5f});
+    ASSERT_EQ(r.materials.size(), 4u);
+    EXPECT_EQ(r.materials[0].name, "glass");
+    EXPECT_FLOAT_EQ(r.materials[0].values.refract, 0.9f);
+    EXPECT_EQ(r.spheres.at(0).material, 0u);
+    EXPECT_EQ(r.planes.at(0).material, 1u);
+    EXPECT_EQ(r.polygons.at(0).material, 2u);
+    EXPECT_EQ(r.polygons.at(0).corners.size(), 12u);
+    ASSERT_EQ(r.loads.size(), 1u);
+    EXPECT_EQ(r.loads[0].path, "car.fbx");
+    EXPECT_EQ(r.loads[0].name, "car");
+    EXPECT_EQ(r.loads[0].material, 3u);
+    expect_near(transformed(r.loads[0].world_from_object, {0, 0, 0}), {1, 0, 0});
+    const float leg = 0.01f * std::sqrt(0.5f);
+    expect_near(transformed(r.loads[0].world_from_object, {0, 0, 1}), {1 + leg, 0, leg});
+    ASSERT_EQ(r.warnings.size(), 1u);
+    EXPECT_EQ(r.warnings[0],
+              "test.scene:13:1: animation is not supported yet: `animate` is ignored, the scene is shown at rest");
+}
+
+TEST(SceneFormat, FillsInDefaults) {
+    const Recording r = import_good("camera c\nlight point\nlight directional\nmaterial m\nsphere\nplane\nload x.obj\n");
+    expect_near(r.cameras.at(0).values.eye, {0, 0, 5});
+    expect_near(r.cameras[0].values.target, {0, 0, 0});
+    expect_near(r.cameras[0].values.up, {0, 1, 0});
+    EXPECT_NEAR(r.cameras[0].values.fov_y_rad, std::acos(-1.0) / 4, 1e-6);
+    expect_near(r.lights.at(0).values.position, {0, 10, 0});
+    expect_near(r.lights[0].values.color, {1, 1, 1});
+    EXPECT_EQ(r.lights.at(1).values.kind, RT_LIGHT_DIRECTIONAL);
+    expect_near(r.lights[1].values.position, {0, 1, 0});
+    const rt_material& m = r.materials.at(0).values;
+    expect_near(m.color, {0.7f, 0.7f, 0.7f});
+    expect_near(m.specular, {0.15f, 0.15f, 0.15f});
+    expect_near(m.emission, {0, 0, 0});
+    EXPECT_EQ(m.reflect, 0);
+    EXPECT_EQ(m.refract, 0);
+    EXPECT_EQ(m.ior, 1.5f);
+    EXPECT_EQ(m.shininess, 32);
+    EXPECT_EQ(m.texture, RT_NONE);
+    EXPECT_EQ(m.flags, 0u);
+    EXPECT_EQ(r.spheres.at(0).radius, 1);
+    EXPECT_EQ(r.spheres[0].material, RT_NONE);
+    expect_near(r.planes.at(0).normal, {0, 1, 0});
+    EXPECT_EQ(r.loads.at(0).name, "");
+    EXPECT_EQ(r.loads[0].material, RT_NONE);
+    const std::array<float, 12> identity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    EXPECT_EQ(r.loads[0].world_from_object, identity);
+    EXPECT_FALSE(r.has_background);
+}
+
+TEST(SceneFormat, ReadsEveryMaterialKey) {
+    const Recording r = import_good(
+        "material a color .1 .2 .3 reflect .25 refract .5 ior 2.4 specular .5 shininess 80 emission 1 2 3 checker\n"
+        "material b specular .1 .2 .3 texture \"my wood.png\"\n"
+        "material c texture \"my wood.png\" color .5\n");
+    const rt_material& a = r.materials.at(0).values;
+    expect_near(a.color, {0.1f, 0.2f, 0.3f});
+    EXPECT_EQ(a.reflect, 0.25f);
+    EXPECT_EQ(a.refract, 0.5f);
+    EXPECT_EQ(a.ior, 2.4f);
+    expect_near(a.specular, {0.5f, 0.5f, 0.5f});
+    EXPECT_EQ(a.shininess, 80);
+    expect_near(a.emission, {1, 2, 3});
+    EXPECT_EQ(a.flags, RT_MATERIAL_CHECKER);
+    const rt_material& b = r.materials.at(1).values;
+    expect_near(b.specular, {0.1f, 0.2f, 0.3f});
+    EXPECT_EQ(b.texture, 0u);
+    expect_near(b.color, {1, 1, 1});  // a texture alone shows as it is
+    expect_near(r.materials.at(2).values.color, {0.5f, 0.5f, 0.5f});
+    EXPECT_EQ(r.textures, std::vector<std::string>{"my wood.png"});  // read once
+}
+
+TEST(SceneFormat, MissingTextureIsNoError) {
+    Recording r;
+    r.refuse_textures = true;
+    import_text("material m texture gone.png\nsphere material m\n", r);
+    EXPECT_EQ(r.status, RT_OK);
+    EXPECT_EQ(r.materials.at(0).values.texture, RT_NONE);
+}
+
+TEST(SceneFormat, SharesAboveOneAreScaledWithAWarning) {
+    const Recording r = import_good("material m reflect .8 refract .8\nmaterial exact reflect .1 refract .9\n");
+    EXPECT_FLOAT_EQ(r.materials.at(0).values.reflect, 0.5f);
+    EXPECT_FLOAT_EQ(r.materials[0].values.refract, 0.5f);
+    ASSERT_EQ(r.warnings.size(), 1u);
+    EXPECT_EQ(r.warnings[0],
+              "test.scene:1:31: `reflect` and `refract` of material `m` add up to 1.6; both are scaled down to add up to 1");
+}
+
+TEST(SceneFormat, LightsHaveIntensityNameAndDirectionOfTravel) {
+    const Recording r =
+        import_good("light directional direction 0 -3 4 color 1 .5 0 intensity 2 name sun\nlight point intensity 0.5\n");
+    expect_near(r.lights.at(0).values.position, {0, 0.6f, -0.8f});
+    expect_near(r.lights[0].values.color, {2, 1, 0});
+    EXPECT_EQ(r.lights[0].name, "sun");
+    expect_near(r.lights.at(1).values.color, {0.5f, 0.5f, 0.5f});
+}
+
+TEST(SceneFormat, PlaneNormalIsNormalised) {
+    const Recording r = import_good("plane normal 0 0 5 offset -2\n");
+    expect_near(r.planes.at(0).normal, {0, 0, 1});
+    EXPECT_EQ(r.planes[0].offset, -2);
+}
+
+TEST(SceneFormat, PlacesAsScaleThenRotationsThenTranslation) {
+    // The same whatever the order of the keys; only rotations keep theirs.
+    const char* lines[] = {"load a.obj translate 1 2 3 rotate 0 0 1 90 scale 2 3 4\n",
+                           "load a.obj scale 2 3 4 translate 1 2 3 rotate 0 0 1 90\n"};
+    for (const char* line : lines) {
+        const Recording r = import_good(line);
+        expect_near(transformed(r.loads.at(0).world_from_object, {1, 0, 0}), {1, 4, 3});
+        expect_near(transformed(r.loads[0].world_from_object, {0, 1, 0}), {-2, 2, 3});
+        expect_near(transformed(r.loads[0].world_from_object, {0, 0, 1}), {1, 2, 7});
+    }
+    const Recording twice = import_good("load a.obj rotate 1 0 0 90 rotate 0 1 0 90\n");
+    expect_near(transformed(twice.loads.at(0).world_from_object, {0, 1, 0}), {1, 0, 0});  // y -> z -> x
+    const Recording mirror = import_good("load a.obj scale -1 1 1\n");
+    expect_near(transformed(mirror.loads.at(0).world_from_object, {1, 1, 1}), {-1, 1, 1});
+}
+
+TEST(SceneFormat, KeepsTheOrderOfGeometry) {
+    const Recording r = import_good(
+        "material red color 1 0 0\n"
+        "triangle vertices 0 0 0 1 0 0 0 1 0 material red\n"
+        "triangle vertices 0 0 1 1 0 1 0 1 1\n"
+        "sphere\n"
+        "triangle vertices 0 0 2 1 0 2 0 1 2\n"
+        "load x.obj\n"
+        "polygon vertices 0 0 0 1 0 0 0 1 0\n");
+    EXPECT_EQ(r.order, (std::vector<std::string>{"mesh", "sphere", "mesh", "load", "polygon"}));
+    EXPECT_EQ(r.meshes.at(0).face_materials, (std::vector<rt_u32>{0, RT_NONE}));
+    EXPECT_EQ(r.meshes[0].positions.at(11), 1.0f);
+    EXPECT_EQ(r.instanced_meshes, (std::vector<rt_u32>{0, 1}));
+}
+
+TEST(SceneFormat, AcceptsConcavePolygonsAndDegenerateTriangles) {
+    const Recording r = import_good(
+        "polygon vertices 0 0 0  4 0 0  4 0 4  2 0 1  0 0 4\n"
+        "triangle vertices 0 0 0 1 1 1 2 2 2\n"
+        "triangle vertices 5 5 5 5 5 5 5 5 5\n");
+    EXPECT_EQ(r.polygons.size(), 1u);
+    EXPECT_EQ(r.meshes.at(0).indices.size(), 6u);
+    ASSERT_EQ(r.warnings.size(), 1u);
+    EXPECT_EQ(r.warnings[0], "test.scene:2:10: a triangle without area is invisible (further ones are not reported)");
+}
+
+TEST(SceneFormat, PlanarityIsRelativeToSizeAndPlace) {
+    import_good("polygon vertices 1000000 0 0  1000001 0 0  1000001 1 0  1000000 1 0\n");
+    import_good("polygon vertices 0 0 0  1000 0 0  1000 1000 .05  0 1000 0\n");
+    import_good("polygon vertices 0 0 0  1e-6 0 0  1e-6 1e-6 0  0 1e-6 0\n");
+}
+
+TEST(SceneFormat, AcceptsAnyLineEndAndEncodingOfText) {
+    const Recording r = import_good("\xEF\xBB\xBFsphere\r\nsphere\rsphere\n\t sphere # caf\xE9 in Latin-1, in a comment\n");
+    EXPECT_EQ(r.spheres.size(), 4u);
+}
+
+TEST(SceneFormat, QuotedNamesHoldAnything) {
+    const Recording r = import_good(
+        "material \"dark # blue \xC3\xA9\"\nmaterial \"color\"\nsphere material \"dark # blue \xC3\xA9\"\nsphere material "
+        "\"color\"\n");
+    EXPECT_EQ(r.materials.at(0).name, "dark # blue \xC3\xA9");
+    EXPECT_EQ(r.spheres.at(1).material, 1u);
+}
+
+TEST(SceneFormat, NumbersDoNotDependOnLocale) {
+    const char* old = std::setlocale(LC_NUMERIC, nullptr);
+    const std::string saved = old != nullptr ? old : "C";
+    std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // where it is not installed, the test still reads numbers
+    const Recording r = import_good("sphere radius 2.5 center +1.5 -.25 1e-2\n");
+    std::setlocale(LC_NUMERIC, saved.c_str());
+    EXPECT_EQ(r.spheres.at(0).radius, 2.5f);
+    expect_near(r.spheres[0].center, {1.5f, -0.25f, 0.01f});
+}
+
+TEST(SceneFormat, SinkFailureNamesTheStatement) {
+    Recording r;
+    r.refuse_loads = true;
+    import_text("sphere\nload \"gone.fbx\"\nsphere\n", r);
+    EXPECT_EQ(r.status, RT_FAILED);
+    EXPECT_EQ(r.why, "the sink refused gone.fbx");
+    EXPECT_EQ(r.log, std::vector<std::string>{"test.scene:2:6: the import stopped at this statement"});
+    EXPECT_EQ(r.spheres.size(), 1u);
+}
+
+TEST(SceneFormat, StopsWhenCancelled) {
+    std::string text;
+    for (int i = 0; i < 20000; ++i) text += "sphere\n";
+    Recording reading;
+    reading.reports_before_cancel = 2;
+    import_text(text, reading);
+    EXPECT_EQ(reading.status, RT_CANCELLED);
+    EXPECT_EQ(reading.spheres.size(), 0u);
+    Recording handing_over;
+    handing_over.reports_before_cancel = 10;
+    import_text(text, handing_over);
+    EXPECT_EQ(handing_over.status, RT_CANCELLED);
+    EXPECT_LT(handing_over.spheres.size(), 20000u);
+}
+
+}  // namespace
