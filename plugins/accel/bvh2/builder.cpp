@@ -2,6 +2,7 @@
 
 #include <numeric>
 
+#include "rt_plugin.hpp"
 #include "statistics.hpp"
 
 namespace bvh2 {
@@ -25,8 +26,8 @@ struct Builder::Cut {
 };
 
 Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count)
-    : input_(input),
-      host_(host),
+    : host_(host),
+      input_(input),
       primitive_count_(primitive_count),
       work_total_(2 * primitive_count + 1),
       records_{Scratch<Record>(primitive_count), Scratch<Record>(primitive_count)},
@@ -35,20 +36,23 @@ Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& 
       roots_(input.group_count),
       boxes_(input.group_count) {}
 
-bool Builder::report(uint64_t work) {
-    const uint64_t done = work_done_ += work;
-    return host_.report(
-        static_cast<float>(static_cast<double>(std::min(done, work_total_)) / static_cast<double>(work_total_)));
+template <class Body>
+void Builder::parallel_for(size_t count, Body&& body) const {
+    rt::parallel_for(host_, static_cast<rt_u32>(count), std::forward<Body>(body));
 }
 
-int32_t Builder::run(const rt_build_output& out) {
-    workspace_.leaves = out.leaves(out.ctx, primitive_count_);
-    if (!workspace_.leaves && primitive_count_ > 0) return RT_FAILED;
+// Throws where the user cancelled.
+void Builder::report(uint64_t work) {
+    const uint64_t done = work_done_ += work;
+    rt::progress(host_,
+                 static_cast<float>(static_cast<double>(std::min(done, work_total_)) / static_cast<double>(work_total_)));
+}
+
+void Builder::run(const rt_build_output* out) {
+    workspace_.leaves = rt::leaves(out, primitive_count_);
     split_top(load());
-    if (host_.cancelled()) return RT_CANCELLED;
     run_tasks();
-    if (host_.cancelled()) return RT_CANCELLED;
-    return write_nodes(out) ? RT_OK : RT_FAILED;
+    write_nodes(out);
 }
 
 // Copies the primitives, one group after the other, and bounds each group.
@@ -64,7 +68,7 @@ std::vector<Builder::Pending> Builder::load() {
             chunks.push_back({g, at, std::min(at + kChunkSize, pending.range.end), 0, 0, {}, {}, {}, {}});
         groups.push_back(pending);
     }
-    host_.parallel_for(chunks.size(), [&](uint32_t i) {
+    parallel_for(chunks.size(), [&](uint32_t i) {
         Chunk& chunk = chunks[i];
         const rt_prim* prim = input_.prims + input_.groups[chunk.owner].first + (chunk.begin - groups[chunk.owner].range.begin);
         const Vec4 least = splat(-FLT_MAX), most = splat(FLT_MAX);
@@ -99,7 +103,7 @@ void Builder::put(const Pending& pending, TopChild child) {
 }
 
 void Builder::split_top(std::vector<Pending> level) {
-    while (!level.empty() && !host_.cancelled()) {
+    while (!level.empty()) {
         std::vector<Pending> large;
         for (const Pending& pending : level) {
             if (pending.range.count() > kTaskSize) {
@@ -129,7 +133,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
 
     // Bin every chunk.
     Scratch<Bins> chunk_bins(chunks.size());
-    host_.parallel_for(chunks.size(), [&](uint32_t c) {
+    parallel_for(chunks.size(), [&](uint32_t c) {
         const Cut& cut = cuts[chunks[c].owner];
         if (!cut.binned) return;
         const Range& range = level[chunks[c].owner].range;
@@ -139,7 +143,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
     });
 
     // Choose each range's plane, and from the chunks' counts the places where each one's primitives will go.
-    host_.parallel_for(level.size(), [&](uint32_t i) {
+    parallel_for(level.size(), [&](uint32_t i) {
         const Range& range = level[i].range;
         Cut& cut = cuts[i];
         Chunk* const first = chunks.data() + cut.first_chunk;
@@ -168,7 +172,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
     });
 
     // Move every chunk.
-    host_.parallel_for(chunks.size(), [&](uint32_t c) {
+    parallel_for(chunks.size(), [&](uint32_t c) {
         Chunk& chunk = chunks[c];
         const Cut& cut = cuts[chunk.owner];
         if (!cut.binned) return;
@@ -202,9 +206,8 @@ void Builder::run_tasks() {
     std::vector<uint32_t> order(tasks_.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return tasks_[a].count() > tasks_[b].count(); });
-    host_.parallel_for(order.size(), [&](uint32_t i) {
+    parallel_for(order.size(), [&](uint32_t i) {
         const Range& range = tasks_[order[i]];
-        if (host_.cancelled()) return;
         if (range.count() > 0) subtrees_[order[i]] = build_subtree(workspace_, range);
         report(range.count());
     });
@@ -222,7 +225,7 @@ rt_u32 Builder::place(TopChild child, rt_u32 next) {
     return place(node.child[1], next);
 }
 
-bool Builder::write_nodes(const rt_build_output& out) {
+void Builder::write_nodes(const rt_build_output* out) {
     task_place_.resize(tasks_.size());
     std::vector<rt_u32> roots(roots_.size());
     rt_u32 count = 0;
@@ -231,10 +234,9 @@ bool Builder::write_nodes(const rt_build_output& out) {
         const bool has_node = !roots_[g].is_task || subtrees_[roots_[g].index].nodes > 0;
         count = has_node ? place(roots_[g], count) : count + 1;
     }
-    auto* nodes = static_cast<bvh2_node*>(out.alloc(out.ctx, 0, count));
-    if (!nodes && count > 0) return false;
+    bvh2_node* const nodes = rt::alloc<bvh2_node>(out, 0, count);
 
-    host_.parallel_for(tasks_.size(), [&](uint32_t t) {
+    parallel_for(tasks_.size(), [&](uint32_t t) {
         const bvh2_node* from = workspace_.nodes + tasks_[t].begin;
         for (uint32_t i = 0; i < subtrees_[t].nodes; ++i) {
             bvh2_node node = from[i];
@@ -257,20 +259,19 @@ bool Builder::write_nodes(const rt_build_output& out) {
             set_child(nodes[roots[g]], 0, empty ? nowhere : boxes_[g], empty ? BVH2_MAKE_LEAF(0u, 0u) : code(roots_[g]));
             set_child(nodes[roots[g]], 1, nowhere, BVH2_MAKE_LEAF(0u, 0u));
         }
-        out.root(out.ctx, g, roots[g]);
+        rt::root(out, g, roots[g]);
     }
     uint32_t depth = 1;
     for (const Subtree& subtree : subtrees_) depth = std::max(depth, subtree.depth);
     const Statistics statistics = measure(host_, workspace_.rules, nodes, count, roots, input_.groups);
-    out.stat(out.ctx, "nodes", count);
-    out.stat(out.ctx, "leaves", static_cast<double>(statistics.leaves));
-    out.stat(out.ctx, "depth", depth);
-    out.stat(out.ctx, "sah_cost", statistics.sah_cost);
-    out.stat(out.ctx, "build_bytes", static_cast<double>(primitive_count_ * kBytesPerPrimitive));
+    rt::stat(out, "nodes", count);
+    rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
+    rt::stat(out, "depth", depth);
+    rt::stat(out, "sah_cost", statistics.sah_cost);
+    rt::stat(out, "build_bytes", static_cast<double>(primitive_count_ * kBytesPerPrimitive));
     // One place a level, and one to spare that tells a full stack from an overflowing one; in steps of 8, since a new value
     // recompiles the kernels.
-    out.define(out.ctx, "BVH2_STACK", (depth + 1 + 7) / 8 * 8);
-    return true;
+    rt::define(out, "BVH2_STACK", (depth + 1 + 7) / 8 * 8);
 }
 
 }  // namespace bvh2

@@ -5,9 +5,10 @@
 // the input only, and what threads compute is merged in the order of chunks, so the tree is the same whatever the number of
 // threads.
 #pragma once
+#include <atomic>
 #include <vector>
 
-#include "host.hpp"
+#include "scratch.hpp"
 #include "subtree.hpp"
 
 namespace bvh2 {
@@ -28,14 +29,13 @@ struct TopNode {
 
 class Builder {
  public:
-    // Positions in leaf order are 28 bits.
-    static constexpr uint64_t kMaxPrimitives = uint64_t{1} << 28;
+    // Positions in leaf order are 28 bits, as refs are.
+    static constexpr uint64_t kMaxPrimitives = RT_REF_INDEX_MAX;
     // Of memory that is given back at the end.
     static constexpr uint64_t kBytesPerPrimitive = 2 * sizeof(Record) + sizeof(bvh2_node);
 
     Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count);
-    // RT_OK, RT_FAILED or RT_CANCELLED.
-    int32_t run(const rt_build_output& out);
+    void run(const rt_build_output* out);
 
  private:
     struct Pending {
@@ -51,12 +51,14 @@ class Builder {
     std::vector<Pending> split_level(const std::vector<Pending>& level);
     void run_tasks();
     rt_u32 place(TopChild child, rt_u32 next);
-    bool write_nodes(const rt_build_output& out);
+    void write_nodes(const rt_build_output* out);
     void put(const Pending& pending, TopChild child);
-    bool report(uint64_t work_done);
+    void report(uint64_t work);
+    template <class Body>
+    void parallel_for(size_t count, Body&& body) const;
 
+    const rt_host* const host_;
     const rt_build_input& input_;
-    Host host_;
     uint64_t primitive_count_, work_total_;
     Scratch<Record> records_[2];
     Scratch<bvh2_node> nodes_;

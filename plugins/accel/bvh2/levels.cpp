@@ -1,13 +1,16 @@
-// levels.cpp -- the boxes of one level of a group's tree, for drawing.
+#include "levels.hpp"
+
 #include <algorithm>
 #include <vector>
 
-#include "plugin.hpp"
+#include "rt_plugin.hpp"
+// after rt_types.h, whose types it uses:
+#include "bvh2_types.h"
 
 namespace bvh2 {
 
 int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 level, const rt_volume_sink* sink) {
-    if (group >= built->group_count) return host->fail(host->ctx, "bvh2: levels of a group that the scene does not have");
+    if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const auto* nodes = static_cast<const bvh2_node*>(built->slots[0]);
     const auto show = [&](const float box[6]) { sink->box(sink->ctx, box, box + 3); };
     const auto is_nothing = [](rt_u32 child) { return (child & BVH2_LEAF) && BVH2_LEAF_COUNT(child) == 0; };

@@ -1,5 +1,7 @@
 #include "statistics.hpp"
 
+#include "rt_plugin.hpp"
+
 namespace bvh2 {
 namespace {
 
@@ -35,7 +37,7 @@ struct Part {
 
 }  // namespace
 
-Statistics measure(const Host& host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
+Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
                    const std::vector<rt_u32>& roots, const rt_group* groups) {
     constexpr rt_u32 kPart = 8192;
     std::vector<Part> parts;
@@ -43,7 +45,7 @@ Statistics measure(const Host& host, const Rules& rules, const bvh2_node* nodes,
         const rt_u32 end = g + 1 < roots.size() ? roots[g + 1] : node_count;
         for (rt_u32 at = roots[g]; at < end; at = parts.back().end) parts.push_back({g, at, std::min(at + kPart, end)});
     }
-    host.parallel_for(parts.size(), [&](uint32_t p) {
+    rt::parallel_for(host, static_cast<rt_u32>(parts.size()), [&](uint32_t p) {
         for (rt_u32 i = parts[p].begin; i < parts[p].end; ++i) {
             parts[p].add(nodes[i].box0, nodes[i].child0);
             parts[p].add(nodes[i].box1, nodes[i].child1);

@@ -2,9 +2,10 @@
 #pragma once
 #include <vector>
 
-#include "bvh2_rt.hpp"
-#include "host.hpp"
 #include "partition.hpp"
+#include "rt_plugin.h"
+// after rt_types.h, whose types it uses:
+#include "bvh2_types.h"
 
 namespace bvh2 {
 
@@ -17,7 +18,7 @@ struct Statistics {
 };
 
 // roots[g] begins the nodes of group g, which end where those of the next begin, and the last ones at node_count.
-Statistics measure(const Host& host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
+Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
                    const std::vector<rt_u32>& roots, const rt_group* groups);
 
 }  // namespace bvh2

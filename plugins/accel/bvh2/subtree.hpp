@@ -1,7 +1,9 @@
 // subtree.hpp -- builds the tree of one range on one thread, without allocating.
 #pragma once
-#include "bvh2_rt.hpp"
 #include "partition.hpp"
+#include "rt_plugin.h"
+// after rt_types.h, whose types it uses:
+#include "bvh2_types.h"
 
 namespace bvh2 {
 

@@ -6,7 +6,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     for (uint i = 0; i < count; ++i) {
         RT_LEAF(ctx, first + i, ray, hit);
 #if RT_ANY_HIT
-        if (!rt_any(RT_MASK(hit->t >= 0.0f))) return;
+        if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return;
 #endif
     }
 }

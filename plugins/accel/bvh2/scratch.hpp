@@ -1,38 +1,13 @@
-// host.hpp -- the host's services as the builder uses them.
+// scratch.hpp -- memory that is filled before it is read.
 #pragma once
-#include <atomic>
 #include <cstdlib>
 #include <memory>
 #include <new>
-#include <type_traits>
-
-#include "rt_plugin.h"
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
 
 namespace bvh2 {
-
-class Host {
- public:
-    explicit Host(const rt_host* host) : host_(host) {}
-    template <class F>
-    void parallel_for(size_t count, const F& body) const {
-        host_->parallel_for(
-            host_->ctx, static_cast<rt_u32>(count), [](void* user, rt_u32 i) { (*static_cast<const F*>(user))(i); },
-            const_cast<void*>(static_cast<const void*>(&body)));
-    }
-    // False once the user cancelled. Any thread.
-    bool report(float fraction) {
-        if (!cancelled_ && !host_->progress(host_->ctx, fraction)) cancelled_ = true;
-        return !cancelled_;
-    }
-    bool cancelled() const { return cancelled_; }
-
- private:
-    const rt_host* host_;
-    std::atomic<bool> cancelled_{false};
-};
 
 // Memory that nobody clears first: its pages are touched by the threads that fill them, and in large pages where the system has
 // them (the faults of small ones are a tenth of a build).

@@ -1,0 +1,40 @@
+// linear.cpp -- no structure at all: every ray meets every primitive, in order. Slow and hard to get wrong, so the reference
+// that the others are compared with, and the shortest example of a plugin.
+#include "rt_plugin.hpp"
+// after rt_types.h, whose types it uses:
+#include "linear_types.h"
+
+namespace {
+
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+    uint64_t count = 0;
+    for (rt_u32 g = 0; g < input->group_count; ++g) count += input->groups[g].count;
+    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: take a tree, and instances");
+
+    auto* runs = rt::alloc<linear_run>(out, 0, input->group_count);
+    rt_u32* leaves = rt::leaves(out, count);
+    rt_u32 at = 0;
+    for (rt_u32 g = 0; g < input->group_count; ++g) {
+        const rt_group& group = input->groups[g];
+        runs[g] = {at, group.count};
+        for (rt_u32 i = 0; i < group.count; ++i) leaves[at++] = input->prims[group.first + i].ref;
+        rt::root(out, g, g);
+        rt::progress(host, static_cast<float>(at) / static_cast<float>(count + 1));
+    }
+    rt::stat(out, "nodes", input->group_count);
+    return RT_OK;
+}
+
+constexpr rt_cl_file kFiles[] = {
+#include "linear.inc"
+};
+constexpr rt_slot kSlots[] = {rt::slot<linear_run>("linear_runs", "linear_run")};
+// It has no bounding volumes, hence no levels; and nothing to refit.
+constexpr rt_accel kAccel = {
+    sizeof(rt_accel),   1,       kSlots, rt::file(kFiles, "linear_types.h"), rt::file(kFiles, "linear.cl"),
+    rt::guarded<build>, nullptr, nullptr};
+static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
+
+}  // namespace
+
+const rt_plugin rt_plugin_v1 = rt::accel_plugin("linear", "List (tests everything)", "1.0.0", nullptr, kAccel);
