@@ -30,14 +30,6 @@ std::string check_text(const char* what, const char* text, bool required) {
     return {};
 }
 
-// OpenCL C and JSON keys alike.
-bool is_identifier(const char* text) {
-    const size_t bytes = text ? strnlen(text, kMaxText) : 0;
-    if (bytes == 0 || bytes > 64) return false;
-    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
-    return letter(text[0]) && std::all_of(text, text + bytes, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
-}
-
 // "uint", "float4", "bvh2_node", "unsigned int": identifiers with single blanks between them.
 bool is_type_name(const char* text) {
     const size_t bytes = text ? strnlen(text, kMaxText) : 0;
@@ -158,6 +150,13 @@ std::string check_importer(const rt_importer& importer) {
 }
 
 }  // namespace
+
+bool is_identifier(const char* text) {
+    const size_t bytes = text ? strnlen(text, kMaxText) : 0;
+    if (bytes == 0 || bytes > 64) return false;
+    const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; };
+    return letter(text[0]) && std::all_of(text, text + bytes, [&](char c) { return letter(c) || (c >= '0' && c <= '9'); });
+}
 
 bool is_plugin_id(std::string_view text) {
     if (text.empty() || text.size() > 32 || text[0] < 'a' || text[0] > 'z') return false;

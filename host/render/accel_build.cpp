@@ -12,6 +12,7 @@
 
 #include "base/error.hpp"
 #include "plugin/host_services.hpp"
+#include "plugin/plugin_check.hpp"
 
 namespace clarity {
 namespace {
@@ -190,11 +191,17 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     output_table.root = [](void* ctx, rt_u32 group, rt_u32 node) { output(ctx).root(group, node); };
     output_table.define = [](void* ctx, const char* name, rt_u32 value) {
         const std::lock_guard<std::mutex> lock(output(ctx).mutex);
-        output(ctx).data.defines[name] = value;
+        if (is_identifier(name))
+            output(ctx).data.defines[name] = value;
+        else  // it would become a line of the kernel's source
+            output(ctx).refuse(std::string("gave a define the name '") + (name ? name : "NULL") + "', which is no identifier");
     };
     output_table.stat = [](void* ctx, const char* label, double value) {
         const std::lock_guard<std::mutex> lock(output(ctx).mutex);
-        output(ctx).data.stats.emplace_back(label, value);
+        if (label)
+            output(ctx).data.stats.emplace_back(label, value);
+        else
+            output(ctx).refuse("gave a stat no label");
     };
     start = std::chrono::steady_clock::now();
     services.check(static_cast<int>(Exit::failed), [&] { return plugin.accel->build(services.host(), &input, &output_table); });

@@ -25,13 +25,12 @@ const char* const kDefects[] = {"none",
                                 "leaves_too_many",
                                 "ref_of_no_primitive",
                                 "ref_of_no_kind",
-                                "ref_of_other_group",
                                 "missing_root",
-                                "root_twice",
                                 "root_out_of_range",
                                 "root_of_no_group",
                                 "define_of_odd_name",
-                                "stat_not_a_number",
+                                "define_of_no_name",
+                                "stat_of_no_name",
                                 nullptr};
 
 struct Run {
@@ -81,16 +80,15 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
         for (rt_u32 i = 0; i < group.count && leaves; ++i) leaves[next++] = in->prims[group.first + i].ref;
         if (is("missing_root") && g + 1 == in->group_count) continue;
         out->root(out->ctx, g, is("root_out_of_range") ? in->group_count + 1000 : g);
-        if (is("root_twice")) out->root(out->ctx, g, g);
     }
     if (is("root_of_no_group")) out->root(out->ctx, in->group_count, 0);
     if (leaves && total > 0) {
         if (is("ref_of_no_primitive")) leaves[0] = RT_REF_INDEX_MAX;
         if (is("ref_of_no_kind")) leaves[0] = 0x90000000u;
-        if (is("ref_of_other_group")) leaves[total - 1] = RT_REF_INSTANCE;
     }
     if (is("define_of_odd_name")) out->define(out->ctx, "1 ); abort(", 1);
-    if (is("stat_not_a_number")) out->stat(out->ctx, nullptr, 1);
+    if (is("define_of_no_name")) out->define(out->ctx, nullptr, 1);
+    if (is("stat_of_no_name")) out->stat(out->ctx, nullptr, 1);
     return RT_OK;
 }
 

@@ -1,0 +1,131 @@
+// What the host makes of a builder that breaks its contract: one clear error, no crash, and the next build works.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/progress.hpp"
+#include "plugin/parameters.hpp"
+#include "plugin/registry.hpp"
+#include "render/accel_build.hpp"
+
+namespace {
+
+// A mesh of two triangles placed twice, so that there is a second group, a mesh placed once, and a sphere.
+clarity::Scene sample_scene() {
+    clarity::Scene scene;
+    scene.materials.push_back({"default", clarity::default_material()});
+    scene.positions = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0, 5, 0, 0, 6, 0, 0, 6, 1, 0};
+    scene.triangles = {0, 1, 2, 0, 2, 3, 4, 5, 6};
+    scene.triangle_materials = {0, 0, 0};
+    clarity::Mesh twice, once;
+    twice.vertex_count = 4;
+    twice.triangle_count = 2;
+    twice.polygon_count = 2;
+    once.first_vertex = 4;
+    once.vertex_count = 3;
+    once.first_triangle = 2;
+    once.triangle_count = 1;
+    once.polygon_count = 1;
+    scene.meshes = {twice, once};
+    clarity::Instance moved;
+    moved.world_from_object[3] = 2;
+    scene.instances = {{}, moved, {}};
+    scene.instances[2].mesh = 1;
+    scene.spheres.push_back({{0, 0, 3}, 1, 0});
+    return scene;
+}
+
+const rt_plugin& builder() {
+    static const clarity::PluginRecord record = clarity::load_plugin(std::string(BAD_PLUGINS) + "/bad_builder.so");
+    if (!record.plugin) throw std::runtime_error(record.path + ": " + record.why);
+    return *record.plugin;
+}
+
+clarity::AccelData build(const std::string& defect, clarity::Progress& progress) {
+    clarity::ParameterValues params = clarity::default_parameters(builder());
+    clarity::set_parameter(builder(), params, "defect", defect);
+    return clarity::build_accel(sample_scene(), builder(), params, progress);
+}
+
+struct Breach {
+    const char* defect;
+    const char* says;
+};
+void PrintTo(const Breach& breach, std::ostream* out) {
+    *out << breach.defect;
+}
+
+class BadBuilder : public testing::TestWithParam<Breach> {};
+
+TEST_P(BadBuilder, IsOneClearError) {
+    clarity::Progress progress;
+    try {
+        build(GetParam().defect, progress);
+        FAIL() << "the build was taken";
+    } catch (const clarity::Cancelled&) {
+        FAIL() << "nobody cancelled";
+    } catch (const clarity::Error& e) {
+        const std::string what = e.what();
+        EXPECT_EQ(e.code(), clarity::Exit::failed);
+        EXPECT_EQ(what.find("accel bad_builder: "), 0u) << what;
+        EXPECT_NE(what.find(GetParam().says), std::string::npos) << what;
+        EXPECT_EQ(what.find('\n'), std::string::npos) << what;
+    }
+    EXPECT_NO_THROW(build("none", progress)) << "a failed build must not spoil the next one";
+}
+
+const Breach kBreaches[] = {
+    {"fails", "this builder always fails"},
+    {"fails_silently", "without saying why"},
+    {"ok_after_fail", "this builder failed and goes on (and then it reported success"},
+    {"odd_status", "returned 77"},
+    {"cancelled_by_nobody", "nobody had cancelled"},
+    {"throws", "thrown by the builder"},
+    {"throws_no_exception_class", "unknown type"},
+    {"throws_in_loop", "thrown in iteration 7"},
+    {"fails_in_loop", "one of many"},
+    {"alloc_twice", "twice"},
+    {"alloc_of_no_slot", "slot 1 of 1"},
+    {"alloc_too_much", "slot bad_builder_runs"},
+    {"no_slot", "never allocated slot bad_builder_runs"},
+    {"no_leaves", "never asked for the leaves"},
+    {"leaves_twice", "leaves twice"},
+    {"leaves_too_many", "leaves"},
+    {"ref_of_no_primitive", "ref"},
+    {"ref_of_no_kind", "ref"},
+    {"missing_root", "no root for group 1"},
+    {"root_out_of_range", "reported root 1002 for group 0"},
+    {"root_of_no_group", "root for group 2 of 2"},
+    {"define_of_odd_name", "define"},
+    {"define_of_no_name", "define"},
+    {"stat_of_no_name", "stat"},
+};
+INSTANTIATE_TEST_SUITE_P(Breaches, BadBuilder, testing::ValuesIn(kBreaches),
+                         [](const testing::TestParamInfo<Breach>& info) { return info.param.defect; });
+
+// The same builder without a defect: the scene is sound, it is the breach that is refused above.
+TEST(GoodBuilder, IsTaken) {
+    clarity::Progress progress;
+    const clarity::AccelData accel = build("none", progress);
+    EXPECT_EQ(accel.roots.size(), 2u);
+    EXPECT_EQ(accel.leaf_count, 6u) << "world: a triangle, a sphere, two instances; mesh: two triangles";
+    ASSERT_EQ(accel.slots.size(), 1u);
+    EXPECT_EQ(accel.slots[0].count, 2u);
+}
+
+TEST(GoodBuilder, CanBeCancelled) {
+    clarity::Progress progress;
+    progress.cancel();
+    EXPECT_THROW(build("cancelled_by_nobody", progress), clarity::Cancelled);
+}
+
+TEST(BadBuilders, AllAreTested) {
+    std::set<std::string> declared, tested = {"none"};
+    for (const char* const* choice = builder().params[0].choices; *choice; ++choice) declared.insert(*choice);
+    for (const Breach& breach : kBreaches) tested.insert(breach.defect);
+    EXPECT_EQ(declared, tested);
+}
+
+}  // namespace
