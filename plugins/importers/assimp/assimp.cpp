@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "complaints.hpp"
 #include "file_kind.hpp"
 #include "lights_cameras.hpp"
 #include "materials.hpp"
@@ -97,8 +98,7 @@ void warn(const rt_scene_sink& sink, const std::string& text) {
 }
 
 // One instance for each node that shows polygons.
-void add_instances(const aiScene& scene, const NodeTree& tree, MeshTable& meshes, const rt_host* host,
-                   const rt_scene_sink& sink) {
+void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host, const rt_scene_sink& sink) {
     size_t done = 0, strayed = 0;
     for (const PlacedNode& placed : tree.nodes()) {
         rt::progress(host, kReadShare + (1 - kReadShare) * float(++done) / float(tree.nodes().size()));
@@ -119,19 +119,29 @@ void add_instances(const aiScene& scene, const NodeTree& tree, MeshTable& meshes
         rt::id(sink.instance(sink.ctx, &out));
     }
     if (strayed) warn(sink, std::to_string(strayed) + " nodes were left out: their transforms are not finite");
+}
+
+// Says what was left out; throws if that was everything.
+void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes, const std::vector<std::string>& errors,
+            const rt_host* host, const rt_scene_sink& sink) {
+    for (const std::string& error : errors) warn(sink, "assimp left something out: " + error);
     if (meshes.broken_faces()) {
         warn(sink,
              std::to_string(meshes.broken_faces()) + " faces were left out: they name vertices that are missing or not finite");
     }
-    if (meshes.faces() == 0) {
-        // What holds vertices but no sound face is damaged; what never had polygons (NURBS, curves, cameras) is not.
-        if (meshes.broken_faces() || (scene.mNumMeshes > 0 && meshes.points_and_lines() == 0)) {
-            throw rt::fail(host, "contains no usable polygons: it is damaged, or not all of it was written");
-        }
-        warn(sink, "contains no polygons (points, lines, NURBS and the like were skipped)");
-    } else if (meshes.points_and_lines()) {
-        warn(sink, std::to_string(meshes.points_and_lines()) + " points and lines were skipped");
+    if (meshes.faces() > 0) {
+        if (meshes.points_and_lines()) warn(sink, std::to_string(meshes.points_and_lines()) + " points and lines were skipped");
+        return;
     }
+    // What lost its polygons on the way is damaged; what never had any (NURBS, curves, cameras) is not.
+    if (!errors.empty()) throw rt::fail(host, "contains no usable polygons: " + errors.front());
+    if (tree.nodes().size() <= 1 && scene.mNumMeshes == 0) {
+        throw rt::fail(host, "contains no nodes: they form a cycle, hang from nothing, or were never written");
+    }
+    if (meshes.broken_faces() || (scene.mNumMeshes > 0 && meshes.points_and_lines() == 0)) {
+        throw rt::fail(host, "contains no usable polygons: all of them name vertices that are missing or not finite");
+    }
+    warn(sink, "contains no polygons (points, lines, NURBS and the like were skipped)");
 }
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
@@ -152,11 +162,12 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, false);
     importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
+    const Complaints complaints;
     importer.ReadFile(path, 0);
     if (progress->cancelled()) return RT_CANCELLED;
+    std::string why = importer.GetErrorString();
     const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
     if (!scene || !scene->mRootNode) {
-        std::string why = importer.GetErrorString();
         why.erase(std::remove(why.begin(), why.end(), '\n'), why.end());
         throw rt::fail(host, why.empty() ? "assimp cannot read it and does not say why" : "assimp cannot read it: " + why);
     }
@@ -165,7 +176,8 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     const NodeTree tree(*scene, format == Format::fbx);
     MaterialTable materials(*scene, format, path, *sink);
     MeshTable meshes(*scene, materials, *sink);
-    add_instances(*scene, tree, meshes, host, *sink);
+    add_instances(tree, meshes, host, *sink);
+    report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
     add_cameras(*scene, tree, format, *sink);
     rt_scene_info info{};
