@@ -192,6 +192,10 @@ void write_image(const std::string& path, const FloatImage& values, const ByteIm
     return format == Format::exr ? write_exr(path, values) : write_pfm(path, values);
 }
 
+bool writes_display(const std::string& path) {
+    return format_of(path) == Format::png;
+}
+
 void check_output_path(const std::string& path) {
     check_ending(path);
     check_writable(path);

@@ -1,0 +1,226 @@
+#include "cli/command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <memory>
+
+#include "base/error.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 1 failed, 2 usage, 3 no OpenCL device, 4 import failed, 5 kernel build failed, 130 interrupted\n"
+    "Environment: CLARITY_DEVICE, CLARITY_PLUGIN_PATH (folders, colon between them), NO_COLOR";
+
+// Everything that options are parsed into; commands keep it alive.
+struct Parsed {
+    CommonOptions common;
+    SceneOptions scene;
+    TraceOptions trace;
+    RenderOptions render;
+    std::string key_map;
+    bool json = false;
+};
+
+// The last one of several wins, so that a shell alias can be overruled.
+CLI::Option* single(CLI::Option* option) {
+    return option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+}
+
+void add_common(CLI::App& app, CommonOptions& common) {
+    app.add_option("--plugin", common.plugin_files, "A plugin library to load before all others; may be repeated")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    auto* verbose = app.add_flag("-v,--verbose", common.verbose, "Say more");
+    app.add_flag("-q,--quiet", common.quiet, "Warnings and errors only, no progress bar")->excludes(verbose);
+    single(app.add_option("--log-file", common.log_file, "Append the log, with times, to this file"))->type_name("FILE");
+}
+
+CLI::Option* add_scene(CLI::App& app, SceneOptions& scene) {
+    app.add_option("--search-path", scene.import.search_paths,
+                   "A folder besides the scene's own that it may read files from; may be repeated")
+        ->type_name("DIR")
+        ->allow_extra_args(false);
+    app.add_flag("--import-in-process", scene.import.in_process,
+                 "Run importers in this process, to debug them; a crash is then the program's");
+    return app.add_option("scene", scene.files, "Scene or model files; several become one scene")->type_name("SCENE...");
+}
+
+std::string setting_help(const Setting& setting) {
+    static const Settings defaults;
+    std::string range;
+    char text[64];
+    switch (setting.kind) {
+        case Setting::Kind::integer:
+        case Setting::Kind::real:
+            std::snprintf(text, sizeof text, "%g to %g", setting.min, setting.max);
+            range = text;
+            break;
+        case Setting::Kind::boolean:
+            range = "true, false";
+            break;
+        case Setting::Kind::choice:
+            for (const std::string& choice : setting.choices) range += (range.empty() ? "" : ", ") + choice;
+            break;
+        case Setting::Kind::size:
+            std::snprintf(text, sizeof text, "WxH, each %g to %g", setting.min, setting.max);
+            range = text;
+            break;
+    }
+    return setting.help + " (" + range + "; default " + setting.get(defaults) + ")";
+}
+
+std::string option_name(std::string key) {
+    for (char& c : key)
+        if (c == '_') c = '-';
+    return "--" + key;
+}
+
+void add_trace(CLI::App& app, TraceOptions& trace) {
+    single(app.add_option("--device", trace.device, "P:D as `clarity devices` lists them, cpu, gpu or part of a name"))
+        ->type_name("D");
+    single(app.add_option("--accel", trace.accel, "Acceleration structure with its parameters (`clarity plugins` lists them)"))
+        ->type_name("ID[,key=value...]")
+        ->capture_default_str();
+    single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or where it stands and looks"))
+        ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
+    single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");
+    for (const Setting& setting : settings_table()) {
+        const auto set = [&trace, key = setting.key](const std::string& value) { trace.settings.emplace_back(key, value); };
+        single(app.add_option_function<std::string>(option_name(setting.key), set, setting_help(setting)))
+            ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
+            ->group("Settings");
+    }
+    app.add_option("--set", trace.sets, "The same, as key=value with the setting's key (ray_slots=16); may be repeated")
+        ->type_name("key=value")
+        ->allow_extra_args(false)
+        ->group("Settings");
+}
+
+void add_render(CLI::App& app, RenderOptions& render) {
+    single(app.add_option("-o,--output", render.output, "Picture to write: .png, .exr or .pfm; #### is the frame's number"))
+        ->type_name("OUT")
+        ->required();
+    single(app.add_option("--frames", render.frames, "Numbers of the frames to render (a scene that does not move: all alike)"))
+        ->type_name("A-B[/STEP]");
+    single(app.add_option("--time", render.time_s, "Time within the scene, seconds; scenes do not move yet"))
+        ->type_name("SECONDS");
+    single(app.add_option("--repeat", render.repeat, "Trace each frame N times, after one to warm up, for timing"))
+        ->type_name("N");
+    single(app.add_option("--stats", render.stats_file, "Write a JSON of times, rays and sizes; - is stdout"))
+        ->type_name("FILE");
+}
+
+std::string version_text() {
+#ifdef CLARITY_HAVE_UI
+    const char* window = "yes";
+#else
+    const char* window = "no (built without it)";
+#endif
+    return std::string("clarity ") + CLARITY_VERSION + "\nplugin ABI: " + std::to_string(RT_ABI_VERSION) +
+           "\nwindow: " + window;
+}
+
+// `clarity SCENE...` is `clarity view SCENE...`.
+std::vector<std::string> with_command(const CLI::App& app, int argc, char** argv) {
+    std::vector<std::string> words(argv + 1, argv + argc);
+    const auto is_command = [&](const std::string& word) {
+        for (const CLI::App* sub : app.get_subcommands({}))
+            if (sub->get_name() == word) return true;
+        return word == "-h" || word == "--help" || word == "--version";
+    };
+    if (words.empty() || !is_command(words.front())) words.insert(words.begin(), "view");
+    return words;
+}
+
+}  // namespace
+
+CommandLine parse_command_line(int argc, char** argv) {
+    const auto parsed = std::make_shared<Parsed>();
+    Parsed& p = *parsed;
+    CommandLine line;
+
+    CLI::App app("Clarity, a ray-tracing workbench.\n`clarity SCENE...` opens the window, as `clarity view SCENE...` does.",
+                 "clarity");
+    app.footer(kExitCodes);
+    app.set_version_flag("--version", version_text());
+    app.require_subcommand(1);
+    app.get_formatter()->column_width(34);
+
+    CLI::App* view = app.add_subcommand("view", "Open the window on a scene");
+    CLI::App* render = app.add_subcommand("render", "Render a scene to a picture file");
+    CLI::App* info = app.add_subcommand("info", "Tell what the importer understood of a file");
+    CLI::App* devices = app.add_subcommand("devices", "List OpenCL devices, best first");
+    CLI::App* plugins = app.add_subcommand("plugins", "List every plugin seen, loaded or not, and why not");
+
+    add_scene(*view, p.scene);
+    add_trace(*view, p.trace);
+    single(view->add_option("--keys", p.key_map, "Key map: thesis or viewer (WASD moves the camera)"))
+        ->type_name("MAP")
+        ->check(CLI::IsMember({"thesis", "viewer"}));
+    view->callback([&] {
+        line.command = [parsed](const PluginRegistry& registry) {
+            return run_view(registry, {parsed->scene, parsed->trace, parsed->key_map});
+        };
+    });
+
+    add_scene(*render, p.scene)->required();
+    add_render(*render, p.render);
+    add_trace(*render, p.trace);
+    render->callback([&] {
+        line.command = [parsed](const PluginRegistry& registry) {
+            RenderOptions options = parsed->render;
+            options.scene = parsed->scene;
+            options.trace = parsed->trace;
+            options.quiet = parsed->common.quiet;
+            return run_render(registry, options);
+        };
+    });
+
+    add_scene(*info, p.scene)->required();
+    info->add_flag("--json", p.json, "As JSON");
+    info->callback([&] {
+        line.command = [parsed](const PluginRegistry& registry) {
+            return run_info(registry, parsed->scene, parsed->json, parsed->common.quiet);
+        };
+    });
+
+    devices->add_flag("--json", p.json, "As JSON");
+    devices->callback([&] {
+        line.needs_plugins = false;
+        line.command = [parsed](const PluginRegistry&) { return run_devices(parsed->json); };
+    });
+
+    plugins->add_flag("--json", p.json, "As JSON");
+    plugins->callback([&] {
+        line.refused_plugin_is_fatal = false;
+        line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
+    });
+    for (CLI::App* sub : {view, render, info, devices, plugins}) {
+        add_common(*sub, p.common);
+        sub->get_formatter()->column_width(34);
+        sub->footer(kExitCodes);
+    }
+
+    std::vector<std::string> words = with_command(app, argc, argv);
+    try {
+        const std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 wants them
+        app.parse(std::vector<std::string>(reversed));
+    } catch (const CLI::CallForHelp&) {
+        const auto chosen = app.get_subcommands();
+        std::printf("%s", (chosen.empty() ? app : *chosen.front()).help().c_str());
+        return {};
+    } catch (const CLI::CallForVersion& e) {
+        std::printf("%s\n", e.what());
+        return {};
+    } catch (const CLI::ParseError& e) {
+        const auto chosen = app.get_subcommands();
+        const std::string command = chosen.empty() ? "clarity" : "clarity " + chosen.front()->get_name();
+        throw Error(Exit::usage, std::string(e.what()) + " (`" + command + " --help` explains)");
+    }
+    line.common = p.common;
+    return line;
+}
+
+}  // namespace clarity

@@ -1,0 +1,59 @@
+// commands.hpp -- the subcommands, one file each, and what the command line gives them. Each returns the program's exit code;
+// failures are thrown as Error.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "import/import.hpp"
+#include "plugin/registry.hpp"
+#include "render/settings.hpp"
+
+namespace clarity {
+
+struct SceneOptions {
+    std::vector<std::string> files;
+    ImportOptions import;
+};
+
+// What render and view share.
+struct TraceOptions {
+    std::string device;                                         // "": CLARITY_DEVICE, else the best
+    std::string accel = "bvh2";                                 // ID[,key=value...]
+    std::vector<std::string> sets;                              // key=value, in the order given
+    std::vector<std::pair<std::string, std::string>> settings;  // from options of their own; they win over `sets`
+    std::string camera, light;                                  // as make_view reads them
+};
+// Throws Error(usage) for an unknown plugin, key or value.
+Settings make_settings(const PluginRegistry& plugins, const TraceOptions& options);
+
+struct RenderOptions {
+    SceneOptions scene;
+    TraceOptions trace;
+    std::string output;      // .png, .exr, .pfm; a run of # is the frame's number
+    std::string frames;      // A-B[/S]; "": one frame, number 1
+    double time_s = 0;       // of the scene
+    unsigned repeat = 1;     // frames of each picture, for timing
+    std::string stats_file;  // "-": stdout
+    bool quiet = false;
+};
+int run_render(const PluginRegistry& plugins, const RenderOptions& options);
+
+struct ViewCommand {
+    SceneOptions scene;
+    TraceOptions trace;
+    std::string key_map;
+};
+int run_view(const PluginRegistry& plugins, const ViewCommand& options);
+
+int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool json, bool quiet);
+
+int run_devices(bool json);
+
+// Prints every library that discovery saw, loaded or not, and why not.
+int run_plugins(const PluginRegistry& plugins, bool json);
+
+// Throws Error(import_failed) for a file that does not exist or cannot be read, before anything is started for it.
+void check_scene_files(const std::vector<std::string>& files);
+
+}  // namespace clarity

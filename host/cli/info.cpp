@@ -1,0 +1,148 @@
+// clarity info: what the importer understood of a file, in the file's own units and axes.
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress_bar.hpp"
+
+namespace clarity {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// The double that prints as the float does: 0.1, not 0.10000000149011612.
+double short_double(float value) {
+    char text[32];
+    double result = value;
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    std::from_chars(text, end, result);
+    return result;
+}
+
+Json vector_json(const std::array<float, 3>& v) {
+    return {short_double(v[0]), short_double(v[1]), short_double(v[2])};
+}
+
+uint64_t face_count(const Scene& scene) {
+    uint64_t count = 0;
+    for (const Instance& instance : scene.instances) count += scene.meshes[instance.mesh].polygon_count;
+    return count;
+}
+
+Json camera_json(const Camera& camera) {
+    return {{"name", camera.name},
+            {"eye", vector_json(camera.eye)},
+            {"target", vector_json(camera.target)},
+            {"up", vector_json(camera.up)},
+            {"fov_deg", short_double(camera.fov_y_rad * 57.29578f)}};
+}
+
+Json scene_json(const Scene& scene, const std::vector<std::string>& files) {
+    Json json;
+    json["files"] = files;
+    json["meshes"] = scene.meshes.size();
+    json["instances"] = scene.instances.size();
+    json["triangles"] = scene.placed_triangle_count();
+    json["unique_triangles"] = scene.triangle_count();
+    json["vertices"] = scene.vertex_count();
+    json["faces"] = face_count(scene);
+    json["polygons"] = scene.polygons.size();
+    json["spheres"] = scene.spheres.size();
+    json["planes"] = scene.planes.size();
+    json["materials"] = scene.materials.size();
+    json["textures"] = scene.textures.size();
+    json["lights"] = scene.lights.size();
+    json["cameras"] = scene.cameras.size();
+    const Bounds bounds = scene.bounds();
+    json["bounds"] = bounds.empty ? Json() : Json{{"min", vector_json(bounds.min)}, {"max", vector_json(bounds.max)}};
+    json["surface_area"] = scene.surface_area();
+    json["up_axis"] = std::string(1, "xyz"[scene.up_axis % 3]);
+    json["unit_scale"] = scene.unit_scale > 0 ? Json(scene.unit_scale) : Json();
+    json["camera_list"] = Json::array();
+    for (const Camera& camera : scene.cameras) json["camera_list"].push_back(camera_json(camera));
+    json["warnings"] = scene.warnings;
+    return json;
+}
+
+// 871414 -> "871 414": readable, and the same in every locale.
+std::string grouped(uint64_t number) {
+    std::string text = std::to_string(number);
+    for (size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ' ');
+    return text;
+}
+
+void row(const char* label, const std::string& value) {
+    std::printf("  %-14s%s\n", label, value.c_str());
+}
+
+// Nothing is said about what a scene does not have.
+void count_row(const char* label, uint64_t count, const std::string& more = {}) {
+    if (count > 0) row(label, grouped(count) + more);
+}
+
+std::string vector_text(const std::array<float, 3>& v) {
+    char text[96];
+    std::snprintf(text, sizeof text, "%12.6g %12.6g %12.6g", double(v[0]), double(v[1]), double(v[2]));
+    return text;
+}
+
+void print_scene(const Scene& scene, const std::vector<std::string>& files) {
+    for (const std::string& file : files) std::printf("%s\n", file.c_str());
+    const uint64_t placed = scene.placed_triangle_count(), faces = face_count(scene);
+    std::string more;
+    if (placed != scene.triangle_count()) more += ", " + grouped(scene.triangle_count()) + " of them different";
+    if (faces != placed) more += ", from " + grouped(faces) + " faces";
+    count_row("triangles", placed, more);
+    count_row("vertices", scene.vertex_count());
+    count_row("meshes", scene.meshes.size());
+    count_row("instances", scene.instances.size());
+    count_row("spheres", scene.spheres.size());
+    count_row("planes", scene.planes.size());
+    count_row("polygons", scene.polygons.size());
+    count_row("materials", scene.materials.size());
+    count_row("textures", scene.textures.size());
+    count_row("lights", scene.lights.size());
+    count_row("cameras", scene.cameras.size());
+    for (const Camera& camera : scene.cameras) {
+        char fov[32];
+        std::snprintf(fov, sizeof fov, "  fov %.4g deg", double(camera.fov_y_rad) * 57.29577951308232);
+        row("", (camera.name.empty() ? "(no name)" : camera.name) + fov);
+    }
+    const Bounds bounds = scene.bounds();
+    if (bounds.empty) {
+        row("bounds", "none: nothing in it has an end, or there is nothing in it");
+    } else {
+        row("bounds", vector_text(bounds.min));
+        row("", vector_text(bounds.max));
+    }
+    char number[64];
+    std::snprintf(number, sizeof number, "%.7g", scene.surface_area());
+    row("surface area", number);
+    row("up axis", std::string(1, "XYZ"[scene.up_axis % 3]));
+    std::snprintf(number, sizeof number, "%.7g m", scene.unit_scale);
+    row("unit", scene.unit_scale > 0 ? number : "not said");
+    for (const std::string& warning : scene.warnings) row("warning", warning);
+}
+
+}  // namespace
+
+int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool json, bool quiet) {
+    check_scene_files(options.files);
+    ProgressBar progress(quiet);
+    const CancelOnSignal cancel(progress);
+    const Scene scene = import_scene(plugins, options.files, options.import, progress);
+    progress.clear();
+    if (json)  // names in files need not be UTF-8; JSON must
+        std::printf("%s\n", scene_json(scene, options.files).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+    else
+        print_scene(scene, options.files);
+    return static_cast<int>(Exit::done);
+}
+
+}  // namespace clarity

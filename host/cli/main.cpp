@@ -1,0 +1,77 @@
+// clarity: parses, runs one command, and turns what it threw into one line and an exit code.
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "cli/command_line.hpp"
+#include "cli/interrupt.hpp"
+#include "import/import.hpp"
+
+namespace clarity {
+namespace {
+
+void set_up_log(const CommonOptions& common) {
+    if (common.verbose) set_log_level(LogLevel::debug);
+    if (common.quiet) set_log_level(LogLevel::warning);
+    if (!common.log_file.empty()) set_log_file(common.log_file);
+}
+
+PluginRegistry find_plugins(const CommandLine& line) {
+    PluginRegistry plugins = PluginRegistry::discover(line.common.plugin_files);
+    // A person who names a library does not want to go on without it.
+    for (size_t i = 0; line.refused_plugin_is_fatal && i < plugins.records().size(); ++i)
+        for (const std::string& named : line.common.plugin_files)
+            if (plugins.records()[i].path == named && !plugins.records()[i].plugin)
+                throw Error(Exit::usage, "--plugin " + named + ": the library was refused, see above; nothing was done");
+    return plugins;
+}
+
+int run(int argc, char** argv) {
+    const CommandLine line = parse_command_line(argc, argv);
+    if (!line.command) return static_cast<int>(Exit::done);
+    set_up_log(line.common);
+    const PluginRegistry plugins = line.needs_plugins ? find_plugins(line) : PluginRegistry();
+    return line.command(plugins);
+}
+
+int fail(Exit code, const std::string& message, const std::string& details = {}) {
+    // The user's own Ctrl-C is no error, whatever it made fail on its way.
+    if (interrupted()) {
+        log(LogLevel::warning, "interrupted: nothing more is written");
+        return static_cast<int>(Exit::interrupted);
+    }
+    log(LogLevel::error, message);
+    if (!details.empty()) log(LogLevel::info, details);
+    return static_cast<int>(code);
+}
+
+int guarded_run(int argc, char** argv) {
+    try {
+        return run(argc, argv);
+    } catch (const Error& e) {
+        return fail(e.code(), e.what(), e.details());
+    } catch (const std::bad_alloc&) {
+        return fail(Exit::failed, "out of memory: close other programs, or take a smaller scene or picture");
+    } catch (const std::exception& e) {
+        return fail(Exit::failed, std::string("unexpected failure: ") + e.what());
+    }
+}
+
+}  // namespace
+}  // namespace clarity
+
+int main(int argc, char** argv) {
+    // The worker has limits of its own to set up before anything else runs.
+    if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import_worker_main(argc, argv);
+    const int code = clarity::guarded_run(argc, argv);
+    errno = 0;
+    if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
+        clarity::log(clarity::LogLevel::error, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));
+        return code ? code : static_cast<int>(clarity::Exit::failed);
+    }
+    return code;
+}

@@ -1,0 +1,211 @@
+// clarity render: a scene to picture files, without a window.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/output_file.hpp"
+#include "cli/commands.hpp"
+#include "cli/frame_range.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress_bar.hpp"
+#include "cli/render_stats.hpp"
+#include "render/renderer.hpp"
+
+namespace clarity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double ms_since(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+// A part of the bar: report(f) of the part is report(from + f * share) of the whole.
+class PartOf : public Progress {
+ public:
+    PartOf(Progress& whole, double from, double share) : whole_(whole), from_(from), share_(share) {}
+    bool report(float fraction) override {
+        if (!whole_.report(float(from_ + share_ * std::max(0.0f, fraction)))) cancel();
+        return !cancelled();
+    }
+
+ private:
+    Progress& whole_;
+    const double from_, share_;
+};
+
+// Everything that can be found wrong before any work is done.
+void check_options(const RenderOptions& options, const Settings& settings, const FrameRange& range) {
+    check_output_path(frame_path(options.output, range.first));
+    if (range.count() > 1 && frame_path(options.output, 1) == frame_path(options.output, 2))
+        throw Error(Exit::usage, "--frames " + options.frames + " would write " + std::to_string(range.count()) +
+                                     " pictures to " + options.output + ": put #### into its name, for the frame's number");
+    if (writes_display(options.output) && uint64_t(settings.width) * uint64_t(settings.height) > kPngMaxPixels)
+        throw Error(Exit::usage, "--size: a PNG of so many pixels is beyond its encoder; write .exr or .pfm");
+    if (!options.stats_file.empty() && options.stats_file != "-") check_writable(options.stats_file);
+    if (options.repeat < 1) throw Error(Exit::usage, "--repeat must be at least 1");
+    if (!std::isfinite(options.time_s) || options.time_s < 0)
+        throw Error(Exit::usage, "--time: expected seconds from the scene's start, 0 or more");
+    // A camera's numbers can be read without a scene; its name cannot.
+    const bool named = !options.trace.camera.empty() && options.trace.camera.find(',') == std::string::npos;
+    make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
+}
+
+class RenderJob {
+ public:
+    RenderJob(const PluginRegistry& plugins, const RenderOptions& options)
+        : options_(options),
+          settings_(make_settings(plugins, options.trace)),
+          range_(options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames)),
+          plugins_(plugins),
+          bar_(options.quiet) {
+        stats_.files = options.scene.files;
+        stats_.settings = settings_;
+    }
+
+    int run() {
+        check_options(options_, settings_, range_);
+        check_scene_files(options_.scene.files);
+        const CancelOnSignal cancel(bar_);
+        auto device = std::make_shared<Device>(choose_device(options_.trace.device));
+        stats_.device = device->info();
+        log(LogLevel::debug, "device " + device->info().id() + " " + device->info().name);
+        import();
+        prepare(device);
+        Frames frames(device);
+        for (int number = range_.first;; number += range_.step) {
+            const bool whole = render(frames, number);
+            if (!whole) return static_cast<int>(Exit::interrupted);
+            if (number > range_.last - range_.step) break;
+        }
+        report();
+        return static_cast<int>(Exit::done);
+    }
+
+ private:
+    void import() {
+        bar_.stage("importing");
+        const auto begin = Clock::now();
+        scene_ = std::make_shared<const Scene>(import_scene(plugins_, options_.scene.files, options_.scene.import, bar_));
+        stats_.import_ms = ms_since(begin);
+        for (const std::string& warning : scene_->warnings) log(LogLevel::warning, warning);
+        const float aspect = float(settings_.width) / float(settings_.height);
+        view_ = make_view(*scene_, aspect, options_.trace.camera, options_.trace.light);
+    }
+
+    void prepare(const std::shared_ptr<Device>& device) {
+        bar_.stage("building " + settings_.accel);
+        preparer_ = std::make_unique<Preparer>(plugins_, device);
+        stats_.prepared = preparer_->prepare(scene_, settings_, bar_);
+        const Prepared& prepared = *stats_.prepared;
+        char line[160];
+        std::snprintf(line, sizeof line, "import %.0f ms, build %.0f ms, upload %.0f ms, compile %.0f ms%s", stats_.import_ms,
+                      prepared.accel->build_ms, prepared.upload_ms, prepared.compile_ms,
+                      prepared.compile_cached ? " (cached)" : "");
+        log(LogLevel::debug, line);
+    }
+
+    // One picture; with --repeat the same one again and again. False if interrupted: then what was accumulated is written.
+    bool render(Frames& frames, int number) {
+        bar_.stage("rendering " + frame_path(options_.output, number));
+        // Counting rays costs a little, and the first frame warms caches: timed frames come after it.
+        const bool warm_up = options_.repeat > 1;
+        const unsigned passes = options_.repeat + (warm_up ? 1 : 0);
+        unsigned samples = 0;
+        for (unsigned pass = 0; pass < passes; ++pass) {
+            const bool count = pass == 0, timed = !(warm_up && pass == 0);
+            samples = trace_pass(frames, count, timed, double(pass) / passes, 1.0 / passes);
+            if (samples < unsigned(settings_.spp)) break;
+        }
+        const bool whole = samples == unsigned(settings_.spp);
+        bar_.clear();
+        if (samples > 0) write(frames, number);
+        if (!whole)
+            log(LogLevel::warning,
+                "interrupted: " + (samples == 0 ? "no sample was complete, nothing is written"
+                                                : frame_path(options_.output, number) + " holds " + std::to_string(samples) +
+                                                      " of " + std::to_string(settings_.spp) + " samples a pixel"));
+        return whole;
+    }
+
+    // All samples of one frame. Returns how many are complete.
+    unsigned trace_pass(Frames& frames, bool count, bool timed, double from, double share) {
+        if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
+        double device_ms = 0, wall_ms = 0;
+        for (int sample = 0; sample < settings_.spp; ++sample) {
+            PartOf part(bar_, from + share * sample / settings_.spp, share / settings_.spp);
+            FrameStats frame;
+            try {
+                frame = frames.trace(*stats_.prepared, settings_, view_, unsigned(sample), count, part);
+            } catch (const Cancelled&) {
+                return unsigned(sample);
+            }
+            device_ms += frame.device_ms;
+            wall_ms += frame.wall_ms;
+            if (count) {
+                stats_.primary += frame.primary;
+                stats_.shadow += frame.shadow;
+                stats_.secondary += frame.secondary;
+                stats_.dropped += frame.dropped;
+                stats_.overflowed += frame.overflowed;
+            }
+        }
+        if (timed) {
+            stats_.frame_ms.push_back(device_ms);
+            stats_.wall_ms.push_back(wall_ms);
+        }
+        return unsigned(settings_.spp);
+    }
+
+    void write(Frames& frames, int number) {
+        const std::string path = frame_path(options_.output, number);
+        const bool png = writes_display(path);
+        const FloatImage values = png ? FloatImage{} : frames.read_values();
+        const ByteImage display = png ? frames.read_display(settings_) : ByteImage{};
+        if (stats_.first_picture_ms == 0) stats_.first_picture_ms = ms_since(begin_);
+        write_image(path, values, display);
+        char times[96] = "";
+        if (!stats_.frame_ms.empty())
+            std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", stats_.frame_ms.back(), mrays_per_s(stats_));
+        log(LogLevel::info, path + times);
+    }
+
+    void report() {
+        if (stats_.dropped > 0)
+            log(LogLevel::warning, std::to_string(stats_.dropped) +
+                                       " rays were dropped because a pixel's ray slots were full: raise --ray-slots (now " +
+                                       std::to_string(settings_.ray_slots) + ")");
+        if (stats_.overflowed > 0)
+            log(LogLevel::error,
+                std::to_string(stats_.overflowed) + " times a traversal stack was full: a fault of accel " + settings_.accel);
+        if (options_.stats_file.empty()) return;
+        const std::string json = stats_json(stats_);
+        if (options_.stats_file == "-")
+            std::fwrite(json.data(), 1, json.size(), stdout);
+        else
+            write_text_file(options_.stats_file, json);
+    }
+
+    const RenderOptions& options_;
+    const Clock::time_point begin_ = Clock::now();
+    const Settings settings_;
+    const FrameRange range_;
+    const PluginRegistry& plugins_;
+    ProgressBar bar_;
+    std::shared_ptr<const Scene> scene_;
+    View view_;
+    std::unique_ptr<Preparer> preparer_;
+    RenderStats stats_;
+};
+
+}  // namespace
+
+int run_render(const PluginRegistry& plugins, const RenderOptions& options) {
+    return RenderJob(plugins, options).run();
+}
+
+}  // namespace clarity

@@ -1,0 +1,86 @@
+#include "cli/render_stats.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "plugin/parameters.hpp"
+
+namespace clarity {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+double median(std::vector<double> values) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    const size_t middle = values.size() / 2;
+    return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+// Times to the microsecond: further digits are noise.
+double rounded(double ms) {
+    return double(int64_t(ms * 1000 + 0.5)) / 1000;
+}
+
+Json times_json(const std::vector<double>& values) {
+    if (values.empty()) return nullptr;
+    const auto [least, most] = std::minmax_element(values.begin(), values.end());
+    return {{"median", rounded(median(values))}, {"min", rounded(*least)}, {"max", rounded(*most)}};
+}
+
+Json accel_parameters(const AccelData& accel) {
+    Json json = Json::object();
+    for (rt_u32 i = 0; i < accel.plugin->param_count && i < accel.params.size(); ++i)
+        json[accel.plugin->params[i].key] = accel.params[i];
+    return json;
+}
+
+}  // namespace
+
+double mrays_per_s(const RenderStats& stats) {
+    const double ms = median(stats.frame_ms);
+    return ms > 0 ? double(stats.primary + stats.shadow + stats.secondary) / ms / 1000 : 0;
+}
+
+std::string stats_json(const RenderStats& stats) {
+    const Prepared& prepared = *stats.prepared;
+    const AccelData& accel = *prepared.accel;
+    const Settings& used = prepared.settings;  // with what was automatic resolved
+    Json json;
+    json["files"] = stats.files;
+    json["device"] = stats.device.name;
+    json["device_id"] = stats.device.id();
+    json["driver"] = stats.device.platform + ", " + stats.device.driver;
+    json["accel"] = used.accel;
+    json["accel_params"] = accel_parameters(accel);
+    json["tracer"] = used.tracer;
+    json["depth"] = stats.settings.depth;
+    json["packet"] = std::to_string(used.packet_w) + "x" + std::to_string(used.packet_h);
+    json["lanes"] = used.lanes;
+    json["size"] = std::to_string(stats.settings.width) + "x" + std::to_string(stats.settings.height);
+    json["spp"] = stats.settings.spp;
+    json["aov"] = used.aov;
+    json["shadows"] = stats.settings.shadows;
+    json["frames_timed"] = stats.frame_ms.size();
+    json["frame_ms"] = times_json(stats.frame_ms);
+    json["frame_wall_ms"] = times_json(stats.wall_ms);
+    json["build_ms"] = rounded(accel.build_ms);
+    json["pack_ms"] = rounded(accel.pack_ms);
+    json["upload_ms"] = rounded(prepared.upload_ms);
+    json["compile_ms"] = rounded(prepared.compile_ms);
+    json["compile_cached"] = prepared.compile_cached;
+    json["import_ms"] = rounded(stats.import_ms);
+    json["first_picture_ms"] = rounded(stats.first_picture_ms);
+    json["rays"] = {{"primary", stats.primary}, {"shadow", stats.shadow}, {"secondary", stats.secondary}};
+    json["mrays_per_s"] = rounded(mrays_per_s(stats));
+    json["dropped_rays"] = stats.dropped;
+    json["stack_overflows"] = stats.overflowed;
+    json["nodes"] = uint64_t(accel.stat("nodes"));
+    json["accel_bytes"] = accel.bytes;
+    json["accel_stats"] = Json::object();
+    for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = value;
+    json["triangles"] = prepared.scene->placed_triangle_count();
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace clarity
