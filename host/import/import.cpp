@@ -1,0 +1,36 @@
+#include "import/import.hpp"
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "import/file_access.hpp"
+#include "import/scene_builder.hpp"
+
+namespace clarity {
+namespace {
+
+Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::string>& files, const FileAccess& access,
+                        Progress& progress) {
+    SceneBuilder builder(plugins, access, progress);
+    for (const std::string& file : files) builder.add_root(file);
+    return builder.take();
+}
+
+}  // namespace
+
+Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
+                   Progress& progress) {
+    if (files.empty()) throw Error(Exit::usage, "no scene file given");
+    for (const std::string& file : files) check_model_file(file);
+    const FileAccess access(files, options.search_paths);
+    Scene scene = import_in_process(plugins, files, access, progress);
+    const std::string why = validate(scene);
+    if (!why.empty()) throw Error(Exit::import_failed, files.front() + ": the imported scene is not sound: " + why);
+    for (const std::string& warning : scene.warnings) log(LogLevel::warning, warning);
+    return scene;
+}
+
+int import_worker_main(int, char**) {
+    return 1;
+}
+
+}  // namespace clarity

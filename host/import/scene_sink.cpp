@@ -1,0 +1,351 @@
+#include "import/scene_sink.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "import/texture.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr rt_u32 kFailed = RT_NONE;
+constexpr float kPi = 3.14159265f;
+
+template <size_t n>
+bool usable(const float (&values)[n]) {
+    return std::all_of(values, values + n, is_usable);
+}
+bool usable(const float* values, size_t count) {
+    return std::all_of(values, values + count, is_usable);
+}
+double squared_length(const float* v) {
+    return double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
+}
+
+// Names are for people: no line breaks or escape sequences of hostile files, and not endless.
+std::string clean_name(const char* name) {
+    std::string text;
+    for (const char* c = name ? name : ""; *c && text.size() < 256; ++c) {
+        text += static_cast<unsigned char>(*c) < 0x20 || *c == 0x7f ? ' ' : *c;
+    }
+    return text;
+}
+
+std::string too_small(const char* what) {
+    return std::string("struct_bytes of ") + what + " is too small: rebuild the plugin against this SDK";
+}
+
+// Clamps what a shader could not live with; false if something was not a number.
+bool make_sound(rt_material& m) {
+    const rt_material usual = default_material();
+    const bool good = usable(m.color) && usable(m.emission) && usable(m.specular) && is_usable(m.reflect) &&
+                      is_usable(m.refract) && is_usable(m.shininess) && is_usable(m.ior);
+    const auto repair = [](float& value, float otherwise) { value = is_usable(value) ? value : otherwise; };
+    for (int i = 0; i < 3; ++i) {
+        repair(m.color[i], usual.color[i]);
+        repair(m.emission[i], 0);
+        repair(m.specular[i], 0);
+    }
+    repair(m.reflect, 0);
+    repair(m.refract, 0);
+    repair(m.shininess, usual.shininess);
+    repair(m.ior, usual.ior);
+    m.reflect = std::clamp(m.reflect, 0.f, 1.f);
+    m.refract = std::clamp(m.refract, 0.f, 1.f);
+    m.shininess = std::max(m.shininess, 0.f);
+    if (!(m.ior > 0)) m.ior = usual.ior;
+    m.flags &= RT_MATERIAL_CHECKER;
+    m.pad = 0;
+    return good;
+}
+
+}  // namespace
+
+bool make_sound(Camera& camera) {
+    if (!usable(camera.eye.data(), 3) || !usable(camera.target.data(), 3)) return false;
+    float forward[3];
+    for (int i = 0; i < 3; ++i) forward[i] = camera.target[i] - camera.eye[i];
+    const double distance2 = squared_length(forward);
+    if (!(distance2 > 0)) return false;
+    if (!(camera.fov_y_rad > 1e-3f && camera.fov_y_rad < kPi - 1e-3f)) camera.fov_y_rad = Camera{}.fov_y_rad;
+    const float* up = camera.up.data();
+    const float across[3] = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
+                             forward[0] * up[1] - forward[1] * up[0]};
+    if (usable(up, 3) && squared_length(across) > 1e-10 * distance2 * squared_length(up)) return true;
+    int axis = 1;  // any axis that the camera does not look along
+    if (std::abs(forward[1]) > 0.9 * std::sqrt(distance2)) axis = 2;
+    camera.up = {};
+    camera.up[axis] = 1;
+    return true;
+}
+
+// Exceptions end here: the plugin that calls may be C.
+template <class Result, class Body>
+Result SceneSink::guarded(void* ctx, Result failed, const Body& body) {
+    auto* self = static_cast<SceneSink*>(ctx);
+    try {
+        return body(*self);
+    } catch (const Cancelled&) {
+        self->cancelled_ = true;
+        self->services_.fail("cancelled");
+    } catch (const std::bad_alloc&) {
+        self->services_.fail("out of memory");
+    } catch (const std::exception& e) {
+        self->services_.fail(e.what());
+    }
+    return failed;
+}
+
+SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string path, FileContent& content)
+    : builder_(builder), services_(services), path_(std::move(path)), content_(content) {
+    sink_.struct_bytes = sizeof(rt_scene_sink);
+    sink_.ctx = this;
+    sink_.texture = [](void* ctx, const rt_texture_desc* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.texture(*d); });
+    };
+    sink_.material = [](void* ctx, const rt_material_desc* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.material(*d); });
+    };
+    sink_.mesh = [](void* ctx, const rt_mesh* d) { return guarded(ctx, kFailed, [&](SceneSink& s) { return s.mesh(*d); }); };
+    sink_.instance = [](void* ctx, const rt_instance_desc* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.instance(*d); });
+    };
+    sink_.sphere = [](void* ctx, const float* center, float radius, rt_u32 material) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.sphere(center, radius, material); });
+    };
+    sink_.plane = [](void* ctx, const float* normal, float offset, rt_u32 material) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.plane(normal, offset, material); });
+    };
+    sink_.polygon = [](void* ctx, const float* corners, rt_u32 count, rt_u32 material) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.polygon(corners, count, material); });
+    };
+    sink_.light = [](void* ctx, const rt_light_desc* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.light(*d); });
+    };
+    sink_.camera = [](void* ctx, const rt_camera* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.camera(*d); });
+    };
+    sink_.info = [](void* ctx, const rt_scene_info* d) { guarded(ctx, 0, [&](SceneSink& s) { return s.info(*d), 0; }); };
+    sink_.warn = [](void* ctx, const char* text) {
+        guarded(ctx, 0, [&](SceneSink& s) { return s.builder_.warn(s.path_, clean_name(text)), 0; });
+    };
+    sink_.load = [](void* ctx, const rt_load* d) {
+        return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.load(*d); });
+    };
+}
+
+rt_u32 SceneSink::fail(const std::string& why) {
+    services_.fail(why);
+    return kFailed;
+}
+
+bool SceneSink::scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material) {
+    if (id != RT_NONE && id >= materials_.size()) {
+        fail(std::string(of) + ": material id " + std::to_string(id) + " of " + std::to_string(materials_.size()) +
+             " given out");
+        return false;
+    }
+    material = id == RT_NONE ? if_none : materials_[id];
+    return true;
+}
+
+rt_u32 SceneSink::texture(const rt_texture_desc& d) {
+    if (d.struct_bytes < sizeof d) return fail(too_small("rt_texture_desc"));
+    if (!d.path && !d.bytes) return fail("a texture has neither a path nor bytes");
+    Scene& scene = builder_.scene();
+    rt_u32 index = RT_NONE;
+    if (d.bytes) {
+        rt_texture texture{};
+        const std::string why = d.height == 0 ? decode_texture(d.bytes, d.byte_count, scene.texels, texture)
+                                              : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene.texels, texture);
+        if (!why.empty()) {
+            builder_.warn(path_, "an embedded texture is left out: " + why);
+            return RT_NONE;
+        }
+        index = static_cast<rt_u32>(scene.textures.size());
+        scene.textures.push_back(texture);
+    } else {
+        index = builder_.texture_of_file(path_, d.path);
+        if (index == RT_NONE) return RT_NONE;
+    }
+    textures_.push_back(index);
+    return static_cast<rt_u32>(textures_.size() - 1);
+}
+
+rt_u32 SceneSink::material(const rt_material_desc& d) {
+    if (d.struct_bytes < sizeof d) return fail(too_small("rt_material_desc"));
+    Material material = {clean_name(d.name), d.values};
+    if (d.values.texture != RT_NONE) {
+        if (d.values.texture >= textures_.size()) {
+            return fail("material '" + material.name + "': texture id " + std::to_string(d.values.texture) + " of " +
+                        std::to_string(textures_.size()) + " given out");
+        }
+        material.values.texture = textures_[d.values.texture];
+    }
+    if (!make_sound(material.values)) {
+        builder_.warn(path_, "material '" + material.name + "' has values that are not finite numbers; usual ones are taken");
+    }
+    Scene& scene = builder_.scene();
+    materials_.push_back(static_cast<rt_u32>(scene.materials.size()));
+    scene.materials.push_back(std::move(material));
+    return static_cast<rt_u32>(materials_.size() - 1);
+}
+
+rt_u32 SceneSink::mesh(const rt_mesh& d) {
+    Scene& scene = builder_.scene();
+    const std::string why = copy_mesh(d, materials_, scene, builder_.triangulator(), faces_);
+    if (!why.empty()) return fail("mesh '" + clean_name(d.struct_bytes >= sizeof d ? d.name : nullptr) + "': " + why);
+    scene.meshes.back().name = clean_name(d.name);
+    meshes_.push_back(static_cast<rt_u32>(scene.meshes.size() - 1));
+    return static_cast<rt_u32>(meshes_.size() - 1);
+}
+
+rt_u32 SceneSink::instance(const rt_instance_desc& d) {
+    if (d.struct_bytes < sizeof d) return fail(too_small("rt_instance_desc"));
+    Instance instance;
+    instance.name = clean_name(d.name);
+    if (d.mesh >= meshes_.size()) {
+        return fail("instance '" + instance.name + "': mesh id " + std::to_string(d.mesh) + " of " +
+                    std::to_string(meshes_.size()) + " given out");
+    }
+    if (!scene_material(d.material, "instance", RT_NONE, instance.material)) return kFailed;
+    instance.mesh = meshes_[d.mesh];
+    std::copy(std::begin(d.world_from_object), std::end(d.world_from_object), instance.world_from_object.begin());
+    const rt_u32 id = static_cast<rt_u32>(content_.instances.size() + lost_instances_);
+    if (usable(d.world_from_object)) {
+        content_.instances.push_back(std::move(instance));
+    } else {
+        ++lost_instances_;
+    }
+    return id;
+}
+
+rt_u32 SceneSink::sphere(const float* center, float radius, rt_u32 material) {
+    Sphere sphere;
+    if (!usable(center, 3) || !is_usable(radius) || !(radius > 0)) {
+        return fail("sphere " + std::to_string(content_.spheres.size()) + ": needs a finite centre and a radius above 0");
+    }
+    if (!scene_material(material, "sphere", 0, sphere.material)) return kFailed;
+    std::copy(center, center + 3, sphere.center.begin());
+    sphere.radius = radius;
+    content_.spheres.push_back(sphere);
+    return static_cast<rt_u32>(content_.spheres.size() - 1);
+}
+
+rt_u32 SceneSink::plane(const float* normal, float offset, rt_u32 material) {
+    Plane plane;
+    const double length = usable(normal, 3) ? std::sqrt(squared_length(normal)) : 0;
+    if (!(length > 0) || !is_usable(offset) || !is_usable(static_cast<float>(offset / length))) {
+        return fail("plane " + std::to_string(content_.planes.size()) +
+                    ": needs a finite normal that is not zero, and an offset");
+    }
+    if (!scene_material(material, "plane", 0, plane.material)) return kFailed;
+    for (int i = 0; i < 3; ++i) plane.normal[i] = static_cast<float>(normal[i] / length);
+    // The plane is dot(normal, x) = offset as given: dividing both sides keeps the points.
+    plane.offset = static_cast<float>(offset / length);
+    content_.planes.push_back(plane);
+    return static_cast<rt_u32>(content_.planes.size() - 1);
+}
+
+rt_u32 SceneSink::polygon(const float* corners, rt_u32 corner_count, rt_u32 material) {
+    const std::string what = "polygon " + std::to_string(content_.polygons.size());
+    FileContent::PolygonCorners polygon;
+    if (corner_count < 3) return fail(what + ": " + std::to_string(corner_count) + " corners, expected at least 3");
+    if (corner_count > 1u << 24)
+        return fail(what + ": " + std::to_string(corner_count) + " corners are more than a polygon can have");
+    if (!usable(corners, 3 * size_t(corner_count))) return fail(what + ": a corner is not a finite number");
+    if (!scene_material(material, what.c_str(), 0, polygon.material)) return kFailed;
+    polygon.corners.assign(corners, corners + 3 * size_t(corner_count));
+    content_.polygons.push_back(std::move(polygon));
+    return static_cast<rt_u32>(content_.polygons.size() - 1);
+}
+
+rt_u32 SceneSink::light(const rt_light_desc& d) {
+    if (d.struct_bytes < sizeof d) return fail(too_small("rt_light_desc"));
+    Light light = {clean_name(d.name), d.values};
+    rt_light& values = light.values;
+    if (values.kind != RT_LIGHT_POINT && values.kind != RT_LIGHT_DIRECTIONAL) {
+        return fail("light '" + light.name + "': kind " + std::to_string(values.kind) + " is unknown");
+    }
+    const rt_u32 id = static_cast<rt_u32>(content_.lights.size() + lost_views_);
+    bool good = usable(values.position) && usable(values.color);
+    if (good && values.kind == RT_LIGHT_DIRECTIONAL) {
+        const double length = std::sqrt(squared_length(values.position));
+        good = length > 0;
+        for (float& x : values.position) x = good ? static_cast<float>(x / length) : 0;
+    }
+    if (good) {
+        content_.lights.push_back(std::move(light));
+    } else {
+        ++lost_views_;
+    }
+    return id;
+}
+
+rt_u32 SceneSink::camera(const rt_camera& d) {
+    if (d.struct_bytes < sizeof d) return fail(too_small("rt_camera"));
+    Camera camera;
+    camera.name = clean_name(d.name);
+    std::copy(d.eye, d.eye + 3, camera.eye.begin());
+    std::copy(d.target, d.target + 3, camera.target.begin());
+    std::copy(d.up, d.up + 3, camera.up.begin());
+    camera.fov_y_rad = d.fov_y_rad;
+    const rt_u32 id = static_cast<rt_u32>(content_.cameras.size() + lost_views_);
+    if (make_sound(camera)) {
+        content_.cameras.push_back(std::move(camera));
+    } else {
+        ++lost_views_;
+    }
+    return id;
+}
+
+void SceneSink::info(const rt_scene_info& d) {
+    if (d.struct_bytes < sizeof d) {
+        fail(too_small("rt_scene_info"));
+        return;
+    }
+    builder_.set_info(d);
+}
+
+int32_t SceneSink::load(const rt_load& d) {
+    if (d.struct_bytes < sizeof d || !d.path) {
+        fail(d.path ? too_small("rt_load") : "a load has no path");
+        return RT_FAILED;
+    }
+    Placement placement;
+    placement.name = clean_name(d.name);
+    if (!usable(d.world_from_object)) {
+        fail("load '" + clean_name(d.path) + "': its transform is not finite");
+        return RT_FAILED;
+    }
+    std::copy(std::begin(d.world_from_object), std::end(d.world_from_object), placement.world_from_object.begin());
+    if (!scene_material(d.material, "load", RT_NONE, placement.material)) return RT_FAILED;
+    const std::string why = builder_.include(path_, d.path, placement, content_);
+    if (why.empty()) return RT_OK;
+    fail(why);
+    return RT_FAILED;
+}
+
+std::string SceneSink::finish() {
+    const uint64_t lost = faces_.not_finite + faces_.out_of_range;
+    const std::string of_all = " of " + std::to_string(faces_.all) + " faces have corners that ";
+    const std::string not_finite = std::to_string(faces_.not_finite) + of_all + "are not finite numbers";
+    const std::string out_of_range = std::to_string(faces_.out_of_range) + of_all + "name vertices which do not exist";
+    std::string what = faces_.not_finite > 0 ? not_finite : "";
+    if (faces_.out_of_range > 0) what += (what.empty() ? "" : ", ") + out_of_range;
+    if (lost > 0 && lost == faces_.all) return "nothing of it can be used: " + what;
+    if (lost > 0) builder_.warn(path_, what + (lost == 1 ? " and was left out" : " and were left out"));
+    if (lost_instances_ > 0 && content_.instances.empty()) return "the transforms of all its objects are not finite numbers";
+    if (lost_instances_ > 0) {
+        builder_.warn(path_, std::to_string(lost_instances_) + " of " +
+                                 std::to_string(lost_instances_ + content_.instances.size()) +
+                                 " objects have a transform that is not finite and were left out");
+    }
+    if (lost_views_ > 0) {
+        builder_.warn(path_, std::to_string(lost_views_) + " cameras or lights hold no finite numbers and were left out");
+    }
+    return {};
+}
+
+}  // namespace clarity

@@ -1,0 +1,61 @@
+// scene_sink.hpp -- the rt_scene_sink of one file: checks what an importer hands over and copies it.
+#pragma once
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "import/mesh_copy.hpp"
+#include "import/scene_builder.hpp"
+#include "plugin/host_services.hpp"
+#include "rt_plugin.h"
+
+namespace clarity {
+
+// Replaces an unusable up vector or field of view; false if the camera looks nowhere.
+bool make_sound(Camera& camera);
+
+// Lives for one call of rt_importer.load. Ids given to the plugin count within this file. A bug of the plugin (an unknown id,
+// no positions) fails the import; what a damaged file can contain (bad indices, numbers that are not finite) is left out with a
+// warning, and fails it if nothing remains.
+class SceneSink {
+ public:
+    SceneSink(SceneBuilder& builder, HostServices& services, std::string path, FileContent& content);
+    SceneSink(const SceneSink&) = delete;
+    SceneSink& operator=(const SceneSink&) = delete;
+
+    const rt_scene_sink* sink() const { return &sink_; }
+    bool cancelled() const { return cancelled_; }
+    // After the plugin's success: warns of what was left out; why the import fails all the same, or empty.
+    std::string finish();
+
+ private:
+    rt_u32 texture(const rt_texture_desc& desc);
+    rt_u32 material(const rt_material_desc& desc);
+    rt_u32 mesh(const rt_mesh& desc);
+    rt_u32 instance(const rt_instance_desc& desc);
+    rt_u32 sphere(const float* center, float radius, rt_u32 material);
+    rt_u32 plane(const float* normal, float offset, rt_u32 material);
+    rt_u32 polygon(const float* corners, rt_u32 corner_count, rt_u32 material);
+    rt_u32 light(const rt_light_desc& desc);
+    rt_u32 camera(const rt_camera& desc);
+    void info(const rt_scene_info& info);
+    int32_t load(const rt_load& load);
+
+    rt_u32 fail(const std::string& why);
+    // The scene's material of an id; records an error and returns false if the id was never given out.
+    bool scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material);
+    template <class Result, class Body>
+    static Result guarded(void* ctx, Result failed, const Body& body);
+
+    SceneBuilder& builder_;
+    HostServices& services_;
+    std::string path_;
+    FileContent& content_;
+    rt_scene_sink sink_{};
+    std::vector<rt_u32> materials_, meshes_, textures_;  // scene indices by id
+    FaceCount faces_;
+    uint64_t kept_faces_before_ = 0, lost_instances_ = 0, lost_views_ = 0;
+    bool cancelled_ = false;
+};
+
+}  // namespace clarity

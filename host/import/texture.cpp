@@ -1,0 +1,80 @@
+#include "import/texture.hpp"
+
+#include <cerrno>
+#include <climits>
+#include <cstring>
+#include <fstream>
+#include <memory>
+
+// Static: the window's libraries may bring a copy of their own.
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#define STBI_NO_STDIO
+#define STBI_MAX_DIMENSIONS 16384
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#pragma GCC diagnostic pop
+
+namespace clarity {
+namespace {
+
+// Empty if a picture of this size may still be added.
+std::string check_size(uint64_t width, uint64_t height, const std::vector<uint32_t>& texels) {
+    const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
+    if (width == 0 || height == 0) return size + ": it is empty";
+    if (width > kMaxTextureSide || height > kMaxTextureSide) {
+        return size + " are more than " + std::to_string(kMaxTextureSide) + " a side";
+    }
+    if (4 * (texels.size() + width * height) > kMaxTexelBytes) {
+        return size + ": the scene's textures would take more than " + std::to_string(kMaxTexelBytes >> 20) + " MiB";
+    }
+    return {};
+}
+
+void append(const void* rgba, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels, rt_texture& texture) {
+    texture = {static_cast<rt_u32>(texels.size()), width, height, 0};
+    texels.resize(texels.size() + size_t(width) * height);
+    std::memcpy(texels.data() + texture.first, rgba, 4 * size_t(width) * height);
+}
+
+}  // namespace
+
+std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture) {
+    if (byte_count > INT_MAX) return "the picture has more than 2 GiB";
+    const int count = static_cast<int>(byte_count);
+    int width = 0, height = 0, channels = 0;
+    const auto reason = [] { return std::string(stbi_failure_reason() ? stbi_failure_reason() : "unknown format"); };
+    if (!stbi_info_from_memory(bytes, count, &width, &height, &channels)) return "not a picture that is read here: " + reason();
+    std::string why = check_size(static_cast<uint64_t>(width), static_cast<uint64_t>(height), texels);
+    if (!why.empty()) return why;
+    const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_memory(bytes, count, &width, &height, &channels, 4),
+                                                           stbi_image_free);
+    if (!pixels) return "the picture is damaged: " + reason();
+    append(pixels.get(), static_cast<rt_u32>(width), static_cast<rt_u32>(height), texels, texture);
+    return {};
+}
+
+std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
+                         rt_texture& texture) {
+    std::string why = check_size(width, height, texels);
+    if (!why.empty()) return why;
+    if (byte_count < 4 * uint64_t(width) * height) return "its picture in memory is shorter than its size says";
+    append(bytes, width, height, texels, texture);
+    return {};
+}
+
+std::string read_whole_file(const std::string& path, uint64_t limit_bytes, std::vector<uint8_t>& bytes) {
+    errno = 0;
+    std::ifstream file(path, std::ios::binary | std::ios::ate);
+    const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
+    if (size < 0) return std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EIO);
+    if (static_cast<uint64_t>(size) > limit_bytes)
+        return "the file has more than " + std::to_string(limit_bytes >> 20) + " MiB";
+    bytes.resize(static_cast<size_t>(size));
+    file.seekg(0);
+    if (!file.read(reinterpret_cast<char*>(bytes.data()), size)) return "cannot be read to its end";
+    return {};
+}
+
+}  // namespace clarity
