@@ -8,6 +8,7 @@
 
 #define RT_PIXELS (RT_PACKET_W * RT_PACKET_H)
 #define RT_CAPACITY (RT_PIXELS * RT_RAY_SLOTS)
+#define RT_RAY_OFFSET 1.5e-5f /* 256 ulp, of the largest coordinate or the distance */
 #define RT_FIELDS 9 /* origin, direction, weight */
 
 typedef struct rt_queue {
