@@ -1,26 +1,39 @@
 # clarity_add_plugin(accel|importer ID [LIBRARIES lib...]): one folder, one plugin, one shared library.
 #
 # Compiles every .cpp/.c of the folder. For an accel plugin, ID.cl and ID_types.h are embedded: the plugin includes
-# "ID.inc", rows of {path, text}. The library lands in lib/clarity/plugins/{importers,accel} beside bin/.
+# "ID.inc", rows of {path, text}. The library lands in lib/clarity/plugins/{importers,accel} beside bin/; out of tree, where this
+# file came with find_package(clarity), below the build folder: name build/lib/clarity/plugins in CLARITY_PLUGIN_PATH.
+# `cmake --install build --prefix ~/.local` puts an out-of-tree plugin where clarity finds it by itself.
+set(CLARITY_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/rt_plugin.map)
 function(clarity_add_plugin kind id)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
-  set(folder ${kind})
-  if(kind STREQUAL "importer")
-    set(folder importers)
+  set(folders_accel accel)
+  set(folders_importer importers)
+  if(NOT DEFINED folders_${kind})
+    message(FATAL_ERROR "clarity_add_plugin(${kind} ${id}): expected accel or importer, found '${kind}'")
+  endif()
+  set(folder ${folders_${kind}})
+  if(NOT id MATCHES "^[a-z][a-z0-9_]*$")
+    message(FATAL_ERROR "clarity_add_plugin(${kind} ${id}): an id has lower-case letters, digits and _, a letter first")
   endif()
   file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/*.cpp ${CMAKE_CURRENT_SOURCE_DIR}/*.c)
+  if(NOT sources)
+    message(FATAL_ERROR "clarity_add_plugin(${kind} ${id}): no .cpp or .c file in ${CMAKE_CURRENT_SOURCE_DIR}")
+  endif()
   set(target ${kind}_${id})
   add_library(${target} MODULE ${sources})
-  set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${id}
-    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/clarity/plugins/${folder})
-  target_link_libraries(${target} PRIVATE clarity_sdk ${arg_LIBRARIES})
-  target_link_options(${target} PRIVATE -Wl,--no-undefined)
+  set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${id} C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
+    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/clarity/plugins/${folder} LINK_DEPENDS ${CLARITY_PLUGIN_EXPORTS})
+  target_compile_features(${target} PRIVATE cxx_std_17)
+  target_link_libraries(${target} PRIVATE clarity::sdk ${arg_LIBRARIES})
+  # The map keeps the templates of libstdc++, which hidden visibility does not reach, out of the library's symbols.
+  target_link_options(${target} PRIVATE -Wl,--no-undefined "-Wl,--version-script=${CLARITY_PLUGIN_EXPORTS}")
   file(GLOB embedded CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_types.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}.cl)
   if(embedded)
     clarity_embed(${target} NAME ${id} BASE ${CMAKE_CURRENT_SOURCE_DIR} FILES ${embedded})
   endif()
-  if(DEFINED CMAKE_INSTALL_LIBDIR)
-    install(TARGETS ${target} LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/clarity/plugins/${folder})
+  if(CLARITY_PLUGIN_INSTALL_DIR)
+    install(TARGETS ${target} LIBRARY DESTINATION ${CLARITY_PLUGIN_INSTALL_DIR}/${folder})
   endif()
 endfunction()
 

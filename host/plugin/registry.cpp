@@ -138,12 +138,11 @@ void search_user_data(Search& search) {
 void search_own_folders(Search& search) {
     const fs::path program = executable_folder();
     if (program.empty()) return;
-    const fs::path up = program / "..";
-#ifdef CLARITY_LIBDIR
-    // As installed: lib/x86_64-linux-gnu on Debian.
-    search.add_folder((up / CLARITY_LIBDIR / "clarity" / "plugins").lexically_normal(), true);
+#ifdef CLARITY_LIBRARIES_FROM_PROGRAM
+    search.add_folder((program / CLARITY_LIBRARIES_FROM_PROGRAM / "clarity" / "plugins").lexically_normal(), true);
 #endif
-    search.add_folder((up / "lib" / "clarity" / "plugins").lexically_normal(), true);
+    // The layout of the build.
+    search.add_folder((program / "../lib/clarity/plugins").lexically_normal(), true);
 }
 
 std::string key_of(const rt_plugin& plugin) {

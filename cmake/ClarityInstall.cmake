@@ -1,0 +1,22 @@
+# What `cmake --install` puts where, besides the program and the plugins, and the package that find_package(clarity) finds:
+# target clarity::sdk, clarity_add_plugin() and clarity_embed(). Nothing in it names the prefix, so the tree may be moved.
+include(CMakePackageConfigHelpers)
+
+set_target_properties(clarity_sdk PROPERTIES EXPORT_NAME sdk)
+target_include_directories(clarity_sdk INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/clarity>)
+install(TARGETS clarity_sdk EXPORT clarityTargets)
+install(FILES host/sdk/rt_plugin.h host/sdk/rt_plugin.hpp cl/rt_types.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
+install(DIRECTORY host/sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
+install(FILES docs/plugins.md cl/CONTRACT.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk OPTIONAL)
+
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/clarity)
+install(EXPORT clarityTargets NAMESPACE clarity:: DESTINATION ${package} COMPONENT sdk)
+file(STRINGS ${PROJECT_SOURCE_DIR}/host/sdk/rt_plugin.h CLARITY_ABI_VERSION REGEX "^#define RT_ABI_VERSION")
+string(REGEX REPLACE "^#define RT_ABI_VERSION ([0-9]+)u$" "\\1" CLARITY_ABI_VERSION "${CLARITY_ABI_VERSION}")
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/clarityConfig.cmake.in ${PROJECT_BINARY_DIR}/package/clarityConfig.cmake
+  INSTALL_DESTINATION ${package} NO_CHECK_REQUIRED_COMPONENTS_MACRO)
+# Plugins are bound to the ABI version, which the host checks, and not to the program's.
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/clarityConfigVersion.cmake COMPATIBILITY SameMajorVersion
+  ARCH_INDEPENDENT)
+install(FILES ${PROJECT_BINARY_DIR}/package/clarityConfig.cmake ${PROJECT_BINARY_DIR}/package/clarityConfigVersion.cmake
+  cmake/ClarityPlugin.cmake cmake/ClarityEmbed.cmake cmake/embed_text.cmake cmake/rt_plugin.map DESTINATION ${package} COMPONENT sdk)

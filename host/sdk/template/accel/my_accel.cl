@@ -1,0 +1,15 @@
+/* my_accel.cl -- tests every block's box, and what is in those that are met. Written for all lanes at once, see CONTRACT.md. */
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    const uint first = ctx->my_accel_runs[root].first, end = first + ctx->my_accel_runs[root].count;
+    for (uint at = first; at < end; ++at) {
+        const global my_accel_block *block = ctx->my_accel_blocks + at;
+        vfloat entry;
+        RT_COUNT_STEP(hit);
+        if (!rt_any(rt_enter_box(block->box, ray, hit, &entry))) continue;
+        for (uint i = 0; i < block->count; ++i) RT_LEAF(ctx, block->first + i, ray, hit);
+#if RT_ANY_HIT
+        if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return; /* every lane has found something */
+#endif
+    }
+}
