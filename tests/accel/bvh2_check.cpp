@@ -1,0 +1,175 @@
+#include "bvh2_check.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <sstream>
+#include <unordered_map>
+
+namespace accel_test {
+namespace {
+
+struct Bounds {
+    double lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+    void add(const float* l, const float* h) {
+        for (int a = 0; a < 3; ++a) {
+            lo[a] = std::min<double>(lo[a], l[a]);
+            hi[a] = std::max<double>(hi[a], h[a]);
+        }
+    }
+    double area() const {
+        const double x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
+        return 2 * (x * y + y * z + z * x);
+    }
+};
+
+bool is_nothing(rt_u32 child) {
+    return child == BVH2_MAKE_LEAF(0u, 0u);
+}
+
+class Checker {
+ public:
+    Checker(const Input& input, const Built& built, uint32_t max_leaf)
+        : input_(input), built_(built), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaf_seen_(built.leaves.size()) {
+        for (uint32_t i = 0; i < input.prims.size(); ++i) prim_of_ref_[input.prims[i].ref] = i;
+    }
+
+    std::string run() {
+        if (built_.leaves.size() != input_.prims.size())
+            say() << built_.leaves.size() << " leaves for " << input_.prims.size() << " primitives";
+        for (uint32_t g = 0; g < input_.groups.size() && why_.str().empty(); ++g) {
+            group_ = g;
+            if (built_.roots[g] >= node_seen_.size()) return "root out of range";
+            visit(built_.roots[g], 1);
+        }
+        if (!why_.str().empty()) return why_.str();
+        for (size_t i = 0; i < node_seen_.size(); ++i)
+            if (!node_seen_[i]) say() << "node " << i << " belongs to no tree";
+        for (size_t i = 0; i < leaf_seen_.size(); ++i)
+            if (!leaf_seen_[i]) say() << "position " << i << " is in no leaf";
+        const auto expect = [&](const char* label, double value) {
+            const auto found = built_.stats.find(label);
+            if (found == built_.stats.end() || found->second != value) say() << "stat " << label << " is not " << value;
+        };
+        expect("nodes", static_cast<double>(node_seen_.size()));
+        expect("leaves", leaf_count_);
+        expect("depth", depth_);
+        const rt_u32 stack = built_.defines.at("BVH2_STACK");
+        if (stack < depth_ + 1 || stack % 8 != 0 || stack > depth_ + 8)
+            say() << "stack of " << stack << " for depth " << depth_;
+        if (depth_ > 64) say() << "depth " << depth_;
+        return why_.str();
+    }
+
+ private:
+    std::ostream& say() {
+        if (!why_.str().empty()) why_ << "; ";
+        return why_;
+    }
+
+    Bounds visit(rt_u32 index, uint32_t depth) {
+        Bounds both;
+        if (!why_.str().empty()) return both;
+        if (node_seen_[index]) {
+            say() << "node " << index << " has two parents";
+            return both;
+        }
+        node_seen_[index] = true;
+        depth_ = std::max(depth_, depth);
+        const bvh2_node& node = built_.slot<bvh2_node>()[index];
+        if (reinterpret_cast<uintptr_t>(&node) % 64 != 0) say() << "node " << index << " is not aligned";
+        visit_child(index, node.box0, node.child0, depth, both);
+        visit_child(index, node.box1, node.child1, depth, both);
+        return both;
+    }
+
+    void visit_child(rt_u32 index, const float* box, rt_u32 child, uint32_t depth, Bounds& both) {
+        if (!why_.str().empty()) return;
+        if (is_nothing(child)) {
+            if (depth > 1 || input_.groups[group_].count > max_leaf_) say() << "node " << index << " lacks a child";
+            for (int i = 0; i < 6; ++i)
+                if (box[i] != FLT_MAX) say() << "the child that node " << index << " lacks is in reach";
+            return;
+        }
+        Bounds below;
+        if (child & BVH2_LEAF) {
+            ++leaf_count_;
+            const uint32_t first = BVH2_LEAF_FIRST(child), count = BVH2_LEAF_COUNT(child);
+            if (count == 0 || count > max_leaf_) say() << "leaf of " << count << " below node " << index;
+            for (uint32_t i = first; i < first + count; ++i) {
+                if (i >= leaf_seen_.size() || leaf_seen_[i]) {
+                    say() << "position " << i << (i < leaf_seen_.size() ? " is in two leaves" : " is out of range");
+                    return;
+                }
+                leaf_seen_[i] = true;
+                const auto found = prim_of_ref_.find(built_.leaves[i]);
+                const rt_group& group = input_.groups[group_];
+                if (found == prim_of_ref_.end() || found->second < group.first || found->second >= group.first + group.count) {
+                    say() << "position " << i << " holds a ref of another group, or none";
+                    return;
+                }
+                const rt_prim& prim = input_.prims[found->second];
+                prim_of_ref_.erase(found);  // seen: a second one is an error
+                below.add(prim.lo, prim.hi);
+            }
+        } else if (child >= node_seen_.size()) {
+            say() << "node " << index << " has child " << child;
+            return;
+        } else {
+            if (box == built_.slot<bvh2_node>()[index].box0 && child != index + 1)
+                say() << "child 0 of node " << index << " is not beside it";
+            below = visit(child, depth + 1);
+        }
+        for (int a = 0; a < 3; ++a) {
+            const bool equal = box[a] == below.lo[a] && box[3 + a] == below.hi[a];
+            if (!equal) say() << "a box of node " << index << " is not that of what is below";
+        }
+        both.add(box, box + 3);
+    }
+
+    const Input& input_;
+    const Built& built_;
+    const uint32_t max_leaf_;
+    uint32_t group_ = 0, depth_ = 0;
+    double leaf_count_ = 0;
+    std::vector<bool> node_seen_, leaf_seen_;
+    std::unordered_map<rt_u32, uint32_t> prim_of_ref_;
+    std::ostringstream why_;
+};
+
+}  // namespace
+
+std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf) {
+    if (built.status != RT_OK) return "the build failed: " + built.why;
+    return Checker(input, built, max_leaf).run();
+}
+
+double sah_cost(const Input& input, const Built& built, double traversal_cost, double intersection_cost) {
+    double sum = 0, weight = 0;
+    for (uint32_t g = 0; g < input.groups.size(); ++g) {
+        double cost = 0;
+        Bounds whole;
+        std::vector<rt_u32> stack{built.roots[g]};
+        while (!stack.empty()) {
+            const bvh2_node& node = built.slot<bvh2_node>()[stack.back()];
+            const bool is_root = stack.back() == built.roots[g];
+            stack.pop_back();
+            const auto add = [&](const float* box, rt_u32 child) {
+                if (is_nothing(child)) return;
+                Bounds b;
+                b.add(box, box + 3);
+                if (is_root) whole.add(box, box + 3);
+                cost += b.area() * (child & BVH2_LEAF ? intersection_cost * BVH2_LEAF_COUNT(child) : traversal_cost);
+                if (!(child & BVH2_LEAF)) stack.push_back(child);
+            };
+            add(node.box0, node.child0);
+            add(node.box1, node.child1);
+        }
+        if (!(whole.area() > 0)) continue;
+        sum += input.groups[g].count * (traversal_cost + cost / whole.area());
+        weight += input.groups[g].count;
+    }
+    return weight > 0 ? sum / weight : 0;
+}
+
+}  // namespace accel_test

@@ -1,0 +1,231 @@
+// spheres_test.cpp -- trees of bounding spheres: sound order, true bounds, even halves, one tree a mesh.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <sstream>
+
+#include "harness.hpp"
+// after rt_types.h, whose types it uses:
+#include "spheres_types.h"
+
+using namespace accel_test;
+
+namespace {
+
+const rt_plugin& spheres() {
+    static const rt_plugin& plugin = load("spheres");
+    return plugin;
+}
+
+// Walks one group's trees as the traversal does when everything is entered, and as trees.
+class Checker {
+ public:
+    Checker(const Input& input, const Built& built, uint32_t max_leaf, uint32_t max_depth)
+        : input_(input), built_(built), nodes_(built.slot<spheres_node>()), max_leaf_(max_leaf), max_depth_(max_depth) {
+        for (uint32_t i = 0; i < input.prims.size(); ++i)
+            if (input.prims[i].ref >= by_ref_.size()) by_ref_.resize(input.prims[i].ref + 1, RT_NONE);
+        for (uint32_t i = 0; i < input.prims.size(); ++i) by_ref_[input.prims[i].ref] = i;
+    }
+
+    // Roots that follow the head of a group.
+    uint32_t roots = 0, sphere_count = 0;
+    std::multiset<uint32_t> leaf_sizes;
+
+    std::string check(uint32_t group) {
+        seen_.clear();
+        const spheres_node& head = nodes_[built_.roots[group]];
+        if (head.count != 0) return "the head has primitives";
+        if (head.skip > built_.slot_counts[0]) return "the group ends out of range";
+        for (rt_u32 at = built_.roots[group] + 1; at < head.skip; at = nodes_[at].skip) {
+            ++roots;
+            std::set<uint32_t> meshes;
+            const std::string why = visit(at, head.skip, 0, meshes);
+            if (!why.empty()) return why;
+        }
+        if (seen_.size() != input_.groups[group].count) return std::to_string(seen_.size()) + " primitives found";
+        return {};
+    }
+
+ private:
+    std::string visit(rt_u32 at, rt_u32 end, uint32_t level, std::set<uint32_t>& meshes) {
+        const spheres_node& node = nodes_[at];
+        std::ostringstream why;
+        ++sphere_count;
+        if (node.skip <= at || node.skip > end) why << "node " << at << " skips to " << node.skip << " of " << end;
+        if (node.level != level) why << "node " << at << " says level " << node.level << ", is " << level;
+        if (!why.str().empty()) return why.str();
+        const size_t first_below = below_.size();
+        if (node.count > 0) {
+            if (node.skip != at + 1) return "leaf " + std::to_string(at) + " skips something";
+            leaf_sizes.insert(node.count);
+            if (node.count > max_leaf_ && level < max_depth_) return "leaf of " + std::to_string(node.count);
+            for (rt_u32 i = node.first; i < node.first + node.count; ++i) {
+                if (i >= built_.leaves.size() || !seen_.insert(built_.leaves[i]).second)
+                    return "position " + std::to_string(i) + " twice, or out of range";
+                below_.push_back(by_ref_[built_.leaves[i]]);
+                meshes.insert(input_.prims[below_.back()].mesh);
+            }
+        } else {
+            const rt_u32 second = nodes_[at + 1].skip;
+            if (second >= node.skip || nodes_[second].skip != node.skip)
+                return "node " + std::to_string(at) + " has not two children";
+            for (const rt_u32 child : {at + 1, second}) {
+                const std::string deeper = visit(child, node.skip, level + 1, meshes);
+                if (!deeper.empty()) return deeper;
+            }
+        }
+        // Every corner of every box below lies within.
+        for (size_t b = first_below; b < below_.size(); ++b) {
+            const rt_prim& prim = input_.prims[below_[b]];
+            for (int corner = 0; corner < 8; ++corner) {
+                double square = 0;
+                for (int a = 0; a < 3; ++a) {
+                    const double x = corner >> a & 1 ? prim.hi[a] : prim.lo[a];
+                    square += (x - node.center[a]) * (x - node.center[a]);
+                }
+                if (!(std::sqrt(square) <= node.radius)) return "node " + std::to_string(at) + " does not hold what is below";
+            }
+        }
+        return {};
+    }
+
+    const Input& input_;
+    const Built& built_;
+    const spheres_node* nodes_;
+    const uint32_t max_leaf_, max_depth_;
+    std::vector<uint32_t> by_ref_, below_;
+    std::set<rt_u32> seen_;
+};
+
+Input meshes(const std::vector<uint32_t>& sizes, float size = 1) {
+    Input input;
+    std::vector<rt_prim> prims;
+    for (uint32_t m = 0; m < sizes.size(); ++m)
+        for (rt_prim prim : scattered(sizes[m], size, 3.0f * size * static_cast<float>(m), m)) {
+            prim.ref = static_cast<rt_u32>(prims.size());
+            prim.mesh = m;
+            prims.push_back(prim);
+        }
+    input.add_group(prims);
+    return input;
+}
+
+void expect_sound(const Input& input, const Built& built, uint32_t max_leaf = 4, uint32_t max_depth = 32) {
+    ASSERT_EQ(built.status, RT_OK) << built.why;
+    Checker checker(input, built, max_leaf, max_depth);
+    for (uint32_t g = 0; g < input.groups.size(); ++g) EXPECT_EQ(checker.check(g), "") << "group " << g;
+    EXPECT_EQ(checker.sphere_count + input.groups.size(), built.slot_counts[0]);
+    EXPECT_EQ(built.stats.at("nodes"), built.slot_counts[0]);
+    EXPECT_EQ(built.stats.at("leaves"), checker.leaf_sizes.size());
+}
+
+}  // namespace
+
+TEST(Spheres, HoldEveryPrimitiveOnce) {
+    for (const uint32_t count : {1u, 2u, 4u, 5u, 8u, 9u, 100u, 1023u, 3000u}) {
+        const Input input = meshes({count});
+        expect_sound(input, build(spheres(), input));
+    }
+}
+
+TEST(Spheres, KeepToTheirParameters) {
+    const Input input = meshes({1000});
+    for (const int max_leaf : {1, 2, 3, 7, 100, 256})
+        expect_sound(input, build(spheres(), input, {{{"max_leaf", max_leaf}}, 2, {}}), static_cast<uint32_t>(max_leaf));
+    for (const int max_depth : {0, 1, 3}) {
+        const Built built = build(spheres(), input, {{{"max_depth", max_depth}}, 2, {}});
+        expect_sound(input, built, 4, static_cast<uint32_t>(max_depth));
+        EXPECT_EQ(built.stats.at("leaves"), 1 << max_depth);
+    }
+}
+
+TEST(Spheres, HalvesAreEven) {
+    const Input input = meshes({1000});
+    const Built built = build(spheres(), input, {{{"max_leaf", 8}}, 2, {}});
+    Checker checker(input, built, 8, 32);
+    ASSERT_EQ(checker.check(0), "");
+    EXPECT_EQ(checker.leaf_sizes.size(), 128u);  // 1000 / 128 is 7.8: all leaves have 7 or 8
+    EXPECT_EQ(*checker.leaf_sizes.begin(), 7u);
+    EXPECT_EQ(*checker.leaf_sizes.rbegin(), 8u);
+}
+
+TEST(Spheres, OneTreeForEachMeshAndNoneAbove) {
+    Input input = meshes({100, 1, 50, 7});
+    const Built built = build(spheres(), input);
+    expect_sound(input, built);
+    Checker checker(input, built, 4, 32);
+    ASSERT_EQ(checker.check(0), "");
+    EXPECT_EQ(checker.roots, 4u);
+    EXPECT_EQ(volumes(spheres(), built, 0, 0).size(), 4u);
+
+    const Built above = build(spheres(), input, {{{"top_level", 1}}, 2, {}});
+    expect_sound(input, above);
+    Checker with_top(input, above, 4, 32);
+    ASSERT_EQ(with_top.check(0), "");
+    EXPECT_EQ(with_top.roots, 1u);
+    EXPECT_EQ(volumes(spheres(), above, 0, 0).size(), 1u);
+    EXPECT_EQ(volumes(spheres(), above, 0, 2).size(), 4u);  // the meshes' roots
+}
+
+TEST(Spheres, GroupsMayBeEmptyOrMany) {
+    Input input;
+    input.add_group({});
+    for (uint32_t g = 0; g < 300; ++g) input.add_group(scattered(g % 20, 1, 0, g));
+    for (size_t i = 0; i < input.prims.size(); ++i) input.prims[i].ref = static_cast<rt_u32>(i);
+    for (const double top_level : {0, 1}) {
+        const Built built = build(spheres(), input, {{{"top_level", top_level}}, 2, {}});
+        expect_sound(input, built);
+        EXPECT_EQ(built.slot<spheres_node>()[built.roots[0]].skip, built.roots[0] + 1);
+        EXPECT_TRUE(volumes(spheres(), built, 0, RT_LEVEL_BOTTOM).empty());
+    }
+}
+
+TEST(Spheres, BoundTruly) {
+    // Sizes and places where centres and radii round.
+    for (const float size : {1e-38f, 1e-10f, 1e10f, 1e30f}) {
+        const Input input = meshes({500, 300}, size);
+        expect_sound(input, build(spheres(), input));
+    }
+    Input far;
+    far.add_group(scattered(1000, 1, 1e7f, 4));
+    expect_sound(far, build(spheres(), far));
+    Input same;
+    same.add_group(std::vector<rt_prim>(1, far.prims[0]));
+    for (uint32_t i = 1; i < 2000; ++i) {
+        same.prims.push_back(far.prims[0]);
+        same.prims.back().ref = i;
+    }
+    same.groups[0].count = 2000;
+    expect_sound(same, build(spheres(), same));
+    Input broken = meshes({500});
+    broken.prims[7].lo[1] = NAN;
+    broken.prims[8].hi[2] = INFINITY;
+    const Built built = build(spheres(), broken);
+    EXPECT_EQ(built.status, RT_OK);
+    for (size_t i = 0; i < built.slot_counts[0]; ++i) EXPECT_FALSE(std::isnan(built.slot<spheres_node>()[i].radius));
+}
+
+TEST(Spheres, AreTheSameOnAnyNumberOfThreads) {
+    Input input;
+    input.add_group(bumpy_sphere(100000));
+    const Built once = build(spheres(), input, {{}, 1, {}});
+    for (const unsigned threads : {2u, 8u}) {
+        const Built again = build(spheres(), input, {{}, threads, {}});
+        EXPECT_EQ(once.leaves, again.leaves);
+        ASSERT_EQ(once.slot_counts, again.slot_counts);
+        EXPECT_EQ(std::memcmp(once.slots[0], again.slots[0], once.slot_counts[0] * sizeof(spheres_node)), 0);
+    }
+}
+
+TEST(Spheres, StopWhenCancelled) {
+    Input input;
+    input.add_group(bumpy_sphere(200000));
+    for (const int stop_at : {1, 4}) {
+        int n = 0;
+        EXPECT_EQ(build(spheres(), input, {{}, 2, [&](float) { return ++n < stop_at; }}).status, RT_CANCELLED);
+    }
+}
