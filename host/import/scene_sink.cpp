@@ -323,7 +323,7 @@ int32_t SceneSink::load(const rt_load& d) {
     if (!scene_material(d.material, "load", RT_NONE, placement.material)) return RT_FAILED;
     const std::string why = builder_.include(path_, d.path, placement, content_);
     if (why.empty()) return RT_OK;
-    fail(why);
+    fail(d.where ? std::string(d.where) + ": " + why : why);
     return RT_FAILED;
 }
 

@@ -183,6 +183,7 @@ typedef struct rt_load {
     const char *name;            /* or NULL */
     float world_from_object[12]; /* applied after the file's own transforms */
     rt_u32 material;             /* for all of it, or RT_NONE */
+    const char *where;           /* place that asks for it, "main.scene:3:9", named by the error; or NULL */
 } rt_load;
 
 typedef struct rt_scene_info {

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -131,10 +131,10 @@ bool is_located(const std::string& text, size_t line_count) {
 }
 
 void check(const std::string& text, const std::string& which) {
-    const auto start = std::chrono::steady_clock::now();
+    const std::clock_t start = std::clock();
     const Recording r = import_text(text);
-    const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    EXPECT_LT(seconds, 2.0) << which;
+    const double cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;  // others may keep the machine busy
+    EXPECT_LT(cpu_s, 2.0) << which;
     const size_t line_count =
         1 + static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }));
     for (const std::string& warning : r.warnings) EXPECT_TRUE(is_located(warning, line_count)) << which << ": " << warning;

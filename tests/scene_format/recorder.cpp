@@ -56,6 +56,7 @@ void add_geometry_calls(rt_scene_sink& sink) {
         return id_of(recording_of(ctx).instanced_meshes.size());
     };
     sink.sphere = [](void* ctx, const float c[3], float radius, rt_u32 material) -> rt_u32 {
+        if (recording_of(ctx).refuse_spheres) return RT_NONE;
         recording_of(ctx).spheres.push_back({{c[0], c[1], c[2]}, radius, material});
         recording_of(ctx).order.push_back("sphere");
         return id_of(recording_of(ctx).spheres.size());
@@ -77,7 +78,7 @@ void add_geometry_calls(rt_scene_sink& sink) {
         r.loads.push_back(copy);
         r.order.push_back("load");
         if (!r.refuse_loads) return RT_OK;
-        if (r.why.empty()) r.why = "the sink refused " + copy.path;
+        if (r.why.empty()) r.why = text_or_empty(load->where) + ": the sink refused " + copy.path;
         return RT_FAILED;
     };
 }

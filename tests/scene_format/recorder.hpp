@@ -61,7 +61,7 @@ struct Recording {
     std::array<float, 3> background{}, ambient{};
 
     // What the sink and the host answer.
-    bool refuse_textures = false, refuse_loads = false;
+    bool refuse_textures = false, refuse_loads = false, refuse_spheres = false;
     int32_t reports_before_cancel = -1;  // negative: never
 
     // Everything that was said or handed over is sound: finite numbers, known ids, texts without control characters.

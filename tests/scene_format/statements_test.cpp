@@ -235,9 +235,14 @@ TEST(SceneFormat, SinkFailureNamesTheStatement) {
     r.refuse_loads = true;
     import_text("sphere\nload \"gone.fbx\"\nsphere\n", r);
     EXPECT_EQ(r.status, RT_FAILED);
-    EXPECT_EQ(r.why, "the sink refused gone.fbx");
-    EXPECT_EQ(r.log, std::vector<std::string>{"test.scene:2:6: the import stopped at this statement"});
+    EXPECT_EQ(r.why, "test.scene:2:6: the sink refused gone.fbx");
     EXPECT_EQ(r.spheres.size(), 1u);
+
+    Recording other;
+    other.refuse_spheres = true;
+    import_text("camera c\n  sphere\n", other);
+    EXPECT_EQ(other.status, RT_FAILED);
+    EXPECT_EQ(other.log, std::vector<std::string>{"test.scene:2:3: the import stopped at this statement"});
 }
 
 TEST(SceneFormat, StopsWhenCancelled) {

@@ -21,7 +21,8 @@ const char* name_or_null(const std::string& name) {
 
 class Emitter {
  public:
-    Emitter(const Document& document, const rt_scene_sink& sink) : document_(document), sink_(sink) {}
+    Emitter(const Document& document, std::string_view file, const rt_scene_sink& sink)
+        : document_(document), file_(file), sink_(sink) {}
 
     void info() const;
     bool materials();
@@ -36,6 +37,7 @@ class Emitter {
     bool load(const Load& load);
 
     const Document& document_;
+    const std::string file_;
     const rt_scene_sink& sink_;
     std::unordered_map<std::string, rt_u32> material_ids_;
     Position position_;  // of what is being handed over
@@ -127,6 +129,8 @@ bool Emitter::load(const Load& load) {
     desc.name = name_or_null(load.name.text);
     std::copy(load.world_from_object.begin(), load.world_from_object.end(), desc.world_from_object);
     desc.material = material(load.material);
+    const std::string where = file_ + ":" + std::to_string(load.position.line) + ":" + std::to_string(load.position.column);
+    desc.where = where.c_str();
     return sink_.load(sink_.ctx, &desc) == RT_OK;
 }
 
@@ -161,13 +165,13 @@ bool Emitter::item(size_t& at) {
 }  // namespace
 
 int32_t emit(const Document& document, std::string_view file, const rt_host& host, const rt_scene_sink& sink) {
-    Emitter emitter(document, sink);
+    Emitter emitter(document, file, sink);
     emitter.info();
-    bool ok = emitter.materials() && emitter.lights_and_cameras();
+    bool ok = emitter.materials() && emitter.lights_and_cameras(), is_load = false;
     constexpr size_t items_between_reports = 1024;
     for (size_t at = 0, reported = 0; ok && at < document.items.size();) {
-        const bool is_slow = document.items[at].kind == ItemKind::load;
-        if (is_slow || at >= reported) {
+        is_load = document.items[at].kind == ItemKind::load;
+        if (is_load || at >= reported) {
             const float fraction = 0.5f + 0.5f * static_cast<float>(at) / static_cast<float>(document.items.size());
             if (host.progress(host.ctx, fraction) == 0) return RT_CANCELLED;
             reported = at + items_between_reports;
@@ -175,8 +179,10 @@ int32_t emit(const Document& document, std::string_view file, const rt_host& hos
         ok = emitter.item(at);
     }
     if (ok) return RT_OK;
-    const std::string where = located(file, {emitter.position(), "the import stopped at this statement"});
-    host.log(host.ctx, RT_LOG_WARNING, where.c_str());
+    if (!is_load) {  // the error of a load names the place already
+        const std::string where = located(file, {emitter.position(), "the import stopped at this statement"});
+        host.log(host.ctx, RT_LOG_WARNING, where.c_str());
+    }
     return RT_FAILED;
 }
 
