@@ -1,12 +1,11 @@
 #include "recorder.hpp"
 
+#include <sys/mman.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 
 namespace {
 
@@ -116,26 +115,17 @@ bool all_finite(const Numbers& numbers) {
     return std::all_of(std::begin(numbers), std::end(numbers), [](float x) { return std::isfinite(x); });
 }
 
-// Messages show the file's folder, which differs from run to run.
-void forget_folder(const std::string& folder, std::string& text) {
-    for (size_t at; (at = text.find(folder)) != std::string::npos;) text.erase(at, folder.size());
+void show_as_test_scene(const std::string& path, std::string& text) {
+    for (size_t at; (at = text.find(path)) != std::string::npos;) text.replace(at, path.size(), "test.scene");
 }
 
 }  // namespace
 
 void import_text(const std::string& text, Recording& recording) {
-    namespace fs = std::filesystem;
-    static const fs::path folder = fs::temp_directory_path() / ("clarity_scene_format_" + std::to_string(getpid()));
-    static const bool removed_at_exit = std::atexit([] {
-                                            std::error_code ignored;
-                                            fs::remove_all(folder, ignored);
-                                        }) == 0;
-    (void)removed_at_exit;
-    fs::create_directories(folder);
-    const std::string path = (folder / "test.scene").string();
-    std::FILE* file = std::fopen(path.c_str(), "wb");
-    if (file == nullptr || std::fwrite(text.data(), 1, text.size(), file) != text.size() || std::fclose(file) != 0)
-        std::abort();
+    // A file in memory: thousands of them would keep a disk busy.
+    static const int file = memfd_create("test.scene", 0);
+    static const std::string path = "/proc/self/fd/" + std::to_string(file);
+    if (ftruncate(file, 0) != 0 || pwrite(file, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) std::abort();
 
     rt_scene_sink sink{};
     sink.struct_bytes = sizeof sink;
@@ -145,10 +135,9 @@ void import_text(const std::string& text, Recording& recording) {
     const rt_host host = recording_host(recording);
     recording.status = rt_plugin_v1.importer->load(&host, path.c_str(), nullptr, &sink);
 
-    const std::string prefix = folder.string() + "/";
-    forget_folder(prefix, recording.why);
-    for (std::string& line : recording.log) forget_folder(prefix, line);
-    for (std::string& line : recording.warnings) forget_folder(prefix, line);
+    show_as_test_scene(path, recording.why);
+    for (std::string& line : recording.log) show_as_test_scene(path, line);
+    for (std::string& line : recording.warnings) show_as_test_scene(path, line);
 }
 
 Recording import_text(const std::string& text) {
