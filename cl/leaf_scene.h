@@ -6,17 +6,17 @@ RT_INLINE void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint index, const rt_ra
     const global rt_instance *instance = ctx->instances + index;
     const global float *m = instance->object_from_world;
     const uint active = rt_bits(RT_MASK(h->t >= rt_vfloat(0.0f)));
-    rt_rays local;
-    local.ox = fma(rt_vfloat(m[0]), r->ox, fma(rt_vfloat(m[1]), r->oy, fma(rt_vfloat(m[2]), r->oz, rt_vfloat(m[3]))));
-    local.oy = fma(rt_vfloat(m[4]), r->ox, fma(rt_vfloat(m[5]), r->oy, fma(rt_vfloat(m[6]), r->oz, rt_vfloat(m[7]))));
-    local.oz = fma(rt_vfloat(m[8]), r->ox, fma(rt_vfloat(m[9]), r->oy, fma(rt_vfloat(m[10]), r->oz, rt_vfloat(m[11]))));
-    local.dx = fma(rt_vfloat(m[0]), r->dx, fma(rt_vfloat(m[1]), r->dy, rt_vfloat(m[2]) * r->dz));
-    local.dy = fma(rt_vfloat(m[4]), r->dx, fma(rt_vfloat(m[5]), r->dy, rt_vfloat(m[6]) * r->dz));
-    local.dz = fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz));
-    local.t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
-    rt_prepare(&local, active);
+    rt_rays inner;
+    inner.ox = fma(rt_vfloat(m[0]), r->ox, fma(rt_vfloat(m[1]), r->oy, fma(rt_vfloat(m[2]), r->oz, rt_vfloat(m[3]))));
+    inner.oy = fma(rt_vfloat(m[4]), r->ox, fma(rt_vfloat(m[5]), r->oy, fma(rt_vfloat(m[6]), r->oz, rt_vfloat(m[7]))));
+    inner.oz = fma(rt_vfloat(m[8]), r->ox, fma(rt_vfloat(m[9]), r->oy, fma(rt_vfloat(m[10]), r->oz, rt_vfloat(m[11]))));
+    inner.dx = fma(rt_vfloat(m[0]), r->dx, fma(rt_vfloat(m[1]), r->dy, rt_vfloat(m[2]) * r->dz));
+    inner.dy = fma(rt_vfloat(m[4]), r->dx, fma(rt_vfloat(m[5]), r->dy, rt_vfloat(m[6]) * r->dz));
+    inner.dz = fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz));
+    inner.t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
+    rt_prepare(&inner, active);
     const vfloat before = h->t;
-    RT_FN(rt_mesh)(ctx, instance->root, &local, h);
+    RT_FN(rt_mesh)(ctx, instance->root, &inner, h);
 #if !RT_ANY_HIT
     h->instance = rt_select(RT_MASK(h->t < before), rt_vint(index), h->instance);
 #endif
