@@ -1,0 +1,45 @@
+// mapped_file.hpp -- a file's bytes in memory, read-only.
+#pragma once
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace openmesh_import {
+
+class MappedFile {
+ public:
+    // Throws std::runtime_error that says why (without the file's name).
+    explicit MappedFile(const std::string& path) {
+        const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+        if (file < 0) throw std::runtime_error(std::string("cannot open the file: ") + std::strerror(errno));
+        struct stat about {};
+        const bool known = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
+        size_ = known ? static_cast<size_t>(about.st_size) : 0;
+        void* memory = size_ > 0 ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file, 0) : nullptr;
+        const int error = errno;
+        ::close(file);
+        if (!known) throw std::runtime_error("it is not a regular file");
+        if (memory == MAP_FAILED) throw std::runtime_error(std::string("cannot read the file: ") + std::strerror(error));
+        data_ = static_cast<const char*>(memory);
+    }
+    ~MappedFile() {
+        if (data_) ::munmap(const_cast<char*>(data_), size_);
+    }
+    MappedFile(const MappedFile&) = delete;
+    MappedFile& operator=(const MappedFile&) = delete;
+
+    std::string_view bytes() const { return {data_, size_}; }
+
+ private:
+    const char* data_ = nullptr;
+    size_t size_ = 0;
+};
+
+}  // namespace openmesh_import

@@ -1,0 +1,169 @@
+// openmesh.cpp -- importer plugin: OBJ, PLY, STL, OFF and OM through OpenMesh's readers, every face of the file.
+#include <OpenMesh/Core/IO/IOManager.hh>
+#include <OpenMesh/Core/IO/Options.hh>
+#include <OpenMesh/Core/System/omstream.hh>
+#include <algorithm>
+#include <cctype>
+#include <istream>
+#include <stdexcept>
+#include <string>
+
+#include "mapped_file.hpp"
+#include "readers.hpp"
+#include "rt_plugin.hpp"
+#include "text.hpp"
+
+namespace openmesh_import {
+
+void warn(const Source& source, const std::string& text) {
+    source.sink.warn(source.sink.ctx, text.c_str());
+}
+
+bool run_reader(const char* extension, std::streambuf& buffer, bool stop_at_errors, bool is_binary, bool custom_properties,
+                FlatImporter& mesh) {
+    using OpenMesh::IO::Options;
+    Options options = Options::VertexNormal | Options::VertexTexCoord;
+    if (is_binary) options += Options::Binary;
+    if (custom_properties) options += Options::Custom;
+    // What it would print about single faces is told by us, counted.
+    omerr().disable();
+    omlog().disable();
+    std::istream stream(&buffer);
+    if (std::string(extension) == "om") stream.unsetf(std::ios::skipws);
+    stream.exceptions(stop_at_errors ? std::ios::badbit | std::ios::failbit : std::ios::badbit);
+    return OpenMesh::IO::IOManager().read(stream, extension, mesh, options);
+}
+
+std::string too_large(const char* what, unsigned long long count, unsigned long long least_bytes,
+                      unsigned long long available) {
+    // Indices of OpenMesh are signed.
+    if (count <= available / least_bytes && count < 0x7FFFFFFFull) return {};
+    return "declares " + std::to_string(count) + " elements '" + what + "' of at least " + std::to_string(least_bytes) +
+           " bytes and has " + std::to_string(available) + " bytes for them: it is cut off or damaged";
+}
+
+namespace {
+
+// Reading takes the most of it; the rest is the host's copy.
+constexpr float kReadShare = 0.9f;
+
+std::string lower_extension(const std::string& path) {
+    const size_t dot = path.find_last_of("./");
+    std::string extension = dot == path.npos || path[dot] == '/' ? "" : path.substr(dot + 1);
+    for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return extension;
+}
+
+// A PLY, OFF or OM file is known by its first bytes; the others by their extension.
+std::string format_of(const std::string& path, std::string_view bytes) {
+    const std::string extension = lower_extension(path);
+    if (extension == "stla" || extension == "stlb") return "stl";
+    if (extension == "obj" || extension == "stl" || extension == "ply" || extension == "off" || extension == "om")
+        return extension;
+    if (bytes.substr(0, 3) == "ply") return "ply";
+    if (bytes.substr(0, 2) == "OM") return "om";
+    return bytes.substr(0, 3) == "OFF" ? "off" : extension;
+}
+
+const char* picture_kind(std::string_view bytes) {
+    if (bytes.substr(0, 4) == "\x89PNG") return "a PNG picture";
+    if (bytes.substr(0, 3) == "\xFF\xD8\xFF") return "a JPEG picture";
+    if (bytes.substr(0, 2) == "\x1F\x8B") return "a gzip archive: unpack it";
+    if (bytes.substr(0, 4) == "PK\x03\x04") return "a zip archive: unpack it";
+    return nullptr;
+}
+
+rt_u32 texture_material(const Source& source, const std::string& path) {
+    rt_texture_desc texture{};
+    texture.struct_bytes = sizeof texture;
+    texture.path = path.c_str();
+    rt_material_desc material{};
+    material.struct_bytes = sizeof material;
+    material.name = path.c_str();
+    material.values.texture = source.sink.texture(source.sink.ctx, &texture);
+    if (material.values.texture == RT_NONE) return RT_NONE;
+    std::fill(material.values.color, material.values.color + 3, 1.0f);
+    material.values.shininess = material.values.ior = 1;
+    return rt::id(source.sink.material(source.sink.ctx, &material));
+}
+
+void emit(const Source& source, const FlatImporter& mesh, rt_u32 material) {
+    const size_t slash = source.path.find_last_of('/');
+    const std::string file = slash == source.path.npos ? source.path : source.path.substr(slash + 1);
+    const std::string name = file.substr(0, file.find_last_of('.'));
+    rt_mesh out{};
+    out.struct_bytes = sizeof out;
+    out.name = name.c_str();
+    out.positions = mesh.positions.data();
+    out.vertex_count = static_cast<rt_u32>(mesh.positions.size() / 3);
+    out.position_stride = out.normal_stride = 3 * sizeof(float);
+    out.uv_stride = 2 * sizeof(float);
+    if (!mesh.normals.empty()) out.normals = mesh.normals.data();
+    if (!mesh.uvs.empty()) out.uvs = mesh.uvs.data();
+    out.indices = mesh.indices.data();
+    out.index_count = mesh.indices.size();
+    out.face_count = mesh.face_count();
+    if (std::any_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](rt_u32 n) { return n != 3; })) {
+        out.face_sizes = mesh.face_sizes.data();
+    }
+    if (!mesh.face_materials.empty()) out.face_materials = mesh.face_materials.data();
+    out.material = material;
+    rt_instance_desc instance{};
+    instance.struct_bytes = sizeof instance;
+    instance.name = name.c_str();
+    instance.mesh = rt::id(source.sink.mesh(source.sink.ctx, &out));
+    instance.material = RT_NONE;
+    for (const int diagonal : {0, 5, 10}) instance.world_from_object[diagonal] = 1;
+    rt::id(source.sink.instance(source.sink.ctx, &instance));
+}
+
+int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
+    const MappedFile file(path);
+    if (file.bytes().empty()) throw std::runtime_error("the file is empty");
+    if (const char* kind = picture_kind(file.bytes())) throw std::runtime_error(std::string("it is ") + kind);
+    const auto report = [&](float fraction) { rt::progress(host, kReadShare * std::min(1.0f, std::max(0.0f, fraction))); };
+    const Source source{path, file.bytes(), report, *sink};
+    const std::string format = format_of(path, file.bytes());
+    FlatImporter mesh(format == "obj");
+    std::string texture;
+    if (format == "obj") read_obj(source, mesh);
+    if (format == "ply") texture = read_ply(source, mesh);
+    if (format == "stl") read_stl(source, mesh);
+    if (format == "off") read_off(source, mesh);
+    if (format == "om") read_om(source, mesh);
+    mesh.finish_faces();
+    rt::progress(host, kReadShare);
+
+    if (mesh.broken_faces > 0) {
+        const std::string text =
+            std::to_string(mesh.broken_faces) + " faces name missing or unusable vertices, the first: " + mesh.first_broken;
+        if (mesh.face_count() == 0) throw std::runtime_error("contains no usable polygons: " + text);
+        warn(source, text);
+    }
+    const bool any_polygon = std::any_of(mesh.face_sizes.begin(), mesh.face_sizes.end(), [](rt_u32 n) { return n >= 3; });
+    if (any_polygon) {
+        emit(source, mesh, texture.empty() ? RT_NONE : texture_material(source, texture));
+    } else if (mesh.n_vertices() > 0) {
+        warn(source, "contains no polygons (points and lines were skipped)");
+    } else {
+        throw std::runtime_error("contains neither vertices nor polygons: is it " + format + "?");
+    }
+    return RT_OK;
+}
+
+int32_t probe(const uint8_t* head, uint64_t bytes) {
+    const std::string_view text(reinterpret_cast<const char*>(head), bytes);
+    if (text.substr(0, 4) == "ply\n" || text.substr(0, 4) == "ply\r") return 100;
+    if (text.size() > 3 && text.substr(0, 2) == "OM" && std::string_view("TQP").find(text[2]) != text.npos) return 80;
+    if (text.substr(0, 3) == "OFF" || text.substr(0, 4) == "COFF" || text.substr(0, 4) == "NOFF") return 90;
+    return 0;
+}
+
+constexpr const char* kExtensions[] = {"obj", "ply", "stl", "stla", "stlb", "off", "om", nullptr};
+constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, probe, rt::guarded<load>};
+
+}  // namespace
+}  // namespace openmesh_import
+
+extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 =
+    rt::importer_plugin("openmesh", "OBJ, PLY, STL, OFF, OM (OpenMesh)", "1.0.0", nullptr, openmesh_import::kImporter);

@@ -1,0 +1,90 @@
+// stl.cpp -- STL, ASCII and binary.
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+#include "readers.hpp"
+#include "text.hpp"
+
+namespace openmesh_import {
+namespace {
+
+// 80 bytes of anything, the count of facets as 32 bits, little-endian, then 50 bytes a facet.
+constexpr size_t kHeaderBytes = 84, kFacetBytes = 50;
+
+uint32_t declared_count(std::string_view bytes) {
+    unsigned char count[4];
+    std::memcpy(count, bytes.data() + 80, 4);
+    return count[0] | count[1] << 8 | count[2] << 16 | uint32_t(count[3]) << 24;
+}
+
+bool has(std::string_view text, const char* lower, const char* upper) {
+    return text.find(lower) != text.npos || text.find(upper) != text.npos;
+}
+
+// Binary files may start with "solid" too; only the words that ASCII needs decide.
+bool is_ascii(std::string_view bytes) {
+    const std::string_view head = bytes.substr(0, 4096);
+    if (bytes.size() >= kHeaderBytes && bytes.size() == kHeaderBytes + kFacetBytes * size_t(declared_count(bytes)))
+        return false;
+    if (head.find('\0') != head.npos) return false;
+    return has(head, "solid", "SOLID") || has(head, "facet", "FACET");
+}
+
+void read_binary(const Source& source, FlatImporter& mesh) {
+    if (source.bytes.size() < kHeaderBytes)
+        throw std::runtime_error("not an STL file: too short for a binary one, no text of one");
+    const uint32_t count = declared_count(source.bytes);
+    const size_t room = (source.bytes.size() - kHeaderBytes) / kFacetBytes;
+    if (count > room) {
+        throw std::runtime_error("declares " + std::to_string(count) + " facets and has room for " + std::to_string(room) +
+                                 ": it is cut off, or no STL file");
+    }
+    BytesBuffer buffer({}, source.bytes, source.progress);
+    run_reader("stl", buffer, true, true, false, mesh);
+    if (count > mesh.face_count()) {
+        warn(source,
+             std::to_string(count - mesh.face_count()) + " facets with fewer than three different corners were left out");
+    }
+}
+
+void read_ascii(const Source& source, FlatImporter& mesh) {
+    uint64_t facets = 0, vertices = 0;
+    size_t line_number = 0;
+    const auto edit = [&](std::string_view line, int, std::string& out) {
+        ++line_number;
+        line = trim(line);
+        out = line;
+        if (has(line, "outer", "OUTER")) ++facets;
+        const std::string_view word = next_word(line);
+        if (word != "vertex" && word != "VERTEX") return !word.empty();
+        ++vertices;
+        for (int k = 0; k < 3; ++k) {
+            float x;
+            const std::string_view number = next_word(line);
+            if (!parse_float(number, x)) {
+                throw std::runtime_error("line " + std::to_string(line_number) + ": " + quoted(number) +
+                                         " where a coordinate is due");
+            }
+        }
+        return true;
+    };
+    LineBuffer buffer(source.bytes, false, edit, 1, source.progress);
+    run_reader("stl", buffer, false, false, false, mesh);
+    if (vertices != 3 * facets) {
+        throw std::runtime_error("has " + std::to_string(vertices) + " vertices for " + std::to_string(facets) +
+                                 " facets: it is cut off or damaged");
+    }
+    if (facets > mesh.face_count()) {
+        warn(source,
+             std::to_string(facets - mesh.face_count()) + " facets with fewer than three different corners were left out");
+    }
+}
+
+}  // namespace
+
+void read_stl(const Source& source, FlatImporter& mesh) {
+    is_ascii(source.bytes) ? read_ascii(source, mesh) : read_binary(source, mesh);
+}
+
+}  // namespace openmesh_import
