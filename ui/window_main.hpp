@@ -17,7 +17,7 @@ struct ViewOptions {
     std::string camera;                       // as --camera: "", a name or "ex,ey,ez,tx,ty,tz[,fov_deg]"
     std::string light;                        // as --light: "" or "x,y,z"
     ImportOptions import;
-    std::string key_map;                      // "thesis", "viewer"; "": as remembered, at first "thesis"
+    std::string key_map;  // "thesis", "viewer"; "": as remembered, at first "thesis"
 };
 
 // Opens the window and returns when it is closed: the program's exit code. Throws Error(usage) where there is no display or no

@@ -1,0 +1,219 @@
+#include "ui/app.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "render/image_io.hpp"
+#include "ui/camera_control.hpp"
+#include "ui/cards.hpp"
+#include "ui/panel.hpp"
+#include "ui/script.hpp"
+#include "ui/theme.hpp"
+
+namespace clarity {
+namespace {
+
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+constexpr float kTapSeconds = 0.06f;  // what a short press is worth, however short it was
+constexpr float kLongestStep = 0.1f;  // after a pause of the loop, motion does not jump
+constexpr float kTurnRadPerSecond = 0.9f;
+
+}  // namespace
+
+App::App(const ViewOptions& options) {
+    folder_ = preferences_folder();
+    const Preferences preferences = load_preferences(folder_);
+    const std::string ini = folder_.empty() ? std::string() : folder_ + "/imgui.ini";
+    window_ = std::make_unique<GlWindow>("Clarity", preferences.width, preferences.height, ini);
+    state_.text_scale = preferences.text_scale;
+    state_.camera_speed = preferences.camera_speed;
+    state_.light_speed = preferences.light_speed;
+    state_.panel_visible = preferences.panel_visible;
+    const std::string& id = options.key_map.empty() ? preferences.key_map : options.key_map;
+    if (const KeyMap* map = find_key_map(id)) state_.key_map = map;
+    texture_ = std::make_unique<PictureTexture>();
+    session_ = std::make_unique<Session>(options, GlWindow::wake);
+    overlay_ = std::make_unique<VolumeOverlay>(GlWindow::wake);
+    script_ = Script::from_environment();
+    apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
+}
+
+App::~App() {
+    Preferences preferences;
+    window_->size(preferences.width, preferences.height);
+    preferences.text_scale = state_.text_scale;
+    preferences.camera_speed = state_.camera_speed;
+    preferences.light_speed = state_.light_speed;
+    preferences.key_map = state_.key_map->id;
+    preferences.panel_visible = state_.panel_visible;
+    save_preferences(folder_, preferences);
+    // A compiler that runs cannot be stopped: the window goes before it is waited for.
+    window_->hide();
+    window_->wait_events(0);
+    overlay_.reset();
+    session_.reset();
+    texture_.reset();
+}
+
+int App::run() {
+    last_turn_s_ = now_s();
+    while (!window_->closing()) {
+        if (window_->wait_events(wait_seconds())) settle_frames_ = 3;
+        turn();
+    }
+    return 0;
+}
+
+// Frames are drawn when something changed. While nothing does, the loop sleeps until an event or a thread's news.
+double App::wait_seconds() const {
+    if (settle_frames_ > 0 || held_.any_held(*state_.key_map)) return 1.0 / 120;
+    if (script_ && script_->busy()) return 0.005;
+    if (session_->activity().busy || !overlay_->ready()) return 1.0 / 30;
+    return typing() ? 0.1 : 0.5;  // a text field's cursor blinks
+}
+
+bool App::typing() const {
+    return ImGui::GetIO().WantTextInput;
+}
+
+bool App::turn() {
+    const double begin = now_s();
+    const auto seconds = static_cast<float>(std::min(begin - last_turn_s_, static_cast<double>(kLongestStep)));
+    last_turn_s_ = begin;
+    take_keys();
+    if (auto files = window_->take_dropped_files(); !files.empty()) session_->open(std::move(files));
+    if (script_) script_->step(*this);
+    move_held(seconds);
+    try {
+        session_->update();
+    } catch (const Error& error) {
+        session_->report(error.what(), error.details());
+    }
+    overlay_->update(session_->ready() ? session_->ready()->prepared : nullptr);
+    apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
+    upload_picture();
+    window_->begin_frame();
+    draw();
+    finish_frame();
+    if (settle_frames_ > 0) --settle_frames_;
+    const double end = now_s();
+    ++times_.frames;
+    times_.slowest_frame_ms = std::max(times_.slowest_frame_ms, (end - begin) * 1e3);
+    if (oldest_key_s_ > 0) times_.slowest_answer_ms = std::max(times_.slowest_answer_ms, (end - oldest_key_s_) * 1e3);
+    oldest_key_s_ = 0;
+    return true;
+}
+
+void App::finish_frame() {
+    if (capture_path_.empty()) {
+        window_->end_frame();
+        return;
+    }
+    const ByteImage image = window_->end_frame_and_read();
+    try {
+        write_image(capture_path_, {}, image);
+    } catch (const Error& error) {
+        session_->report(error.what());
+    }
+    capture_path_.clear();
+}
+
+void App::upload_picture() {
+    const auto picture = session_->picture();
+    if (!picture || picture == uploaded_) return;
+    texture_->upload(picture->image);
+    uploaded_ = picture;
+    std::string title = "Clarity";
+    if (const auto files = session_->files(); !files.empty())
+        title = files.front().substr(files.front().find_last_of('/') + 1) + " - Clarity";
+    window_->set_title(title);
+}
+
+void App::take_keys() {
+    for (const KeyEvent& event : window_->take_keys()) {
+        if (oldest_key_s_ == 0) oldest_key_s_ = now_s() - event.age_s();
+        if (event.kind == KeyEvent::Kind::lost_focus) {
+            held_.clear();
+        } else if (event.kind == KeyEvent::Kind::release) {
+            held_.release(event.key);
+        } else if (!event.with_modifier && !typing()) {
+            if (const KeyBinding* binding = state_.key_map->find(event.key)) press(*binding);
+        }
+    }
+}
+
+void App::press(const KeyBinding& binding) {
+    if (is_held(binding.action)) {
+        held_.press(binding.key);
+        HeldKeys tapped;
+        tapped.press(binding.key);
+        apply_motion(kTapSeconds, tapped);
+        return;
+    }
+    switch (binding.action) {
+        case Action::print_frame_rate:
+            std::printf("%s\n", session_->frame_rate_line().c_str());
+            std::fflush(stdout);
+            break;
+        case Action::show_level:
+            overlay_->toggle(static_cast<rt_u32>(binding.argument));
+            break;
+        case Action::show_bottom_level:
+            overlay_->toggle(RT_LEVEL_BOTTOM);
+            break;
+        case Action::reset_camera:
+            session_->reset_view();
+            break;
+        case Action::cancel_work:
+            session_->cancel();
+            break;
+        case Action::show_help:
+            state_.show_tab(Tab::help);
+            break;
+        case Action::toggle_panel:
+            state_.panel_visible = !state_.panel_visible;
+            break;
+        default:
+            break;
+    }
+}
+
+void App::move_held(float seconds) {
+    apply_motion(seconds, held_);
+}
+
+void App::apply_motion(float seconds, const HeldKeys& keys) {
+    if (!keys.any_held(*state_.key_map)) return;
+    const auto between = [&](Action less, Action more) {
+        return keys.value(*state_.key_map, more) - keys.value(*state_.key_map, less);
+    };
+    const float step = session_->scene_size() * 0.33f * seconds;
+    const float camera = step * state_.camera_speed, turn = kTurnRadPerSecond * seconds * std::min(state_.camera_speed, 2.0f);
+    const Step motion{between(Action::camera_left, Action::camera_right) * camera,
+                      between(Action::camera_down, Action::camera_up) * camera,
+                      between(Action::camera_back, Action::camera_forward) * camera};
+    Camera& eye = session_->wish.camera;
+    if (!motion.none()) state_.key_map->mouse_look ? fly_camera(eye, motion) : move_camera(eye, motion);
+    const float yaw = between(Action::yaw_right, Action::yaw_left) * turn,
+                pitch = between(Action::pitch_down, Action::pitch_up) * turn;
+    if (yaw != 0 || pitch != 0) turn_camera(eye, yaw, pitch);
+
+    const float reach = step * state_.light_speed;
+    const Step shift{between(Action::light_left, Action::light_right) * reach,
+                     between(Action::light_down, Action::light_up) * reach,
+                     between(Action::light_back, Action::light_forward) * reach};
+    auto& lights = session_->wish.lights;
+    if (!shift.none() && session_->selected_light < lights.size())
+        move_light(lights[session_->selected_light].values, eye, shift, session_->scene_size());
+}
+
+}  // namespace clarity

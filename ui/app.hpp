@@ -1,0 +1,70 @@
+// app.hpp -- the running window: events to wishes, the session's newest to the screen, once a frame.
+#pragma once
+#include <memory>
+
+#include "ui/gl_window.hpp"
+#include "ui/overlay.hpp"
+#include "ui/preferences.hpp"
+#include "ui/session.hpp"
+#include "ui/ui_state.hpp"
+#include "ui/viewport.hpp"
+
+namespace clarity {
+
+class Script;
+
+// How the window itself fares; tests read it.
+struct UiTimes {
+    unsigned long frames = 0;
+    double slowest_frame_ms = 0;   // one turn of the loop, without its waiting
+    double slowest_answer_ms = 0;  // from a key's event to the end of the frame that took it in
+};
+
+class App {
+ public:
+    explicit App(const ViewOptions& options);
+    ~App();
+    int run();
+
+    // For the script of a test.
+    Session& session() { return *session_; }
+    UiState& state() { return state_; }
+    VolumeOverlay& overlay() { return *overlay_; }
+    UiTimes& times() { return times_; }
+    const Rect& picture_area() const { return picture_area_; }
+    bool typing() const;
+    void close() { window_->close(); }
+    // The next frame is written there as PNG.
+    void capture(const std::string& path) { capture_path_ = path; }
+
+ private:
+    bool turn();  // whether something moved, so that the next turn should come soon
+    double wait_seconds() const;
+    void take_keys();
+    void press(const KeyBinding& binding);
+    void move_held(float seconds);
+    void apply_motion(float seconds, const HeldKeys& keys);
+    void draw();
+    void draw_viewport(const Rect& area);
+    void mouse_on_picture();
+    void upload_picture();
+    void finish_frame();
+
+    std::string folder_;  // of the preferences; empty: none
+    std::unique_ptr<GlWindow> window_;
+    std::unique_ptr<PictureTexture> texture_;
+    std::unique_ptr<Session> session_;
+    std::unique_ptr<VolumeOverlay> overlay_;
+    std::unique_ptr<Script> script_;
+    UiState state_;
+    UiTimes times_;
+    HeldKeys held_;
+    std::shared_ptr<const Picture> uploaded_;
+    Rect picture_area_;
+    std::string capture_path_;
+    double last_turn_s_ = 0;
+    double oldest_key_s_ = 0;  // of the keys taken in since the last frame; 0: none
+    int settle_frames_ = 3;    // ImGui needs a few to settle after an event
+};
+
+}  // namespace clarity

@@ -1,0 +1,170 @@
+#include "ui/cards.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "ui/theme.hpp"
+#include "ui/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr ImGuiWindowFlags kCardFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                                        ImGuiWindowFlags_NoFocusOnAppearing;
+
+void begin_card(const char* name, const ImVec2& position, const ImVec2& pivot, float width) {
+    ImGui::SetNextWindowPos(position, ImGuiCond_Always, pivot);
+    ImGui::SetNextWindowSize({width, 0});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kCard);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * ui_scale());
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
+    ImGui::Begin(name, nullptr, kCardFlags | ImGuiWindowFlags_AlwaysAutoResize);
+}
+
+void end_card() {
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+    ImGui::PopStyleColor();
+}
+
+// The last part of what fits, so that a long path keeps its file's name.
+std::string shortened(const std::string& text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    size_t from = 0;
+    while (from < text.size()) {
+        do ++from;
+        while (from < text.size() && (static_cast<unsigned char>(text[from]) & 0xC0) == 0x80);  // whole UTF-8 characters
+        const std::string rest = "\u2026" + text.substr(from);
+        if (ImGui::CalcTextSize(rest.c_str()).x <= width) return rest;
+    }
+    return {};
+}
+
+// Text on the status line, then a gap.
+void status_item(const std::string& text, const ImVec4& color, const std::string& help = {}) {
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    tooltip(help);
+    ImGui::SameLine(0, 22 * ui_scale());
+}
+
+}  // namespace
+
+void draw_progress_card(const Rect& viewport, Session& session) {
+    // Work that is done at once would only flash.
+    static double busy_since = -1;
+    const Activity activity = session.activity();
+    if (!activity.busy) {
+        busy_since = -1;
+        return;
+    }
+    if (busy_since < 0) busy_since = ImGui::GetTime();
+    if (ImGui::GetTime() - busy_since < 0.15) return;
+    const float scale = ui_scale(), width = std::min(420 * scale, viewport.width - 32 * scale);
+    begin_card("Progress", {viewport.x + viewport.width / 2, viewport.y + viewport.height - 18 * scale}, {0.5f, 1}, width);
+    const float button = 72 * scale;
+    const float inner = ImGui::GetContentRegionAvail().x;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(shortened(activity.stage.empty() ? "working" : activity.stage, inner - button - 12 * scale).c_str());
+    ImGui::SameLine(ImGui::GetCursorPosX() + inner - button);
+    if (ImGui::Button("Cancel", {button, 0})) session.cancel();
+    const ImVec2 bar(-FLT_MIN, 6 * scale);
+    if (activity.fraction >= 0) {
+        ImGui::ProgressBar(activity.fraction, bar, "");
+    } else {  // of unknown length: a piece that wanders
+        const ImVec2 from = ImGui::GetCursorScreenPos();
+        ImGui::ProgressBar(0, bar, "");
+        const float piece = inner * 0.25f,
+                    at = (inner - piece) * (0.5f - 0.5f * std::cos(static_cast<float>(ImGui::GetTime()) * 2.2f));
+        ImGui::GetWindowDrawList()->AddRectFilled({from.x + at, from.y}, {from.x + at + piece, from.y + bar.y},
+                                                  ImGui::GetColorU32(ImGuiCol_PlotHistogram), 3 * scale);
+    }
+    end_card();
+}
+
+void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
+    if (session.message().text.empty()) return;
+    const float scale = ui_scale(), width = std::min(620 * scale, viewport.width - 32 * scale);
+    begin_card("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
+    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + 5 * scale, corner.y + size.y},
+                                              ImGui::GetColorU32(colors::kRed), 8 * scale, ImDrawFlags_RoundCornersLeft);
+    ImGui::Indent(6 * scale);
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(session.message().text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Dummy({0, 2 * scale});
+    const bool dismissed = ImGui::Button("Dismiss");
+    ImGui::SameLine();
+    if (ImGui::Button("Show log")) state.show_tab(Tab::log);
+    if (session.ready()) {
+        ImGui::SameLine(0, 14 * scale);
+        ImGui::AlignTextToFramePadding();
+        dim_text("The last good picture goes on.");
+    }
+    ImGui::Unindent(6 * scale);
+    end_card();
+    if (dismissed) session.dismiss_message();
+}
+
+void draw_empty_hint(const Rect& viewport, const Session& session) {
+    if (session.picture() || session.activity().busy) return;
+    const char* const lines[] = {"No scene yet", "Drop a file here, or open one in the Scene tab"};
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    float y = viewport.y + viewport.height / 2 - ImGui::GetTextLineHeightWithSpacing();
+    for (const char* line : lines) {
+        const ImVec2 size = ImGui::CalcTextSize(line);
+        const ImVec4& color = line == lines[0] ? colors::kText : colors::kDim;
+        list.AddText({std::floor(viewport.x + (viewport.width - size.x) / 2), y}, ImGui::GetColorU32(color), line);
+        y += size.y * 1.6f;
+    }
+}
+
+void draw_status_line(const Rect& area, const Session& session, const VolumeOverlay& overlay) {
+    ImGui::SetNextWindowPos({area.x, area.y});
+    ImGui::SetNextWindowSize({area.width, area.height});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kPanel);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(14 * ui_scale(), (area.height - ImGui::GetTextLineHeight()) / 2));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+    ImGui::Begin("Status", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+    const auto picture = session.picture();
+    if (!picture) {
+        status_item(session.activity().busy ? session.activity().stage : "ready", colors::kDim);
+    } else {
+        const Settings& s = picture->job.settings;
+        char text[96];
+        std::snprintf(text, sizeof text, "%.1f fps", session.frames_per_second());
+        status_item(text, colors::kText, "frames a second, mean of the last ten");
+        std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second());
+        status_item(text, colors::kText, "rays of all kinds by the time of the kernels");
+        std::snprintf(text, sizeof text, "%d\u00d7%d", s.width, s.height);
+        status_item(text, colors::kDim, "pixels of the picture");
+        std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->stats.samples), s.spp);
+        status_item(text, colors::kDim, "samples a pixel so far; they add up while the camera rests");
+        if (picture->stats.dropped > 0)
+            status_item(count_text(static_cast<double>(picture->stats.dropped)) + " rays dropped", colors::kAmber,
+                        "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab");
+        if (overlay.level()) {
+            const std::string level =
+                *overlay.level() == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(*overlay.level() + 1);
+            const std::string more = overlay.count() >= VolumeOverlay::kLimit ? ", first " : ", ";
+            status_item(level + more + std::to_string(overlay.count()) + " volumes", colors::kAmber);
+        }
+        const Prepared& prepared = *picture->job.ready->prepared;
+        status_item(prepared.accel->plugin->id, colors::kDim, prepared.accel->plugin->name);
+        status_item(shortened(picture->job.ready->device->info().name, ImGui::GetContentRegionAvail().x), colors::kDim,
+                    picture->job.ready->device->info().name);
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+    ImGui::PopStyleColor();
+}
+
+}  // namespace clarity

@@ -1,0 +1,37 @@
+#include "ui/log_buffer.hpp"
+
+namespace clarity {
+
+LogBuffer::LogBuffer(std::function<void()> wake) {
+    set_log_listener([this, wake = std::move(wake)](LogLevel level, const std::string& text) {
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            lines_.push_back({level, text});
+            if (lines_.size() > kLines) lines_.pop_front();
+            ++revision_;
+        }
+        wake();
+    });
+}
+
+LogBuffer::~LogBuffer() {
+    set_log_listener({});
+}
+
+uint64_t LogBuffer::revision() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return revision_;
+}
+
+std::vector<LogLine> LogBuffer::lines() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return {lines_.begin(), lines_.end()};
+}
+
+void LogBuffer::clear() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    lines_.clear();
+    ++revision_;
+}
+
+}  // namespace clarity

@@ -1,0 +1,22 @@
+// preferences.hpp -- what the window remembers from run to run, as JSON under XDG_CONFIG_HOME/clarity.
+#pragma once
+#include <string>
+
+namespace clarity {
+
+struct Preferences {
+    int width = 1280, height = 800;
+    float text_scale = 1, camera_speed = 1, light_speed = 1;
+    std::string key_map = "thesis";
+    bool panel_visible = true;
+};
+
+// The folder, made if it is missing; empty if there is none to write to, or if CLARITY_UI_NO_SAVE is set (then nothing is
+// read either: a test starts from the defaults).
+std::string preferences_folder();
+// A missing or damaged file gives the defaults; values out of range are brought into it.
+Preferences load_preferences(const std::string& folder);
+// Written to a temporary file, then renamed. A failure is a warning in the log.
+void save_preferences(const std::string& folder, const Preferences& preferences);
+
+}  // namespace clarity

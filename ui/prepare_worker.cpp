@@ -1,0 +1,214 @@
+#include "ui/prepare_worker.hpp"
+
+#include <chrono>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "ui/thread_priority.hpp"
+
+namespace clarity {
+
+using Clock = std::chrono::steady_clock;
+
+// Keeps the stage for the window, and wakes it, though not more than thirty times a second.
+class PrepareWorker::StageProgress : public Progress {
+ public:
+    explicit StageProgress(const std::function<void()>& wake) : wake_(wake) {}
+    void stage(const std::string& name) override {
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            stage_ = name;
+            fraction_ = -1;
+        }
+        wake_();
+    }
+    bool report(float fraction) override {
+        bool wake = false;
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            fraction_ = fraction;
+            const auto now = Clock::now();
+            if (now - woken_ > std::chrono::milliseconds(33)) {
+                woken_ = now;
+                wake = true;
+            }
+        }
+        if (wake) wake_();
+        return !cancelled();
+    }
+    Activity activity() const {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return {true, stage_, fraction_};
+    }
+
+ private:
+    const std::function<void()>& wake_;
+    mutable std::mutex mutex_;
+    std::string stage_;
+    float fraction_ = -1;
+    Clock::time_point woken_{};
+};
+
+PrepareWorker::PrepareWorker(const PluginRegistry& plugins, ImportOptions import, std::function<void()> wake)
+    : plugins_(plugins), import_(std::move(import)), wake_(std::move(wake)), thread_([this] { run(); }) {}
+
+PrepareWorker::~PrepareWorker() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stop_ = true;
+        waiting_.reset();
+        if (running_) running_->cancel();
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void PrepareWorker::request(PrepareRequest request) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        // An import goes on if only settings changed: they are used once it is done.
+        const bool importing = files_revision_ != running_request_.files_revision;
+        const bool same_source =
+            request.files_revision == running_request_.files_revision && request.device == running_request_.device;
+        if (running_ && !(importing && same_source)) running_->cancel();
+        waiting_ = std::make_unique<PrepareRequest>(std::move(request));
+    }
+    changed_.notify_all();
+}
+
+void PrepareWorker::cancel() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    waiting_.reset();
+    if (running_) running_->cancel();
+}
+
+std::vector<Outcome> PrepareWorker::take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(outcomes_, {});
+}
+
+Activity PrepareWorker::activity() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (running_) return running_->activity();
+    if (waiting_) return {true, "starting", -1};
+    return {};
+}
+
+std::shared_ptr<const std::vector<DeviceInfo>> PrepareWorker::devices() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return devices_;
+}
+
+void PrepareWorker::publish(Outcome outcome) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        outcomes_.push_back(std::move(outcome));
+    }
+    wake_();
+}
+
+void PrepareWorker::list_all_devices() {
+    std::vector<std::string> warnings;
+    auto devices = std::make_shared<const std::vector<DeviceInfo>>(list_devices(&warnings));
+    for (const std::string& warning : warnings) log(LogLevel::warning, warning);
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        devices_ = std::move(devices);
+    }
+    wake_();
+}
+
+void PrepareWorker::run() {
+    yield_to_window();
+    for (;;) {
+        PrepareRequest request;
+        std::shared_ptr<StageProgress> progress;
+        {
+            std::unique_lock<std::mutex> lock(mutex_);
+            changed_.wait(lock, [this] { return stop_ || waiting_; });
+            if (stop_) return;
+            request = *waiting_;
+            running_request_ = request;
+            waiting_.reset();
+            progress = running_ = std::make_shared<StageProgress>(wake_);
+        }
+        try {
+            handle(request, *progress);
+        } catch (const Cancelled&) {
+            publish({Outcome::Kind::cancelled, nullptr, "", "", false, false});
+        } catch (const Error& error) {
+            publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
+        } catch (const std::exception& error) {  // bad_alloc, an OpenCL call of a driver that gave up
+            publish({Outcome::Kind::failed, nullptr, std::string("preparing the picture failed: ") + error.what(), "", false,
+                     false});
+        }
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            running_.reset();
+        }
+        wake_();
+    }
+}
+
+void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progress) {
+    progress.stage("looking for devices");
+    if (!devices()) list_all_devices();
+    // A scene that cannot be read must not keep the old one from new settings, nor a missing device the scene from loading.
+    bool whole = true;
+    try {
+        open_device(request, progress);
+    } catch (const Error& error) {
+        whole = false;
+        publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
+    }
+    try {
+        import_files(request, progress);
+    } catch (const Cancelled&) {  // superseded: the next request imports them
+        throw;
+    } catch (const Error& error) {
+        whole = false;
+        tried(request.files_revision);
+        publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), true, false});
+    }
+    if (!preparer_ || !loaded_) return;
+    auto ready = std::make_shared<Ready>();
+    ready->request = request;
+    ready->request.device = device_choice_;
+    ready->request.files = loaded_->files;
+    ready->device = device_;
+    ready->loaded = loaded_;
+    ready->prepared = preparer_->prepare(loaded_->scene, request.settings, progress);
+    publish({Outcome::Kind::ready, ready, "", "", false, whole});
+}
+
+void PrepareWorker::open_device(const PrepareRequest& request, StageProgress& progress) {
+    if (device_ && request.device == device_choice_) return;
+    progress.stage("opening the device");
+    auto device = std::make_shared<Device>(choose_device(request.device));
+    preparer_ = std::make_unique<Preparer>(plugins_, device);
+    device_ = std::move(device);
+    device_choice_ = request.device;
+}
+
+void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& progress) {
+    if (request.files_revision == files_revision_) return;
+    if (request.files.empty()) return tried(request.files_revision);
+    progress.stage("importing " + request.files.front());
+    const auto begin = Clock::now();
+    auto loaded = std::make_shared<LoadedScene>();
+    loaded->scene = std::make_shared<const Scene>(import_scene(plugins_, request.files, import_, progress));
+    loaded->import_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    loaded->files = request.files;
+    loaded->files_revision = request.files_revision;
+    loaded->bounds = loaded->scene->bounds();
+    loaded->placed_triangles = loaded->scene->placed_triangle_count();
+    loaded_ = std::move(loaded);
+    tried(request.files_revision);
+}
+
+void PrepareWorker::tried(uint64_t files_revision) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    files_revision_ = files_revision;
+}
+
+}  // namespace clarity

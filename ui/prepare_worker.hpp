@@ -1,0 +1,105 @@
+// prepare_worker.hpp -- the thread that does what is slow: listing and opening devices, import, build, upload, compile.
+#pragma once
+#include <condition_variable>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "device/device.hpp"
+#include "import/import.hpp"
+#include "render/renderer.hpp"
+
+namespace clarity {
+
+// All that a picture needs besides view and frame settings.
+struct PrepareRequest {
+    std::vector<std::string> files;
+    uint64_t files_revision = 0;  // a new number: import (again)
+    std::string device;
+    Settings settings;
+};
+
+// A scene as imported, with what the window asks about it, computed where it does not hold up the window.
+struct LoadedScene {
+    std::shared_ptr<const Scene> scene;
+    std::vector<std::string> files;
+    uint64_t files_revision = 0;
+    Bounds bounds;
+    uint64_t placed_triangles = 0;
+    double import_ms = 0;
+};
+
+struct Ready {
+    PrepareRequest request;
+    std::shared_ptr<Device> device;
+    std::shared_ptr<const LoadedScene> loaded;
+    std::shared_ptr<const Prepared> prepared;
+};
+
+struct Outcome {
+    enum class Kind { ready, failed, cancelled };
+    Kind kind = Kind::ready;
+    std::shared_ptr<const Ready> ready;
+    std::string message, details;  // of a failure
+    bool files_failed = false;     // it was the import
+    bool whole = false;            // ready, and nothing of the request failed on the way
+};
+
+struct Activity {
+    bool busy = false;
+    std::string stage;
+    float fraction = -1;  // negative: unknown
+};
+
+class PrepareWorker {
+ public:
+    // wake: called from the worker whenever there is news.
+    PrepareWorker(const PluginRegistry& plugins, ImportOptions import, std::function<void()> wake);
+    ~PrepareWorker();
+
+    // The newest request wins; work that it makes useless is cancelled.
+    void request(PrepareRequest request);
+    // Drops what is running and what is waiting.
+    void cancel();
+    std::vector<Outcome> take();
+    Activity activity() const;
+    std::shared_ptr<const std::vector<DeviceInfo>> devices() const;  // nullptr until they are listed
+
+ private:
+    class StageProgress;
+    void run();
+    void handle(const PrepareRequest& request, StageProgress& progress);
+    void open_device(const PrepareRequest& request, StageProgress& progress);
+    void import_files(const PrepareRequest& request, StageProgress& progress);
+    void list_all_devices();
+    void tried(uint64_t files_revision);  // whatever came of it, it is not imported again
+    void publish(Outcome outcome);
+
+    const PluginRegistry& plugins_;
+    const ImportOptions import_;
+    const std::function<void()> wake_;
+
+    // Of the worker thread alone.
+    std::shared_ptr<Device> device_;
+    std::string device_choice_;
+    std::unique_ptr<Preparer> preparer_;
+    std::shared_ptr<const LoadedScene> loaded_;
+    uint64_t files_revision_ = 0;  // last one tried
+
+    mutable std::mutex mutex_;
+    std::condition_variable changed_;
+    bool stop_ = false;
+    std::unique_ptr<PrepareRequest> waiting_;
+    PrepareRequest running_request_;
+    std::shared_ptr<StageProgress> running_;
+    std::vector<Outcome> outcomes_;
+    std::shared_ptr<const std::vector<DeviceInfo>> devices_;
+    std::thread thread_;  // last: it sees the rest complete
+};
+
+}  // namespace clarity

@@ -1,0 +1,203 @@
+#include "ui/script.hpp"
+
+#include <fcntl.h>
+#include <imgui.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "plugin/parameters.hpp"
+#include "render/image_io.hpp"
+#include "ui/app.hpp"
+
+namespace clarity {
+namespace {
+
+std::string rest_of(std::istringstream& in) {
+    std::string text;
+    std::getline(in >> std::ws, text);
+    return text;
+}
+
+void choose_accel(Session& session, const std::string& text) {
+    const PluginChoice choice = parse_plugin_choice(text);
+    const Settings before = session.wish.settings;
+    session.set_accel(choice.id);
+    try {
+        for (const auto& [key, value] : choice.settings)
+            set_parameter(*session.plugins().accel(choice.id), session.wish.settings.accel_params, key, value);
+    } catch (const Error&) {
+        session.wish.settings = before;
+        throw;
+    }
+}
+
+void choose_tab(UiState& state, const std::string& name) {
+    for (int i = 0; i < 6; ++i)
+        if (name == kTabNames[i]) return state.show_tab(static_cast<Tab>(i));
+    throw Error(Exit::usage, "no tab `" + name + "`");
+}
+
+void choose_map(UiState& state, const std::string& id) {
+    const KeyMap* map = find_key_map(id);
+    if (!map) throw Error(Exit::usage, "no key map `" + id + "`");
+    state.key_map = map;
+}
+
+}  // namespace
+
+std::unique_ptr<Script> Script::from_environment() {
+    const char* path = std::getenv("CLARITY_UI_SCRIPT");
+    if (!path || !*path) return nullptr;
+    // A pipe would block until its writer comes.
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0)
+        throw Error(Exit::usage, std::string(path) + ": cannot be read as the window's script: " + std::strerror(errno));
+    return std::make_unique<Script>(file);
+}
+
+Script::~Script() {
+    close(file_);
+}
+
+void Script::read_lines() {
+    char buffer[4096];
+    for (;;) {
+        const ssize_t bytes = read(file_, buffer, sizeof buffer);
+        if (bytes <= 0) return;
+        partial_.append(buffer, static_cast<size_t>(bytes));
+        for (size_t end; (end = partial_.find('\n')) != std::string::npos; partial_.erase(0, end + 1))
+            lines_.push_back(partial_.substr(0, end));
+    }
+}
+
+void Script::step(App& app) {
+    read_lines();
+    while (!lines_.empty()) {
+        const std::string line = lines_.front();
+        std::string answer = "ok " + line;
+        try {
+            if (!run(app, line)) return;
+        } catch (const Error& error) {
+            answer = "error " + line + ": " + error.what();
+        }
+        waiting_since_ = 0;
+        lines_.pop_front();
+        std::printf("%s\n", answer.c_str());
+        std::fflush(stdout);
+        return;  // one a frame: its effect shows before the next
+    }
+}
+
+bool Script::wait(App& app, const std::string& text) {
+    std::istringstream in(text);
+    std::string what;
+    double limit = 60;
+    in >> what >> limit;
+    if (in.fail()) limit = 60;
+    const double now = ImGui::GetTime();
+    if (waiting_since_ == 0) {
+        waiting_since_ = now;
+        frames_left_ = 2;
+    }
+    const Session& session = app.session();
+    const bool busy = session.activity().busy;
+    const bool met = what == "busy"    ? busy
+                     : what == "ready" ? !busy && !session.behind()
+                                       : session.idle() && app.overlay().ready();
+    if (met && (what == "busy" || --frames_left_ < 0)) return true;
+    if (!met) frames_left_ = 2;
+    if (now - waiting_since_ > limit) throw Error(Exit::failed, "still waiting after " + std::to_string(limit) + " s");
+    return false;
+}
+
+bool Script::run(App& app, const std::string& line) {
+    std::istringstream in(line);
+    std::string command;
+    in >> command;
+    Session& session = app.session();
+    const std::string text = rest_of(in);
+    if (command.empty() || command[0] == '#') return true;
+    if (command == "wait") return wait(app, text);
+    if (command == "set") {
+        const size_t space = text.find(' ');
+        set_setting(session.wish.settings, text.substr(0, space), space == std::string::npos ? "" : text.substr(space + 1));
+    } else if (command == "accel") {
+        choose_accel(session, text);
+    } else if (command == "device") {
+        session.wish.device = text;
+    } else if (command == "open") {
+        session.open({text});
+    } else if (command == "cancel") {
+        session.cancel();
+    } else if (command == "continuous") {
+        session.wish.continuous = text == "1";
+    } else if (command == "tab") {
+        choose_tab(app.state(), text);
+    } else if (command == "map") {
+        choose_map(app.state(), text);
+    } else if (command == "focus") {
+        app.state().show_tab(Tab::scene);
+        app.state().focus_path_asked = true;
+    } else if (command == "scale") {
+        app.state().text_scale = std::strtof(text.c_str(), nullptr);
+    } else if (command == "screenshot") {
+        app.capture(text);
+    } else if (command == "picture") {
+        if (!session.picture()) throw Error(Exit::failed, "no picture yet");
+        write_image(text, {}, session.picture()->image);
+    } else if (command == "state") {
+        if (text == "reset") app.times() = {};
+        std::printf("%s\n", state_text(app).c_str());
+    } else if (command == "quit") {
+        app.close();
+    } else {
+        throw Error(Exit::usage, "no such command");
+    }
+    return true;
+}
+
+std::string Script::state_text(App& app) const {
+    Session& session = app.session();
+    const Rect& area = app.picture_area();
+    nlohmann::json json = {{"eye", session.wish.camera.eye},
+                           {"target", session.wish.camera.target},
+                           {"busy", session.activity().busy},
+                           {"stage", session.activity().stage},
+                           {"behind", session.behind()},
+                           {"message", session.message().text},
+                           {"messages", session.message_count()},
+                           {"path", app.state().path},
+                           {"typing", app.typing()},
+                           {"volumes", app.overlay().count()},
+                           {"fps", session.frames_per_second()},
+                           {"ui_frames", app.times().frames},
+                           {"slowest_frame_ms", app.times().slowest_frame_ms},
+                           {"slowest_answer_ms", app.times().slowest_answer_ms},
+                           {"area", {area.x, area.y, area.width, area.height}},
+                           {"files", session.files()}};
+    json["level"] = app.overlay().level() ? static_cast<long>(*app.overlay().level()) : -1L;
+    if (session.selected_light < session.wish.lights.size())
+        json["light"] = session.wish.lights[session.selected_light].values.position;
+    if (const auto picture = session.picture()) {
+        const Settings& s = picture->job.settings;
+        json["accel"] = s.accel;
+        json["packet"] = std::to_string(s.packet_w) + "x" + std::to_string(s.packet_h);
+        json["lanes"] = s.lanes;
+        json["depth"] = s.depth;
+        json["size"] = std::to_string(s.width) + "x" + std::to_string(s.height);
+        json["samples"] = picture->stats.samples;
+        json["spp"] = s.spp;
+        json["triangles"] = picture->job.ready->loaded->placed_triangles;
+        json["primary"] = picture->stats.primary;
+    }
+    return json.dump();
+}
+
+}  // namespace clarity

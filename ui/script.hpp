@@ -1,0 +1,49 @@
+// script.hpp -- lines that drive the window in tests, from the file or pipe that CLARITY_UI_SCRIPT names.
+//
+// One command a line, run between two frames on the window's thread; each answers on stdout with `ok COMMAND`, or
+// `error COMMAND: why`. Keys and mouse are not among them: tests send real events.
+//   set KEY VALUE      a setting, as on the command line      accel ID[,key=value...]    device CHOICE
+//   open FILE          as the Scene tab does                   tab NAME                   map thesis|viewer
+//   wait idle [S]      until all is prepared and traced, at most S seconds (60)
+//   wait busy|ready    until something is being prepared; until nothing is (tracing may go on)
+//   focus path         the keyboard into the path field        continuous 0|1             cancel
+//   screenshot FILE    the window as PNG                       picture FILE               the traced picture as PNG
+//   state              one line of JSON: what is shown, and how the window fares; `state reset` starts its maxima anew
+//   scale FACTOR       of the text                             quit
+#pragma once
+#include <deque>
+#include <memory>
+#include <string>
+
+namespace clarity {
+
+class App;
+
+class Script {
+ public:
+    // nullptr if there is none; Throws Error(usage) if it cannot be read.
+    static std::unique_ptr<Script> from_environment();
+    explicit Script(int file) : file_(file) {}
+    ~Script();
+    Script(const Script&) = delete;
+    Script& operator=(const Script&) = delete;
+
+    bool busy() const { return true; }
+    // Runs the lines that came, up to the first that waits.
+    void step(App& app);
+
+ private:
+    void read_lines();
+    // False: it waits, try again next frame.
+    bool run(App& app, const std::string& line);
+    bool wait(App& app, const std::string& what);
+    std::string state_text(App& app) const;
+
+    int file_;
+    std::string partial_;
+    std::deque<std::string> lines_;
+    double waiting_since_ = 0;
+    int frames_left_ = 0;  // frames to draw before a wait may end: what it waited for is on the screen then
+};
+
+}  // namespace clarity

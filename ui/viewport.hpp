@@ -1,0 +1,36 @@
+// viewport.hpp -- the picture on the screen: a texture fed through a pixel buffer object, letter-boxed.
+#pragma once
+#include <memory>
+
+#include "render/image_io.hpp"
+
+namespace clarity {
+
+// Needs the GL context current, for all of its life.
+class PictureTexture {
+ public:
+    PictureTexture() = default;
+    ~PictureTexture();
+    PictureTexture(const PictureTexture&) = delete;
+    PictureTexture& operator=(const PictureTexture&) = delete;
+
+    void upload(const ByteImage& image);
+    // Nearest texel where the picture is shown larger than it is, so that pixels can be told apart.
+    void set_magnified(bool magnified);
+    unsigned name() const { return texture_; }
+    unsigned width() const { return width_; }
+    unsigned height() const { return height_; }
+
+ private:
+    unsigned texture_ = 0, buffer_ = 0, width_ = 0, height_ = 0;
+    bool magnified_ = false;
+};
+
+// A rectangle in window coordinates.
+struct Rect {
+    float x = 0, y = 0, width = 0, height = 0;
+};
+// The largest of that aspect inside the area, centred.
+Rect letter_box(const Rect& area, float aspect);
+
+}  // namespace clarity
