@@ -1,186 +1,104 @@
-// ply.cpp -- PLY: the header is checked against the file's size and written anew in the words that OpenMesh knows.
-//
-// OpenMesh 9 loops for ever on a header without an end, reserves memory for whatever count it is told, knows four of the eight
-// list-count types, and reads lists right only where the mesh can store them as properties.
+// ply.cpp -- PLY: binary as it is, ASCII line by line, so that OpenMesh sees what the header declares and nothing else.
 #include <algorithm>
-#include <array>
-#include <limits>
+#include <istream>
 #include <stdexcept>
 
+#include "ply_header.hpp"
 #include "readers.hpp"
 #include "text.hpp"
 
 namespace openmesh_import {
 namespace {
 
-struct Type {
-    std::string_view name, other_name;
-    int bytes;
-    bool is_float;
-};
-constexpr std::array<Type, 8> kTypes = {{{"char", "int8", 1, false},
-                                         {"uchar", "uint8", 1, false},
-                                         {"short", "int16", 2, false},
-                                         {"ushort", "uint16", 2, false},
-                                         {"int", "int32", 4, false},
-                                         {"uint", "uint32", 4, false},
-                                         {"float", "float32", 4, true},
-                                         {"double", "float64", 8, true}}};
+using ply::Element;
+using ply::Header;
+using ply::Property;
 
-const Type& type_of(std::string_view word) {
-    for (const Type& type : kTypes) {
-        if (word == type.name || word == type.other_name) return type;
-    }
-    throw std::runtime_error("the PLY header names a type " + quoted(word) + ", which PLY does not have");
-}
+// Goes along the values as the header orders them. What a line has beyond its element is dropped (MeshLab writes such lines);
+// an element may go on in the next line.
+class AsciiLines {
+ public:
+    AsciiLines(const Header& header, FlatImporter& mesh) : header_(header), mesh_(mesh) {}
 
-struct Property {
-    std::string name;
-    const Type* type = nullptr;
-    const Type* count_type = nullptr;  // of a list; nullptr: a scalar
-    bool is_list() const { return count_type != nullptr; }
-    bool is_indices() const { return is_list() && (name == "vertex_indices" || name == "vertex_index"); }
-};
-struct Element {
-    std::string name;
-    unsigned long long count = 0;
-    std::vector<Property> properties;
-};
-
-struct Header {
-    std::string format;
-    std::vector<Element> elements;
-    std::string texture;
-    std::string_view body;
-    bool is_ascii() const { return format == "ascii"; }
-    const Element* find(std::string_view name) const {
-        const auto found = std::find_if(elements.begin(), elements.end(), [&](const Element& e) { return e.name == name; });
-        return found == elements.end() ? nullptr : &*found;
-    }
-};
-
-Property parse_property(std::string_view rest) {
-    Property property;
-    std::string_view word = next_word(rest);
-    if (word == "list") {
-        property.count_type = &type_of(next_word(rest));
-        if (property.count_type->is_float) throw std::runtime_error("the PLY header counts list entries in fractions");
-        word = next_word(rest);
-    }
-    property.type = &type_of(word);
-    property.name = std::string(next_word(rest));
-    // Other programs' names for texture coordinates.
-    if (property.name == "texture_u") property.name = "u";
-    if (property.name == "texture_v") property.name = "v";
-    if (property.name.empty()) throw std::runtime_error("the PLY header has a property without a name");
-    return property;
-}
-
-Header parse_header(std::string_view bytes) {
-    Header header;
-    if (next_line(bytes).substr(0, 3) != "ply") throw std::runtime_error("not a PLY file: it does not start with 'ply'");
-    while (!bytes.empty()) {
-        std::string_view line = next_line(bytes);
-        const std::string_view word = next_word(line);
-        if (word == "end_header") {
-            header.body = bytes;
-            return header;
+    bool edit(std::string_view line, std::string& out) {
+        ++line_number_;
+        if (in_header_) {
+            if (trim(line) != "end_header") return false;
+            in_header_ = false;
+            out = ply::rewrite(header_);
+            out.pop_back();
+            return true;
         }
-        if (word == "format") {
-            header.format = std::string(next_word(line));
-        } else if (word == "element") {
-            Element element;
-            element.name = std::string(next_word(line));
-            long long count = -1;
-            if (!parse_integer(next_word(line), count) || count < 0) {
-                throw std::runtime_error("the PLY header gives no count of element " + quoted(element.name));
-            }
-            element.count = static_cast<unsigned long long>(count);
-            header.elements.push_back(element);
-        } else if (word == "property") {
-            if (header.elements.empty()) throw std::runtime_error("the PLY header has a property before the first element");
-            header.elements.back().properties.push_back(parse_property(line));
-        } else if (word == "comment") {
-            if (next_word(line) == "TextureFile") header.texture = std::string(trim(line));
-        } else if (word != "obj_info" && !word.empty()) {
-            throw std::runtime_error("the PLY header has a line that starts with " + quoted(word));
+        while (element_ < header_.elements.size() && (item_ >= element().count || element().properties.empty())) {
+            ++element_;
+            item_ = 0;
         }
-    }
-    throw std::runtime_error("the PLY header has no end: the file is cut off or damaged");
-}
-
-// The fewest bytes that one element can take.
-unsigned long long least_bytes(const Element& element, bool ascii) {
-    unsigned long long bytes = 0;
-    for (const Property& p : element.properties) {
-        bytes += ascii ? 2 : p.is_list() ? p.count_type->bytes : p.type->bytes;
-    }
-    return std::max(bytes, 1ull);
-}
-
-void check(const Header& header) {
-    if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian") {
-        throw std::runtime_error("the PLY format " + quoted(header.format) + " is not known");
-    }
-    const Element *vertices = header.find("vertex"), *faces = header.find("face");
-    if (!vertices) throw std::runtime_error("the PLY header has no element 'vertex'");
-    if (!faces) {
-        const bool strips = header.find("tristrips") != nullptr;
-        throw std::runtime_error(strips ? "holds triangle strips, which are not read: convert them to faces"
-                                        : "contains no polygons: it is a point cloud");
-    }
-    if (vertices > faces) throw std::runtime_error("has its faces before its vertices, which is not read");
-    for (const char* axis : {"x", "y", "z"}) {
-        const auto named = [&](const Property& p) { return p.name == axis; };
-        const auto found = std::find_if(vertices->properties.begin(), vertices->properties.end(), named);
-        if (found == vertices->properties.end()) throw std::runtime_error(std::string("its vertices have no ") + axis);
-        if (found->is_list() || (!found->type->is_float && !header.is_ascii())) {
-            throw std::runtime_error("its vertices are not of type float or double, which is not read");
-        }
-    }
-    const auto indices =
-        std::find_if(faces->properties.begin(), faces->properties.end(), [](auto& p) { return p.is_indices(); });
-    if (indices == faces->properties.end()) throw std::runtime_error("its faces have no list 'vertex_indices'");
-    if (indices != faces->properties.begin())
-        throw std::runtime_error("its faces have properties before 'vertex_indices', which is not read");
-    if (indices->type->is_float) throw std::runtime_error("its faces name vertices by fractions");
-    unsigned long long available = header.body.size();
-    for (const Element& element : header.elements) {
-        for (const Property& p : element.properties) {
-            if (p.is_list() && &element != faces) {
-                throw std::runtime_error("has a list in element " + quoted(element.name) + ", which is not read");
+        if (element_ == header_.elements.size()) return false;
+        for (std::string_view word = next_word(line); !word.empty(); word = next_word(line)) {
+            value(word, out);
+            out += ' ';
+            if (property_ == 0 && list_left_ == 0) {
+                ++item_;
+                break;
             }
         }
-        const unsigned long long each = least_bytes(element, header.is_ascii());
-        const std::string why = too_large(element.name.c_str(), element.count, each, available);
-        if (!why.empty()) throw std::runtime_error(why);
-        available -= std::min(available, element.count * each);
-        if (&element == faces) break;
+        return !out.empty();
     }
-}
+    // Of the element that is read.
+    std::string where() const {
+        const std::string line = "line " + std::to_string(line_number_) + ": ";
+        if (element_ == header_.elements.size()) return line;
+        return line + element().name + " " + std::to_string(item_ + 1) + " of " + std::to_string(element().count) + ": ";
+    }
 
-// In ASCII one-byte integers would be read as characters, and in either form OpenMesh knows few types of counts; the sign of a
-// count does not matter.
-std::string_view type_text(const Type& type, bool ascii) {
-    return ascii && !type.is_float ? "int" : type.name;
-}
-std::string_view count_type_text(const Type& type, bool ascii) {
-    if (ascii || type.bytes == 4) return "int";
-    return type.bytes == 1 ? "uchar" : "uint16";
-}
+ private:
+    const Element& element() const { return header_.elements[element_]; }
 
-std::string rewrite(const Header& header) {
-    std::string text = "ply\nformat " + header.format + " 1.0\n";
-    for (const Element& element : header.elements) {
-        text += "element " + element.name + " " + std::to_string(element.count) + "\n";
-        for (const Property& p : element.properties) {
-            text += "property ";
-            if (p.is_list()) text.append("list ").append(count_type_text(*p.count_type, header.is_ascii())).append(" ");
-            text.append(type_text(*p.type, header.is_ascii())).append(" ") += p.name + "\n";
+    void value(std::string_view word, std::string& out) {
+        const Property& property = element().properties[property_];
+        if (property.is_list() && list_left_ == 0 && !list_is_open_) {
+            long long count = 0;
+            if (!parse_integer(word, count) || count < 0)
+                throw std::runtime_error(where() + quoted(word) + " where a count is due");
+            out.append(word);
+            list_left_ = static_cast<unsigned long long>(count);
+            list_is_open_ = true;
+        } else {
+            number(property, word, out);
+            if (list_left_ > 0) --list_left_;
         }
+        if (list_left_ > 0) return;
+        list_is_open_ = false;
+        property_ = (property_ + 1) % element().properties.size();
     }
-    return text + "end_header\n";
-}
+    void number(const Property& property, std::string_view word, std::string& out) {
+        float x = 0;
+        if (property.type->is_float) {
+            if (parse_float(word, x)) {
+                out.append(word.front() == '+' ? word.substr(1) : word);
+                return;
+            }
+            if (!is_odd_number(word)) throw std::runtime_error(where() + quoted(word) + " where a number is due");
+            if (element().name == "vertex" && property.name.size() == 1 && property.name[0] >= 'x') mesh_.mark_unusable(item_);
+            out += '0';
+            return;
+        }
+        long long integer = 0;
+        if (!parse_integer(word, integer)) throw std::runtime_error(where() + quoted(word) + " where an integer is due");
+        // Out of range in a way that OpenMesh's numbers can carry.
+        out.append(integer < 0 || integer > 2147483647 ? "2147483647" : word);
+    }
+    // nan, inf, -1.#IND, 1e999.
+    static bool is_odd_number(std::string_view word) {
+        return word.find_first_of("nN#") != word.npos || word.find_first_of("eE") != word.npos;
+    }
+
+    const Header& header_;
+    FlatImporter& mesh_;
+    bool in_header_ = true, list_is_open_ = false;
+    size_t line_number_ = 0, element_ = 0, property_ = 0;
+    unsigned long long item_ = 0, list_left_ = 0;
+};
 
 // MeshLab: `property list uchar float texcoord`, two numbers per corner.
 void take_texcoords(FlatImporter& mesh) {
@@ -193,24 +111,27 @@ void take_texcoords(FlatImporter& mesh) {
 }  // namespace
 
 std::string read_ply(const Source& source, FlatImporter& mesh) {
-    const Header header = parse_header(source.bytes);
-    check(header);
+    const Header header = ply::parse_header(source.bytes);
+    ply::check(header);
     const Element *vertices = header.find("vertex"), *faces = header.find("face");
     mesh.properties.vertices = vertices->count;
     mesh.properties.faces = faces->count;
     const auto is_other_list = [](const Property& p) { return p.is_list() && !p.is_indices(); };
     const bool has_lists = std::any_of(faces->properties.begin(), faces->properties.end(), is_other_list);
-    BytesBuffer buffer(rewrite(header), header.body, source.progress);
+    AsciiLines lines(header, mesh);
+    LineBuffer text(
+        source.bytes, false, [&](std::string_view line, int, std::string& out) { return lines.edit(line, out); }, 1,
+        source.progress);
+    BytesBuffer binary(ply::rewrite(header), header.body, source.progress);
     try {
-        run_reader("ply", buffer, true, false, has_lists, mesh);
+        run_reader("ply", header.is_ascii() ? static_cast<std::streambuf&>(text) : binary, true, false, has_lists, mesh);
     } catch (const std::ios_base::failure&) {
-        if (buffer.position() >= header.body.size()) {
-            throw std::runtime_error("ends after " + std::to_string(mesh.n_vertices()) + " of " +
-                                     std::to_string(vertices->count) + " vertices and " + std::to_string(mesh.face_count()) +
-                                     " of " + std::to_string(faces->count) + " faces: it is cut off");
-        }
-        throw std::runtime_error("byte " + std::to_string(source.bytes.size() - header.body.size() + buffer.position()) +
-                                 ": not a number where one is due");
+        // Handled below: not all arrived.
+    }
+    if (mesh.n_vertices() < vertices->count || mesh.face_count() < faces->count) {
+        throw std::runtime_error("ends after " + std::to_string(mesh.n_vertices()) + " of " + std::to_string(vertices->count) +
+                                 " vertices and " + std::to_string(mesh.face_count()) + " of " + std::to_string(faces->count) +
+                                 " faces: it is cut off or damaged");
     }
     if (has_lists) take_texcoords(mesh);
     return header.texture;
