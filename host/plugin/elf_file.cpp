@@ -20,8 +20,8 @@ using Segment = ElfW(Phdr);
 using Dynamic = ElfW(Dyn);
 using Symbol = ElfW(Sym);
 
-// No plugin has so many; bounds the walk along a hostile hash chain.
-constexpr uint32_t kMaxSteps = 1u << 20;
+// Chains hold a handful of symbols, dynamic sections some dozens of entries; this bounds the walk along hostile ones.
+constexpr uint32_t kMaxSteps = 4096;
 constexpr uint64_t kMaxName = 4096;
 
 // A regular file, read piece by piece. A mapping would be shorter, but would raise SIGBUS if a linker rewrote the file

@@ -225,6 +225,16 @@ PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_f
     return registry;
 }
 
+PluginRegistry PluginRegistry::of(const std::vector<std::string>& plugin_files) {
+    PluginRegistry registry;
+    for (const std::string& file : plugin_files) {
+        registry.records_.push_back(load_plugin(file));
+        const PluginRecord& record = registry.records_.back();
+        if (!record.plugin) log(LogLevel::warning, "plugin refused: " + record.path + ": " + record.why);
+    }
+    return registry;
+}
+
 const rt_plugin* PluginRegistry::accel(std::string_view id) const {
     for (const PluginRecord& record : records_)
         if (record.plugin && !record.shadowed && record.plugin->accel && id == record.plugin->id) return record.plugin;

@@ -37,6 +37,7 @@ class Scratch {
     ~Scratch() { fs::remove_all(folder_); }
     std::string write(const std::string& name, const std::string& content) const {
         const std::string path = (folder_ / name).string();
+        fs::remove(path);  // some file systems flush a file that is written over, not a new one
         std::ofstream(path, std::ios::binary) << content;
         return path;
     }
