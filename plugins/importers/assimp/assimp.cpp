@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "complaints.hpp"
+#include "fbx_mend.hpp"
 #include "file_kind.hpp"
 #include "lights_cameras.hpp"
 #include "materials.hpp"
@@ -97,8 +98,9 @@ void warn(const rt_scene_sink& sink, const std::string& text) {
     sink.warn(sink.ctx, text.c_str());
 }
 
-// One instance for each node that shows polygons.
-void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host, const rt_scene_sink& sink) {
+// One instance for each node that shows polygons. mend: FBX only.
+void add_instances(const NodeTree& tree, const FbxMend* mend, MeshTable& meshes, const rt_host* host,
+                   const rt_scene_sink& sink) {
     size_t done = 0, strayed = 0;
     for (const PlacedNode& placed : tree.nodes()) {
         rt::progress(host, kReadShare + (1 - kReadShare) * float(++done) / float(tree.nodes().size()));
@@ -107,13 +109,14 @@ void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host,
             ++strayed;
             continue;
         }
-        const rt_u32 mesh = meshes.id(*placed.node);
-        if (mesh == RT_NONE) continue;
+        const MeshTable::Placed shown =
+            meshes.place(*placed.node, mend ? mend->materials(*placed.node) : std::vector<unsigned>());
+        if (shown.mesh == RT_NONE) continue;
         rt_instance_desc out{};
         out.struct_bytes = sizeof out;
         out.name = placed.node->mName.C_Str();
-        out.mesh = mesh;
-        out.material = RT_NONE;
+        out.mesh = shown.mesh;
+        out.material = shown.material;
         std::transform(placed.world_geometry.begin(), placed.world_geometry.end(), out.world_from_object,
                        [](double x) { return static_cast<float>(x); });
         rt::id(sink.instance(sink.ctx, &out));
@@ -173,10 +176,11 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     }
 
     const Units units = units_of(*scene, format, extension, head);
+    const std::unique_ptr<FbxMend> mend = format == Format::fbx ? std::make_unique<FbxMend>(*scene, path) : nullptr;
     const NodeTree tree(*scene, format == Format::fbx);
     MaterialTable materials(*scene, format, path, *sink);
     MeshTable meshes(*scene, materials, *sink);
-    add_instances(tree, meshes, host, *sink);
+    add_instances(tree, mend.get(), meshes, host, *sink);
     report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
     add_cameras(*scene, tree, format, *sink);

@@ -98,28 +98,39 @@ bool is_sound(const aiMesh& mesh, const aiFace& face) {
 
 }  // namespace
 
-rt_u32 MeshTable::id(const aiNode& node) {
-    std::vector<unsigned> parts;
+MeshTable::Placed MeshTable::place(const aiNode& node, const std::vector<unsigned>& materials) {
+    std::vector<Part> own, wanted;
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         const unsigned mesh = node.mMeshes[i];
-        if (mesh < scene_.mNumMeshes && scene_.mMeshes[mesh] && scene_.mMeshes[mesh]->mVertices) parts.push_back(mesh);
+        if (mesh >= scene_.mNumMeshes || !scene_.mMeshes[mesh] || !scene_.mMeshes[mesh]->mVertices) continue;
+        own.push_back({mesh, scene_.mMeshes[mesh]->mMaterialIndex});
+        wanted.push_back({mesh, i < materials.size() ? materials[i] : own.back().second});
     }
-    if (parts.empty()) return RT_NONE;
+    if (own.empty()) return {};
+    if (wanted == own) return {id(own, node), RT_NONE};
+    // Another material for all of it belongs to the instance; anything else needs a mesh of its own.
+    const bool is_uniform =
+        std::all_of(wanted.begin(), wanted.end(), [&](const Part& p) { return p.second == wanted[0].second; });
+    const rt_u32 material = is_uniform ? materials_.id(wanted[0].second) : RT_NONE;
+    return material != RT_NONE ? Placed{id(own, node), material} : Placed{id(wanted, node), RT_NONE};
+}
+
+rt_u32 MeshTable::id(const std::vector<Part>& parts, const aiNode& node) {
     const auto known = ids_.find(parts);
     if (known != ids_.end()) return known->second;
-    const aiString& name = scene_.mMeshes[parts[0]]->mName;
+    const aiString& name = scene_.mMeshes[parts[0].first]->mName;
     return ids_[parts] = add(parts, name.length > 0 ? name.C_Str() : node.mName.C_Str());
 }
 
-rt_u32 MeshTable::add(const std::vector<unsigned>& parts, const char* name) {
+rt_u32 MeshTable::add(const std::vector<Part>& parts, const char* name) {
     size_t corner_count = 0;
-    for (const unsigned part : parts) corner_count += scene_.mMeshes[part]->mNumVertices;
+    for (const Part& part : parts) corner_count += scene_.mMeshes[part.first]->mNumVertices;
     VertexSet set(corner_count);
     std::vector<rt_u32> indices, sizes, materials;
     bool has_normals = false, has_uvs = false, all_triangles = true;
-    for (const unsigned part : parts) {
-        const aiMesh& mesh = *scene_.mMeshes[part];
-        const CornerReader corners(mesh, materials_.mapping(mesh.mMaterialIndex));
+    for (const auto& [index_of_mesh, index_of_material] : parts) {
+        const aiMesh& mesh = *scene_.mMeshes[index_of_mesh];
+        const CornerReader corners(mesh, materials_.mapping(index_of_material));
         rt_u32 material = RT_NONE;
         bool is_used = false;
         std::vector<rt_u32> seen(mesh.mNumVertices, RT_NONE);
@@ -133,7 +144,7 @@ rt_u32 MeshTable::add(const std::vector<unsigned>& parts, const char* name) {
                 ++broken_faces_;
                 continue;
             }
-            if (!is_used) material = materials_.id(mesh.mMaterialIndex);
+            if (!is_used) material = materials_.id(index_of_material);
             is_used = true;
             for (unsigned i = 0; i < face.mNumIndices; ++i) {
                 rt_u32& index = seen[face.mIndices[i]];

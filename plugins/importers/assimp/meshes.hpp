@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "materials.hpp"
@@ -17,8 +18,12 @@ class MeshTable {
  public:
     MeshTable(const aiScene& scene, MaterialTable& materials, const rt_scene_sink& sink)
         : scene_(scene), materials_(materials), sink_(sink) {}
-    // Id of the mesh made of a node's meshes; RT_NONE: it has no polygons.
-    rt_u32 id(const aiNode& node);
+    struct Placed {
+        rt_u32 mesh = RT_NONE;      // RT_NONE: the node shows no polygons
+        rt_u32 material = RT_NONE;  // of the whole instance; RT_NONE: the mesh's own
+    };
+    // The mesh made of a node's meshes. `materials`: one for each of them instead of their own, or empty.
+    Placed place(const aiNode& node, const std::vector<unsigned>& materials);
 
     // What was left out.
     uint64_t points_and_lines() const { return points_and_lines_; }
@@ -26,12 +31,15 @@ class MeshTable {
     uint64_t faces() const { return faces_; }
 
  private:
-    rt_u32 add(const std::vector<unsigned>& parts, const char* name);
+    // A mesh of the scene and its material.
+    using Part = std::pair<unsigned, unsigned>;
+    rt_u32 id(const std::vector<Part>& parts, const aiNode& node);
+    rt_u32 add(const std::vector<Part>& parts, const char* name);
 
     const aiScene& scene_;
     MaterialTable& materials_;
     const rt_scene_sink& sink_;
-    std::map<std::vector<unsigned>, rt_u32> ids_;
+    std::map<std::vector<Part>, rt_u32> ids_;
     uint64_t points_and_lines_ = 0, broken_faces_ = 0, faces_ = 0;
 };
 

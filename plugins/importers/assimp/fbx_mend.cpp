@@ -1,0 +1,213 @@
+#include "fbx_mend.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <string_view>
+
+namespace assimp_import {
+namespace {
+
+constexpr std::string_view kHelperTag = "_$AssimpFbx$_";
+
+std::string_view name_of(const aiNode& node) {
+    return {node.mName.data, node.mName.length};
+}
+bool is_helper(const aiNode& node) {
+    return name_of(node).find(kHelperTag) != std::string_view::npos;
+}
+bool is_inverse(const aiNode& node) {
+    const std::string_view name = name_of(node);
+    return is_helper(node) && name.size() > 7 && name.substr(name.size() - 7) == "Inverse" &&
+           name.find("_Geometric") != name.npos;
+}
+
+std::string read_all(const std::string& path) {
+    std::string bytes;
+    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (!file) return bytes;
+    char chunk[1 << 16];
+    while (const size_t n = std::fread(chunk, 1, sizeof chunk, file.get())) bytes.append(chunk, n);
+    return bytes;
+}
+
+std::string material_name(const aiScene& scene, unsigned index) {
+    aiString name;
+    if (index >= scene.mNumMaterials || scene.mMaterials[index]->Get(AI_MATKEY_NAME, name) != aiReturn_SUCCESS) return {};
+    return name.C_Str();
+}
+
+// As assimp would have made it.
+aiMaterial* make_material(const FbxOutline::Material& from) {
+    auto material = std::make_unique<aiMaterial>();
+    const auto number = [&](const char* key, double otherwise) {
+        const auto found = from.properties.find(key);
+        return static_cast<ai_real>(found == from.properties.end() ? otherwise : found->second[0]);
+    };
+    const auto color = [&](const char* key, const char* factor, const char* target) {
+        const auto found = from.properties.find(key);
+        if (found == from.properties.end()) return;
+        const ai_real scale = factor ? number(factor, 1) : 1;
+        const aiColor3D value(static_cast<ai_real>(found->second[0]) * scale, static_cast<ai_real>(found->second[1]) * scale,
+                              static_cast<ai_real>(found->second[2]) * scale);
+        material->AddProperty(&value, 1, target, 0, 0);
+    };
+    const auto copy = [&](const char* key, const char* target) {
+        if (!from.properties.count(key)) return;
+        const ai_real value = number(key, 0);
+        material->AddProperty(&value, 1, target, 0, 0);
+    };
+    const aiString name(from.name);
+    material->AddProperty(&name, AI_MATKEY_NAME);
+    color("DiffuseColor", "DiffuseFactor", "$clr.diffuse");
+    color("EmissiveColor", "EmissiveFactor", "$clr.emissive");
+    color("SpecularColor", nullptr, "$clr.specular");
+    color("ReflectionColor", nullptr, "$clr.reflective");
+    copy("SpecularFactor", "$mat.shinpercent");
+    copy("ShininessExponent", "$mat.shininess");
+    copy("ReflectionFactor", "$mat.reflectivity");
+    copy("Opacity", "$mat.opacity");
+    if (!from.texture.empty()) {
+        const aiString texture(from.texture);
+        material->AddProperty(&texture, AI_MATKEY_TEXTURE_DIFFUSE(0));
+    }
+    return material.release();
+}
+
+// Every node of the tree, without recursion.
+template <class Visit>
+void for_each_node(aiNode* root, Visit visit) {
+    std::vector<aiNode*> stack = {root};
+    while (!stack.empty()) {
+        aiNode* node = stack.back();
+        stack.pop_back();
+        visit(*node);
+        for (unsigned i = 0; i < node->mNumChildren; ++i) stack.push_back(node->mChildren[i]);
+    }
+}
+
+}  // namespace
+
+FbxMend::FbxMend(aiScene& scene, const std::string& path) {
+    if (!scene.mRootNode || !is_needed(scene)) return;
+    outline_ = read_fbx_outline(read_all(path));
+    if (!match(scene)) return;
+    mend_rotations();
+    mend_materials(scene);
+}
+
+bool FbxMend::is_needed(const aiScene& scene) const {
+    std::vector<unsigned> users(scene.mNumMeshes, 0);
+    bool needed = false;
+    for_each_node(scene.mRootNode, [&](const aiNode& node) {
+        needed = needed || (is_helper(node) && name_of(node).find("_GeometricRotation") != std::string_view::npos);
+        for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+            if (node.mMeshes[i] < users.size()) needed = ++users[node.mMeshes[i]] > 1 || needed;
+        }
+    });
+    return needed;
+}
+
+// The file's models beside the nodes that assimp made of them, in step; gives up at the first difference.
+bool FbxMend::match(const aiScene& scene) {
+    struct Step {
+        aiNode* node;  // whose children are to match
+        const std::vector<int64_t>* models;
+    };
+    std::vector<Step> stack = {{scene.mRootNode, &outline_.roots}};
+    while (!stack.empty()) {
+        Step step = stack.back();
+        stack.pop_back();
+        // A node's geometric transforms are undone in front of its children.
+        while (step.node->mNumChildren == 1 && is_inverse(*step.node->mChildren[0])) step.node = step.node->mChildren[0];
+        if (step.node->mNumChildren != step.models->size()) return false;
+        for (size_t i = step.models->size(); i > 0; --i) {
+            const auto model = outline_.models.find((*step.models)[i - 1]);
+            if (model == outline_.models.end()) return false;
+            aiNode* node = step.node->mChildren[i - 1];
+            aiNode* rotation = nullptr;
+            while (is_helper(*node) && node->mNumChildren == 1) {
+                const std::string_view name = name_of(*node);
+                if (name.size() > 18 && name.substr(name.size() - 18) == "_GeometricRotation") rotation = node;
+                node = node->mChildren[0];
+            }
+            if (name_of(*node) != model->second.name || models_.size() > outline_.models.size()) return false;
+            models_[node] = &model->second;
+            if (rotation) geometric_rotations_[node] = rotation;
+            stack.push_back({node, &model->second.children});
+        }
+    }
+    // Parents first, siblings in order: as assimp went when it chose whose materials a shared mesh gets.
+    std::vector<aiNode*> open = {scene.mRootNode};
+    while (!open.empty()) {
+        aiNode* node = open.back();
+        open.pop_back();
+        if (models_.count(node)) order_.push_back(node);
+        for (unsigned i = node->mNumChildren; i > 0; --i) open.push_back(node->mChildren[i - 1]);
+    }
+    return true;
+}
+
+void FbxMend::mend_rotations() {
+    for (const auto& [node, helper] : geometric_rotations_) {
+        const FbxOutline::Model& model = *models_.at(node);
+        if (model.rotation_order == 0) continue;
+        aiMatrix4x4 x, y, z;
+        const auto radians = [&](int k) { return static_cast<ai_real>(model.geometric_rotation[k] * 0.017453292519943295); };
+        aiMatrix4x4::RotationX(radians(0), x);
+        aiMatrix4x4::RotationY(radians(1), y);
+        aiMatrix4x4::RotationZ(radians(2), z);
+        helper->mTransformation = z * y * x;
+    }
+}
+
+// Of one of the file's materials within the scene's; those that no first node has are added.
+unsigned FbxMend::material_index(aiScene& scene, int64_t id) {
+    const auto known = material_indices_.find(id);
+    if (known != material_indices_.end()) return known->second;
+    const FbxOutline::Material& material = outline_.materials.at(id);
+    const auto has_name = [&](const auto& other) { return other.second.name == material.name; };
+    const bool is_unique = std::count_if(outline_.materials.begin(), outline_.materials.end(), has_name) == 1;
+    for (unsigned i = 0; is_unique && i < scene.mNumMaterials; ++i) {
+        if (material_name(scene, i) == material.name) return material_indices_[id] = i;
+    }
+    auto** grown = new aiMaterial*[scene.mNumMaterials + 1];  // owned and freed by the scene
+    std::copy(scene.mMaterials, scene.mMaterials + scene.mNumMaterials, grown);
+    delete[] scene.mMaterials;
+    scene.mMaterials = grown;
+    scene.mMaterials[scene.mNumMaterials] = make_material(material);
+    return material_indices_[id] = scene.mNumMaterials++;
+}
+
+void FbxMend::mend_materials(aiScene& scene) {
+    std::map<std::vector<unsigned>, const FbxOutline::Model*> first_of;
+    for (aiNode* node : order_) {
+        if (node->mNumMeshes == 0) continue;
+        const std::vector<unsigned> meshes(node->mMeshes, node->mMeshes + node->mNumMeshes);
+        const FbxOutline::Model& model = *models_.at(node);
+        const FbxOutline::Model& first = *first_of.emplace(meshes, &model).first->second;
+        if (first.materials == model.materials) continue;
+        std::vector<unsigned> chosen;
+        for (const unsigned mesh : meshes) {
+            if (mesh >= scene.mNumMeshes) return;
+            unsigned index = scene.mMeshes[mesh]->mMaterialIndex;
+            const std::string name = material_name(scene, index);
+            // The mesh's parts name slots of the node's list; which slot it was shows by the first node's material.
+            size_t slot = 0;
+            while (slot < first.materials.size() && outline_.materials.at(first.materials[slot]).name != name) ++slot;
+            // Where the first node had no material at all, the mesh's one part can only mean the first slot.
+            if (first.materials.empty() && meshes.size() == 1) slot = 0;
+            if (slot < model.materials.size()) index = material_index(scene, model.materials[slot]);
+            chosen.push_back(index);
+        }
+        materials_[node] = chosen;
+    }
+}
+
+std::vector<unsigned> FbxMend::materials(const aiNode& node) const {
+    const auto found = materials_.find(&node);
+    return found == materials_.end() ? std::vector<unsigned>() : found->second;
+}
+
+}  // namespace assimp_import
