@@ -4,12 +4,14 @@
 #include "base/log.hpp"
 #include "import/file_access.hpp"
 #include "import/scene_builder.hpp"
+#include "import/worker.hpp"
 
 namespace clarity {
 namespace {
 
-Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::string>& files, const FileAccess& access,
+Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                         Progress& progress) {
+    const FileAccess access(files, options.search_paths);
     SceneBuilder builder(plugins, access, progress);
     for (const std::string& file : files) builder.add_root(file);
     return builder.take();
@@ -21,16 +23,12 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
                    Progress& progress) {
     if (files.empty()) throw Error(Exit::usage, "no scene file given");
     for (const std::string& file : files) check_model_file(file);
-    const FileAccess access(files, options.search_paths);
-    Scene scene = import_in_process(plugins, files, access, progress);
+    Scene scene = options.in_process ? import_in_process(plugins, files, options, progress)
+                                     : import_in_worker(plugins, files, options, progress);
     const std::string why = validate(scene);
     if (!why.empty()) throw Error(Exit::import_failed, files.front() + ": the imported scene is not sound: " + why);
     for (const std::string& warning : scene.warnings) log(LogLevel::warning, warning);
     return scene;
-}
-
-int import_worker_main(int, char**) {
-    return 1;
 }
 
 }  // namespace clarity

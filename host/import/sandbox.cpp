@@ -1,0 +1,128 @@
+#include "import/sandbox.hpp"
+
+#include <fcntl.h>
+#include <malloc.h>
+#include <pthread.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#if __has_include(<linux/landlock.h>)
+#include <linux/landlock.h>
+#define CLARITY_LANDLOCK
+#endif
+
+namespace clarity {
+namespace {
+
+// AddressSanitizer reserves terabytes of address space; there the parent's watch over resident memory must do.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kLimitAddressSpace = false;
+#else
+constexpr bool kLimitAddressSpace = true;
+#endif
+
+uint64_t mapped_bytes() {
+    unsigned long long pages = 0;
+    std::FILE* file = std::fopen("/proc/self/statm", "re");
+    if (!file) return 0;
+    const bool read = std::fscanf(file, "%llu", &pages) == 1;
+    std::fclose(file);
+    return read ? pages * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+void limit(int resource, uint64_t soft, uint64_t hard, const char* what, std::vector<std::string>& notes) {
+    rlimit now{};
+    getrlimit(static_cast<__rlimit_resource>(resource), &now);
+    const rlimit wanted = {std::min<rlim_t>(soft, now.rlim_max), std::min<rlim_t>(hard, now.rlim_max)};
+    if (setrlimit(static_cast<__rlimit_resource>(resource), &wanted) != 0) {
+        notes.push_back(std::string(what) + " is not limited: " + std::strerror(errno));
+    }
+}
+
+}  // namespace
+
+std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, const std::vector<std::string>& files,
+                                       const WorkerLimits& limits) {
+    std::vector<std::string> notes;
+    // Threads: small stacks and few malloc arenas, or a machine of many cores would spend the address space on them.
+    pthread_attr_t attributes;
+    pthread_attr_init(&attributes);
+    pthread_attr_setstacksize(&attributes, 2u << 20);
+    pthread_setattr_default_np(&attributes);
+    pthread_attr_destroy(&attributes);
+    mallopt(M_ARENA_MAX, 2);
+
+    limit(RLIMIT_STACK, limits.stack_bytes, limits.stack_bytes, "the stack", notes);
+    limit(RLIMIT_CORE, 0, 0, "the core file", notes);
+    limit(RLIMIT_NOFILE, 64, 64, "the number of open files", notes);
+    // One second from the signal that says why to the one that cannot be caught.
+    if (limits.cpu_s > 0) limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1, "processor time", notes);
+    signal(SIGXFSZ, SIG_IGN);
+    const uint64_t memory = limits.memory_bytes > 0 ? limits.memory_bytes : RLIM_INFINITY;
+    limit(RLIMIT_FSIZE, 0, memory, "writing", notes);
+    if (limits.memory_bytes > 0) {
+        if (kLimitAddressSpace) {
+            const uint64_t bytes = mapped_bytes() + limits.memory_bytes;
+            limit(RLIMIT_AS, bytes, bytes, "memory", notes);
+        } else {
+            notes.push_back("address space is not limited in a build with AddressSanitizer");
+        }
+    }
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) notes.push_back("no_new_privs is not available");
+    const std::string file_note = detail::restrict_files(folders, files);
+    if (!file_note.empty()) notes.push_back("reading is not restricted to the scene's folders: " + file_note);
+    const std::string call_note = detail::restrict_system_calls();
+    if (!call_note.empty()) notes.push_back("system calls are not restricted: " + call_note);
+    return notes;
+}
+
+void allow_writing_result(uint64_t bytes) {
+    rlimit now{};
+    getrlimit(RLIMIT_FSIZE, &now);
+    now.rlim_cur = bytes > 0 ? std::min<rlim_t>(bytes, now.rlim_max) : now.rlim_max;
+    // Not through the C library, which may use prlimit64, and the sandbox lets no process set limits that way.
+    syscall(SYS_setrlimit, RLIMIT_FSIZE, &now);
+}
+
+#ifdef CLARITY_LANDLOCK
+std::string detail::restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files) {
+    const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+    if (version < 1) return std::string("Landlock is not available: ") + std::strerror(errno);
+    landlock_ruleset_attr ruleset{};
+    // All thirteen rights of the first version, by bit; the later ones where this kernel knows them: 2 moves and links between
+    // folders, 3 truncation.
+    ruleset.handled_access_fs = (1u << 13) - 1;
+    if (version >= 2) ruleset.handled_access_fs |= 1u << 13;
+    if (version >= 3) ruleset.handled_access_fs |= 1u << 14;
+    const int fd = static_cast<int>(syscall(SYS_landlock_create_ruleset, &ruleset, sizeof ruleset, 0));
+    if (fd < 0) return std::string("Landlock: ") + std::strerror(errno);
+    const auto allow = [&](const std::string& path, uint64_t rights) {
+        landlock_path_beneath_attr rule{};
+        rule.allowed_access = rights;
+        rule.parent_fd = open(path.c_str(), O_PATH | O_CLOEXEC);
+        if (rule.parent_fd < 0) return;  // then it is not readable, which is on the safe side
+        syscall(SYS_landlock_add_rule, fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
+        close(rule.parent_fd);
+    };
+    for (const std::string& folder : folders) allow(folder, LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR);
+    for (const std::string& file : files) allow(file, LANDLOCK_ACCESS_FS_READ_FILE);
+    const bool entered = syscall(SYS_landlock_restrict_self, fd, 0) == 0;
+    const std::string why = entered ? "" : std::string("Landlock: ") + std::strerror(errno);
+    close(fd);
+    return why;
+}
+#else
+std::string detail::restrict_files(const std::vector<std::string>&, const std::vector<std::string>&) {
+    return "built without Landlock's header";
+}
+#endif
+
+}  // namespace clarity

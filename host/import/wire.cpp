@@ -1,0 +1,221 @@
+// Layout: a Header, then sections at multiples of 64 bytes, each the array of one member of Scene, in the order of `visit`.
+// Elements with names are split: plain data with the name's length in a section of their kind, the names of all, one after the
+// other, in the last one.
+#include "import/wire.hpp"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <sys/uio.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <type_traits>
+
+namespace clarity {
+namespace {
+
+constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
+constexpr uint32_t kSectionCount = 19;
+constexpr uint64_t kAlignment = 64;
+constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
+
+struct Section {
+    uint64_t offset, bytes;
+};
+struct Header {
+    uint64_t magic, total_bytes;
+    Section sections[kSectionCount];
+};
+struct WireGlobals {
+    std::array<float, 3> background, ambient;
+    uint32_t up_axis, pad;
+    double unit_scale;
+};
+struct WireMesh {
+    uint32_t name_bytes, first_vertex, vertex_count, first_triangle, triangle_count, polygon_count;
+};
+struct WireInstance {
+    uint32_t name_bytes, mesh, material;
+    Affine world_from_object;
+};
+struct WireMaterial {
+    uint32_t name_bytes;
+    rt_material values;
+};
+struct WireLight {
+    uint32_t name_bytes;
+    rt_light values;
+};
+struct WireCamera {
+    uint32_t name_bytes;
+    std::array<float, 3> eye, target, up;
+    float fov_y_rad;
+};
+
+// What Scene does not hold as plain arrays.
+struct Converted {
+    std::vector<WireGlobals> globals;
+    std::vector<WireMesh> meshes;
+    std::vector<WireInstance> instances;
+    std::vector<WireMaterial> materials;
+    std::vector<WireLight> lights;
+    std::vector<WireCamera> cameras;
+    std::vector<uint32_t> warnings;  // lengths
+    std::vector<char> names;
+};
+
+// One list for both directions, so that they cannot differ.
+template <class S, class C, class Visitor>
+void visit(S& s, C& c, Visitor&& v) {
+    v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.triangles), v(s.triangle_materials), v(c.meshes), v(c.instances);
+    v(s.spheres), v(s.planes), v(s.polygons), v(s.polygon_corners), v(c.materials), v(s.textures), v(s.texels), v(c.lights);
+    v(c.cameras), v(c.warnings), v(c.names);
+}
+
+Converted convert(const Scene& s) {
+    Converted c;
+    const auto name = [&](const std::string& text) {
+        c.names.insert(c.names.end(), text.begin(), text.end());
+        return static_cast<uint32_t>(text.size());
+    };
+    c.globals.push_back({s.background, s.ambient, s.up_axis, 0, s.unit_scale});
+    for (const Mesh& m : s.meshes) {
+        c.meshes.push_back({name(m.name), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
+    }
+    for (const Instance& i : s.instances) c.instances.push_back({name(i.name), i.mesh, i.material, i.world_from_object});
+    for (const Material& m : s.materials) c.materials.push_back({name(m.name), m.values});
+    for (const Light& l : s.lights) c.lights.push_back({name(l.name), l.values});
+    for (const Camera& k : s.cameras) c.cameras.push_back({name(k.name), k.eye, k.target, k.up, k.fov_y_rad});
+    for (const std::string& warning : s.warnings) c.warnings.push_back(name(warning));
+    return c;
+}
+
+// False if the names are shorter than their lengths say.
+bool convert_back(const Converted& c, Scene& s) {
+    size_t at = 0;
+    bool good = c.globals.size() == 1;
+    const auto name = [&](uint32_t bytes) {
+        good = good && bytes <= c.names.size() - at;
+        if (!good) return std::string();
+        at += bytes;
+        return std::string(c.names.data() + at - bytes, bytes);
+    };
+    if (!good) return false;
+    const WireGlobals& g = c.globals.front();
+    s.background = g.background;
+    s.ambient = g.ambient;
+    s.up_axis = g.up_axis;
+    s.unit_scale = g.unit_scale;
+    for (const WireMesh& m : c.meshes) {
+        s.meshes.push_back(
+            {name(m.name_bytes), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
+    }
+    for (const WireInstance& i : c.instances)
+        s.instances.push_back({name(i.name_bytes), i.mesh, i.material, i.world_from_object});
+    for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values});
+    for (const WireLight& l : c.lights) s.lights.push_back({name(l.name_bytes), l.values});
+    for (const WireCamera& k : c.cameras) s.cameras.push_back({name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad});
+    for (const uint32_t bytes : c.warnings) s.warnings.push_back(name(bytes));
+    return good && at == c.names.size();
+}
+
+// A write may stop anywhere, and takes 2 GiB at most.
+std::string write_all(int fd, std::vector<iovec> pieces) {
+    for (size_t at = 0; at < pieces.size();) {
+        iovec piece = pieces[at];
+        if (piece.iov_len == 0) {
+            ++at;
+            continue;
+        }
+        piece.iov_len = std::min(piece.iov_len, size_t(1) << 30);
+        const ssize_t written = write(fd, piece.iov_base, piece.iov_len);
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) return std::string("cannot write the scene into shared memory: ") + std::strerror(errno);
+        pieces[at].iov_base = static_cast<char*>(pieces[at].iov_base) + written;
+        pieces[at].iov_len -= static_cast<size_t>(written);
+    }
+    return {};
+}
+
+class Mapping {
+ public:
+    Mapping(int fd, size_t bytes) : bytes_(bytes), data_(mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_POPULATE, fd, 0)) {}
+    ~Mapping() {
+        if (data_ != MAP_FAILED) munmap(data_, bytes_);
+    }
+    Mapping(const Mapping&) = delete;
+    Mapping& operator=(const Mapping&) = delete;
+    const char* data() const { return data_ == MAP_FAILED ? nullptr : static_cast<const char*>(data_); }
+
+ private:
+    size_t bytes_;
+    void* data_;
+};
+
+}  // namespace
+
+std::string write_scene(int fd, const Scene& scene) {
+    const Converted converted = convert(scene);
+    static const char zeros[kAlignment] = {};
+    Header header{};
+    header.magic = kMagic;
+    std::vector<iovec> pieces = {{&header, sizeof header}};
+    uint64_t offset = sizeof header;
+    uint32_t section = 0;
+    const auto pad = [&] {
+        const uint64_t padding = (kAlignment - offset % kAlignment) % kAlignment;
+        pieces.push_back({const_cast<char*>(zeros), padding});
+        offset += padding;
+    };
+    visit(scene, converted, [&](const auto& array) {
+        using Element = typename std::decay_t<decltype(array)>::value_type;
+        static_assert(std::is_trivially_copyable_v<Element>, "only plain data goes through shared memory");
+        pad();
+        const uint64_t bytes = array.size() * sizeof(Element);
+        header.sections[section++] = {offset, bytes};
+        pieces.push_back({const_cast<Element*>(array.data()), bytes});
+        offset += bytes;
+    });
+    header.total_bytes = offset;
+    const std::string why = write_all(fd, std::move(pieces));
+    if (!why.empty()) return why;
+    if (fcntl(fd, F_ADD_SEALS, kSeals) != 0) return std::string("cannot seal the shared memory: ") + std::strerror(errno);
+    return {};
+}
+
+std::string read_scene(int fd, Scene& scene) {
+    struct stat status {};
+    if (fstat(fd, &status) != 0) return std::strerror(errno);
+    const uint64_t size = static_cast<uint64_t>(status.st_size);
+    const int seals = fcntl(fd, F_GET_SEALS);
+    if (seals < 0 || (seals & kSeals) != kSeals) return "the shared memory is not sealed";
+    if (size < sizeof(Header)) return "the shared memory holds " + std::to_string(size) + " bytes, less than its header";
+    const Mapping mapping(fd, size);
+    if (!mapping.data()) return std::string("cannot map the shared memory: ") + std::strerror(errno);
+    Header header;
+    std::memcpy(&header, mapping.data(), sizeof header);
+    if (header.magic != kMagic) return "the shared memory holds no scene";
+    if (header.total_bytes != size) return "the shared memory's size is not the one in its header";
+
+    Converted converted;
+    uint32_t section = 0;
+    std::string why;
+    visit(scene, converted, [&](auto& array) {
+        using Element = typename std::decay_t<decltype(array)>::value_type;
+        const Section& s = header.sections[section++];
+        if (s.offset % kAlignment != 0 || s.offset > size || s.bytes > size - s.offset || s.bytes % sizeof(Element) != 0) {
+            why = "section " + std::to_string(section - 1) + " of the shared memory is out of range";
+        }
+        if (!why.empty()) return;
+        const auto* first = reinterpret_cast<const Element*>(mapping.data() + s.offset);
+        array.assign(first, first + s.bytes / sizeof(Element));
+    });
+    if (why.empty() && !convert_back(converted, scene)) why = "the names in the shared memory do not fit";
+    return why;
+}
+
+}  // namespace clarity

@@ -1,0 +1,130 @@
+#include "import/worker_spawn.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "import/worker_channel.hpp"
+
+extern char** environ;
+
+namespace clarity {
+namespace {
+
+[[noreturn]] void fail(const std::string& what, int error) {
+    throw Error(Exit::import_failed, "cannot start the import worker: " + what + ": " + std::strerror(error) +
+                                         " (importing without one is possible, but a damaged file may then end this program)");
+}
+
+int checked(int fd, const char* what) {
+    if (fd < 0) fail(what, errno);
+    return fd;
+}
+
+// Out of the way of the numbers that the worker's descriptors get.
+FileDescriptor moved_up(int fd) {
+    const int moved = fcntl(fd, F_DUPFD_CLOEXEC, 10);
+    const int error = errno;
+    close(fd);
+    if (moved < 0) fail("descriptor", error);
+    return FileDescriptor(moved);
+}
+
+struct FileActions {
+    posix_spawn_file_actions_t actions;
+    FileActions() { posix_spawn_file_actions_init(&actions); }
+    ~FileActions() { posix_spawn_file_actions_destroy(&actions); }
+};
+struct Attributes {
+    posix_spawnattr_t attributes;
+    Attributes() { posix_spawnattr_init(&attributes); }
+    ~Attributes() { posix_spawnattr_destroy(&attributes); }
+};
+
+}  // namespace
+
+void FileDescriptor::reset() {
+    if (fd_ >= 0) close(fd_);
+    fd_ = -1;
+}
+
+WorkerProcess::WorkerProcess(const std::string& program, const std::vector<std::string>& arguments) {
+    int pair[2], pipe_ends[2];
+    checked(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair), "socket pair");
+    channel_ = moved_up(pair[0]);
+    const FileDescriptor their_channel = moved_up(pair[1]);
+    checked(pipe2(pipe_ends, O_CLOEXEC), "pipe");
+    output_ = moved_up(pipe_ends[0]);
+    const FileDescriptor their_output = moved_up(pipe_ends[1]);
+    fcntl(output_.get(), F_SETFL, O_NONBLOCK);
+    result_ = moved_up(checked(memfd_create("clarity-scene", MFD_CLOEXEC | MFD_ALLOW_SEALING), "shared memory"));
+
+    FileActions files;
+    posix_spawn_file_actions_addopen(&files.actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 1);
+    posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 2);
+    posix_spawn_file_actions_adddup2(&files.actions, their_channel.get(), kChannelFd);
+    posix_spawn_file_actions_adddup2(&files.actions, result_.get(), kResultFd);
+    // A process group of its own: Ctrl-C is for us to turn into a cancel. Signals as they are by default.
+    Attributes spawn;
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    posix_spawnattr_setsigmask(&spawn.attributes, &none);
+    posix_spawnattr_setsigdefault(&spawn.attributes, &all);
+    posix_spawnattr_setpgroup(&spawn.attributes, 0);
+    posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+    std::vector<std::string> words = {program, "import-worker"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    const std::string variable = std::string(kWorkerVariable) + "=1";
+    std::vector<char*> environment;
+    for (char** entry = environ; *entry; ++entry) environment.push_back(*entry);
+    environment.push_back(const_cast<char*>(variable.c_str()));
+    environment.push_back(nullptr);
+    const int error = posix_spawn(&pid_, program.c_str(), &files.actions, &spawn.attributes, argv.data(), environment.data());
+    if (error != 0) {
+        pid_ = -1;
+        fail(program, error);
+    }
+}
+
+WorkerProcess::~WorkerProcess() {
+    kill_now();
+    wait();
+}
+
+void WorkerProcess::kill_now() {
+    if (pid_ > 0) ::kill(pid_, SIGKILL);
+}
+
+int WorkerProcess::wait() {
+    while (pid_ > 0) {
+        if (waitpid(pid_, &status_, 0) == pid_ || errno != EINTR) pid_ = -1;
+    }
+    return status_;
+}
+
+uint64_t WorkerProcess::resident_bytes() const {
+    if (pid_ <= 0) return 0;
+    std::FILE* file = std::fopen(("/proc/" + std::to_string(pid_) + "/statm").c_str(), "re");
+    if (!file) return 0;
+    unsigned long long total = 0, resident = 0;
+    const bool read = std::fscanf(file, "%llu %llu", &total, &resident) == 2;
+    std::fclose(file);
+    return read ? resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
+}
+
+}  // namespace clarity
