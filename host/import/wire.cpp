@@ -141,6 +141,16 @@ std::string write_all(int fd, std::vector<iovec> pieces) {
     return {};
 }
 
+// Large arrays on large pages, where the system gives them on request: half of the time of reading goes into page faults.
+template <class T>
+void reserve_on_large_pages(std::vector<T>& array, size_t count) {
+    constexpr uintptr_t kLargePage = 2u << 20;
+    array.reserve(count);
+    const uintptr_t first = (reinterpret_cast<uintptr_t>(array.data()) + kLargePage - 1) / kLargePage * kLargePage;
+    const uintptr_t last = reinterpret_cast<uintptr_t>(array.data() + count) / kLargePage * kLargePage;
+    if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
+}
+
 class Mapping {
  public:
     Mapping(int fd, size_t bytes) : bytes_(bytes), data_(mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_POPULATE, fd, 0)) {}
@@ -212,6 +222,7 @@ std::string read_scene(int fd, Scene& scene) {
         }
         if (!why.empty()) return;
         const auto* first = reinterpret_cast<const Element*>(mapping.data() + s.offset);
+        reserve_on_large_pages(array, s.bytes / sizeof(Element));
         array.assign(first, first + s.bytes / sizeof(Element));
     });
     if (why.empty() && !convert_back(converted, scene)) why = "the names in the shared memory do not fit";
