@@ -1,35 +1,50 @@
 /* camera.h -- which pixels a work-item computes, and the camera rays through them.
  *
- * A packet of RT_PACKET_W x RT_PACKET_H pixels is one work-item's, as in the thesis. It is looped in blocks of
- * RT_BLOCK_W x RT_BLOCK_H = RT_LANES pixels. A work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture
- * run close in time. */
+ * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels. A
+ * work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture run close in time. The packet's size is no
+ * define but a number of the frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
 
-#define RT_BLOCKS_X ((RT_PACKET_W + RT_BLOCK_W - 1) / RT_BLOCK_W)
-#define RT_BLOCKS_Y ((RT_PACKET_H + RT_BLOCK_H - 1) / RT_BLOCK_H)
+#if RT_MAX_PIXELS == 1 /* GPUs: let the compiler see that there is one pixel */
+#define RT_PACKET_W(frame) 1u
+#define RT_PACKET_H(frame) 1u
+#define RT_BLOCKS(frame) 1u
+#else
+#define RT_PACKET_W(frame) ((frame)->packet_w)
+#define RT_PACKET_H(frame) ((frame)->packet_h)
+#define RT_BLOCKS(frame) ((frame)->blocks_x * (frame)->blocks_y)
+#endif
 
 /* First pixel of this work-item's packet. group: number of the work-group, row by row over the picture. */
 RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group)
 {
-    const uint groups_x = (frame->width + RT_PACKET_W * RT_GROUP_W - 1) / (RT_PACKET_W * RT_GROUP_W);
+    const uint w = RT_PACKET_W(frame), h = RT_PACKET_H(frame);
+    const uint groups_x = (frame->width + w * RT_GROUP_W - 1) / (w * RT_GROUP_W);
     const uint local_id = (uint)get_local_id(0);
     const uint x = (group % groups_x) * RT_GROUP_W + local_id % RT_GROUP_W;
     const uint y = (group / groups_x) * RT_GROUP_H + local_id / RT_GROUP_W;
-    return (uint2)(x * RT_PACKET_W, y * RT_PACKET_H);
+    return (uint2)(x * w, y * h);
 }
 
 /* Pixel of each lane within the packet, and whether packet and picture hold it. */
 RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, uint block, vint *in_x, vint *in_y)
 {
+#if RT_MAX_PIXELS == 1 && RT_LANES == 1
+    *in_x = *in_y = 0;
+    return RT_MASK(origin.x < frame->width) & RT_MASK(origin.y < frame->height);
+#else
+    const uint block_x = (block % frame->blocks_x) << frame->block_w_log2;
+    const uint block_y = (block / frame->blocks_x) * (RT_LANES >> frame->block_w_log2);
     const vint lane = rt_lane_index();
-    const vint x = rt_vint((block % RT_BLOCKS_X) * RT_BLOCK_W) + (lane & rt_vint(RT_BLOCK_W - 1));
-    const vint y = rt_vint((block / RT_BLOCKS_X) * RT_BLOCK_H) + (lane >> rt_vint(RT_BLOCK_W_LOG2));
+    const vint x = rt_vint((int)block_x) + (lane & rt_vint((int)frame->block_w - 1));
+    const vint y = rt_vint((int)block_y) + (lane >> rt_vint((int)frame->block_w_log2));
     *in_x = x;
     *in_y = y;
-    return RT_MASK(x < rt_vint(RT_PACKET_W)) & RT_MASK(y < rt_vint(RT_PACKET_H)) &
+    return RT_MASK(x < rt_vint((int)RT_PACKET_W(frame))) & RT_MASK(y < rt_vint((int)RT_PACKET_H(frame))) &
            RT_MASK(x + rt_vint((int)origin.x) < rt_vint((int)frame->width)) &
            RT_MASK(y + rt_vint((int)origin.y) < rt_vint((int)frame->height));
+#endif
 }
 
 /* lowbias32, a full-avalanche integer hash (Wellons 2018). */

@@ -1,6 +1,12 @@
 /* film.cl -- from the film to what a screen shows, and sums over the counters. A program of its own, built once a device. */
 
-float rt_srgb_from_linear(float c) { return c <= 0.0031308f ? 12.92f * c : 1.055f * pow(c, 1.0f / 2.4f) - 0.055f; }
+/* The sRGB curve by square roots instead of pow: off by less than half a step of 8 bits, and compiled in a fraction of the time. */
+float4 rt_srgb_from_linear(float4 c)
+{
+    const float4 r2 = sqrt(c), r4 = sqrt(r2), r8 = sqrt(r4);
+    const float4 curve = 0.662002687f * r2 + 0.684122060f * r4 - 0.323583601f * r8 - 0.0225411470f * c;
+    return c < 0.0031308f ? 12.92f * c : curve;
+}
 
 /* Narkowicz 2015, ACES Filmic Tone Mapping Curve (a fit). */
 float rt_aces(float x) { return clamp(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 0.0f, 1.0f); }
@@ -16,8 +22,8 @@ kernel void map_tones(const global float4 *film, global uchar4 *display, const u
     if (tone == 1u) c = c / (1.0f + c);
     if (tone == 2u) c = (float4)(rt_aces(c.x), rt_aces(c.y), rt_aces(c.z), 1.0f);
     c = min(c, (float4)(1.0f));
-    const float3 s = (float3)(rt_srgb_from_linear(c.x), rt_srgb_from_linear(c.y), rt_srgb_from_linear(c.z));
-    display[i] = (uchar4)((uchar)(s.x * 255.0f + 0.5f), (uchar)(s.y * 255.0f + 0.5f), (uchar)(s.z * 255.0f + 0.5f), 255);
+    const float4 s = clamp(rt_srgb_from_linear(c), 0.0f, 1.0f) * 255.0f + 0.5f;
+    display[i] = (uchar4)((uchar)s.x, (uchar)s.y, (uchar)s.z, 255);
 }
 
 /* sums: 4 zeroed uints. */

@@ -114,13 +114,14 @@ typedef struct rt_frame {
     rt_u32 light_count;
     rt_u32 plane_count;
     rt_u32 sample; /* number of this sample; 0 goes through the pixel's centre */
-    rt_u32 row_first;  /* this launch: first row and row count of packets */
-    rt_u32 row_count;
+    rt_u32 packet_w, packet_h; /* pixels of one work-item */
     rt_f32 min_weight; /* rays that would add less than this are not spawned */
     rt_u32 shadows;    /* 0: none */
     rt_u32 instance_count;
     rt_u32 root; /* of group 0 */
-    rt_f32 pad[8];
+    rt_u32 block_w, block_w_log2; /* pixels traced side by side: block_w wide, RT_LANES in all */
+    rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
+    rt_u32 pad[4];
 } rt_frame;
 
 /* What the kernels count, added up with atomics once a packet. 32 B. */

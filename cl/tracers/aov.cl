@@ -12,7 +12,7 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
 {
     RT_CTX_INIT(ctx);
     const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0));
-    for (uint block = 0; block < RT_BLOCKS_X * RT_BLOCKS_Y; ++block) {
+    for (uint block = 0; block < RT_BLOCKS(frame); ++block) {
         vint in_x, in_y;
         const vmask active = rt_block_pixels(frame, origin, block, &in_x, &in_y);
         const uint bits = rt_bits(active);

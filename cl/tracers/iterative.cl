@@ -4,10 +4,10 @@
  * generation and of the next. Each step traces all current rays, adds what they see to their pixels and appends reflected and
  * refracted rays to the next array; then the arrays change places, until none is left or `depth` generations are done.
  * The arrays hold RT_RAY_SLOTS rays a pixel. A ray that finds no room is dropped and counted.
- * Private memory: 2 x 10 floats x (RT_PACKET_W RT_PACKET_H RT_RAY_SLOTS + RT_LANES). */
+ * The arrays are private memory for RT_MAX_PIXELS, 2 x 10 floats x (RT_MAX_PIXELS RT_RAY_SLOTS + RT_LANES), of which only what is
+ * used is touched. */
 
-#define RT_PIXELS (RT_PACKET_W * RT_PACKET_H)
-#define RT_CAPACITY (RT_PIXELS * RT_RAY_SLOTS)
+#define RT_CAPACITY (RT_MAX_PIXELS * RT_RAY_SLOTS)
 #define RT_RAY_OFFSET 1.5e-5f /* 256 ulp, of the largest coordinate or the distance */
 #define RT_FIELDS 9 /* origin, direction, weight */
 
@@ -38,10 +38,10 @@ RT_INLINE vfloat rt_compress_float(vfloat v, uint bits)
 #endif
 
 /* Appends the lanes in bits; returns the new count, and adds those that found no room to *dropped. */
-RT_INLINE uint rt_append(rt_queue *queue, uint count, uint bits, vfloat ox, vfloat oy, vfloat oz, vfloat dx, vfloat dy, vfloat dz,
+RT_INLINE uint rt_append(rt_queue *queue, uint capacity, uint count, uint bits, vfloat ox, vfloat oy, vfloat oz, vfloat dx, vfloat dy, vfloat dz,
                          vfloat wr, vfloat wg, vfloat wb, vint pixel, uint *dropped)
 {
-    const uint wanted = popcount(bits), room = RT_CAPACITY - count, taken = min(wanted, room);
+    const uint wanted = popcount(bits), room = capacity - count, taken = min(wanted, room);
     *dropped += wanted - taken;
     if (taken == 0u) return count;
     rt_store(RT_COMPRESS_FLOAT(ox, bits), queue->field[0] + count);
@@ -65,12 +65,13 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global f
     const uint group = first_group + (uint)get_group_id(0);
     const uint2 origin = rt_packet_origin(frame, group);
     rt_queue queues[2];
-    float color_r[RT_PIXELS + RT_LANES], color_g[RT_PIXELS + RT_LANES], color_b[RT_PIXELS + RT_LANES];
+    float color_r[RT_MAX_PIXELS], color_g[RT_MAX_PIXELS], color_b[RT_MAX_PIXELS];
+    const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), capacity = pixels * RT_RAY_SLOTS;
     uint shadow_count = 0, secondary_count = 0, dropped = 0, overflow = 0;
-    for (uint i = 0; i < RT_PIXELS; ++i) color_r[i] = color_g[i] = color_b[i] = 0.0f;
+    for (uint i = 0; i < pixels; ++i) color_r[i] = color_g[i] = color_b[i] = 0.0f;
 
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    uint count = RT_BLOCKS_X * RT_BLOCKS_Y * RT_LANES; /* the first generation is made, not stored */
+    uint count = RT_BLOCKS(frame) * RT_LANES; /* the first generation is made, not stored */
     for (uint generation = 0; generation < frame->depth && count != 0u; ++generation) {
         const rt_queue *current = queues + (generation & 1u);
         rt_queue *next = queues + (1u - (generation & 1u));
@@ -83,7 +84,7 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global f
             if (generation == 0u) {
                 vint in_x, in_y;
                 active = rt_block_pixels(frame, origin, base / RT_LANES, &in_x, &in_y);
-                pixel = in_y * RT_PACKET_W + in_x;
+                pixel = in_y * rt_vint((int)packet_w) + in_x;
                 rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), &ray);
             } else {
                 active = RT_MASK(rt_lane_index() + rt_vint((int)base) < rt_vint((int)count));
@@ -217,14 +218,14 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global f
                         dy = fma(below * -2.0f, gy, dy);
                         dz = fma(below * -2.0f, gz, dz);
                         const vfloat scale = rt_inverse_length(dx, dy, dz);
-                        next_count = rt_append(next, next_count, mirror_bits, above_x, above_y, above_z, dx * scale, dy * scale,
+                        next_count = rt_append(next, capacity, next_count, mirror_bits, above_x, above_y, above_z, dx * scale, dy * scale,
                                                dz * scale, wr * mirrored, wg * mirrored, wb * mirrored, pixel, &dropped);
                     }
                     if (pass_bits != 0u) {
                         const vfloat bend = eta * cos_in - cos_out;
                         const vfloat dx = fma(eta, ray.dx, bend * nx), dy = fma(eta, ray.dy, bend * ny), dz = fma(eta, ray.dz, bend * nz);
                         const vfloat scale = rt_inverse_length(dx, dy, dz);
-                        next_count = rt_append(next, next_count, pass_bits, fma(gx, -offset, px), fma(gy, -offset, py),
+                        next_count = rt_append(next, capacity, next_count, pass_bits, fma(gx, -offset, px), fma(gy, -offset, py),
                                                fma(gz, -offset, pz), dx * scale, dy * scale, dz * scale, wr * passed * m.r,
                                                wg * passed * m.g, wb * passed * m.b, pixel, &dropped);
                     }
@@ -249,8 +250,8 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global f
         if (generation + 1u < frame->depth) secondary_count += next_count;
     }
 
-    for (uint i = 0; i < RT_PIXELS; ++i) {
-        const uint x = origin.x + i % RT_PACKET_W, y = origin.y + i / RT_PACKET_W;
+    for (uint i = 0; i < pixels; ++i) {
+        const uint x = origin.x + i % packet_w, y = origin.y + i / packet_w;
         if (x >= frame->width || y >= frame->height) continue;
         float4 value = (float4)(color_r[i], color_g[i], color_b[i], 1.0f);
         const uint at = y * frame->width + x;

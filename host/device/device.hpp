@@ -23,7 +23,8 @@ struct DeviceInfo {
 // devices or with a failing driver is skipped with a warning in `warnings`.
 std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings = nullptr);
 
-// choice: "" (CLARITY_DEVICE, else the best), "P:D", "cpu", "gpu", or part of a name. Throws Error(no_device) that lists what there is.
+// choice: "" (CLARITY_DEVICE, else the best), "P:D", "cpu", "gpu", or part of a name. Throws Error(no_device) that lists what
+// there is.
 DeviceInfo choose_device(const std::string& choice);
 
 // An open device. Not thread-safe per object, except that programs may be built from other threads.

@@ -44,7 +44,8 @@ std::string kernel_text(const std::string& name) {
 std::string plugin_kernel_text(const std::string& id, const char* name, const char* embedded) {
     std::string text;
     const char* folder = override_folder();
-    if (folder && name && read_file(std::filesystem::path(folder).parent_path() / "plugins" / "accel" / id / name, text)) return text;
+    if (folder && name && read_file(std::filesystem::path(folder).parent_path() / "plugins" / "accel" / id / name, text))
+        return text;
     return embedded ? embedded : "";
 }
 

@@ -42,10 +42,12 @@ struct Output {
 
     void* alloc(rt_u32 slot, uint64_t count) {
         const std::lock_guard<std::mutex> lock(mutex);
-        if (slot >= accel.slot_count) return refuse("asked for slot " + std::to_string(slot) + " of " + std::to_string(accel.slot_count));
+        if (slot >= accel.slot_count)
+            return refuse("asked for slot " + std::to_string(slot) + " of " + std::to_string(accel.slot_count));
         const std::string name = accel.slots[slot].name;
         if (allocated[slot]) return refuse("allocated slot " + name + " twice");
-        if (count > kSlotLimit / accel.slots[slot].elem_bytes) return refuse("asked for " + std::to_string(count) + " elements of slot " + name);
+        if (count > kSlotLimit / accel.slots[slot].elem_bytes)
+            return refuse("asked for " + std::to_string(count) + " elements of slot " + name);
         allocated[slot] = true;
         try {
             data.slots[slot].memory = AlignedBytes(std::max<uint64_t>(count, 1) * accel.slots[slot].elem_bytes, true);
@@ -88,7 +90,9 @@ struct Output {
     AlignedBytes refs;
 };
 
-Output& output(void* ctx) { return *static_cast<Output*>(ctx); }
+Output& output(void* ctx) {
+    return *static_cast<Output*>(ctx);
+}
 
 // Everything that a builder may get wrong, said in its terms.
 std::string contract_breach(const Output& out, const BuildScene& scene) {
@@ -106,10 +110,18 @@ std::string contract_breach(const Output& out, const BuildScene& scene) {
         const rt_u32 index = RT_REF_INDEX(refs[i]);
         size_t known = 0;
         switch (RT_REF_KIND(refs[i])) {
-            case RT_REF_TRIANGLE: known = scene.triangles.size(); break;
-            case RT_REF_SPHERE: known = scene.spheres.size(); break;
-            case RT_REF_POLYGON: known = scene.polygons.size(); break;
-            case RT_REF_INSTANCE: known = scene.instances.size(); break;
+            case RT_REF_TRIANGLE:
+                known = scene.triangles.size();
+                break;
+            case RT_REF_SPHERE:
+                known = scene.spheres.size();
+                break;
+            case RT_REF_POLYGON:
+                known = scene.polygons.size();
+                break;
+            case RT_REF_INSTANCE:
+                known = scene.instances.size();
+                break;
         }
         if (index >= known) return "put a ref at leaf " + std::to_string(i) + " that it was not given";
     }
@@ -126,9 +138,15 @@ void pack_leaves(const Output& out, AccelData& data) {
         for (uint64_t i = c * chunk; i < std::min<uint64_t>(data.leaf_count, (c + 1) * chunk); ++i) {
             const rt_u32 index = RT_REF_INDEX(refs[i]);
             switch (RT_REF_KIND(refs[i])) {
-                case RT_REF_TRIANGLE: leaves[i] = data.scene.triangles[index]; break;
-                case RT_REF_SPHERE: leaves[i] = data.scene.spheres[index]; break;
-                case RT_REF_POLYGON: leaves[i] = data.scene.polygons[index]; break;
+                case RT_REF_TRIANGLE:
+                    leaves[i] = data.scene.triangles[index];
+                    break;
+                case RT_REF_SPHERE:
+                    leaves[i] = data.scene.spheres[index];
+                    break;
+                case RT_REF_POLYGON:
+                    leaves[i] = data.scene.polygons[index];
+                    break;
                 default:
                     leaves[i] = rt_leaf{};
                     leaves[i].ref = refs[i];
@@ -177,12 +195,8 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     HostServices services(std::string("accel ") + plugin.id, progress);
     Output out(*plugin.accel, data, services, static_cast<rt_u32>(data.scene.groups.size()));
     rt_geometry geometry{sizeof(rt_geometry), data.scene.triangles.data(), data.scene.triangles.size()};
-    rt_build_input input{sizeof(rt_build_input),
-                         out.group_count,
-                         data.scene.prims.data(),
-                         data.scene.groups.data(),
-                         &geometry,
-                         data.params.data()};
+    rt_build_input input{sizeof(rt_build_input),   out.group_count, data.scene.prims.data(),
+                         data.scene.groups.data(), &geometry,       data.params.data()};
     rt_build_output output_table{};
     output_table.struct_bytes = sizeof output_table;
     output_table.ctx = &out;
@@ -209,7 +223,8 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
 
     start = std::chrono::steady_clock::now();
     if (const std::string why = contract_breach(out, data.scene); !why.empty())
-        throw Error(Exit::failed, std::string("accel ") + plugin.id + ": the builder " + why + "; this is a fault of the plugin");
+        throw Error(Exit::failed,
+                    std::string("accel ") + plugin.id + ": the builder " + why + "; this is a fault of the plugin");
     pack_leaves(out, data);
     data.instances = data.scene.instances;
     for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];

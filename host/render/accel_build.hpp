@@ -38,14 +38,14 @@ class AlignedBytes {
 struct BuildScene {
     std::vector<rt_prim> prims;
     std::vector<rt_group> groups;
-    std::vector<rt_leaf> triangles;            // by ref index, in the space of its group
-    std::vector<rt_instance> instances;        // roots unset
+    std::vector<rt_leaf> triangles;      // by ref index, in the space of its group
+    std::vector<rt_instance> instances;  // roots unset
     std::vector<uint32_t> group_of_instance;
     std::vector<Affine> world_from_object;     // per instance
     std::vector<uint32_t> attribute_triangle;  // triangle ref -> triangle of the Scene
     std::vector<rt_leaf> spheres, polygons;    // by ref index
     std::vector<rt_polygon> polygon_table;
-    std::vector<float> polygon_corners;        // 2 per corner
+    std::vector<float> polygon_corners;  // 2 per corner
     std::vector<rt_plane> planes;
 };
 BuildScene make_build_scene(const Scene& scene, Progress& progress);

@@ -18,8 +18,7 @@ struct Sink {
 // How much a transform lengthens at most, bounded by its largest column: exact for rotations with uniform scale.
 float scale_of(const Affine& m) {
     float largest = 0;
-    for (int column = 0; column < 3; ++column)
-        largest = std::max(largest, std::hypot(m[column], m[4 + column], m[8 + column]));
+    for (int column = 0; column < 3; ++column) largest = std::max(largest, std::hypot(m[column], m[4 + column], m[8 + column]));
     return largest;
 }
 
@@ -53,7 +52,8 @@ Volumes accel_volumes(const AccelData& accel, rt_u32 level, size_t limit) {
         slots.push_back(slot.memory.data());
         counts.push_back(slot.count);
     }
-    const rt_built built{sizeof(rt_built), static_cast<rt_u32>(accel.roots.size()), slots.data(), counts.data(), accel.roots.data()};
+    const rt_built built{sizeof(rt_built), static_cast<rt_u32>(accel.roots.size()), slots.data(), counts.data(),
+                         accel.roots.data()};
     Progress progress;
     const auto add_group = [&](rt_u32 group, const Affine& world) {
         Sink sink{volumes, world, limit};
@@ -62,7 +62,8 @@ Volumes accel_volumes(const AccelData& accel, rt_u32 level, size_t limit) {
         services.check(1, [&] { return table.levels(services.host(), &built, group, level, &calls); });
     };
     add_group(0, kIdentity);
-    for (size_t i = 0; i < accel.instances.size(); ++i) add_group(accel.scene.group_of_instance[i], accel.scene.world_from_object[i]);
+    for (size_t i = 0; i < accel.instances.size(); ++i)
+        add_group(accel.scene.group_of_instance[i], accel.scene.world_from_object[i]);
     return volumes;
 }
 

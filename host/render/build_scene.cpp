@@ -40,8 +40,8 @@ void widen(rt_prim& prim, float relative) {
 }
 
 // Writes the triangles of one mesh as refs first.., transformed unless world is nullptr.
-void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim, rt_u32 first_ref,
-                   rt_u32 run, uint64_t prim_at, BuildScene& out) {
+void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim,
+                   rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
     const uint32_t chunks = (mesh.triangle_count + kChunk - 1) / kChunk;
     parallel_for(chunks, [&](uint32_t chunk) {
         const rt_u32 end = std::min(mesh.triangle_count, (chunk + 1) * kChunk);
@@ -138,7 +138,8 @@ rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world
         grow(box, scene.prims[scene.groups[group].first + i].hi);
     }
     for (int corner = 0; corner < 8; ++corner) {
-        const float p[3] = {corner & 1 ? box.hi[0] : box.lo[0], corner & 2 ? box.hi[1] : box.lo[1], corner & 4 ? box.hi[2] : box.lo[2]};
+        const float p[3] = {corner & 1 ? box.hi[0] : box.lo[0], corner & 2 ? box.hi[1] : box.lo[1],
+                            corner & 4 ? box.hi[2] : box.lo[2]};
         grow(prim, transform_point(world, p).data());
     }
     widen(prim, 1e-6f);
@@ -191,8 +192,8 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     rt_u32 next_ref = 0;
     for (size_t m = 0; m < scene.meshes.size(); ++m)
         if (group_of_mesh[m]) {
-            add_triangles(scene, scene.meshes[m], nullptr, RT_NONE, 0, next_ref, static_cast<rt_u32>(m), out.groups[group_of_mesh[m]].first,
-                          out);
+            add_triangles(scene, scene.meshes[m], nullptr, RT_NONE, 0, next_ref, static_cast<rt_u32>(m),
+                          out.groups[group_of_mesh[m]].first, out);
             next_ref += scene.meshes[m].triangle_count;
         }
     uint64_t at = 0;

@@ -5,7 +5,9 @@
 namespace clarity {
 namespace {
 
-std::string mebibytes(uint64_t bytes) { return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB"; }
+std::string mebibytes(uint64_t bytes) {
+    return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
+}
 
 // Read-only memory of the device with this content; at least something, since no device takes empty buffers.
 cl::Buffer upload(Device& device, const char* what, const void* data, uint64_t bytes, uint64_t& total) {
@@ -16,17 +18,17 @@ cl::Buffer upload(Device& device, const char* what, const void* data, uint64_t b
     }
     const DeviceInfo& info = device.info();
     if (info.max_allocation_bytes && bytes > info.max_allocation_bytes)
-        throw Error(Exit::failed, "the scene does not fit: its " + std::string(what) + " take " + mebibytes(bytes) + " and " + info.name +
-                                      " allows " + mebibytes(info.max_allocation_bytes) + " in one piece");
+        throw Error(Exit::failed, "the scene does not fit: its " + std::string(what) + " take " + mebibytes(bytes) + " and " +
+                                      info.name + " allows " + mebibytes(info.max_allocation_bytes) + " in one piece");
     total += bytes;
     const bool shared = info.cpu && data != nothing;
     try {
         return cl::Buffer(device.context(), CL_MEM_READ_ONLY | (shared ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR), bytes,
                           const_cast<void*>(data));
     } catch (const cl::Error& e) {
-        throw Error(Exit::failed, "no room on " + info.name + " for the " + what + " (" + mebibytes(bytes) + ", with " + mebibytes(total) +
-                                      " of " + mebibytes(info.global_bytes) + " in use by this scene): OpenCL error " +
-                                      std::to_string(e.err()));
+        throw Error(Exit::failed, "no room on " + info.name + " for the " + what + " (" + mebibytes(bytes) + ", with " +
+                                      mebibytes(total) + " of " + mebibytes(info.global_bytes) +
+                                      " in use by this scene): OpenCL error " + std::to_string(e.err()));
     }
 }
 
@@ -60,8 +62,8 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     add(upload(device, "textures", scene_->texels, bytes_));
     const rt_accel& table = *accel_->plugin->accel;
     for (rt_u32 s = 0; s < table.slot_count; ++s)
-        slots_.push_back(upload(device, table.slots[s].name, accel_->slots[s].memory.data(), accel_->slots[s].count * table.slots[s].elem_bytes,
-                                bytes_));
+        slots_.push_back(upload(device, table.slots[s].name, accel_->slots[s].memory.data(),
+                                accel_->slots[s].count * table.slots[s].elem_bytes, bytes_));
 }
 
 void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights) const {

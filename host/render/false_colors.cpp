@@ -21,12 +21,14 @@ uint32_t hash(uint32_t x) {
 Rgb color_of_number(float number) {
     if (number < 0) return {0, 0, 0};
     const uint32_t h = hash(static_cast<uint32_t>(number) + 1);
-    return {0.25f + 0.75f * float(h & 255) / 255, 0.25f + 0.75f * float(h >> 8 & 255) / 255, 0.25f + 0.75f * float(h >> 16 & 255) / 255};
+    return {0.25f + 0.75f * float(h & 255) / 255, 0.25f + 0.75f * float(h >> 8 & 255) / 255,
+            0.25f + 0.75f * float(h >> 16 & 255) / 255};
 }
 
 // Dark blue, violet, orange, yellow: even steps of brightness, readable without colour vision.
 Rgb heat(float x) {
-    static constexpr Rgb stops[] = {{0.05f, 0.03f, 0.25f}, {0.45f, 0.05f, 0.55f}, {0.85f, 0.25f, 0.35f}, {0.98f, 0.6f, 0.15f}, {0.98f, 0.98f, 0.6f}};
+    static constexpr Rgb stops[] = {
+        {0.05f, 0.03f, 0.25f}, {0.45f, 0.05f, 0.55f}, {0.85f, 0.25f, 0.35f}, {0.98f, 0.6f, 0.15f}, {0.98f, 0.98f, 0.6f}};
     const float at = std::clamp(x, 0.0f, 1.0f) * 4;
     const int i = std::min(3, static_cast<int>(at));
     Rgb out;

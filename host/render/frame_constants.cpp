@@ -8,7 +8,9 @@ namespace {
 
 using Vec3 = std::array<double, 3>;
 
-Vec3 cross(const Vec3& a, const Vec3& b) { return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]}; }
+Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
 bool normalize(Vec3& v) {
     const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (!(length > 0)) return false;
@@ -18,10 +20,11 @@ bool normalize(Vec3& v) {
 
 }  // namespace
 
-rt_frame make_frame(const View& view, const Settings& settings, const AccelData& accel, unsigned sample) {
+rt_frame make_frame(const View& view, const Settings& settings, const Layout& layout, const AccelData& accel, unsigned sample) {
     rt_frame frame{};
     const Camera& camera = view.camera;
-    Vec3 w{double(camera.target[0]) - camera.eye[0], double(camera.target[1]) - camera.eye[1], double(camera.target[2]) - camera.eye[2]};
+    Vec3 w{double(camera.target[0]) - camera.eye[0], double(camera.target[1]) - camera.eye[1],
+           double(camera.target[2]) - camera.eye[2]};
     if (!normalize(w)) w = {0, 0, -1};
     Vec3 up{camera.up[0], camera.up[1], camera.up[2]};
     Vec3 u = cross(w, up);
@@ -43,6 +46,12 @@ rt_frame make_frame(const View& view, const Settings& settings, const AccelData&
     frame.height = static_cast<rt_u32>(settings.height);
     frame.pixel_x = 1.0f / settings.width;
     frame.pixel_y = 1.0f / settings.height;
+    frame.packet_w = layout.packet_w;
+    frame.packet_h = layout.packet_h;
+    frame.block_w = layout.block_w;
+    while ((1u << frame.block_w_log2) < layout.block_w) ++frame.block_w_log2;
+    frame.blocks_x = (layout.packet_w + layout.block_w - 1) / layout.block_w;
+    frame.blocks_y = (layout.packet_h + layout.block_h - 1) / layout.block_h;
     frame.depth = static_cast<rt_u32>(settings.depth);
     frame.light_count = static_cast<rt_u32>(view.lights.size());
     frame.plane_count = static_cast<rt_u32>(accel.scene.planes.size());

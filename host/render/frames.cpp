@@ -26,8 +26,9 @@ auto guarded(const Device& device, const char* doing, Work&& work) {
     try {
         return work();
     } catch (const cl::Error& e) {
-        throw Error(Exit::failed, std::string(doing) + " on " + device.info().name + ": " + e.what() + " failed with OpenCL error " +
-                                      std::to_string(e.err()) + (e.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ? " (out of memory)" : ""));
+        throw Error(Exit::failed, std::string(doing) + " on " + device.info().name + ": " + e.what() +
+                                      " failed with OpenCL error " + std::to_string(e.err()) +
+                                      (e.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ? " (out of memory)" : ""));
     }
 }
 
@@ -57,7 +58,9 @@ struct Frames::Impl {
     }
 
     // The mapped bytes of a buffer, copied out: no copy within a CPU device's memory, pinned on others.
-    void read(const cl::Buffer& buffer, void* out, size_t bytes) { device->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, out); }
+    void read(const cl::Buffer& buffer, void* out, size_t bytes) {
+        device->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, out);
+    }
 };
 
 Frames::Frames(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>()) {
@@ -82,7 +85,8 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         const bool color = program.kind == KernelKind::color;
         const unsigned width = static_cast<unsigned>(settings.width), height = static_cast<unsigned>(settings.height);
         cl::CommandQueue& queue = im.device->queue();
-        if (im.program != prepared.program || im.bound != prepared.on_device || width != im.width || height != im.height) im.launcher.forget();
+        if (im.program != prepared.program || im.bound != prepared.on_device || width != im.width || height != im.height)
+            im.launcher.forget();
         if (im.program != prepared.program) im.kernel = program.kernel();
         im.program = prepared.program;
         im.bound = prepared.on_device;
@@ -91,12 +95,13 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         im.height = height;
 
         const size_t pixels = size_t(width) * height;
-        const unsigned groups = program.layout.groups_x(width) * program.layout.groups_y(height);
-        const unsigned packets = groups * program.layout.group_size();
+        const Layout layout = make_layout(prepared.settings);
+        const unsigned groups = layout.groups_x(width) * layout.groups_y(height);
+        const unsigned packets = groups * layout.group_size();
         im.fit(im.film, im.film_bytes, pixels * channels_of(im.aov) * sizeof(float), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR);
         if (color) im.fit(im.counters, im.counters_bytes, size_t(packets) * 16, CL_MEM_READ_WRITE);
         im.fit(im.lights, im.lights_bytes, view.lights.size() * sizeof(rt_light), CL_MEM_READ_ONLY);
-        const rt_frame frame = make_frame(view, settings, *prepared.accel, sample);
+        const rt_frame frame = make_frame(view, settings, layout, *prepared.accel, sample);
         queue.enqueueWriteBuffer(im.frame, CL_TRUE, 0, sizeof frame, &frame);
         if (!view.lights.empty())
             queue.enqueueWriteBuffer(im.lights, CL_TRUE, 0, view.lights.size() * sizeof(rt_light), view.lights.data());
@@ -107,7 +112,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         im.kernel.setArg(at++, im.film);
         if (color) im.kernel.setArg(at++, im.counters);
         prepared.on_device->bind(im.kernel, at, im.lights);
-        const LaunchTimes times = im.launcher.run(queue, im.kernel, first_group, groups, program.layout.group_size(), [&] {
+        const LaunchTimes times = im.launcher.run(queue, im.kernel, first_group, groups, layout.group_size(), [&] {
             if (progress.cancelled()) throw Cancelled();
         });
 
@@ -176,28 +181,33 @@ ByteImage Frames::read_display(const Settings& settings) {
         im.map_tones.setArg(2, static_cast<cl_uint>(pixels));
         im.map_tones.setArg(3, static_cast<float>(settings.exposure));
         im.map_tones.setArg(4, static_cast<cl_uint>(settings.tone == "reinhard" ? 1 : settings.tone == "aces" ? 2 : 0));
-        im.device->queue().enqueueNDRangeKernel(im.map_tones, cl::NullRange, cl::NDRange((pixels + 63) / 64 * 64), cl::NDRange(64));
+        im.device->queue().enqueueNDRangeKernel(im.map_tones, cl::NullRange, cl::NDRange((pixels + 63) / 64 * 64),
+                                                cl::NDRange(64));
         im.read(im.display, image.pixels.data(), image.pixels.size());
         return image;
     });
 }
 
-std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, bool any_hit, double* device_ms) {
+std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, bool any_hit,
+                                       double* device_ms) {
     Impl& im = *impl_;
     return guarded(*im.device, "tracing rays", [&] {
         std::vector<rt_hit> hits(rays.size());
         if (rays.empty()) return hits;
         bool fresh = false;
-        const KernelSource source = assemble_kernel(prepared.settings, KernelKind::rays, features_of(*prepared.scene, prepared.accel->scene),
-                                                    *prepared.accel->plugin, prepared.accel->defines);
-        auto program = im.ray_programs->get(source, KernelKind::rays, make_layout(prepared.settings),
+        const KernelSource source =
+            assemble_kernel(prepared.settings, KernelKind::rays, features_of(*prepared.scene, prepared.accel->scene),
+                            *prepared.accel->plugin, prepared.accel->defines);
+        auto program = im.ray_programs->get(source, KernelKind::rays,
                                             std::string("ray queries with accel ") + prepared.accel->plugin->id, &fresh);
         cl::CommandQueue& queue = im.device->queue();
         cl::Context& context = im.device->context();
-        const rt_frame frame = make_frame(View(), prepared.settings, *prepared.accel, 0);
+        const Layout layout = make_layout(prepared.settings);
+        const rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
         queue.enqueueWriteBuffer(im.frame, CL_TRUE, 0, sizeof frame, &frame);
         im.fit(im.lights, im.lights_bytes, 1, CL_MEM_READ_ONLY);
-        cl::Buffer in(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, rays.size() * sizeof(rt_ray), const_cast<rt_ray*>(rays.data()));
+        cl::Buffer in(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, rays.size() * sizeof(rt_ray),
+                      const_cast<rt_ray*>(rays.data()));
         cl::Buffer out(context, CL_MEM_WRITE_ONLY, rays.size() * sizeof(rt_hit));
         cl::Kernel kernel = program->kernel();
         cl_uint at = 0;
@@ -208,10 +218,11 @@ std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vect
         kernel.setArg(at++, in);
         kernel.setArg(at++, out);
         prepared.on_device->bind(kernel, at, im.lights);
-        const size_t per_group = size_t(program->layout.group_size()) * program->layout.lanes;
+        const size_t per_group = size_t(layout.group_size()) * layout.lanes;
         Launcher launcher;
-        const LaunchTimes times = launcher.run(queue, kernel, first_group, static_cast<unsigned>((rays.size() + per_group - 1) / per_group),
-                                               program->layout.group_size(), [] {});
+        const LaunchTimes times =
+            launcher.run(queue, kernel, first_group, static_cast<unsigned>((rays.size() + per_group - 1) / per_group),
+                         layout.group_size(), [] {});
         if (device_ms) *device_ms = times.device_ms;
         im.read(out, hits.data(), hits.size() * sizeof(rt_hit));
         return hits;

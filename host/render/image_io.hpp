@@ -19,8 +19,9 @@ struct ByteImage {  // RGBA8, top row first
 // The PNG encoder counts bytes in an int.
 inline constexpr uint64_t kPngMaxPixels = 1u << 27;
 
-// By the ending of `path`: .png (written from `display`), .exr or .pfm (from `values`: 1 or 3 channels; +inf and -1 exact). Writes to a temporary
-// file in the same folder, then renames. Throws Error(failed) naming file and reason; Error(usage) for another ending.
+// By the ending of `path`: .png (written from `display`), .exr or .pfm (from `values`: 1 or 3 channels; +inf and -1 exact).
+// Writes to a temporary file in the same folder, then renames. Throws Error(failed) naming file and reason; Error(usage) for
+// another ending.
 void write_image(const std::string& path, const FloatImage& values, const ByteImage& display);
 // Whether write_image takes this path's picture from `display`; the other one may then be empty.
 bool writes_display(const std::string& path);

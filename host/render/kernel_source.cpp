@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include "base/error.hpp"
 #include "device/kernel_files.hpp"
 
 namespace clarity {
@@ -13,19 +14,28 @@ struct Member {
     const char *type, *name;
 };
 constexpr Member kMembers[] = {
-    {"rt_leaf", "leaves"},       {"rt_instance", "instances"}, {"rt_polygon", "polygons"}, {"float", "polygon_corners"},
-    {"rt_plane", "planes"},      {"rt_material", "materials"}, {"rt_triangle", "triangles"}, {"float", "normals"},
-    {"float", "uvs"},            {"rt_texture", "textures"},   {"uint", "texels"},          {"rt_light", "lights"},
+    {"rt_leaf", "leaves"},  {"rt_instance", "instances"}, {"rt_polygon", "polygons"},   {"float", "polygon_corners"},
+    {"rt_plane", "planes"}, {"rt_material", "materials"}, {"rt_triangle", "triangles"}, {"float", "normals"},
+    {"float", "uvs"},       {"rt_texture", "textures"},   {"uint", "texels"},           {"rt_light", "lights"},
 };
 
-void define(std::ostream& out, const std::string& name, unsigned value) { out << "#define " << name << ' ' << value << "u\n"; }
-void define_int(std::ostream& out, const std::string& name, unsigned value) { out << "#define " << name << ' ' << value << "\n"; }
+constexpr unsigned kMostRays = 32768;  // of one generation of a packet: 2.6 MB of private memory
+constexpr unsigned kUsualRays = 8192;
+
+void define(std::ostream& out, const std::string& name, unsigned value) {
+    out << "#define " << name << ' ' << value << "u\n";
+}
+void define_int(std::ostream& out, const std::string& name, unsigned value) {
+    out << "#define " << name << ' ' << value << "\n";
+}
 
 // #line keeps the compiler's messages at the author's file.
 void part(std::ostream& out, const std::string& name, const std::string& text) {
     out << "#line 1 \"" << name << "\"\n" << text << "\n";
 }
-void include(std::ostream& out, const std::string& name) { part(out, "cl/" + name, kernel_text(name)); }
+void include(std::ostream& out, const std::string& name) {
+    part(out, "cl/" + name, kernel_text(name));
+}
 
 void context(std::ostream& out, const rt_accel& accel) {
     out << "#line 1 \"generated context\"\ntypedef struct rt_ctx {\n";
@@ -40,18 +50,21 @@ void context(std::ostream& out, const rt_accel& accel) {
     out << "} rt_ctx;\n";
     // Layouts that differ between host and device stop the compiler with a name that says which.
     const auto check = [&](const std::string& type, const std::string& name, size_t bytes) {
-        out << "typedef char " << name << "_has_" << bytes << "_bytes_on_the_host[sizeof(" << type << ") == " << bytes << " ? 1 : -1];\n";
+        out << "typedef char " << name << "_has_" << bytes << "_bytes_on_the_host[sizeof(" << type << ") == " << bytes
+            << " ? 1 : -1];\n";
     };
     check("rt_leaf", "rt_leaf", sizeof(rt_leaf));
     check("rt_instance", "rt_instance", sizeof(rt_instance));
     check("rt_material", "rt_material", sizeof(rt_material));
     check("rt_frame", "rt_frame", sizeof(rt_frame));
-    for (rt_u32 s = 0; s < accel.slot_count; ++s) check(accel.slots[s].cl_type, std::string("slot_") + accel.slots[s].name, accel.slots[s].elem_bytes);
+    for (rt_u32 s = 0; s < accel.slot_count; ++s)
+        check(accel.slots[s].cl_type, std::string("slot_") + accel.slots[s].name, accel.slots[s].elem_bytes);
     out << "#define RT_CTX_PARAMS " << params << "\n#define RT_CTX_INIT(ctx) rt_ctx ctx;" << init << "\n";
 }
 
 // One inclusion of the plugin's template. The prototype makes it inline whatever the author wrote.
-void traversal(std::ostream& out, const std::string& name, const std::string& leaf, const std::string& file, const std::string& text) {
+void traversal(std::ostream& out, const std::string& name, const std::string& leaf, const std::string& file,
+               const std::string& text) {
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
         << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
     part(out, file, text);
@@ -59,7 +72,8 @@ void traversal(std::ostream& out, const std::string& name, const std::string& le
 }
 
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const std::string& file, const std::string& text) {
-    out << "#define RT_ANY_HIT " << any_hit << "\n#define RT_FN(name) RT_CAT(name, " << (any_hit ? "_any" : "_closest") << ")\n";
+    out << "#define RT_ANY_HIT " << any_hit << "\n#define RT_FN(name) RT_CAT(name, " << (any_hit ? "_any" : "_closest")
+        << ")\n";
     include(out, "primitives/triangle.h");
     if (features.spheres) include(out, "primitives/sphere.h");
     if (features.polygons) include(out, "primitives/polygon.h");
@@ -72,12 +86,6 @@ void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const
     traversal(out, "rt_scene", "rt_leaf_scene", file, text);
     include(out, "query.h");
     out << "#undef RT_ANY_HIT\n#undef RT_FN\n";
-}
-
-unsigned log2_of(unsigned x) {
-    unsigned n = 0;
-    while (x >>= 1) ++n;
-    return n;
 }
 
 }  // namespace
@@ -105,10 +113,19 @@ Layout make_layout(const Settings& settings) {
     layout.block_h = layout.lanes / layout.block_w;
     while (layout.block_w >= 2 * layout.packet_w && layout.block_h < layout.packet_h) layout.block_w /= 2, layout.block_h *= 2;
     while (layout.block_h >= 2 * layout.packet_h && layout.block_w < layout.packet_w) layout.block_h /= 2, layout.block_w *= 2;
-    // One lane: 64 neighbouring pixels, of which a warp has 8x4. Else about 16x16 pixels, so that a group is a few microseconds.
-    const unsigned side = layout.lanes == 1 ? 8 : 16;
-    layout.group_w = std::max(1u, side / layout.packet_w);
-    layout.group_h = std::max(1u, side / layout.packet_h);
+
+    const unsigned pixels = layout.packet_w * layout.packet_h, slots = static_cast<unsigned>(settings.ray_slots);
+    if (pixels * slots > kMostRays)
+        throw Error(Exit::usage, "packet " + std::to_string(layout.packet_w) + "x" + std::to_string(layout.packet_h) +
+                                     " with ray_slots " + std::to_string(slots) + " needs room for " +
+                                     std::to_string(pixels * slots) + " rays a work-item, of " + std::to_string(kMostRays) +
+                                     " at most: take a smaller packet or fewer ray slots");
+    layout.max_pixels = 1;
+    while (layout.max_pixels < pixels) layout.max_pixels *= 2;
+    if (layout.lanes == 1) return layout;  // a group is 64 neighbours, of which a warp has 8x4
+    // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
+    layout.group_w = layout.group_h = 4;
+    layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));
     return layout;
 }
 
@@ -117,11 +134,7 @@ KernelSource assemble_kernel(const Settings& settings, KernelKind kind, const Sc
     const Layout layout = make_layout(settings);
     std::ostringstream out;
     define_int(out, "RT_LANES", layout.lanes);
-    define_int(out, "RT_PACKET_W", layout.packet_w);
-    define_int(out, "RT_PACKET_H", layout.packet_h);
-    define_int(out, "RT_BLOCK_W", layout.block_w);
-    define_int(out, "RT_BLOCK_H", layout.block_h);
-    define_int(out, "RT_BLOCK_W_LOG2", log2_of(layout.block_w));
+    define_int(out, "RT_MAX_PIXELS", layout.max_pixels);
     define_int(out, "RT_GROUP_W", layout.group_w);
     define_int(out, "RT_GROUP_H", layout.group_h);
     define_int(out, "RT_HAS_INSTANCES", features.instances);
@@ -143,7 +156,8 @@ KernelSource assemble_kernel(const Settings& settings, KernelKind kind, const Sc
             source.entry = "trace_" + settings.tracer;
             break;
         case KernelKind::aov: {
-            static const std::map<std::string, unsigned> numbers = {{"t", 1}, {"prim", 2}, {"instance", 3}, {"normal", 4}, {"uv", 5}, {"steps", 6}};
+            static const std::map<std::string, unsigned> numbers = {{"t", 1},      {"prim", 2}, {"instance", 3},
+                                                                    {"normal", 4}, {"uv", 5},   {"steps", 6}};
             define_int(out, "RT_AOV", numbers.at(settings.aov));
             if (settings.aov == "steps") out << "#define RT_COUNT_STEPS\n";
             kernel_file = "tracers/aov.cl";

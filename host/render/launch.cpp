@@ -5,13 +5,13 @@
 
 namespace clarity {
 namespace {
-constexpr double kPieceMs = 200;        // drivers that also draw the desktop kill kernels after a second or two
-constexpr unsigned kFirstPiece = 64;    // groups, while nothing is known
+constexpr double kPieceMs = 200;      // drivers that also draw the desktop kill kernels after a second or two
+constexpr unsigned kFirstPiece = 64;  // groups, while nothing is known
 constexpr unsigned kGrowth = 8;
 }  // namespace
 
-LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count, unsigned group_size,
-                          const std::function<void()>& go_on) {
+LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
+                          unsigned group_size, const std::function<void()>& go_on) {
     LaunchTimes times;
     unsigned guess = kFirstPiece;
     for (unsigned first = 0; first < group_count;) {
@@ -22,12 +22,13 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint f
         kernel.setArg(first_argument, first);
         const auto start = std::chrono::steady_clock::now();
         cl::Event event;
-        queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size_t(count) * group_size), cl::NDRange(group_size), nullptr, &event);
+        queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size_t(count) * group_size), cl::NDRange(group_size),
+                                   nullptr, &event);
         queue.finish();
         const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         times.wall_ms += wall;
-        times.device_ms +=
-            1e-6 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() - event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+        times.device_ms += 1e-6 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                         event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
         first += count;
         // A slow first piece may hold a compilation, so a pace is believed once pieces take a while.
         if (wall > 5 || first == group_count) groups_per_ms_ = count / std::max(wall, 1e-3);

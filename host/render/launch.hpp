@@ -13,9 +13,10 @@ struct LaunchTimes {
 class Launcher {
  public:
     // Runs groups [0, group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of a piece's
-    // first group. Global offsets stay zero: PoCL compiles a kernel anew for others. go_on is asked between pieces and stops by throwing.
-    LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count, unsigned group_size,
-                    const std::function<void()>& go_on);
+    // first group. Global offsets stay zero: PoCL compiles a kernel anew for others. go_on is asked between pieces and stops by
+    // throwing.
+    LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
+                    unsigned group_size, const std::function<void()>& go_on);
     void forget() { groups_per_ms_ = 0; }
 
  private:

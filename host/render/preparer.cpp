@@ -29,10 +29,12 @@ void warm_up(Device& device, const TraceProgram& program, const Prepared& prepar
     tiny.depth = 1;
     View view;
     view.camera.eye = {0, 0, 1e6f};
-    const rt_frame frame = make_frame(view, tiny, *prepared.accel, 0);
+    const Layout layout = make_layout(tiny);
+    const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
     cl::CommandQueue queue(device.context(), device.info().cl_device);
-    cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame, const_cast<rt_frame*>(&frame));
-    const unsigned size = program.layout.group_size();
+    cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame,
+                            const_cast<rt_frame*>(&frame));
+    const unsigned size = layout.group_size();
     cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 4096), counters(device.context(), CL_MEM_READ_WRITE, size_t(size) * 16),
         lights(device.context(), CL_MEM_READ_ONLY, 256);
     cl::Kernel kernel = program.kernel();
@@ -52,7 +54,8 @@ Preparer::Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device
     : plugins_(plugins), device_(device), programs_(std::make_unique<ProgramCache>(device)) {}
 Preparer::~Preparer() = default;
 
-std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress) {
+std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
+                                                  Progress& progress) {
     const std::lock_guard<std::mutex> lock(mutex_);
     const rt_plugin* plugin = plugins_.accel(settings.accel);
     if (!plugin) {
@@ -66,7 +69,8 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
     next->settings = resolve(settings, *device_);
     ParameterValues params = settings.accel_params.empty() ? default_parameters(*plugin) : settings.accel_params;
     try {
-        const bool same_structure = last_ && last_->scene == scene && last_->accel->plugin == plugin && last_->accel->params == params;
+        const bool same_structure =
+            last_ && last_->scene == scene && last_->accel->plugin == plugin && last_->accel->params == params;
         if (same_structure) {
             next->accel = last_->accel;
             next->on_device = last_->on_device;
@@ -87,7 +91,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
             assemble_kernel(next->settings, kind, features_of(*scene, next->accel->scene), *plugin, next->accel->defines);
         bool fresh = false;
         const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
-        auto program = programs_->get(source, kind, make_layout(next->settings), what, &fresh);
+        auto program = programs_->get(source, kind, what, &fresh);
         if (fresh) warm_up(*device_, *program, *next);
         next->program = program;
         next->compile_ms = fresh ? since(start) : 0;

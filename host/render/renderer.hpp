@@ -30,7 +30,7 @@ struct Prepared {
     std::shared_ptr<const AccelData> accel;
     std::shared_ptr<const DeviceScene> on_device;
     std::shared_ptr<const TraceProgram> program;
-    Settings settings;  // as asked for, with 0 = automatic resolved
+    Settings settings;                     // as asked for, with 0 = automatic resolved
     double compile_ms = 0, upload_ms = 0;  // 0 if shared with an earlier one
     bool compile_cached = false;
 };
@@ -40,8 +40,8 @@ class Preparer {
  public:
     Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device);
     ~Preparer();
-    // Throws Error(failed) for a build, Error(kernel_build_failed) with the compiler's log in details(), Cancelled; then what was prepared before stays
-    // valid.
+    // Throws Error(failed) for a build, Error(kernel_build_failed) with the compiler's log in details(), Cancelled; then what
+    // was prepared before stays valid.
     std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress);
 
  private:
@@ -59,15 +59,16 @@ struct View {
     std::array<float, 3> background{}, ambient{};
 };
 // The scene's first camera (or the one of that name; or a framing one), its lights (or two that suit its size), background.
-// camera: "" or a name or "ex,ey,ez,tx,ty,tz[,fov_deg]". light: "" or "x,y,z", which moves the first light. Throws Error(usage).
+// camera: "" or a name or "ex,ey,ez,tx,ty,tz[,fov_deg]". light: "" or "x,y,z", which moves the first light. Throws
+// Error(usage).
 View make_view(const Scene& scene, float aspect, const std::string& camera = {}, const std::string& light = {});
 
 struct FrameStats {
-    double device_ms = 0;  // the kernels of the last sample, by the device's clock
-    double wall_ms = 0;    // the same by the host's, waiting included
+    double device_ms = 0;                                          // the kernels of the last sample, by the device's clock
+    double wall_ms = 0;                                            // the same by the host's, waiting included
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0;  // rays of the last sample; counted if asked for
-    uint64_t overflowed = 0;  // traversal stacks that were full (debug programs)
-    unsigned samples = 0;  // in the film now
+    uint64_t overflowed = 0;                                       // traversal stacks that were full (debug programs)
+    unsigned samples = 0;                                          // in the film now
 };
 
 // Owns the film of one device. Used from one thread.
@@ -76,9 +77,9 @@ class Frames {
     explicit Frames(std::shared_ptr<Device> device);
     ~Frames();
 
-    // One sample of the picture. sample 0 starts the film anew, n adds the n-th. settings: width, height, depth, shadows and the like
-    // are taken from here; what needs a rebuild or recompile from `prepared`. Cut into launches under half a second; between
-    // them `progress` is asked, and a cancel throws Cancelled.
+    // One sample of the picture. sample 0 starts the film anew, n adds the n-th. settings: width, height, depth, shadows and
+    // the like are taken from here; what needs a rebuild or recompile from `prepared`. Cut into launches under half a second;
+    // between them `progress` is asked, and a cancel throws Cancelled.
     FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
                      Progress& progress);
 
@@ -88,7 +89,8 @@ class Frames {
     ByteImage read_display(const Settings& settings);
 
     // Rays of the caller's own, for tests and benches; any_hit: only whether something lies between t_min and t_max.
-    std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, bool any_hit, double* device_ms = nullptr);
+    std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, bool any_hit,
+                                   double* device_ms = nullptr);
 
  private:
     struct Impl;

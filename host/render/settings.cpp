@@ -26,7 +26,8 @@ bool parse(const std::string& text, Number& value) {
     return error == std::errc() && end == text.data() + text.size();
 }
 
-Setting integer(std::string key, std::string label, std::string help, double min, double max, Effect effect, int Settings::*member) {
+Setting integer(std::string key, std::string label, std::string help, double min, double max, Effect effect,
+                int Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}};
     s.get = [member](const Settings& settings) { return std::to_string(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
@@ -38,7 +39,8 @@ Setting integer(std::string key, std::string label, std::string help, double min
     return s;
 }
 
-Setting real(std::string key, std::string label, std::string help, double min, double max, Effect effect, double Settings::*member) {
+Setting real(std::string key, std::string label, std::string help, double min, double max, Effect effect,
+             double Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}};
     s.get = [member](const Settings& settings) { return text_of(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
@@ -96,8 +98,8 @@ Setting size(std::string key, std::string label, std::string help, int min, int 
         }
         const size_t x = text.find('x');
         int w = 0, h = 0;
-        if (x == std::string::npos || !parse(text.substr(0, x), w) || !parse(text.substr(x + 1), h) || w < min || h < min || w > max ||
-            h > max)
+        if (x == std::string::npos || !parse(text.substr(0, x), w) || !parse(text.substr(x + 1), h) || w < min || h < min ||
+            w > max || h > max)
             refuse(key, text, "WIDTHxHEIGHT, each from " + std::to_string(min) + " to " + std::to_string(max));
         settings.*width = w;
         settings.*height = h;
@@ -106,8 +108,9 @@ Setting size(std::string key, std::string label, std::string help, int min, int 
 }
 
 Setting lanes_setting() {
-    Setting s = choice("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
-                       {"auto", "1", "4", "8", "16"}, Effect::recompile, &Settings::tracer);
+    Setting s =
+        choice("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
+               {"auto", "1", "4", "8", "16"}, Effect::recompile, &Settings::tracer);
     const auto choices = s.choices;
     s.get = [](const Settings& settings) { return settings.lanes == 0 ? std::string("auto") : std::to_string(settings.lanes); };
     s.set = [choices](Settings& settings, const std::string& text) {
@@ -125,10 +128,11 @@ Setting lanes_setting() {
 
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
-        choice("tracer", "Tracer", "how generations of rays are organised", {"iterative"}, Effect::recompile, &Settings::tracer),
+        choice("tracer", "Tracer", "how generations of rays are organised", {"iterative"}, Effect::recompile,
+               &Settings::tracer),
         integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
-        size("packet", "Packet", "pixels that one work-item computes; auto: 4x4 on a CPU, 1x1 on a GPU", 1, 32, true, Effect::recompile,
-             &Settings::packet_w, &Settings::packet_h),
+        size("packet", "Packet", "pixels that one work-item computes; auto: 4x4 on a CPU, 1x1 on a GPU", 1, 32, true,
+             Effect::recompile, &Settings::packet_w, &Settings::packet_h),
         lanes_setting(),
         integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
                 Effect::recompile, &Settings::ray_slots),
@@ -137,14 +141,16 @@ const std::vector<Setting>& settings_table() {
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
         real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
              &Settings::min_weight),
-        choice("aov", "Show", "colour, or a quantity of the first hit: distance, primitive, instance, normal, texture coordinates, steps",
+        choice("aov", "Show",
+               "colour, or a quantity of the first hit: distance, primitive, instance, normal, texture coordinates, steps",
                {"color", "t", "prim", "instance", "normal", "uv", "steps"}, Effect::recompile, &Settings::aov),
         real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::frame, &Settings::exposure),
-        choice("tone", "Tone mapping", "from linear light to the screen", {"linear", "reinhard", "aces"}, Effect::frame, &Settings::tone),
-        boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break", Effect::recompile,
-                &Settings::fast_math),
-        boolean("portable", "Portable code", "no CPU instructions beyond OpenCL C: for tests of the fallbacks", Effect::recompile,
-                &Settings::portable),
+        choice("tone", "Tone mapping", "from linear light to the screen", {"linear", "reinhard", "aces"}, Effect::frame,
+               &Settings::tone),
+        boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break",
+                Effect::recompile, &Settings::fast_math),
+        boolean("portable", "Portable code", "no CPU instructions beyond OpenCL C: for tests of the fallbacks",
+                Effect::recompile, &Settings::portable),
         boolean("debug", "Debug kernels", "bounds every traversal stack and counts what would overflow", Effect::recompile,
                 &Settings::debug),
     };

@@ -11,32 +11,32 @@ enum class Effect { frame, recompile, rebuild };
 
 struct Settings {
     // How the scene is held.
-    std::string accel = "bvh2";          // id of an accel plugin
-    std::vector<double> accel_params;    // in the order its plugin declares; empty: defaults
+    std::string accel = "bvh2";        // id of an accel plugin
+    std::vector<double> accel_params;  // in the order its plugin declares; empty: defaults
     // How it is traced.
     std::string tracer = "iterative";
-    int depth = 5;                       // generations of rays, 1 = camera rays only
-    int packet_w = 0, packet_h = 0;      // pixels of one work-item; 0: 4x4 on a CPU, 1x1 on a GPU
-    int lanes = 0;                       // 1, 4, 8, 16; 0: what suits the device
-    int ray_slots = 8;                   // rays a pixel may have in one generation
-    bool fast_math = false;              // -cl-fast-relaxed-math
-    bool portable = false;               // the kernels' fallbacks instead of CPU instructions, for tests
-    bool debug = false;                  // stack bounds checked in the kernels
+    int depth = 5;                   // generations of rays, 1 = camera rays only
+    int packet_w = 0, packet_h = 0;  // pixels of one work-item; 0: 4x4 on a CPU, 1x1 on a GPU
+    int lanes = 0;                   // 1, 4, 8, 16; 0: what suits the device
+    int ray_slots = 8;               // rays a pixel may have in one generation
+    bool fast_math = false;          // -cl-fast-relaxed-math
+    bool portable = false;           // the kernels' fallbacks instead of CPU instructions, for tests
+    bool debug = false;              // stack bounds checked in the kernels
     // What is traced.
     int width = 1024, height = 768;
-    int spp = 1;                         // samples a pixel
+    int spp = 1;  // samples a pixel
     bool shadows = true;
-    double min_weight = 1.0 / 512.0;     // rays that would add less are not followed
-    std::string aov = "color";           // color|t|prim|instance|normal|uv|steps
+    double min_weight = 1.0 / 512.0;  // rays that would add less are not followed
+    std::string aov = "color";        // color|t|prim|instance|normal|uv|steps
     // How it is shown.
     double exposure = 1.0;
-    std::string tone = "linear";         // linear|reinhard|aces
+    std::string tone = "linear";  // linear|reinhard|aces
 };
 
 // One row: how to show, read and write a setting.
 struct Setting {
     enum class Kind { integer, real, boolean, choice, size };  // size: "WxH"
-    std::string key, label, help;  // help states the unit
+    std::string key, label, help;                              // help states the unit
     Kind kind;
     double min = 0, max = 0;
     std::vector<std::string> choices;

@@ -4,7 +4,7 @@
 
 namespace clarity {
 
-std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, KernelKind kind, const Layout& layout, const std::string& what,
+std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, KernelKind kind, const std::string& what,
                                                 bool* fresh) {
     const std::string key = source.options + "\n" + source.text;
     for (auto it = entries_.begin(); it != entries_.end(); ++it)
@@ -18,7 +18,6 @@ std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, Kern
     program->program = built.program;
     program->entry = source.entry;
     program->kind = kind;
-    program->layout = layout;
     program->compile_ms = built.ms;
     entries_.push_front({key, program});
     if (entries_.size() > kKept) entries_.pop_back();

@@ -15,7 +15,6 @@ class TraceProgram {
     cl::Program program;
     std::string entry;
     KernelKind kind = KernelKind::color;
-    Layout layout;
     double compile_ms = 0;
     // Kernel objects hold arguments, so each user makes its own.
     cl::Kernel kernel() const { return cl::Kernel(program, entry.c_str()); }
@@ -26,8 +25,7 @@ class ProgramCache {
  public:
     explicit ProgramCache(std::shared_ptr<Device> device) : device_(std::move(device)) {}
     // fresh: whether it was compiled now.
-    std::shared_ptr<TraceProgram> get(const KernelSource& source, KernelKind kind, const Layout& layout, const std::string& what,
-                                      bool* fresh);
+    std::shared_ptr<TraceProgram> get(const KernelSource& source, KernelKind kind, const std::string& what, bool* fresh);
     std::shared_ptr<Device> device() const { return device_; }
 
  private:

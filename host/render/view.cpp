@@ -34,7 +34,9 @@ Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
         camera.eye = {n[0], n[1], n[2]};
         camera.target = {n[3], n[4], n[5]};
         const float fov = n.size() == 7 ? n[6] : 45.0f;
-        if (fov <= 0 || fov >= 180) throw Error(Exit::usage, "--camera: a field of view of " + text.substr(text.rfind(',') + 1) + " degrees is not between 0 and 180");
+        if (fov <= 0 || fov >= 180)
+            throw Error(Exit::usage, "--camera: a field of view of " + text.substr(text.rfind(',') + 1) +
+                                         " degrees is not between 0 and 180");
         if (camera.eye == camera.target) throw Error(Exit::usage, "--camera: eye and target are the same point");
         camera.fov_y_rad = fov * 3.14159265f / 180.0f;
         return camera;
@@ -51,7 +53,8 @@ std::vector<rt_light> default_lights(const Scene& scene, const Camera& camera) {
     const float size = std::max(bounds.empty ? 1.0f : bounds.diagonal(), 1e-6f);
     std::array<float, 3> forward, right, up = camera.up;
     for (int k = 0; k < 3; ++k) forward[k] = camera.target[k] - camera.eye[k];
-    right = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2], forward[0] * up[1] - forward[1] * up[0]};
+    right = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
+             forward[0] * up[1] - forward[1] * up[0]};
     const float length = std::sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
     std::vector<rt_light> lights(2);
     for (int k = 0; k < 3; ++k) {
