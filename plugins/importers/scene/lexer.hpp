@@ -48,8 +48,8 @@ struct Number {
     float value = 0;
     NumberError error = NumberError::none;
 };
-// Larger ones would overflow when squared.
-inline constexpr float kMaxNumber = 1e18f;
+// The host takes larger coordinates for not finite: sums of areas would overflow.
+inline constexpr float kMaxNumber = 1e15f;
 // Decimal, with an optional sign, fraction and exponent, whatever the locale. No infinity, no NaN, no hexadecimal.
 Number parse_number(std::string_view text);
 

@@ -45,7 +45,7 @@ void read_camera(Statement& s, Document& document, Diagnostics&) {
                 camera.up = s.direction("`up` (x y z)");
                 break;
             case kFov:
-                camera.fov_deg = s.number_between("`fov` (vertical, degrees)", 0.01f, 179.0f);
+                camera.fov_deg = s.number_between("`fov` (vertical, degrees)", 0.1f, 179.0f);
                 break;
         }
     }
