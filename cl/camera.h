@@ -1,8 +1,9 @@
 /* camera.h -- which pixels a work-item computes, and the camera rays through them.
  *
  * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels. A
- * work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture run close in time. The packet's size is no
- * define but a number of the frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
+ * work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture run close in time. On a CPU (RT_SERIAL_GROUP)
+ * it is one work-item that does these packets in turn: PoCL would keep the private arrays of all its work-items side by side,
+ * and they would fall out of the cache. The packet's size is no define but a number of the frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
 
@@ -16,14 +17,21 @@
 #define RT_BLOCKS(frame) ((frame)->blocks_x * (frame)->blocks_y)
 #endif
 
-/* First pixel of this work-item's packet. group: number of the work-group, row by row over the picture. */
-RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group)
+#if RT_SERIAL_GROUP
+#define RT_LOCAL_SIZE 1
+#define RT_FOR_PACKETS(packet) for (uint packet = 0; packet < RT_GROUP_W * RT_GROUP_H; ++packet)
+#else
+#define RT_LOCAL_SIZE (RT_GROUP_W * RT_GROUP_H)
+#define RT_FOR_PACKETS(packet) for (uint packet = (uint)get_local_id(0), once = 1; once; once = 0)
+#endif
+
+/* First pixel of a packet. group: number of the work-group, row by row over the picture; packet: within the group. */
+RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uint packet)
 {
     const uint w = RT_PACKET_W(frame), h = RT_PACKET_H(frame);
     const uint groups_x = (frame->width + w * RT_GROUP_W - 1) / (w * RT_GROUP_W);
-    const uint local_id = (uint)get_local_id(0);
-    const uint x = (group % groups_x) * RT_GROUP_W + local_id % RT_GROUP_W;
-    const uint y = (group / groups_x) * RT_GROUP_H + local_id / RT_GROUP_W;
+    const uint x = (group % groups_x) * RT_GROUP_W + packet % RT_GROUP_W;
+    const uint y = (group / groups_x) * RT_GROUP_H + packet / RT_GROUP_W;
     return (uint2)(x * w, y * h);
 }
 

@@ -7,12 +7,13 @@
 #define RT_AOV_UV 5
 #define RT_AOV_STEPS 6
 
-kernel __attribute__((reqd_work_group_size(RT_GROUP_W *RT_GROUP_H, 1, 1))) void
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_aov(const constant rt_frame *frame, const uint first_group, global float *out, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0));
+    RT_FOR_PACKETS(packet)
     for (uint block = 0; block < RT_BLOCKS(frame); ++block) {
+        const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0), packet);
         vint in_x, in_y;
         const vmask active = rt_block_pixels(frame, origin, block, &in_x, &in_y);
         const uint bits = rt_bits(active);

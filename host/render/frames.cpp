@@ -95,9 +95,9 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         im.height = height;
 
         const size_t pixels = size_t(width) * height;
-        const Layout layout = make_layout(prepared.settings);
+        const Layout layout = make_layout(prepared.settings, im.device->info().cpu);
         const unsigned groups = layout.groups_x(width) * layout.groups_y(height);
-        const unsigned packets = groups * layout.group_size();
+        const unsigned packets = groups * layout.group_packets();
         im.fit(im.film, im.film_bytes, pixels * channels_of(im.aov) * sizeof(float), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR);
         if (color) im.fit(im.counters, im.counters_bytes, size_t(packets) * 16, CL_MEM_READ_WRITE);
         im.fit(im.lights, im.lights_bytes, view.lights.size() * sizeof(rt_light), CL_MEM_READ_ONLY);
@@ -112,7 +112,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         im.kernel.setArg(at++, im.film);
         if (color) im.kernel.setArg(at++, im.counters);
         prepared.on_device->bind(im.kernel, at, im.lights);
-        const LaunchTimes times = im.launcher.run(queue, im.kernel, first_group, groups, layout.group_size(), [&] {
+        const LaunchTimes times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), [&] {
             if (progress.cancelled()) throw Cancelled();
         });
 
@@ -194,15 +194,15 @@ std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vect
     return guarded(*im.device, "tracing rays", [&] {
         std::vector<rt_hit> hits(rays.size());
         if (rays.empty()) return hits;
+        const Layout layout = make_layout(prepared.settings, im.device->info().cpu);
         bool fresh = false;
         const KernelSource source =
-            assemble_kernel(prepared.settings, KernelKind::rays, features_of(*prepared.scene, prepared.accel->scene),
+            assemble_kernel(prepared.settings, layout, KernelKind::rays, features_of(*prepared.scene, prepared.accel->scene),
                             *prepared.accel->plugin, prepared.accel->defines);
         auto program = im.ray_programs->get(source, KernelKind::rays,
                                             std::string("ray queries with accel ") + prepared.accel->plugin->id, &fresh);
         cl::CommandQueue& queue = im.device->queue();
         cl::Context& context = im.device->context();
-        const Layout layout = make_layout(prepared.settings);
         const rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
         queue.enqueueWriteBuffer(im.frame, CL_TRUE, 0, sizeof frame, &frame);
         im.fit(im.lights, im.lights_bytes, 1, CL_MEM_READ_ONLY);
@@ -218,11 +218,11 @@ std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vect
         kernel.setArg(at++, in);
         kernel.setArg(at++, out);
         prepared.on_device->bind(kernel, at, im.lights);
-        const size_t per_group = size_t(layout.group_size()) * layout.lanes;
+        const size_t per_group = size_t(layout.group_packets()) * layout.lanes;
         Launcher launcher;
         const LaunchTimes times =
             launcher.run(queue, kernel, first_group, static_cast<unsigned>((rays.size() + per_group - 1) / per_group),
-                         layout.group_size(), [] {});
+                         layout.local_size(), [] {});
         if (device_ms) *device_ms = times.device_ms;
         im.read(out, hits.data(), hits.size() * sizeof(rt_hit));
         return hits;

@@ -103,7 +103,7 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
     return f;
 }
 
-Layout make_layout(const Settings& settings) {
+Layout make_layout(const Settings& settings, bool cpu) {
     Layout layout;
     layout.lanes = static_cast<unsigned>(settings.lanes);
     layout.packet_w = static_cast<unsigned>(settings.packet_w);
@@ -122,19 +122,20 @@ Layout make_layout(const Settings& settings) {
                                      " at most: take a smaller packet or fewer ray slots");
     layout.max_pixels = 1;
     while (layout.max_pixels < pixels) layout.max_pixels *= 2;
-    if (layout.lanes == 1) return layout;  // a group is 64 neighbours, of which a warp has 8x4
+    layout.serial_group = cpu;
+    if (!cpu) return layout;  // a group is 64 neighbours, of which a warp has 8x4
     // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
     layout.group_w = layout.group_h = 4;
     layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));
     return layout;
 }
 
-KernelSource assemble_kernel(const Settings& settings, KernelKind kind, const SceneFeatures& features, const rt_plugin& accel,
-                             const std::map<std::string, rt_u32>& defines) {
-    const Layout layout = make_layout(settings);
+KernelSource assemble_kernel(const Settings& settings, const Layout& layout, KernelKind kind, const SceneFeatures& features,
+                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines) {
     std::ostringstream out;
     define_int(out, "RT_LANES", layout.lanes);
     define_int(out, "RT_MAX_PIXELS", layout.max_pixels);
+    define_int(out, "RT_SERIAL_GROUP", layout.serial_group);
     define_int(out, "RT_GROUP_W", layout.group_w);
     define_int(out, "RT_GROUP_H", layout.group_h);
     define_int(out, "RT_HAS_INSTANCES", features.instances);

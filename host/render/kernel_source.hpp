@@ -17,25 +17,27 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 
 enum class KernelKind { color, aov, rays };
 
-// How a picture is cut. The first three are compiled in, the rest are numbers of the frame.
+// How a picture is cut. The first four are compiled in, the rest are numbers of the frame.
 struct Layout {
     unsigned lanes = 1;
+    bool serial_group = false;            // a work-group is one work-item that does its packets in turn
     unsigned group_w = 8, group_h = 8;    // packets of a work-group
     unsigned max_pixels = 1;              // room for a packet's pixels
     unsigned packet_w = 1, packet_h = 1;  // pixels of a work-item
     unsigned block_w = 1, block_h = 1;    // pixels traced side by side, block_w * block_h = lanes
     unsigned groups_x(unsigned width) const { return (width + packet_w * group_w - 1) / (packet_w * group_w); }
     unsigned groups_y(unsigned height) const { return (height + packet_h * group_h - 1) / (packet_h * group_h); }
-    unsigned group_size() const { return group_w * group_h; }
+    unsigned group_packets() const { return group_w * group_h; }
+    unsigned local_size() const { return serial_group ? 1 : group_packets(); }
 };
 // settings: packet and lanes resolved. Throws Error(usage) if packet x ray_slots asks for more private memory than devices
 // have.
-Layout make_layout(const Settings& settings);
+Layout make_layout(const Settings& settings, bool cpu);
 
 struct KernelSource {
     std::string text, options, entry;  // entry: name of the kernel
 };
-KernelSource assemble_kernel(const Settings& settings, KernelKind kind, const SceneFeatures& features, const rt_plugin& accel,
-                             const std::map<std::string, rt_u32>& defines);
+KernelSource assemble_kernel(const Settings& settings, const Layout& layout, KernelKind kind, const SceneFeatures& features,
+                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines);
 
 }  // namespace clarity

@@ -29,13 +29,14 @@ void warm_up(Device& device, const TraceProgram& program, const Prepared& prepar
     tiny.depth = 1;
     View view;
     view.camera.eye = {0, 0, 1e6f};
-    const Layout layout = make_layout(tiny);
+    const Layout layout = make_layout(tiny, device.info().cpu);
     const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
     cl::CommandQueue queue(device.context(), device.info().cl_device);
     cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame,
                             const_cast<rt_frame*>(&frame));
-    const unsigned size = layout.group_size();
-    cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 4096), counters(device.context(), CL_MEM_READ_WRITE, size_t(size) * 16),
+    const unsigned size = layout.local_size();
+    cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 4096),
+        counters(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * 16),
         lights(device.context(), CL_MEM_READ_ONLY, 256);
     cl::Kernel kernel = program.kernel();
     cl_uint at = 0;
@@ -87,8 +88,8 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         progress.report(-1);
         const KernelKind kind = next->settings.aov == "color" ? KernelKind::color : KernelKind::aov;
         const auto start = std::chrono::steady_clock::now();
-        const KernelSource source =
-            assemble_kernel(next->settings, kind, features_of(*scene, next->accel->scene), *plugin, next->accel->defines);
+        const KernelSource source = assemble_kernel(next->settings, make_layout(next->settings, device_->info().cpu), kind,
+                                                    features_of(*scene, next->accel->scene), *plugin, next->accel->defines);
         bool fresh = false;
         const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
         auto program = programs_->get(source, kind, what, &fresh);
