@@ -1,7 +1,11 @@
 #include "fbx_mend.hpp"
 
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <string_view>
@@ -17,19 +21,46 @@ std::string_view name_of(const aiNode& node) {
 bool is_helper(const aiNode& node) {
     return name_of(node).find(kHelperTag) != std::string_view::npos;
 }
+// "PreRotation"; empty for a node of the file's own.
+std::string_view part_of(const aiNode& node) {
+    const size_t at = name_of(node).rfind(kHelperTag);
+    return at == std::string_view::npos ? std::string_view() : name_of(node).substr(at + kHelperTag.size());
+}
 bool is_inverse(const aiNode& node) {
-    const std::string_view name = name_of(node);
-    return is_helper(node) && name.size() > 7 && name.substr(name.size() - 7) == "Inverse" &&
-           name.find("_Geometric") != name.npos;
+    const std::string_view part = part_of(node);
+    return part.substr(0, 9) == "Geometric" && part.size() > 7 && part.substr(part.size() - 7) == "Inverse";
 }
 
-std::string read_all(const std::string& path) {
-    std::string bytes;
-    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
-    if (!file) return bytes;
-    char chunk[1 << 16];
-    while (const size_t n = std::fread(chunk, 1, sizeof chunk, file.get())) bytes.append(chunk, n);
-    return bytes;
+FbxOutline read_outline(const std::string& path) {
+    FbxOutline outline;
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    struct stat about {};
+    if (file < 0 || ::fstat(file, &about) != 0 || about.st_size <= 0) {
+        if (file >= 0) ::close(file);
+        return outline;
+    }
+    // Mapped, since arrays, which are most of the file, are passed over.
+    const size_t size = static_cast<size_t>(about.st_size);
+    void* bytes = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
+    ::close(file);
+    if (bytes == MAP_FAILED) return outline;
+    outline = read_fbx_outline({static_cast<const char*>(bytes), size});
+    ::munmap(bytes, size);
+    return outline;
+}
+
+aiVector3D vector(const std::array<double, 3>& v) {
+    return {static_cast<ai_real>(v[0]), static_cast<ai_real>(v[1]), static_cast<ai_real>(v[2])};
+}
+
+// About x, then y, then z; degrees.
+aiMatrix4x4 rotation_xyz(const std::array<double, 3>& degrees) {
+    const auto radians = [&](int k) { return static_cast<ai_real>(degrees[k] * 0.017453292519943295); };
+    aiMatrix4x4 x, y, z;
+    aiMatrix4x4::RotationX(radians(0), x);
+    aiMatrix4x4::RotationY(radians(1), y);
+    aiMatrix4x4::RotationZ(radians(2), z);
+    return z * y * x;
 }
 
 std::string material_name(const aiScene& scene, unsigned index) {
@@ -75,38 +106,14 @@ aiMaterial* make_material(const FbxOutline::Material& from) {
     return material.release();
 }
 
-// Every node of the tree, without recursion.
-template <class Visit>
-void for_each_node(aiNode* root, Visit visit) {
-    std::vector<aiNode*> stack = {root};
-    while (!stack.empty()) {
-        aiNode* node = stack.back();
-        stack.pop_back();
-        visit(*node);
-        for (unsigned i = 0; i < node->mNumChildren; ++i) stack.push_back(node->mChildren[i]);
-    }
-}
-
 }  // namespace
 
 FbxMend::FbxMend(aiScene& scene, const std::string& path) {
-    if (!scene.mRootNode || !is_needed(scene)) return;
-    outline_ = read_fbx_outline(read_all(path));
+    if (!scene.mRootNode) return;
+    outline_ = read_outline(path);
     if (!match(scene)) return;
     mend_rotations();
     mend_materials(scene);
-}
-
-bool FbxMend::is_needed(const aiScene& scene) const {
-    std::vector<unsigned> users(scene.mNumMeshes, 0);
-    bool needed = false;
-    for_each_node(scene.mRootNode, [&](const aiNode& node) {
-        needed = needed || (is_helper(node) && name_of(node).find("_GeometricRotation") != std::string_view::npos);
-        for (unsigned i = 0; i < node.mNumMeshes; ++i) {
-            if (node.mMeshes[i] < users.size()) needed = ++users[node.mMeshes[i]] > 1 || needed;
-        }
-    });
-    return needed;
 }
 
 // The file's models beside the nodes that assimp made of them, in step; gives up at the first difference.
@@ -126,15 +133,11 @@ bool FbxMend::match(const aiScene& scene) {
             const auto model = outline_.models.find((*step.models)[i - 1]);
             if (model == outline_.models.end()) return false;
             aiNode* node = step.node->mChildren[i - 1];
-            aiNode* rotation = nullptr;
-            while (is_helper(*node) && node->mNumChildren == 1) {
-                const std::string_view name = name_of(*node);
-                if (name.size() > 18 && name.substr(name.size() - 18) == "_GeometricRotation") rotation = node;
-                node = node->mChildren[0];
-            }
+            std::vector<aiNode*> helpers;
+            for (; is_helper(*node) && node->mNumChildren == 1; node = node->mChildren[0]) helpers.push_back(node);
             if (name_of(*node) != model->second.name || models_.size() > outline_.models.size()) return false;
             models_[node] = &model->second;
-            if (rotation) geometric_rotations_[node] = rotation;
+            if (!helpers.empty()) helpers_[node] = std::move(helpers);
             stack.push_back({node, &model->second.children});
         }
     }
@@ -150,15 +153,24 @@ bool FbxMend::match(const aiScene& scene) {
 }
 
 void FbxMend::mend_rotations() {
-    for (const auto& [node, helper] : geometric_rotations_) {
+    for (aiNode* node : order_) {
         const FbxOutline::Model& model = *models_.at(node);
-        if (model.rotation_order == 0) continue;
-        aiMatrix4x4 x, y, z;
-        const auto radians = [&](int k) { return static_cast<ai_real>(model.geometric_rotation[k] * 0.017453292519943295); };
-        aiMatrix4x4::RotationX(radians(0), x);
-        aiMatrix4x4::RotationY(radians(1), y);
-        aiMatrix4x4::RotationZ(radians(2), z);
-        helper->mTransformation = z * y * x;
+        const auto helpers = helpers_.find(node);
+        if (helpers == helpers_.end()) {  // translation, rotation and scaling in one
+            if (model.rotation_active || model.rotation_order == 0) continue;
+            aiMatrix4x4 translation, scaling;
+            aiMatrix4x4::Translation(vector(model.translation), translation);
+            aiMatrix4x4::Scaling(vector(model.scaling), scaling);
+            node->mTransformation = translation * rotation_xyz(model.rotation) * scaling;
+            continue;
+        }
+        for (aiNode* helper : helpers->second) {
+            const std::string_view part = part_of(*helper);
+            if (part == "GeometricRotation") helper->mTransformation = rotation_xyz(model.geometric_rotation);
+            if (model.rotation_active) continue;
+            if (part == "PreRotation" || part == "PostRotation") helper->mTransformation = aiMatrix4x4();
+            if (part == "Rotation") helper->mTransformation = rotation_xyz(model.rotation);
+        }
     }
 }
 

@@ -10,19 +10,18 @@
 
 namespace assimp_import {
 
+// - Pre- and post-rotation and the rotation order count only where RotationActive is set; else the order is XYZ.
 // - GeometricRotation is turned in the node's rotation order; it is always XYZ.
 // - Nodes that share a mesh all get the materials of the first.
 class FbxMend {
  public:
-    // Reads `path` again only if the scene has such nodes. Corrects the scene's geometric rotations, and adds materials to it
-    // that assimp left out.
+    // Looks into `path` again. Corrects rotations in the scene, and adds materials to it that assimp left out.
     FbxMend(aiScene& scene, const std::string& path);
 
     // For each of the node's meshes the material that this node gives it (an index into the scene's); empty: as assimp says.
     std::vector<unsigned> materials(const aiNode& node) const;
 
  private:
-    bool is_needed(const aiScene& scene) const;
     bool match(const aiScene& scene);
     void mend_rotations();
     void mend_materials(aiScene& scene);
@@ -30,8 +29,8 @@ class FbxMend {
 
     FbxOutline outline_;
     std::unordered_map<const aiNode*, const FbxOutline::Model*> models_;
-    std::vector<aiNode*> order_;  // nodes with a model, parents first
-    std::unordered_map<const aiNode*, aiNode*> geometric_rotations_;
+    std::vector<aiNode*> order_;                                       // nodes with a model, parents first
+    std::unordered_map<const aiNode*, std::vector<aiNode*>> helpers_;  // of a node's transform, outermost first
     std::unordered_map<const aiNode*, std::vector<unsigned>> materials_;
     std::unordered_map<int64_t, unsigned> material_indices_;
 };

@@ -19,9 +19,13 @@ class Collector {
     // depth 0: top level. Returns whether the record's children are of interest.
     bool record(int depth, std::string_view name, const std::vector<Value>& values) {
         if (depth == 0) {
-            section_ = name == "Objects" ? Section::objects : name == "Connections" ? Section::connections : Section::other;
+            section_ = name == "Objects"       ? Section::objects
+                       : name == "Connections" ? Section::connections
+                       : name == "Definitions" ? Section::definitions
+                                               : Section::other;
             return section_ != Section::other;
         }
+        if (section_ == Section::definitions) return definition(depth, name, values);
         if (section_ == Section::connections) {
             if (name != "C" || values.size() < 3) return false;
             const bool is_property = values[0].text == "OP";
@@ -59,7 +63,7 @@ class Collector {
     }
 
  private:
-    enum class Section { other, objects, connections };
+    enum class Section { other, definitions, objects, connections };
     struct Connection {
         int64_t from, to;
         bool is_property;  // "DiffuseColor"
@@ -70,13 +74,22 @@ class Collector {
         if (const size_t colons = text.find("::"); colons != text.npos) return std::string(text.substr(colons + 2));
         return std::string(text);
     }
+    // The properties of a Model that does not say otherwise: ObjectType "Model" > PropertyTemplate > Properties70.
+    bool definition(int depth, std::string_view name, const std::vector<Value>& values) {
+        if (depth == 1) return name == "ObjectType" && !values.empty() && values[0].text == "Model";
+        if (depth < 4) return name == "PropertyTemplate" || name == "Properties70";
+        if (name != "P" || values.size() < 5) return false;
+        if (values[0].text == "RotationActive") template_.rotation_active = values[4].number != 0;
+        if (values[0].text == "RotationOrder") template_.rotation_order = static_cast<int>(values[4].number);
+        return false;
+    }
     bool object(std::string_view kind, const std::vector<Value>& values) {
         model_ = nullptr;
         material_ = nullptr;
         texture_ = nullptr;
         if (values.size() < 2) return false;
         if (kind == "Model") {
-            model_ = &outline_.models[values[0].integer];
+            model_ = &(outline_.models[values[0].integer] = template_);
             model_->name = object_name(values[1].text);
         } else if (kind == "Material") {
             material_ = &outline_.materials[values[0].integer];
@@ -92,11 +105,17 @@ class Collector {
         for (size_t k = 0; k < 3 && 4 + k < values.size(); ++k) numbers[k] = values[4 + k].number;
         const std::string_view name = values[0].text;
         if (material_) material_->properties[std::string(name)] = numbers;
-        if (model_ && name == "RotationOrder") model_->rotation_order = static_cast<int>(numbers[0]);
-        if (model_ && name == "GeometricRotation") model_->geometric_rotation = numbers;
+        if (!model_) return;
+        if (name == "RotationOrder") model_->rotation_order = static_cast<int>(numbers[0]);
+        if (name == "RotationActive") model_->rotation_active = numbers[0] != 0;
+        if (name == "GeometricRotation") model_->geometric_rotation = numbers;
+        if (name == "Lcl Translation") model_->translation = numbers;
+        if (name == "Lcl Rotation") model_->rotation = numbers;
+        if (name == "Lcl Scaling") model_->scaling = numbers;
     }
 
     FbxOutline outline_;
+    FbxOutline::Model template_;
     FbxOutline::Model* model_ = nullptr;
     Section section_ = Section::other;
     FbxOutline::Material* material_ = nullptr;

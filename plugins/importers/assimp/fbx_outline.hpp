@@ -13,9 +13,12 @@ namespace assimp_import {
 struct FbxOutline {
     struct Model {
         std::string name;
-        int rotation_order = 0;                      // 0: XYZ
-        std::array<double, 3> geometric_rotation{};  // degrees
-        std::vector<int64_t> children, materials;    // object ids, in the order of their connections
+        int rotation_order = 0;  // 0: XYZ
+        // Without it, pre- and post-rotation and the rotation order do not count.
+        bool rotation_active = false;
+        std::array<double, 3> translation{}, rotation{}, scaling = {1, 1, 1};  // degrees
+        std::array<double, 3> geometric_rotation{};                            // degrees
+        std::vector<int64_t> children, materials;                              // object ids, in the order of their connections
     };
     struct Material {
         std::string name;
