@@ -44,7 +44,7 @@ CLI::Option* add_scene(CLI::App& app, SceneOptions& scene) {
         ->allow_extra_args(false);
     app.add_flag("--import-in-process", scene.import.in_process,
                  "Run importers in this process, to debug them; a crash is then the program's");
-    return app.add_option("scene", scene.files, "Scene or model files; several become one scene")->type_name("SCENE...");
+    return app.add_option("scene", scene.files, "Scene or model files; several become one scene")->type_name("FILE");
 }
 
 std::string setting_help(const Setting& setting) {
@@ -208,8 +208,7 @@ CommandLine parse_command_line(int argc, char** argv) {
         const std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 wants them
         app.parse(std::vector<std::string>(reversed));
     } catch (const CLI::CallForHelp&) {
-        const auto chosen = app.get_subcommands();
-        std::printf("%s", (chosen.empty() ? app : *chosen.front()).help().c_str());
+        std::printf("%s", app.help().c_str());  // of the command, where one was named
         return {};
     } catch (const CLI::CallForVersion& e) {
         std::printf("%s\n", e.what());

@@ -92,7 +92,8 @@ int run_devices(bool json) {
         std::printf("%s\n", list.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     } else {
         for (const DeviceInfo& device : devices) print_device(device, chosen);
-        for (const std::string& warning : warnings) std::printf("      %s\n", warning.c_str());
+        for (const std::string& warning : warnings)
+            if (!devices.empty()) std::printf("      %s\n", warning.c_str());  // else they are part of the error
         if (chosen.id.empty() && !devices.empty()) std::printf("      no default: %s\n", chosen.why.c_str());
     }
     if (devices.empty()) choose_device({});  // throws, with what to install

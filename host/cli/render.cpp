@@ -51,7 +51,8 @@ void check_options(const RenderOptions& options, const Settings& settings, const
     if (!std::isfinite(options.time_s) || options.time_s < 0)
         throw Error(Exit::usage, "--time: expected seconds from the scene's start, 0 or more");
     // A camera's numbers can be read without a scene; its name cannot.
-    const bool named = !options.trace.camera.empty() && options.trace.camera.find(',') == std::string::npos;
+    const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
+                                                         options.trace.camera.find_first_of("0123456789+-.") != 0);
     make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
 }
 
@@ -137,6 +138,8 @@ class RenderJob {
         if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
         double device_ms = 0, wall_ms = 0;
         for (int sample = 0; sample < settings_.spp; ++sample) {
+            // A short sample is one launch and asks nobody.
+            if (!bar_.report(float(from + share * sample / settings_.spp))) return unsigned(sample);
             PartOf part(bar_, from + share * sample / settings_.spp, share / settings_.spp);
             FrameStats frame;
             try {

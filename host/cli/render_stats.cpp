@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "plugin/parameters.hpp"
-
 namespace clarity {
 namespace {
 
@@ -28,10 +26,24 @@ Json times_json(const std::vector<double>& values) {
     return {{"median", rounded(median(values))}, {"min", rounded(*least)}, {"max", rounded(*most)}};
 }
 
+// A whole number as one: 4, not 4.0.
+Json number_json(double value) {
+    const auto whole = static_cast<int64_t>(std::clamp(value, -1e15, 1e15));
+    return double(whole) == value ? Json(whole) : Json(value);
+}
+
 Json accel_parameters(const AccelData& accel) {
     Json json = Json::object();
-    for (rt_u32 i = 0; i < accel.plugin->param_count && i < accel.params.size(); ++i)
-        json[accel.plugin->params[i].key] = accel.params[i];
+    for (rt_u32 i = 0; i < accel.plugin->param_count && i < accel.params.size(); ++i) {
+        const rt_param& param = accel.plugin->params[i];
+        const double value = accel.params[i];
+        if (param.kind == RT_PARAM_BOOL)
+            json[param.key] = value != 0;
+        else if (param.kind == RT_PARAM_ENUM)
+            json[param.key] = param.choices[static_cast<size_t>(value)];
+        else
+            json[param.key] = number_json(value);
+    }
     return json;
 }
 
@@ -78,7 +90,7 @@ std::string stats_json(const RenderStats& stats) {
     json["nodes"] = uint64_t(accel.stat("nodes"));
     json["accel_bytes"] = accel.bytes;
     json["accel_stats"] = Json::object();
-    for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = value;
+    for (const auto& [label, value] : accel.stats) json["accel_stats"][label] = number_json(value);
     json["triangles"] = prepared.scene->placed_triangle_count();
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
