@@ -1,5 +1,6 @@
 // worker_spawn.hpp -- a worker process and its descriptors.
 #pragma once
+#include <cstdint>
 #include <sys/types.h>
 
 #include <string>
