@@ -42,7 +42,7 @@ inline bool may_use_heuristic(const Range& range) {
 
 // Few primitives need few bins: the sweeps over empty ones would cost more than they find.
 inline uint32_t bins_for(const Rules& rules, uint32_t primitive_count) {
-    return std::min(rules.bins, 4 + primitive_count / 16);
+    return std::min(rules.bins, 4 + primitive_count / 4);
 }
 
 // The two ranges of a split, but for the bounds of their centroids.
