@@ -92,8 +92,11 @@ void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
     const float scale = ui_scale(), width = std::min(620 * scale, viewport.width - 32 * scale);
     begin_card("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
-    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + 5 * scale, corner.y + size.y},
-                                              ImGui::GetColorU32(colors::kRed), 8 * scale, ImDrawFlags_RoundCornersLeft);
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.PushClipRectFullScreen();  // the padding is clipped else
+    list.AddRectFilled(corner, {corner.x + 5 * scale, corner.y + size.y}, ImGui::GetColorU32(colors::kRed), 5 * scale,
+                       ImDrawFlags_RoundCornersLeft);
+    list.PopClipRect();
     ImGui::Indent(6 * scale);
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(session.message().text.c_str());

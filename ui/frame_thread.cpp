@@ -146,6 +146,15 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     if (!retrace) return;
     samples_ = sample + 1;
     constexpr size_t kTimes = 120;
+    // Times of another program say nothing of this one, nor does its first frame: drivers compile the last bit then.
+    if (timed_ != job.ready) {
+        times_.clear();
+        timed_ = job.ready;
+        cold_ = true;
+    } else if (cold_) {
+        times_.clear();
+        cold_ = false;
+    }
     times_.push_back(static_cast<float>(latest_->frame_ms));
     if (times_.size() > kTimes) times_.erase(times_.begin());
 }

@@ -65,7 +65,9 @@ class FrameThread {
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
     std::vector<float> times_;
-    std::thread thread_;  // last: it sees the rest complete
+    std::shared_ptr<const Ready> timed_;  // what times_ are of
+    bool cold_ = false;                   // times_ holds only its first frame
+    std::thread thread_;                  // last: it sees the rest complete
 };
 
 // The settings to trace with: those of `wished` that apply at once, the others as prepared.

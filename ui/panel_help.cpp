@@ -62,7 +62,7 @@ void draw_help_tab(UiState& state, const std::string& gl_text) {
     // In force once let go: the slider would grow under the mouse.
     static float shown = 0;
     if (shown == 0) shown = state.text_scale;
-    ImGui::SliderFloat("##scale", &shown, 0.8f, 2.0f, "%.2f", ImGuiSliderFlags_AlwaysClamp);
+    slider("##scale", shown, 0.8f, 2.0f, "%.2f");
     if (ImGui::IsItemDeactivatedAfterEdit()) state.text_scale = shown;
     if (!ImGui::IsItemActive()) shown = state.text_scale;
     dim_text(gl_text);

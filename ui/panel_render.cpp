@@ -33,8 +33,7 @@ void device_row(Session& session) {
     if (ImGui::BeginCombo("##device", name.c_str())) {
         for (const DeviceInfo& device : devices ? *devices : std::vector<DeviceInfo>()) {
             const bool chosen = ready && ready->device->info().id() == device.id();
-            if (ImGui::Selectable((device.id() + "  " + device.name).c_str(), chosen) && !chosen)
-                session.wish.device = device.id();
+            if (option(device.id() + "  " + device.name, chosen)) session.wish.device = device.id();
             tooltip(device.platform + "\n" + device.version + "\ndriver " + device.driver);
         }
         ImGui::EndCombo();
@@ -49,7 +48,7 @@ void accel_rows(Session& session) {
     if (ImGui::BeginCombo("##accel", current ? current->name : settings.accel.c_str())) {
         for (const rt_plugin* plugin : session.plugins().accels()) {
             const bool chosen = plugin == current;
-            if (ImGui::Selectable(plugin->name, chosen) && !chosen) session.set_accel(plugin->id);
+            if (option(plugin->name, chosen)) session.set_accel(plugin->id);
             tooltip(std::string(plugin->id) + (plugin->reference ? std::string("\n") + plugin->reference : ""));
         }
         ImGui::EndCombo();
@@ -74,7 +73,7 @@ void level_row(VolumeOverlay& overlay) {
     for (rt_u32 level = 0; level < 24; ++level) levels.emplace_back(level);
     levels.emplace_back(RT_LEVEL_BOTTOM);
     for (const auto& level : levels)
-        if (ImGui::Selectable(name(level).c_str(), level == overlay.level())) overlay.show(level);
+        if (option(name(level), level == overlay.level())) overlay.show(level);
     ImGui::EndCombo();
 }
 

@@ -79,11 +79,9 @@ void camera_rows(Session& session, UiState& state) {
     drag3("Target", "the point it looks at", camera.target.data(), speed);
     float degrees = camera.fov_y_rad * 57.29578f;
     row_label("Field of view", "vertical, in degrees");
-    if (ImGui::SliderFloat("##fov", &degrees, 5, 120, "%.1f\u00b0", ImGuiSliderFlags_AlwaysClamp))
-        camera.fov_y_rad = degrees / 57.29578f;
+    if (slider("##fov", degrees, 5, 120, "%.1f\u00b0")) camera.fov_y_rad = degrees / 57.29578f;
     row_label("Key speed", "how fast the keys move the camera; 1: a third of the scene a second");
-    ImGui::SliderFloat("##speed", &state.camera_speed, 0.05f, 10, "%.2f",
-                       ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    slider("##speed", state.camera_speed, 0.05f, 10, "%.2f", true);
     row_label("");
     if (ImGui::Button("Reset view", {-FLT_MIN, 0})) session.reset_view();
     tooltip("the scene's own camera and lights again");

@@ -28,7 +28,7 @@ void frame_rows(Session& session) {
     const std::vector<float> times = session.frame_times();
     const float longest = times.empty() ? 1.0f : *std::max_element(times.begin(), times.end());
     ImGui::PlotLines("##times", times.data(), static_cast<int>(times.size()), 0, nullptr, 0, longest * 1.1f,
-                     {-FLT_MIN, 64 * ui_scale()});
+                     {ImGui::GetContentRegionAvail().x, 64 * ui_scale()});
     tooltip("milliseconds of the last frames, tracing and reading back");
     char fps[32];
     std::snprintf(fps, sizeof fps, "%.1f", session.frames_per_second());

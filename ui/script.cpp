@@ -15,6 +15,7 @@
 #include "plugin/parameters.hpp"
 #include "render/image_io.hpp"
 #include "ui/app.hpp"
+#include "ui/widgets.hpp"
 
 namespace clarity {
 namespace {
@@ -155,6 +156,11 @@ bool Script::run(App& app, const std::string& line) {
     } else if (command == "state") {
         if (text == "reset") app.times() = {};
         std::printf("%s\n", state_text(app).c_str());
+    } else if (command == "find") {
+        const Rect* place = drawn_place(text);
+        if (!place) throw Error(Exit::failed, "not drawn");
+        std::printf("%s\n",
+                    nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());
     } else if (command == "quit") {
         app.close();
     } else {

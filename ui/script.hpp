@@ -9,6 +9,7 @@
 //   focus path         the keyboard into the path field        continuous 0|1             cancel
 //   screenshot FILE    the window as PNG                       picture FILE               the traced picture as PNG
 //   state              one line of JSON: what is shown, and how the window fares; `state reset` starts its maxima anew
+//   find LABEL         where that row's widget, or that entry of a list, was drawn last: JSON x, y, w, h
 //   scale FACTOR       of the text                             quit
 #pragma once
 #include <deque>

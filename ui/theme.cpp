@@ -57,8 +57,8 @@ void set_colors(ImGuiStyle& style) {
     c[ImGuiCol_FrameBgHovered] = lighter(frame, 0.035f);
     c[ImGuiCol_FrameBgActive] = lighter(frame, 0.06f);
     c[ImGuiCol_CheckMark] = kAccent;
-    c[ImGuiCol_SliderGrab] = with_alpha(kAccent, 0.85f);
-    c[ImGuiCol_SliderGrabActive] = lighter(kAccent, 0.08f);
+    c[ImGuiCol_SliderGrab] = clear;  // widgets.cpp fills sliders from the left
+    c[ImGuiCol_SliderGrabActive] = clear;
     c[ImGuiCol_Button] = lighter(frame, 0.03f);
     c[ImGuiCol_ButtonHovered] = with_alpha(kAccent, 0.45f);
     c[ImGuiCol_ButtonActive] = with_alpha(kAccent, 0.75f);

@@ -3,6 +3,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -35,12 +36,30 @@ bool settled(ImGuiID id, bool edited, bool at_once, Value shown, Value& value, V
     return true;
 }
 
+// A slider's value as a bar from its left edge: easier to read than ImGui's grab, which covers the number.
+void fill_slider(double value, double min, double max, bool logarithmic) {
+    double share = max > min ? (value - min) / (max - min) : 0;
+    if (logarithmic) {  // as ImGui maps it: zero is taken as the smallest number shown
+        const double least = min > 0 ? min : 1e-3;
+        share = std::log(std::max(value, least) / least) / std::log(max / least);
+    }
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    const auto end = from.x + (to.x - from.x) * static_cast<float>(std::clamp(share, 0.0, 1.0));
+    const ImVec4& accent = colors::kAccent;
+    const float strength = ImGui::IsItemActive() ? 0.55f : ImGui::IsItemHovered() ? 0.45f : 0.34f;
+    if (end > from.x + 1)
+        ImGui::GetWindowDrawList()->AddRectFilled(
+            from, {end, to.y}, ImGui::GetColorU32(ImVec4(accent.x, accent.y, accent.z, strength)),
+            ImGui::GetStyle().FrameRounding, end < to.x - 1 ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersAll);
+}
+
 bool whole_slider(const char* id_text, int& value, int min, int max, bool at_once) {
     const ImGuiID id = ImGui::GetID(id_text);
     int shown = pending.id == id ? pending.whole : value;
     const bool wide = max - min > 100;
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
     const bool edited = ImGui::SliderInt(id_text, &shown, min, max, "%d", flags);
+    fill_slider(shown, min, max, wide);
     return settled(id, edited, at_once, shown, value, &PendingEdit::whole);
 }
 
@@ -52,9 +71,15 @@ bool real_slider(const char* id_text, double& value, double min, double max, boo
     const char* format = max - min <= 0.1 ? "%.4f" : "%.3f";
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
     const bool edited = ImGui::SliderFloat(id_text, &shown, static_cast<float>(min), static_cast<float>(max), format, flags);
+    fill_slider(shown, min, max, wide);
     if (!settled(id, edited, at_once, shown, held, &PendingEdit::real)) return false;
     value = held;
     return true;
+}
+
+std::map<std::string, Rect>& places() {
+    static std::map<std::string, Rect> rects;
+    return rects;
 }
 
 bool choice_combo(const char* id_text, int& index, const std::vector<std::string>& names) {
@@ -63,7 +88,7 @@ bool choice_combo(const char* id_text, int& index, const std::vector<std::string
     bool changed = false;
     for (int i = 0; i < static_cast<int>(names.size()); ++i) {
         const bool chosen = i == index;
-        if (ImGui::Selectable(names[static_cast<size_t>(i)].c_str(), chosen) && !chosen) {
+        if (option(names[static_cast<size_t>(i)], chosen)) {
             index = i;
             changed = true;
         }
@@ -106,7 +131,7 @@ bool size_field(const Setting& row, const Settings& settings, std::string& chose
     if (ImGui::BeginCombo("##common", "", ImGuiComboFlags_NoPreview | ImGuiComboFlags_PopupAlignLeft)) {
         for (const std::string& size : common_sizes(row.max)) {
             if (!accepts(row, settings, size)) continue;
-            if (ImGui::Selectable(size.c_str(), size == now)) {
+            if (option(size, size == now)) {
                 chosen = size;
                 picked = true;
             }
@@ -183,12 +208,33 @@ void tooltip(const std::string& text) {
     ImGui::PopStyleVar();
 }
 
+bool option(const std::string& label, bool chosen) {
+    const bool clicked = ImGui::Selectable(label.c_str(), chosen);
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    places()[label] = {from.x, from.y, to.x - from.x, to.y - from.y};
+    return clicked && !chosen;
+}
+
+bool slider(const char* id, float& value, float min, float max, const char* format, bool logarithmic) {
+    const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+    const bool edited = ImGui::SliderFloat(id, &value, min, max, format, flags);
+    fill_slider(value, min, max, logarithmic);
+    return edited;
+}
+
+const Rect* drawn_place(const std::string& label) {
+    const auto found = places().find(label);
+    return found == places().end() ? nullptr : &found->second;
+}
+
 void row_label(const char* label, const std::string& help) {
     const float start = ImGui::GetCursorPosX();
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(label);
     tooltip(help);
     ImGui::SameLine(start + 122 * ui_scale());
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    places()[label] = {from.x, from.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
     ImGui::SetNextItemWidth(-FLT_MIN);
 }
 

@@ -5,6 +5,7 @@
 
 #include "render/settings.hpp"
 #include "rt_plugin.h"
+#include "ui/viewport.hpp"
 
 namespace clarity {
 
@@ -15,6 +16,10 @@ void row_label(const char* label, const std::string& help = {});
 // Label and a value that is only read.
 void row_text(const char* label, const std::string& value, const std::string& help = {});
 void tooltip(const std::string& text);  // of the last item
+// An entry of an open list. Returns whether it was chosen anew.
+bool option(const std::string& label, bool chosen);
+// A slider whose value applies while it is dragged.
+bool slider(const char* id, float& value, float min, float max, const char* format, bool logarithmic = false);
 // Several lines of text in the dimmed colour.
 void dim_text(const std::string& text);
 
@@ -23,6 +28,9 @@ void dim_text(const std::string& text);
 bool setting_row(const Setting& row, Settings& settings);
 // The same for a plugin's parameter.
 bool parameter_row(const rt_param& param, double& value);
+
+// Where rows and entries were drawn last, by label: for tests that click. nullptr if it never was.
+const Rect* drawn_place(const std::string& label);
 
 // "1.2 M", "871 k", "12": for counts. "3.4 MiB": for bytes.
 std::string count_text(double count);
