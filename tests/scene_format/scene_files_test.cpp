@@ -46,8 +46,8 @@ void PrintTo(const Golden& golden, std::ostream* out) {
 const Golden kGoldens[] = {
     {"spheres21.scene", 0, 0, 21, 1, 0, 2, 2, 0, 0, 72.0518, 1e-5, {-3.639f, 0, -3.639f}, {3.639f, 2.3f, 3.639f}, false},
     {"cornell.scene", 0, 0, 2, 0, 6, 1, 1, 0, 0, 23.58086, 1e-5, {-1, 0, -1}, {1, 2, 1}, false},
-    {"primitives.scene", 2, 4, 7, 1, 4, 2, 3, 1, 1120, 80.81, 1e-2, {-5.75f, -.0386875f, -5.81664f}, {6, 2.57604f, 3.6f}, true},
-    {"showpiece.scene", 17, 40, 15, 0, 0, 3, 4, 1, 18172, 1086.86, 1e-4, {-6.2f, -.15f, -5}, {6.8f, 8, 8.9f}, true},
+    {"primitives.scene", 2, 4, 7, 1, 4, 2, 3, 1, 1120, 80.14, 1e-2, {-5.75f, -.0386875f, -5.81664f}, {5.8f, 2.57604f, 3.6f}, true},
+    {"showpiece.scene", 17, 36, 15, 0, 0, 3, 4, 1, 16196, 893.16, 1e-4, {-6.2f, -.15f, -5}, {6.8f, 4, 8.9f}, true},
 };
 // clang-format on
 
