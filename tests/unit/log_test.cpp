@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <regex>
 #include <thread>
 #include <vector>
 
@@ -65,9 +64,11 @@ TEST_F(Log, TheFileHasEveryLineWithItsTime) {
     clarity::log(LogLevel::error, "broken");
     testing::internal::GetCapturedStderr();
     const std::string text = text_of(path);
-    EXPECT_TRUE(std::regex_match(text, std::regex("\\d{4}-\\d\\d-\\d\\dT\\d\\d:\\d\\d:\\d\\d\\.\\d{3}Z debug   detail\n"
-                                                  "\\d{4}-\\d\\d-\\d\\dT\\d\\d:\\d\\d:\\d\\d\\.\\d{3}Z error   broken\n")))
-        << text;
+    // Digits stand for any digit.
+    std::string shape = text;
+    for (char& c : shape)
+        if (c >= '0' && c <= '9') c = '0';
+    EXPECT_EQ(shape, "0000-00-00T00:00:00.000Z debug   detail\n0000-00-00T00:00:00.000Z error   broken\n");
 }
 
 TEST_F(Log, AFileThatCannotBeOpenedIsAnError) {
