@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr size_t kMaxDepth = 16;
 // A few files that load each other twice could place more than any machine holds.
-constexpr uint64_t kMaxPlaced = 1u << 24;
+constexpr uint64_t kMaxPlaced = 1u << 22;
 constexpr size_t kMaxWarnings = 100;
 
 std::string file_name(const std::string& path) {
@@ -149,6 +149,9 @@ std::string SceneBuilder::include(const std::string& from, const std::string& pa
     try {
         check_model_file(shown);
         const FileContent& content = content_of(shown, found.path);
+        placed_ += content.instances.size() + content.spheres.size() + content.planes.size() + content.polygons.size();
+        if (placed_ > kMaxPlaced)
+            return what + "more than " + std::to_string(kMaxPlaced) + " objects of loaded files are placed";
         place(shown, content, placement, into);
     } catch (const Cancelled&) {
         throw;
@@ -212,8 +215,6 @@ bool usable(const Array& values) {
 
 void SceneBuilder::place(const std::string& from, const FileContent& content, const Placement& placement, FileContent& into) {
     const Affine& m = placement.world_from_object;
-    placed_ += content.instances.size() + content.spheres.size() + content.planes.size() + content.polygons.size();
-    if (placed_ > kMaxPlaced) fail(from, "more than " + std::to_string(kMaxPlaced) + " objects are placed in the scene");
     const auto material_of = [&](rt_u32 own) { return placement.material == RT_NONE ? own : placement.material; };
     const auto name_of = [&](const std::string& own, bool alone) {
         if (placement.name.empty()) return own;

@@ -79,7 +79,7 @@ class SceneBuilder {
     std::map<std::string, std::unique_ptr<FileContent>> files_;  // by canonical path
     std::map<std::string, rt_u32> textures_;                     // by canonical path
     std::vector<std::string> open_;                              // canonical paths being imported, outermost first
-    uint64_t placed_ = 0;
+    uint64_t placed_ = 0;                                        // objects of included files, each time that they are placed
     size_t warnings_left_out_ = 0;
     bool knows_axes_ = false, knows_background_ = false, knows_ambient_ = false;
 };

@@ -1,0 +1,49 @@
+// import_case.hpp -- a folder of test files, and imports of them.
+#pragma once
+#include <gtest/gtest.h>
+
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "import/import.hpp"
+
+namespace clarity {
+
+class ImportCase : public ::testing::Test {
+ protected:
+    void SetUp() override;
+    void TearDown() override;
+
+    // Writes a file into this test's folder; returns its path.
+    std::string file(const std::string& name, const std::string& text) const;
+    std::string path(const std::string& name) const { return folder_ + "/" + name; }
+
+    Scene import(const std::vector<std::string>& files);
+    Scene import_text(const std::string& text) { return import({file("case.cltest", text)}); }
+    // The message of the Error(import_failed) that importing must throw; the empty string (and a test failure) if it does not.
+    std::string failure(const std::vector<std::string>& files);
+    std::string failure_of_text(const std::string& text) { return failure({file("case.cltest", text)}); }
+
+    std::vector<std::string> logged() const;
+
+    ImportOptions options_;
+    Progress progress_;
+
+ private:
+    std::string folder_;
+    mutable std::mutex mutex_;
+    std::vector<std::string> log_;
+};
+
+::testing::AssertionResult contains(const std::string& text, const std::string& part);
+
+#if defined(__SANITIZE_ADDRESS__)
+inline constexpr bool kAddressSanitizer = true;
+#else
+inline constexpr bool kAddressSanitizer = false;
+#endif
+
+}  // namespace clarity

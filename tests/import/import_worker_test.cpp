@@ -1,0 +1,221 @@
+// Importers that crash, hang, run wild or try what they must not: each costs one error message.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+#include "import_case.hpp"
+
+namespace clarity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+class Worker : public ImportCase {
+ protected:
+    void TearDown() override {
+        // Every worker of the test is dead and waited for.
+        EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
+        ImportCase::TearDown();
+    }
+    // AddressSanitizer turns a death by signal into an exit with a report of its own.
+    void expect_death(const std::string& text, const std::string& how) {
+        const std::string message = failure_of_text(text);
+        EXPECT_TRUE(contains(message, path("case.cltest") + ": the importer cltest ")) << text;
+        EXPECT_TRUE(contains(message, kAddressSanitizer ? "worker process" : how)) << text;
+    }
+};
+
+TEST_F(Worker, crashes_are_told_apart) {
+    expect_death("crash", "crashed (segmentation fault) while reading");
+    expect_death("recurse", "crashed (segmentation fault: stack overflow)");
+    EXPECT_TRUE(contains(failure_of_text("abort"), kAddressSanitizer ? "the importer cltest" : "crashed (aborted)"));
+    EXPECT_TRUE(contains(failure_of_text("throw_in_thread"), "thrown where nobody catches"));
+    EXPECT_TRUE(contains(failure_of_text("exit 0"), "ended the worker process (exit code 0) without a result"));
+    EXPECT_TRUE(contains(failure_of_text("exit 42"), "exit code 42"));
+    EXPECT_EQ(import_text("triangles good 1").placed_triangle_count(), 1u) << "and the next import works";
+}
+
+TEST_F(Worker, memory_is_bounded) {
+    options_.memory_limit_bytes = uint64_t(256) << 20;
+    const auto start = Clock::now();
+    const std::string message = failure_of_text("allocate");
+    EXPECT_TRUE(contains(message, "case.cltest: "));
+    EXPECT_TRUE(contains(message, "memory"));
+    EXPECT_LT(seconds_since(start), 10);
+}
+
+TEST_F(Worker, hangs_end_at_the_limit) {
+    options_.time_limit_s = 1.5;
+    for (const char* text : {"hang", "sleep", "stuck 1000"}) {
+        const auto start = Clock::now();
+        const std::string message = failure_of_text(text);
+        EXPECT_TRUE(contains(message, "made no progress for 1.5 s") || contains(message, "processor time")) << text;
+        EXPECT_GT(seconds_since(start), 1.0) << text;
+        EXPECT_LT(seconds_since(start), 8.0) << text;
+    }
+}
+
+TEST_F(Worker, progress_keeps_a_slow_import_alive) {
+    options_.time_limit_s = 1;
+    EXPECT_EQ(import_text("work 25\ntriangles good 1").placed_triangle_count(), 1u);
+}
+
+TEST_F(Worker, progress_is_forwarded) {
+    class Recorder : public Progress {
+     public:
+        void stage(const std::string& text) override { stages.push_back(text); }
+        bool report(float fraction) override {
+            fractions.push_back(fraction);
+            return !cancelled();
+        }
+        std::vector<std::string> stages;
+        std::vector<float> fractions;
+    } recorder;
+    const PluginRegistry plugins = PluginRegistry::of({CLARITY_TEST_IMPORTER});
+    import_scene(plugins, {file("case.cltest", "work 5\ntriangles good 1")}, options_, recorder);
+    ASSERT_EQ(recorder.stages.size(), 1u);
+    EXPECT_EQ(recorder.stages[0], "importing case.cltest");
+    ASSERT_GE(recorder.fractions.size(), 2u);
+    EXPECT_TRUE(std::is_sorted(recorder.fractions.begin(), recorder.fractions.end()));
+    EXPECT_GT(recorder.fractions.back(), 0.3f);
+}
+
+TEST_F(Worker, cancel_answers_at_once) {
+    for (const char* text : {"work 1000", "hang", "sleep"}) {
+        Progress progress;
+        Clock::time_point cancelled;
+        std::thread canceller([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(400));
+            cancelled = Clock::now();
+            progress.cancel();
+        });
+        const PluginRegistry plugins = PluginRegistry::of({CLARITY_TEST_IMPORTER});
+        EXPECT_THROW(import_scene(plugins, {file("case.cltest", text)}, options_, progress), Cancelled) << text;
+        const double answer_s = seconds_since(cancelled);
+        canceller.join();
+        // The promise is 0.1 s; the rest is for machines that do other things as well.
+        EXPECT_LT(answer_s, kAddressSanitizer ? 1.0 : 0.3) << text;
+    }
+}
+
+TEST_F(Worker, the_sandbox_refuses) {
+    if (kAddressSanitizer) GTEST_SKIP() << "the sanitizer intercepts some of these calls";
+    const std::string outside =
+        std::filesystem::temp_directory_path().string() + "/clarity-import-outside-" + std::to_string(getpid());
+    std::ofstream(outside) << "secret";
+    const std::string inside = file("inside.txt", "kept");
+    const std::string attempts[] = {"write " + path("new.txt"),
+                                    "write " + inside,
+                                    "append " + inside,
+                                    "unlink " + inside,
+                                    "rename " + inside,
+                                    "mkdir " + path("folder"),
+                                    "chmod " + inside,
+                                    "truncate " + inside,
+                                    "symlink " + path("link"),
+                                    "read " + outside,
+                                    "read /etc/passwd",
+                                    "socket",
+                                    "unix_socket",
+                                    "fork",
+                                    "exec",
+                                    "spawn",
+                                    "kill_parent",
+                                    "executable_memory",
+                                    "raise_limit"};
+    for (const std::string& attempt : attempts) {
+        const std::string message = failure_of_text(attempt);
+        EXPECT_TRUE(contains(message, "tried to " + attempt.substr(0, attempt.find(' ')) + ": "));
+        EXPECT_TRUE(contains(message, "not permitted") || contains(message, "denied")) << attempt;
+    }
+    std::stringstream kept;
+    kept << std::ifstream(inside).rdbuf();
+    EXPECT_EQ(kept.str(), "kept");
+    EXPECT_FALSE(std::filesystem::exists(path("new.txt")));
+    // The same plugin without the sandbox: these attempts are real ones.
+    options_.in_process = true;
+    EXPECT_TRUE(contains(failure_of_text("read " + outside), "tried to read: worked"));
+    EXPECT_TRUE(contains(failure_of_text("socket"), "tried to socket: worked"));
+    EXPECT_TRUE(contains(failure_of_text("write " + path("new.txt")), "tried to write: worked"));
+    std::filesystem::remove(outside);
+}
+
+TEST_F(Worker, reading_beside_the_model_and_threads_are_allowed) {
+    EXPECT_TRUE(contains(failure_of_text("read " + file("beside.mtl", "x")), "tried to read: worked"));
+    EXPECT_EQ(import_text("threads\ntriangles good 1").placed_triangle_count(), 1u);
+}
+
+TEST_F(Worker, floods_of_output_neither_block_nor_fill_the_log) {
+    EXPECT_EQ(import_text("print a line of noise\ntriangles good 1").placed_triangle_count(), 1u);
+    size_t lines = 0;
+    for (const std::string& line : logged()) lines += line.find("a line of noise") != std::string::npos;
+    EXPECT_GT(lines, 0u);
+    EXPECT_LE(lines, 200u);
+}
+
+TEST_F(Worker, a_wrong_worker_program_is_named) {
+    options_.worker = "/nonexistent/clarity";
+    EXPECT_TRUE(contains(failure_of_text("triangles good 1"), "/nonexistent/clarity"));
+    options_.worker = "/bin/true";
+    EXPECT_TRUE(contains(failure_of_text("triangles good 1"), "/bin/true: ended without answering"));
+    // This very test: it would run the tests again, which would start it again.
+    options_.worker = "/proc/self/exe";
+    setenv("GTEST_FILTER", "None.*", 1);
+    EXPECT_TRUE(contains(failure_of_text("triangles good 1"), "as an import worker"));
+    unsetenv("GTEST_FILTER");
+}
+
+TEST_F(Worker, a_worker_starts_no_worker) {
+    setenv("CLARITY_IMPORT_WORKER", "1", 1);
+    EXPECT_TRUE(contains(failure_of_text("triangles good 1"), "is an import worker itself"));
+    unsetenv("CLARITY_IMPORT_WORKER");
+}
+
+TEST_F(Worker, it_dies_with_its_parent) {
+    const std::string hanging = file("hang.cltest", "sleep"), marker = path("started");
+    const pid_t parent = fork();
+    if (parent == 0) {
+        class Marking : public Progress {
+         public:
+            explicit Marking(std::string path) : path_(std::move(path)) {}
+            void stage(const std::string&) override { std::ofstream(path_) << "x"; }
+
+         private:
+            std::string path_;
+        } progress(marker);
+        set_log_listener(nullptr);
+        import_scene(PluginRegistry::of({CLARITY_TEST_IMPORTER}), {hanging}, options_, progress);
+        _exit(0);
+    }
+    for (int i = 0; i < 500 && !std::filesystem::exists(marker); ++i)
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    ASSERT_TRUE(std::filesystem::exists(marker)) << "the import never began";
+    const auto workers = [&] {
+        int count = 0;
+        for (const auto& entry : std::filesystem::directory_iterator("/proc")) {
+            std::ifstream stream(entry.path() / "cmdline", std::ios::binary);
+            std::stringstream line;
+            line << stream.rdbuf();
+            count += line.str().find("import-worker") != std::string::npos && line.str().find(hanging) != std::string::npos;
+        }
+        return count;
+    };
+    EXPECT_EQ(workers(), 1);
+    kill(parent, SIGKILL);
+    waitpid(parent, nullptr, 0);
+    for (int i = 0; i < 200 && workers() > 0; ++i) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    EXPECT_EQ(workers(), 0);
+}
+
+}  // namespace
+}  // namespace clarity
