@@ -67,8 +67,9 @@ void ProgressBar::clear() {
 void ProgressBar::draw(float fraction, Clock::time_point now) {
     constexpr size_t kBar = 24, kNumbers = 16;
     const size_t columns = terminal_columns();
-    // A line that wraps could not be taken back.
-    std::string line = name_.substr(0, columns > kNumbers + 1 ? columns - kNumbers - 1 : 0);
+    // A line that wraps could not be taken back; the bar matters more than the end of a long name.
+    const size_t others = kNumbers + 1 + (columns >= 60 ? kBar + 4 : 0);
+    std::string line = name_.substr(0, columns > others ? columns - others : 0);
     const size_t left = columns - std::min(columns, line.size() + kNumbers + 1);
     char numbers[32];
     const double seconds = std::chrono::duration<double>(now - begun_).count();

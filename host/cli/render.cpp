@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "base/error.hpp"
@@ -112,7 +113,7 @@ class RenderJob {
 
     // One picture; with --repeat the same one again and again. False if interrupted: then what was accumulated is written.
     bool render(Frames& frames, int number) {
-        bar_.stage("rendering " + frame_path(options_.output, number));
+        bar_.stage("rendering " + std::filesystem::path(frame_path(options_.output, number)).filename().string());
         // Counting rays costs a little, and the first frame warms caches: timed frames come after it.
         const bool warm_up = options_.repeat > 1;
         const unsigned passes = options_.repeat + (warm_up ? 1 : 0);

@@ -1,0 +1,103 @@
+// Machines whose OpenCL is broken in the ways that are met: no driver, a platform without devices, one that fails.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+#include "unit/scratch.hpp"
+
+namespace {
+
+constexpr const char* kSystemDrivers = "/etc/OpenCL/vendors";
+
+// A folder of drivers as OCL_ICD_VENDORS wants it.
+class Devices : public ::testing::Test {
+ protected:
+    void SetUp() override { std::filesystem::create_directory(scratch_.path("vendors")); }
+    void add_fake(const std::string& name) {
+        scratch_.write("vendors/" + name + ".icd", std::string(FAKE_DRIVERS) + "/" + name + ".so\n");
+    }
+    bool add_system_drivers() {
+        bool any = false;
+        std::error_code error;
+        for (const auto& entry : std::filesystem::directory_iterator(kSystemDrivers, error)) {
+            std::filesystem::copy_file(entry.path(), scratch_.path("vendors/" + entry.path().filename().string()));
+            any = true;
+        }
+        return any && run_program({"devices"}).exit_code == 0;
+    }
+    ProgramResult run(std::vector<std::string> words, const std::string& device = "") {
+        RunOptions options;
+        options.environment = {{"OCL_ICD_VENDORS", scratch_.path("vendors")}, {"CLARITY_DEVICE", device}};
+        return run_program(words, options);
+    }
+    std::string scene() { return scratch_.write("a.scene", "sphere center 0 0 0 radius 1\n"); }
+
+    Scratch scratch_;
+};
+
+}  // namespace
+
+TEST_F(Devices, NoDriverExits3AndNamesThePackage) {
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"devices"}, {"devices", "--json"}, {"render", scene(), "-o", scratch_.path("a.png")}}) {
+        const ProgramResult result = run(words);
+        EXPECT_EQ(result.exit_code, 3) << result.err;
+        EXPECT_NE(result.err.find("pocl-opencl-icd"), std::string::npos) << result.err;
+    }
+    EXPECT_FALSE(std::filesystem::exists(scratch_.path("a.png")));
+    // Data stays data: an empty list.
+    EXPECT_EQ(nlohmann::json::parse(run({"devices", "--json"}).out)["devices"], nlohmann::json::array());
+    EXPECT_EQ(run({"devices"}).out, "");
+}
+
+TEST_F(Devices, PlatformsWithoutDevicesAreNamedWithTheirReason) {
+    add_fake("empty");
+    ProgramResult result = run({"devices"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_NE(result.err.find("Fake platform) is skipped: it has no device"), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("pocl-opencl-icd"), std::string::npos) << result.err;
+    add_fake("failing");
+    result = run({"devices", "--json"});
+    EXPECT_EQ(result.exit_code, 3);
+    EXPECT_EQ(nlohmann::json::parse(result.out)["warnings"].size(), 2u) << result.out;
+    EXPECT_NE(result.out.find("it ran out of resources"), std::string::npos) << result.out;
+}
+
+TEST_F(Devices, BrokenPlatformsDoNotHideWorkingOnes) {
+    if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
+    add_fake("empty");
+    add_fake("failing");
+    const ProgramResult result = run({"devices", "--json"});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json list = nlohmann::json::parse(result.out);
+    ASSERT_GE(list["devices"].size(), 1u);
+    EXPECT_EQ(list["warnings"].size(), 2u) << result.out;
+    const nlohmann::json first = list["devices"][0];
+    EXPECT_EQ(list["default"], first["id"]) << "the best comes first and is taken";
+    EXPECT_TRUE(first["default"].get<bool>());
+    EXPECT_GT(first["compute_units"].get<int>(), 0);
+    EXPECT_GT(first["global_bytes"].get<uint64_t>(), 0u);
+    EXPECT_NE(run({"devices"}).out.find("default: "), std::string::npos);
+}
+
+TEST_F(Devices, AreChosenByNumberKindAndName) {
+    if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
+    const nlohmann::json list = nlohmann::json::parse(run({"devices", "--json"}).out);
+    for (const auto& device : list["devices"]) {
+        const std::string id = device["id"];
+        const nlohmann::json chosen = nlohmann::json::parse(run({"devices", "--json"}, id).out);
+        EXPECT_EQ(chosen["default"], id);
+        EXPECT_EQ(chosen["why"], "CLARITY_DEVICE=" + id);
+        const std::string kind = device["type"], name = device["name"];
+        EXPECT_FALSE(nlohmann::json::parse(run({"devices", "--json"}, kind).out)["default"].is_null()) << kind;
+        EXPECT_FALSE(nlohmann::json::parse(run({"devices", "--json"}, name.substr(1, 6)).out)["default"].is_null()) << name;
+    }
+    for (const char* nobody : {"9:9", "0:", "7", "no such device", "cpu,gpu"}) {
+        const ProgramResult result = run({"render", scene(), "-o", scratch_.path("a.png"), "--device", nobody});
+        EXPECT_EQ(result.exit_code, 3) << nobody << "\n" << result.err;
+        EXPECT_NE(result.err.find(list["devices"][0]["id"].get<std::string>()), std::string::npos)
+            << "the choices: " << result.err;
+    }
+}

@@ -1,0 +1,91 @@
+// `clarity info` on scenes whose numbers can be worked out by hand.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+#include "unit/scratch.hpp"
+
+namespace {
+
+constexpr double kPi = 3.14159265358979;
+
+// A unit cube of six quads, from 0 to 1.
+constexpr const char* kCube =
+    "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+    "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+
+nlohmann::json info_of(const std::string& file) {
+    const ProgramResult result = run_program({"info", file, "--json"});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+}
+
+}  // namespace
+
+TEST(Info, CountsAndMeasuresAPlacedModel) {
+    const Scratch scratch;
+    scratch.write("cube.obj", kCube);
+    const std::string scene = scratch.write("a.scene",
+                                            "camera main eye 0 0 9 target 0 0 0 fov 30\n"
+                                            "light point position 0 9 0\n"
+                                            "load cube.obj\n"
+                                            "load cube.obj translate 5 0 0 scale 2\n"
+                                            "sphere center -3 0 0 radius 1\n"
+                                            "polygon vertices 0 0 -4  2 0 -4  2 3 -4  0 3 -4\n"
+                                            "plane normal 0 1 0 offset -2\n");
+    const nlohmann::json info = info_of(scene);
+    ASSERT_TRUE(info.is_object());
+    EXPECT_EQ(info["triangles"], 24);
+    EXPECT_EQ(info["instances"], 2);
+    EXPECT_EQ(info["spheres"], 1);
+    EXPECT_EQ(info["polygons"], 1);
+    EXPECT_EQ(info["planes"], 1);
+    EXPECT_EQ(info["lights"], 1);
+    EXPECT_EQ(info["cameras"], 1);
+    EXPECT_GE(info["materials"], 1);
+    EXPECT_GE(info["meshes"], 1);
+    EXPECT_EQ(info["bounds"]["min"], nlohmann::json({-4, -1, -4}));
+    EXPECT_EQ(info["bounds"]["max"], nlohmann::json({7, 3, 2}));
+    EXPECT_NEAR(info["surface_area"].get<double>(), 6 + 24 + 4 * kPi + 6, 1e-4);
+    EXPECT_EQ(info["up_axis"], "y");
+    EXPECT_TRUE(info["unit_scale"].is_null());
+    EXPECT_EQ(info["warnings"], nlohmann::json::array());
+}
+
+TEST(Info, SeveralFilesAreOneScene) {
+    const Scratch scratch;
+    const std::string a = scratch.write("a.obj", kCube), b = scratch.write("b.scene", "sphere center 4 0 0 radius 2\n");
+    const ProgramResult result = run_program({"info", "--json", a, b});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json info = nlohmann::json::parse(result.out);
+    EXPECT_EQ(info["triangles"], 12);
+    EXPECT_EQ(info["spheres"], 1);
+    EXPECT_EQ(info["bounds"]["max"], nlohmann::json({6, 2, 2}));
+}
+
+TEST(Info, NothingWithAnEndHasNoBounds) {
+    const Scratch scratch;
+    const nlohmann::json info = info_of(scratch.write("a.scene", "plane normal 0 1 0 offset 0\n"));
+    EXPECT_TRUE(info["bounds"].is_null());
+    EXPECT_EQ(info["surface_area"], 0);
+}
+
+TEST(Info, PeopleReadWords) {
+    const Scratch scratch;
+    const std::string file = scratch.write("cube.obj", kCube);
+    const ProgramResult result = run_program({"info", file});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out.rfind(file + "\n", 0), 0u) << result.out;
+    EXPECT_NE(result.out.find("triangles     12, from 6 faces"), std::string::npos) << result.out;
+    EXPECT_EQ(result.out.find("spheres"), std::string::npos) << "nothing is said about what is not there";
+    EXPECT_EQ(result.out.find('\033'), std::string::npos);
+}
+
+// Whether parsed in the worker or here, a file is the same scene.
+TEST(Info, InProcessSaysTheSame) {
+    const Scratch scratch;
+    const std::string file = scratch.write("cube.obj", kCube);
+    EXPECT_EQ(run_program({"info", "--json", file}).out, run_program({"info", "--json", "--import-in-process", file}).out);
+}

@@ -1,0 +1,190 @@
+// `clarity render` from the outside: files, statistics, interruption, what goes to stdout and what to stderr.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+#include "unit/scratch.hpp"
+
+namespace fs = std::filesystem;
+
+namespace {
+
+class Render : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        if (run_program({"devices"}).exit_code == 3) GTEST_SKIP() << "no OpenCL device on this machine";
+        scene_ = scratch_.write("a.scene",
+                                "camera main eye 0 1 6 target 0 1 0 fov 40\n"
+                                "light point position 3 6 4\n"
+                                "background .2 .3 .5\n"
+                                "material mirror color .2 .2 .2 reflect .8\n"
+                                "plane normal 0 1 0 offset 0\n"
+                                "sphere center 0 1 0 radius 1 material mirror\n");
+        fs::create_directory(scratch_.path("out"));
+    }
+    std::string out(const std::string& name) const { return scratch_.path("out/" + name); }
+    std::vector<std::string> words(const std::vector<std::string>& more) const {
+        std::vector<std::string> all = {"render", scene_, "--size", "64x48"};
+        all.insert(all.end(), more.begin(), more.end());
+        return all;
+    }
+    std::vector<std::string> files() const {
+        std::vector<std::string> names;
+        for (const auto& entry : fs::directory_iterator(scratch_.path("out")))
+            names.push_back(entry.path().filename().string());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+    Scratch scratch_;
+    std::string scene_;
+};
+
+}  // namespace
+
+TEST_F(Render, WritesOnePictureAndItsStatistics) {
+    const ProgramResult result =
+        run_program(words({"-o", out("a.png"), "--stats", out("a.json"), "--depth", "3", "--repeat", "3"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.out, "") << "stdout is for data that was asked for";
+    EXPECT_EQ(result.err.find('\033'), std::string::npos) << "no terminal, no colour and no bar: " << result.err;
+    EXPECT_EQ(files(), (std::vector<std::string>{"a.json", "a.png"}));
+    const std::string png = scratch_.read("out/a.png");
+    EXPECT_EQ(png.substr(1, 3), "PNG");
+    const nlohmann::json stats = nlohmann::json::parse(scratch_.read("out/a.json"));
+    for (const char* key :
+         {"device", "accel", "tracer", "depth", "packet", "lanes", "size", "frame_ms", "build_ms", "compile_ms", "import_ms",
+          "rays", "mrays_per_s", "dropped_rays", "nodes", "accel_bytes", "triangles"})
+        EXPECT_TRUE(stats.contains(key)) << key;
+    EXPECT_EQ(stats["accel"], "bvh2");
+    EXPECT_EQ(stats["depth"], 3);
+    EXPECT_EQ(stats["size"], "64x48");
+    EXPECT_EQ(stats["frames_timed"], 3);
+    EXPECT_LE(stats["frame_ms"]["min"], stats["frame_ms"]["median"]);
+    EXPECT_LE(stats["frame_ms"]["median"], stats["frame_ms"]["max"]);
+    EXPECT_GT(stats["frame_ms"]["min"].get<double>(), 0);
+    EXPECT_EQ(stats["rays"]["primary"], 64 * 48) << "of one frame, however often it was repeated";
+    EXPECT_GT(stats["rays"]["shadow"].get<int>(), 0);
+    EXPECT_GT(stats["rays"]["secondary"].get<int>(), 0) << "the mirror";
+    EXPECT_GT(stats["mrays_per_s"].get<double>(), 0);
+    EXPECT_EQ(stats["triangles"], 0);
+}
+
+TEST_F(Render, StatisticsOnStdoutAreNothingButJson) {
+    const ProgramResult result =
+        run_program(words({"-o", out("a.png"), "--stats", "-", "--depth", "1", "--set", "shadows=false"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const nlohmann::json stats = nlohmann::json::parse(result.out);
+    EXPECT_EQ(stats["rays"], nlohmann::json({{"primary", 64 * 48}, {"shadow", 0}, {"secondary", 0}}));
+}
+
+TEST_F(Render, AnOptionWinsOverSet) {
+    const ProgramResult result = run_program(words({"-o", out("a.png"), "--stats", "-", "--depth", "2", "--set", "depth=4"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(nlohmann::json::parse(result.out)["depth"], 2);
+}
+
+TEST_F(Render, FloatFormatsHoldTheFirstHit) {
+    const ProgramResult result = run_program(words({"-o", out("t.pfm"), "--aov", "t"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const std::string pfm = scratch_.read("out/t.pfm"), head = "Pf\n64 48\n-1.0\n";
+    ASSERT_EQ(pfm.substr(0, head.size()), head);
+    ASSERT_EQ(pfm.size(), head.size() + 64 * 48 * sizeof(float));
+    // The centre sees the sphere's front, 5 away (half a pixel off the axis, so a little more).
+    float t = 0;
+    std::memcpy(&t, pfm.data() + head.size() + (24 * 64 + 32) * sizeof(float), sizeof t);
+    EXPECT_NEAR(t, 5, 0.01);
+    const ProgramResult color = run_program(words({"-o", out("c.pfm")}));
+    ASSERT_EQ(color.exit_code, 0) << color.err;
+    EXPECT_EQ(scratch_.read("out/c.pfm").substr(0, 3), "PF\n");
+    EXPECT_EQ(run_program(words({"-o", out("c.exr")})).exit_code, 0);
+    EXPECT_EQ(scratch_.read("out/c.exr").substr(0, 4), "\x76\x2f\x31\x01");
+}
+
+TEST_F(Render, FramesAreNumbered) {
+    const ProgramResult result = run_program(words({"-o", out("f_###.png"), "--frames", "8-12/2", "--time", "1.5"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(files(), (std::vector<std::string>{"f_008.png", "f_010.png", "f_012.png"}));
+    EXPECT_EQ(scratch_.read("out/f_008.png"), scratch_.read("out/f_012.png")) << "nothing moves";
+}
+
+TEST_F(Render, CameraAndLightChangeThePicture) {
+    ASSERT_EQ(run_program(words({"-o", out("a.png")})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("b.png"), "--camera", "-3,2,5,0,1,0,50"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("c.png"), "--light", "-3,6,4"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("d.png"), "--camera", "main"})).exit_code, 0);
+    EXPECT_NE(scratch_.read("out/a.png"), scratch_.read("out/b.png"));
+    EXPECT_NE(scratch_.read("out/a.png"), scratch_.read("out/c.png"));
+    EXPECT_EQ(scratch_.read("out/a.png"), scratch_.read("out/d.png"));
+}
+
+TEST_F(Render, QuietSaysNothingVerboseSaysMore) {
+    EXPECT_EQ(run_program(words({"-o", out("a.png"), "-q"})).err, "");
+    const std::string normal = run_program(words({"-o", out("a.png")})).err;
+    EXPECT_NE(normal.find(out("a.png")), std::string::npos) << normal;
+    EXPECT_GT(run_program(words({"-o", out("a.png"), "-v"})).err.size(), normal.size());
+    ASSERT_EQ(run_program(words({"-o", out("a.png"), "-q", "--log-file", out("log.txt")})).exit_code, 0);
+    EXPECT_NE(scratch_.read("out/log.txt").find("a.png"), std::string::npos) << "the log file holds it all";
+}
+
+TEST_F(Render, CtrlCWritesWhatIsAccumulated) {
+    RunOptions options;
+    options.signal = SIGINT;
+    options.signal_when = "rendering";
+    const ProgramResult result = run_program(words({"-o", out("a.png"), "--spp", "65536", "-v"}), options);
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_LT(result.seconds, 20);
+    EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
+    // With or without a complete sample: a whole picture or none, and nothing half-written.
+    const bool any = result.err.find("no sample was complete") == std::string::npos;
+    EXPECT_EQ(files(), any ? std::vector<std::string>{"a.png"} : std::vector<std::string>{});
+    if (any) {
+        EXPECT_EQ(scratch_.read("out/a.png").substr(1, 3), "PNG");
+        EXPECT_NE(result.err.find("of 65536 samples"), std::string::npos) << result.err;
+    }
+}
+
+TEST_F(Render, CtrlCLaterKeepsTheSamplesSoFar) {
+    RunOptions options;
+    options.signal = SIGTERM;
+    options.signal_after_s = 8;  // long after the kernels are there
+    const ProgramResult result = run_program(words({"-o", out("a.png"), "--spp", "65536"}), options);
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    EXPECT_LT(result.seconds, 20);
+    EXPECT_EQ(files(), std::vector<std::string>{"a.png"});
+    EXPECT_NE(result.err.find("of 65536 samples"), std::string::npos) << result.err;
+}
+
+TEST_F(Render, TheBarIsForTerminalsAndColourOnlyWithoutNoColor) {
+    RunOptions options;
+    options.terminal = true;
+    options.environment = {{"TERM", "xterm"}, {"NO_COLOR", ""}};
+    const std::vector<std::string> slow = words({"-o", out("a.png"), "--spp", "4000"});
+    const ProgramResult colored = run_program(slow, options);
+    ASSERT_EQ(colored.exit_code, 0) << colored.err;
+    EXPECT_NE(colored.err.find("\r\033[K"), std::string::npos);
+    EXPECT_NE(colored.err.find(" %"), std::string::npos) << colored.err;
+    EXPECT_NE(colored.err.find("\033[36m"), std::string::npos) << colored.err;
+    options.environment["NO_COLOR"] = "1";
+    const ProgramResult plain = run_program(slow, options);
+    ASSERT_EQ(plain.exit_code, 0) << plain.err;
+    EXPECT_NE(plain.err.find(" %"), std::string::npos) << plain.err;
+    EXPECT_EQ(plain.err.find("\033[3"), std::string::npos) << plain.err;
+}
+
+TEST_F(Render, ABrokenKernelExits5WithTheCompilersWords) {
+    // A developer's copy of the kernels, with a mistake in it.
+    fs::copy(fs::path(CLARITY_SOURCE_DIR) / "cl", scratch_.path("cl"), fs::copy_options::recursive);
+    scratch_.write("cl/surface.h", "this is no OpenCL C;\n");
+    RunOptions options;
+    options.environment = {{"CLARITY_KERNEL_PATH", scratch_.path("cl")}};
+    const ProgramResult result = run_program(words({"-o", out("a.png")}), options);
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    EXPECT_NE(result.err.find("error"), std::string::npos) << result.err;
+    EXPECT_TRUE(files().empty());
+}

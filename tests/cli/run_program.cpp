@@ -1,0 +1,99 @@
+#include "cli/run_program.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <pty.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <stdexcept>
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Channel {
+    int read = -1, write = -1;
+};
+
+Channel make_channel(bool terminal) {
+    int ends[2];
+    if (terminal) {
+        if (openpty(&ends[0], &ends[1], nullptr, nullptr, nullptr) != 0) throw std::runtime_error("openpty failed");
+    } else if (pipe(ends) != 0) {
+        throw std::runtime_error("pipe failed");
+    }
+    for (const int end : ends) fcntl(end, F_SETFD, FD_CLOEXEC);
+    return {ends[0], ends[1]};
+}
+
+// Between fork and exec.
+[[noreturn]] void become(const std::vector<std::string>& words, const RunOptions& options, int out, int err) {
+    // Whoever runs the tests may ignore signals; the program under test starts as from a shell.
+    for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) std::signal(signal, SIG_DFL);
+    const int in = open("/dev/null", O_RDONLY);
+    if (!options.stdout_path.empty()) out = open(options.stdout_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    dup2(in, STDIN_FILENO);
+    dup2(out, STDOUT_FILENO);
+    dup2(err, STDERR_FILENO);
+    for (const auto& [name, value] : options.environment)
+        value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
+    std::vector<char*> argv;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    execv(argv[0], argv.data());
+    _exit(127);
+}
+
+// Appends what is there; false at the end. A terminal ends with EIO once the other side is closed.
+bool drain(int from, std::string& to) {
+    char buffer[65536];
+    const ssize_t got = read(from, buffer, sizeof buffer);
+    if (got > 0) to.append(buffer, static_cast<size_t>(got));
+    return got > 0 || (got < 0 && errno == EINTR);
+}
+
+}  // namespace
+
+ProgramResult run_program(const std::vector<std::string>& arguments, const RunOptions& options) {
+    const char* program = std::getenv("CLARITY_WORKER");
+    if (!program) throw std::runtime_error("CLARITY_WORKER does not name the program: run this test through ctest");
+    std::vector<std::string> words = {program};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+
+    const Channel out = make_channel(false), err = make_channel(options.terminal);
+    const auto begin = Clock::now();
+    const auto elapsed = [&] { return std::chrono::duration<double>(Clock::now() - begin).count(); };
+    const pid_t child = fork();
+    if (child < 0) throw std::runtime_error("fork failed");
+    if (child == 0) become(words, options, out.write, err.write);
+    close(out.write);
+    close(err.write);
+
+    ProgramResult result;
+    bool out_open = true, err_open = true, signalled = options.signal == 0;
+    while (out_open || err_open) {
+        pollfd waits[2] = {{out_open ? out.read : -1, POLLIN, 0}, {err_open ? err.read : -1, POLLIN, 0}};
+        poll(waits, 2, 10);
+        if (waits[0].revents) out_open = drain(out.read, result.out);
+        if (waits[1].revents) err_open = drain(err.read, result.err);
+        const bool due = (options.signal_after_s >= 0 && elapsed() >= options.signal_after_s) ||
+                         (!options.signal_when.empty() && result.err.find(options.signal_when) != std::string::npos);
+        if (!signalled && due) {
+            kill(child, options.signal);
+            signalled = true;
+        }
+        if (elapsed() > options.limit_s) kill(child, SIGKILL);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    close(out.read);
+    close(err.read);
+    result.seconds = elapsed();
+    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return result;
+}
