@@ -80,7 +80,10 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
             const LogLevel known = level <= RT_LOG_DEBUG  ? LogLevel::debug
                                    : level == RT_LOG_INFO ? LogLevel::info
                                                           : LogLevel::warning;
-            log(known, static_cast<HostServices*>(ctx)->who_ + ": " + (text ? text : ""));
+            const std::string& who = static_cast<HostServices*>(ctx)->who_;
+            const std::string said = text ? text : "";
+            // "main.scene:3:9: ..." names its file already.
+            log(known, said.compare(0, who.size() + 1, who + ":") == 0 ? said : who + ": " + said);
         } catch (...) {
         }
     };

@@ -145,6 +145,12 @@ TEST(SceneFormatErrors, AFaultyLineDoesNotHideNamesItDefines) {
     EXPECT_NE(r.why.find("test.scene:1:16: unknown key `radious`"), std::string::npos) << r.why;
 }
 
+TEST(SceneFormatErrors, WhatIsNoTextIsReadNoFurther) {
+    const Recording r = import_text("sphere material late\nsphere \x01\nsphere \x02\nmaterial late\n");
+    EXPECT_TRUE(r.log.empty()) << r.log[0];
+    EXPECT_EQ(r.why, "test.scene:2:8: byte 0x01 is a control character; expected text (is this a scene file?)");
+}
+
 TEST(SceneFormatErrors, LongWordsAreCut) {
     const Recording r = import_text("sphere " + std::string(100000, 'x') + "\n");
     EXPECT_EQ(r.why,

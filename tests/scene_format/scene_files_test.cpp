@@ -101,7 +101,7 @@ TEST(SceneFolder, DegenerateSceneIsKeptAndFinite) {
     EXPECT_TRUE(std::isfinite(scene.surface_area()));
     EXPECT_TRUE(std::isfinite(scene.bounds().diagonal()));
     ASSERT_EQ(scene.warnings.size(), 1u);
-    EXPECT_NE(scene.warnings[0].find("degenerate.scene:11:"), std::string::npos) << scene.warnings[0];
+    EXPECT_NE(scene.warnings[0].find("degenerate.scene:12:"), std::string::npos) << scene.warnings[0];
 }
 
 // Files of one test, in a folder of their own.

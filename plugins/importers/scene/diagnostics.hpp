@@ -16,6 +16,7 @@ struct Position {
 struct StatementError {
     Position position;
     std::string message;
+    bool ends_reading = false;  // what follows would only be noise
 };
 
 struct Diagnostic {

@@ -45,7 +45,7 @@ struct Cursor {
         const unsigned char c = static_cast<unsigned char>(look());
         if ((c < 0x20 && c != '\t') || c == 0x7F) {
             throw StatementError{
-                position, "byte " + byte_text(look()) + " is a control character; expected text (is this a scene file?)"};
+                position, "byte " + byte_text(look()) + " is a control character; expected text (is this a scene file?)", true};
         }
         const size_t bytes = character_bytes(line.substr(at));
         if (bytes == 0) {
@@ -87,7 +87,8 @@ bool Lexer::next_line(std::vector<Token>& tokens) {
             at_ = text_.size();
             throw StatementError{{line_, 1},
                                  "the file has more than " + std::to_string(kMaxLines) +
-                                     " lines; give large meshes as PLY or OBJ and `load` them"};
+                                     " lines; give large meshes as PLY or OBJ and `load` them",
+                                 true};
         }
         if (line.size() > kMaxLineBytes) {
             throw StatementError{

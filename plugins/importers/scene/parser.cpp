@@ -93,7 +93,8 @@ bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, 
     Lexer lexer(text);
     std::vector<Token> tokens;
     uint32_t lines = 0;
-    while (!diagnostics.full()) {
+    bool is_complete = true;
+    while (is_complete && !diagnostics.full()) {
         if (lines++ % kLinesBetweenReports == 0 && !proceed(lexer.fraction())) return false;
         try {
             if (!lexer.next_line(tokens)) break;
@@ -101,9 +102,10 @@ bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, 
             read_statement(statement, tokens[0], document, diagnostics);
         } catch (const StatementError& error) {
             diagnostics.error(error);
+            is_complete = !error.ends_reading;
         }
     }
-    if (!diagnostics.full()) check_names(document, diagnostics);
+    if (is_complete && !diagnostics.full()) check_names(document, diagnostics);
     if (document.statement_count == 0 && !diagnostics.failed()) {
         diagnostics.error({{1, 1}, "the file holds no statement; expected at least one, like `sphere center 0 0 0 radius 1`"});
     }
