@@ -77,11 +77,19 @@ configure() {
 werror=${CLARITY_WERROR:-as it is}"
     if [ -f "$build_dir/build.ninja" ] && [ "$now" = "$(cat "$stamp" 2>/dev/null)" ]; then return 0; fi
     rm -f "$stamp"
-    cmake --preset release ${CLARITY_WERROR:+-DCLARITY_WERROR=$CLARITY_WERROR} >&2 || die "cmake failed, see above"
+    mkdir -p "$build_dir"
+    say "Configuring (log: $build_dir/configure.log)"
+    if ! cmake --preset release ${CLARITY_WERROR:+-DCLARITY_WERROR=$CLARITY_WERROR} >"$build_dir/configure.log" 2>&1; then
+        cat "$build_dir/configure.log" >&2
+        die "cmake failed, see above"
+    fi
+    grep 'LEFT OUT' "$build_dir/configure.log" >&2
     printf '%s\n' "$now" >"$stamp"
 }
 
 # build TARGET...
 build() {
-    ninja -C "$build_dir" -j "$(nproc)" --quiet "$@" >&2 || die "the build failed, see above"
+    # Ninja counts on a terminal; elsewhere a long build says at least that it is one.
+    [ -t 2 ] || [ -x "$build_dir/bin/clarity" ] || say "Building (some minutes on a small machine)"
+    ninja -C "$build_dir" -j "$(nproc)" $([ -t 2 ] || echo --quiet) "$@" >&2 || die "the build failed, see above"
 }
