@@ -180,6 +180,7 @@ std::string Script::state_text(App& app) const {
                            {"message", session.message().text},
                            {"messages", session.message_count()},
                            {"path", app.state().path},
+                           {"map", app.state().key_map->id},
                            {"typing", app.typing()},
                            {"volumes", app.overlay().count()},
                            {"fps", session.frames_per_second()},

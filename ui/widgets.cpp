@@ -77,6 +77,20 @@ bool real_slider(const char* id_text, double& value, double min, double max, boo
     return true;
 }
 
+constexpr float kLabelWidth = 130;
+
+// The beginning of a text that fits.
+std::string cut_to(std::string text, float width) {
+    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+    while (!text.empty() && ImGui::CalcTextSize((text + "\u2026").c_str()).x > width) {
+        do text.pop_back();
+        while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0) == 0x80);
+        // A lead byte whose tail is gone goes too.
+        while (!text.empty() && static_cast<unsigned char>(text.back()) >= 0xC0) text.pop_back();
+    }
+    return text + "\u2026";
+}
+
 std::map<std::string, Rect>& places() {
     static std::map<std::string, Rect> rects;
     return rects;
@@ -228,23 +242,25 @@ const Rect* drawn_place(const std::string& label) {
 }
 
 void row_label(const char* label, const std::string& help) {
-    const float start = ImGui::GetCursorPosX();
+    const float start = ImGui::GetCursorPosX(), width = kLabelWidth * ui_scale();
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(label);
-    tooltip(help);
-    ImGui::SameLine(start + 122 * ui_scale());
+    const std::string text = cut_to(label, width - 8 * ui_scale());
+    ImGui::TextUnformatted(text.c_str());
+    tooltip(text == label ? help : std::string(label) + "\n" + help);
+    ImGui::SameLine(start + width);
     const ImVec2 from = ImGui::GetCursorScreenPos();
     places()[label] = {from.x, from.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()};
     ImGui::SetNextItemWidth(-FLT_MIN);
 }
 
 void row_text(const char* label, const std::string& value, const std::string& help) {
-    const float start = ImGui::GetCursorPosX();
+    const float start = ImGui::GetCursorPosX(), width = kLabelWidth * ui_scale();
+    const std::string text = cut_to(label, width - 8 * ui_scale());
     ImGui::PushStyleColor(ImGuiCol_Text, colors::kDim);
-    ImGui::TextUnformatted(label);
+    ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
-    tooltip(help);
-    ImGui::SameLine(start + 122 * ui_scale());
+    tooltip(text == label ? help : std::string(label) + "\n" + help);
+    ImGui::SameLine(start + width);
     ImGui::PushTextWrapPos(0);
     ImGui::TextUnformatted(value.c_str());
     ImGui::PopTextWrapPos();

@@ -1,0 +1,201 @@
+// The thesis keys, pressed for real: what must change changes, and nothing else.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <regex>
+
+#include "window_driver.hpp"
+
+namespace clarity {
+namespace {
+
+using Point = std::array<double, 3>;
+
+double distance(const Point& a, const Point& b) {
+    return std::sqrt((a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]) + (a[2] - b[2]) * (a[2] - b[2]));
+}
+
+class Keys : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        if (const std::string& missing = VirtualScreen::instance().missing(); !missing.empty())
+            GTEST_SKIP() << "NOT TESTED: the window needs " << missing;
+        window = std::make_unique<WindowDriver>(
+            std::vector<std::string>{"--size", "320x240", source_path("scenes/primitives.scene")});
+        window->settle();
+    }
+    std::unique_ptr<WindowDriver> window;
+};
+
+TEST_F(Keys, CameraKeysMoveTheCameraAndThePicture) {
+    struct Case {
+        const char* key;
+        int axis;  // of the eye (moves) or of the target (turns)
+        double sign;
+        bool turns;
+    };
+    // The scene's camera looks along -Z.
+    const Case cases[] = {{"Left", 0, -1, false}, {"Right", 0, 1, false}, {"Up", 2, -1, false}, {"Down", 2, 1, false},
+                          {"i", 1, 1, true},      {"k", 1, -1, true},     {"o", 0, -1, true},   {"p", 0, 1, true}};
+    for (const Case& c : cases) {
+        SCOPED_TRACE(c.key);
+        const Pixels before = window->picture();
+        const auto was = window->state();
+        window->key(c.key);
+        window->settle();
+        const auto now = window->state();
+        EXPECT_GT(difference(before, window->picture()), 0.01);
+        const Point eye_was = was["eye"], eye = now["eye"], target_was = was["target"], target = now["target"];
+        const Point& from = c.turns ? target_was : eye_was;
+        const Point& to = c.turns ? target : eye;
+        const auto axis = static_cast<size_t>(c.axis);
+        EXPECT_GT(c.sign * (to[axis] - from[axis]), 1e-3);
+        if (c.turns)
+            EXPECT_LT(distance(eye, eye_was), 1e-6);
+        else
+            EXPECT_NEAR(distance(eye, target), distance(eye_was, target_was), 1e-4);  // it looks the same way
+        EXPECT_EQ(now["light"], was["light"]);
+    }
+}
+
+TEST_F(Keys, LightKeysMoveTheLightOnly) {
+    struct Case {
+        const char* key;
+        size_t axis;
+        double sign;
+    };
+    for (const Case& c : {Case{"w", 2, -1}, Case{"s", 2, 1}, Case{"a", 0, -1}, Case{"d", 0, 1}}) {
+        SCOPED_TRACE(c.key);
+        const Pixels before = window->picture();
+        const auto was = window->state();
+        for (int i = 0; i < 3; ++i) window->key(c.key);
+        window->settle();
+        const auto now = window->state();
+        EXPECT_GT(difference(before, window->picture(), 2), 0.005);  // shading and shadows
+        EXPECT_EQ(now["eye"], was["eye"]);
+        EXPECT_EQ(now["target"], was["target"]);
+        const Point light_was = was["light"], light = now["light"];
+        EXPECT_GT(c.sign * (light[c.axis] - light_was[c.axis]), 1e-3);
+        EXPECT_NEAR(light[1], light_was[1], 1e-5);
+    }
+}
+
+TEST_F(Keys, FPrintsTheFrameRate) {
+    window->key("Left");
+    window->settle();
+    window->key("f");
+    const std::string line = window->line("fps ", 5);
+    std::smatch match;
+    ASSERT_TRUE(std::regex_search(line, match, std::regex(R"(^fps ([0-9.]+)  ([0-9.]+) ms  ([0-9.]+) Mrays/s  320x240)")))
+        << line;
+    const double fps = std::stod(match[1]), ms = std::stod(match[2]);
+    EXPECT_GT(fps, 0.1);
+    EXPECT_NEAR(fps * ms, 1000, 100);  // two roundings
+    EXPECT_GT(std::stod(match[3]), 0.01);
+}
+
+// Amber lines, as overlays are drawn, within the picture.
+size_t amber_pixels(const Pixels& screen, const nlohmann::json& area) {
+    size_t count = 0;
+    for (int y = int(area[1]); y < int(area[1]) + int(area[3]); ++y)
+        for (int x = int(area[0]); x < int(area[0]) + int(area[2]); ++x) {
+            const unsigned char* p = &screen.rgb[3 * (size_t(y) * size_t(screen.width) + size_t(x))];
+            count += p[0] > 200 && p[1] > 130 && p[1] < 210 && p[2] < 110;
+        }
+    return count;
+}
+
+TEST_F(Keys, DigitsShowAndHideLevels) {
+    for (const std::string accel : {"bvh2", "spheres"}) {
+        SCOPED_TRACE(accel);
+        ASSERT_EQ(window->command("accel " + accel), "");
+        window->settle();
+        const auto area = window->state()["area"];
+        const Pixels plain = window->screenshot(), traced = window->picture();
+        size_t volumes[3] = {};
+        const char* const keys[] = {"1", "3", "0"};
+        for (int i = 0; i < 3; ++i) {
+            SCOPED_TRACE(keys[i]);
+            window->key(keys[i]);
+            window->settle();
+            volumes[i] = window->state()["volumes"];
+            const Pixels shown = window->screenshot();
+            EXPECT_GT(amber_pixels(shown, area), amber_pixels(plain, area) + 100);
+            EXPECT_EQ(difference(traced, window->picture(), 0), 0);  // drawn over it, not traced
+            window->key(keys[i]);
+            window->settle();
+            EXPECT_EQ(window->state()["volumes"], 0);
+            EXPECT_EQ(difference(plain, window->screenshot(), 0), 0);
+        }
+        EXPECT_GE(volumes[0], 1u);
+        EXPECT_GT(volumes[1], volumes[0]);
+        EXPECT_GT(volumes[2], volumes[1]);
+        // Another level replaces the one that is shown.
+        window->key("1");
+        window->key("2");
+        window->settle();
+        EXPECT_EQ(window->state()["level"], 1);
+        window->key("2");
+    }
+}
+
+TEST_F(Keys, AHeldKeyMovesUntilItIsReleased) {
+    const Point start = window->state()["eye"];
+    window->key("Right");
+    window->settle();
+    const Point tapped = window->state()["eye"];
+    window->key_down("Right");
+    usleep(600000);
+    window->key_up("Right");
+    window->settle();
+    const Point held = window->state()["eye"];
+    EXPECT_GT(distance(held, tapped), 3 * distance(tapped, start));
+    usleep(300000);
+    window->settle();
+    EXPECT_EQ(Point(window->state()["eye"]), held);
+}
+
+TEST_F(Keys, TypingMovesNothing) {
+    const auto before = window->state();
+    ASSERT_EQ(window->command("focus path"), "");
+    for (int i = 0; i < 50 && !window->state()["typing"]; ++i) usleep(20000);
+    ASSERT_TRUE(window->state()["typing"]);
+    window->type("wasd ikop 0123f");
+    window->settle();
+    const auto typed = window->state();
+    EXPECT_EQ(typed["path"], "wasd ikop 0123f");
+    for (const char* key : {"eye", "target", "light", "level"}) EXPECT_EQ(typed[key], before[key]) << key;
+    EXPECT_EQ(window->line("fps ", 0.2), "");
+
+    // A key that went down before the field took over, and comes up in it, is up.
+    const auto area = before["area"];
+    window->click(double(area[0]) + 20, double(area[1]) + 20);
+    for (int i = 0; i < 50 && window->state()["typing"]; ++i) usleep(20000);
+    window->key_down("Left");
+    ASSERT_EQ(window->command("focus path"), "");
+    for (int i = 0; i < 50 && !window->state()["typing"]; ++i) usleep(20000);
+    window->key_up("Left");
+    window->settle();
+    const auto moved = window->state();
+    EXPECT_NE(moved["eye"], before["eye"]);
+    usleep(300000);
+    window->settle();
+    EXPECT_EQ(window->state()["eye"], moved["eye"]);
+}
+
+TEST_F(Keys, ViewerMapWalks) {
+    ASSERT_EQ(window->command("map viewer"), "");
+    const auto was = window->state();
+    window->key("w");
+    window->settle();
+    const auto now = window->state();
+    const Point eye_was = was["eye"], eye = now["eye"], target = was["target"];
+    EXPECT_LT(distance(eye, target), distance(eye_was, target) - 1e-3);
+    EXPECT_EQ(now["light"], was["light"]);
+    window->key("Home");
+    window->settle();
+    EXPECT_EQ(Point(window->state()["eye"]), eye_was);
+}
+
+}  // namespace
+}  // namespace clarity

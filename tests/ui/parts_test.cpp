@@ -1,0 +1,186 @@
+// The window's parts that need no screen.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include "ui/camera_control.hpp"
+#include "ui/frame_thread.hpp"
+#include "ui/key_map.hpp"
+#include "ui/preferences.hpp"
+#include "ui/viewport.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+
+float distance(const Vec3& a, const Vec3& b) {
+    return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]);
+}
+
+Camera camera_along_minus_z() {
+    Camera camera;
+    camera.eye = {0, 1, 5};
+    camera.target = {0, 1, 0};
+    return camera;
+}
+
+TEST(CameraControl, MovesInXAndZHoweverItIsPitched) {
+    Camera camera = camera_along_minus_z();
+    turn_camera(camera, 0, -0.7f);
+    const Vec3 eye = camera.eye;
+    move_camera(camera, {2, 0, 3});
+    EXPECT_NEAR(camera.eye[0], eye[0] + 2, 1e-5);
+    EXPECT_NEAR(camera.eye[1], eye[1], 1e-5);
+    EXPECT_NEAR(camera.eye[2], eye[2] - 3, 1e-5);
+}
+
+TEST(CameraControl, TurnsKeepEyeAndDistance) {
+    Camera camera = camera_along_minus_z();
+    turn_camera(camera, 0.5f, 0.25f);
+    EXPECT_EQ(camera.eye, camera_along_minus_z().eye);
+    EXPECT_NEAR(distance(camera.eye, camera.target), 5, 1e-4);
+    EXPECT_LT(camera.target[0], 0);  // yaw to the left
+    EXPECT_GT(camera.target[1], 1);  // pitch upwards
+}
+
+TEST(CameraControl, NeverTipsOver) {
+    Camera camera = camera_along_minus_z();
+    for (int i = 0; i < 200; ++i) turn_camera(camera, 0.01f, 0.2f);
+    EXPECT_GT(camera.target[1] - camera.eye[1], 4.9f);
+    const CameraAxes axes = camera_axes(camera);
+    EXPECT_GT(axes.up[1], 0.01f);
+    for (int i = 0; i < 200; ++i) orbit_camera(camera, 0.01f, -0.2f);
+    EXPECT_NEAR(distance(camera.eye, camera.target), 5, 1e-3);
+    for (const float x : camera.eye) EXPECT_TRUE(std::isfinite(x));
+}
+
+TEST(CameraControl, DegenerateCamerasStayFinite) {
+    Camera camera;
+    camera.eye = camera.target = {1, 2, 3};
+    camera.up = {0, 0, 0};
+    turn_camera(camera, 1, 1);
+    move_camera(camera, {1, 1, 1});
+    orbit_camera(camera, 1, 1);
+    Camera down = camera_along_minus_z();
+    down.target = {0, -4, 5};  // straight along up
+    move_camera(down, {1, 0, 1});
+    for (const Camera& c : {camera, down})
+        for (int i = 0; i < 3; ++i) EXPECT_TRUE(std::isfinite(c.eye[size_t(i)]) && std::isfinite(c.target[size_t(i)]));
+}
+
+TEST(CameraControl, UpMayBeZ) {
+    Camera camera;
+    camera.eye = {0, -5, 1};
+    camera.target = {0, 0, 1};
+    camera.up = {0, 0, 1};
+    move_camera(camera, {1, 2, 3});
+    EXPECT_NEAR(camera.eye[0], 1, 1e-5);
+    EXPECT_NEAR(camera.eye[1], -2, 1e-5);
+    EXPECT_NEAR(camera.eye[2], 3, 1e-5);
+}
+
+TEST(CameraControl, DirectionalLightsStayUnitVectors) {
+    rt_light light{};
+    light.kind = RT_LIGHT_DIRECTIONAL;
+    light.position[1] = 1;
+    move_light(light, camera_along_minus_z(), {5, 0, 2}, 10);
+    const Vec3 direction = {light.position[0], light.position[1], light.position[2]};
+    EXPECT_NEAR(distance(direction, {0, 0, 0}), 1, 1e-5);
+    EXPECT_GT(direction[0], 0.1f);
+    EXPECT_LT(direction[2], -0.05f);
+}
+
+TEST(KeyMap, ThesisKeysAreTheDefault) {
+    ASSERT_FALSE(key_maps().empty());
+    EXPECT_STREQ(key_maps().front().id, "thesis");
+    EXPECT_EQ(find_key_map("nothing"), nullptr);
+}
+
+TEST(KeyMap, NoKeyHasTwoMeanings) {
+    for (const KeyMap& map : key_maps())
+        for (size_t i = 0; i < map.bindings.size(); ++i)
+            EXPECT_EQ(map.find(map.bindings[i].key), &map.bindings[i]) << map.id << " " << map.bindings[i].name;
+}
+
+TEST(KeyMap, HeldKeysForgetWhatIsReleased) {
+    const KeyMap& map = key_maps().front();
+    HeldKeys held;
+    held.press(map.bindings[0].key);
+    EXPECT_TRUE(held.any_held(map));
+    EXPECT_EQ(held.value(map, map.bindings[0].action), 1);
+    held.release(map.bindings[0].key);
+    held.release(map.bindings[0].key);
+    EXPECT_FALSE(held.any_held(map));
+    held.press(map.bindings[1].key);
+    held.clear();
+    EXPECT_FALSE(held.any_held(map));
+}
+
+TEST(Viewport, LetterBoxKeepsTheAspectInside) {
+    for (const float aspect : {0.5f, 1.0f, 1.7f, 4.0f}) {
+        const Rect box = letter_box({10, 20, 800, 600}, aspect);
+        EXPECT_NEAR(box.width / box.height, aspect, 1e-3);
+        EXPECT_GE(box.x, 10);
+        EXPECT_GE(box.y, 20);
+        EXPECT_LE(box.x + box.width, 810.01f);
+        EXPECT_LE(box.y + box.height, 620.01f);
+        EXPECT_TRUE(std::abs(box.width - 800) < 1e-2 || std::abs(box.height - 600) < 1e-2);
+    }
+}
+
+TEST(FrameSettings, TakesFromTheWishOnlyWhatNeedsNoPreparation) {
+    Settings prepared, wished;
+    prepared.lanes = 16;
+    prepared.aov = "color";
+    wished.lanes = 4;
+    wished.aov = "normal";
+    wished.depth = 9;
+    wished.width = 77;
+    const Settings settings = frame_settings(prepared, wished);
+    EXPECT_EQ(settings.depth, 9);
+    EXPECT_EQ(settings.width, 77);
+    EXPECT_EQ(settings.lanes, 16);
+    EXPECT_EQ(settings.aov, "color");
+}
+
+TEST(Preferences, ReturnAsTheyWere) {
+    const fs::path folder = fs::path(::testing::TempDir()) / "clarity_preferences_test";
+    fs::create_directories(folder);
+    Preferences written;
+    written.width = 1000;
+    written.key_map = "viewer";
+    written.text_scale = 1.5f;
+    written.panel_visible = false;
+    save_preferences(folder.string(), written);
+    const Preferences read = load_preferences(folder.string());
+    EXPECT_EQ(read.width, 1000);
+    EXPECT_EQ(read.key_map, "viewer");
+    EXPECT_EQ(read.text_scale, 1.5f);
+    EXPECT_FALSE(read.panel_visible);
+    for (const char* damaged : {"{", "[1,2]", R"({"width": "wide"})", R"({"width": -5, "text_scale": 1e9})"}) {
+        std::ofstream(folder / "window.json") << damaged;
+        const Preferences p = load_preferences(folder.string());
+        EXPECT_GE(p.width, 640) << damaged;
+        EXPECT_LE(p.text_scale, 2) << damaged;
+    }
+    fs::remove_all(folder);
+}
+
+TEST(Preferences, LieUnderTheConfigurationFolder) {
+    const fs::path folder = fs::path(::testing::TempDir()) / "clarity_xdg_test";
+    setenv("XDG_CONFIG_HOME", folder.c_str(), 1);
+    unsetenv("CLARITY_UI_NO_SAVE");
+    EXPECT_EQ(preferences_folder(), (folder / "clarity").string());
+    setenv("CLARITY_UI_NO_SAVE", "1", 1);
+    EXPECT_EQ(preferences_folder(), "");
+    unsetenv("CLARITY_UI_NO_SAVE");
+    unsetenv("XDG_CONFIG_HOME");
+    fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace clarity
