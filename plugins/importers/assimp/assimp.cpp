@@ -121,7 +121,7 @@ void add_instances(const NodeTree& tree, const FbxMend* mend, MeshTable& meshes,
                        [](double x) { return static_cast<float>(x); });
         rt::id(sink.instance(sink.ctx, &out));
     }
-    if (strayed) warn(sink, std::to_string(strayed) + " nodes were left out: their transforms are not finite");
+    if (strayed) warn(sink, "nodes left out for transforms that are not finite: " + std::to_string(strayed));
 }
 
 // Says what was left out; throws if that was everything.
@@ -129,11 +129,10 @@ void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes,
             const rt_host* host, const rt_scene_sink& sink) {
     for (const std::string& error : errors) warn(sink, "assimp left something out: " + error);
     if (meshes.broken_faces()) {
-        warn(sink,
-             std::to_string(meshes.broken_faces()) + " faces were left out: they name vertices that are missing or not finite");
+        warn(sink, "faces left out for vertices that are missing or not finite: " + std::to_string(meshes.broken_faces()));
     }
     if (meshes.faces() > 0) {
-        if (meshes.points_and_lines()) warn(sink, std::to_string(meshes.points_and_lines()) + " points and lines were skipped");
+        if (meshes.points_and_lines()) warn(sink, "points and lines skipped: " + std::to_string(meshes.points_and_lines()));
         return;
     }
     // What lost its polygons on the way is damaged; what never had any (NURBS, curves, cameras) is not.

@@ -106,7 +106,8 @@ void add_cameras(const aiScene& scene, const NodeTree& tree, Format format, cons
         rt_camera out{};
         out.struct_bytes = sizeof out;
         out.name = camera.mName.C_Str();
-        const Vec eye = transform_point(world, camera.mPosition);
+        // For glTF assimp 5.2 stores the node's translation once more as the camera's position.
+        const Vec eye = transform_point(world, format == Format::gltf ? aiVector3D() : camera.mPosition);
         store(eye, out.eye);
         store({eye[0] + forward[0], eye[1] + forward[1], eye[2] + forward[2]}, out.target);
         store(up, out.up);

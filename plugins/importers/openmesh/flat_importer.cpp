@@ -125,11 +125,10 @@ void FlatImporter::report_broken(int vertex) {
     if (broken_faces++ > 0) return;
     const size_t line = line_number ? line_number() : 0;
     if (line > 0) first_broken = "line " + std::to_string(line) + ": ";
-    if (vertex >= 0 && size_t(vertex) < file_vertices_) {
-        first_broken += "vertex " + std::to_string(vertex) + " (from 0) is not finite";
-    } else {
-        first_broken += "vertex " + std::to_string(vertex) + " (from 0) of " + std::to_string(file_vertices_);
-    }
+    // OBJ, the format with line numbers here, counts from 1; the others from 0.
+    const bool exists = vertex >= 0 && size_t(vertex) < file_vertices_;
+    first_broken += "vertex " + std::to_string(vertex + (attributes_of_corners_ ? 1 : 0));
+    first_broken += exists ? " is not finite" : ", and there are " + std::to_string(file_vertices_);
 }
 
 FlatImporter::FaceHandle FlatImporter::add_face(const VHandles& vertices) {

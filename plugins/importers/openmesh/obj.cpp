@@ -173,14 +173,13 @@ void read_obj(const Source& source, FlatImporter& mesh) {
 
     if (lines.bad_faces > 0) {
         const std::string text =
-            std::to_string(lines.bad_faces) + " faces cannot be read, the first at " + lines.first_bad_face;
+            counted(lines.bad_faces, "face") + " left out that cannot be read, the first at " + lines.first_bad_face;
         if (lines.bad_faces == lines.faces) throw std::runtime_error(text);
         warn(source, text);
     }
     const uint64_t collapsed = lines.faces - lines.bad_faces - mesh.face_count();
-    if (collapsed > 0) warn(source, std::to_string(collapsed) + " faces with fewer than three different corners were left out");
-    if (lines.points_and_lines > 0)
-        warn(source, std::to_string(lines.points_and_lines) + " point and line elements were skipped");
+    if (collapsed > 0) warn(source, counted(collapsed, "face") + " left out: fewer than three different corners");
+    if (lines.points_and_lines > 0) warn(source, counted(lines.points_and_lines, "point or line element") + " skipped");
 }
 
 }  // namespace openmesh_import

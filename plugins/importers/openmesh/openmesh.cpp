@@ -135,8 +135,8 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     rt::progress(host, kReadShare);
 
     if (mesh.broken_faces > 0) {
-        const std::string text =
-            std::to_string(mesh.broken_faces) + " faces name missing or unusable vertices, the first: " + mesh.first_broken;
+        const std::string text = counted(mesh.broken_faces, "face") +
+                                 " left out for vertices that are missing or not finite, the first: " + mesh.first_broken;
         if (mesh.face_count() == 0) throw std::runtime_error("contains no usable polygons: " + text);
         warn(source, text);
     }

@@ -88,9 +88,13 @@ class AsciiLines {
         // Out of range in a way that OpenMesh's numbers can carry.
         out.append(integer < 0 || integer > 2147483647 ? "2147483647" : word);
     }
-    // nan, inf, -1.#IND, 1e999.
+    // nan, inf, -1.#IND, 1e999: numbers that are none.
     static bool is_odd_number(std::string_view word) {
-        return word.find_first_of("nN#") != word.npos || word.find_first_of("eE") != word.npos;
+        if (!word.empty() && (word.front() == '-' || word.front() == '+')) word.remove_prefix(1);
+        if (word.empty()) return false;
+        const char first = static_cast<char>(word.front() | 0x20);
+        if (first == 'n' || first == 'i') return word.size() >= 3 && word.size() <= 8;
+        return word.front() >= '0' && word.front() <= '9' && word.find_first_of("eE#") != word.npos;
     }
 
     const Header& header_;

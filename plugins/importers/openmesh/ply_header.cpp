@@ -116,7 +116,8 @@ void check(const Header& header) {
     if (indices != faces->properties.begin())
         throw std::runtime_error("its faces have properties before 'vertex_indices', which is not read");
     if (indices->type->is_float) throw std::runtime_error("its faces name vertices by fractions");
-    unsigned long long available = header.body.size();
+    // The last number of a text needs nothing behind it.
+    unsigned long long available = header.body.size() + (header.is_ascii() ? 1 : 0);
     for (const Element& element : header.elements) {
         for (const Property& p : element.properties) {
             if (p.is_list() && &element != faces) {

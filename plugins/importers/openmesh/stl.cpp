@@ -43,8 +43,7 @@ void read_binary(const Source& source, FlatImporter& mesh) {
     BytesBuffer buffer({}, source.bytes, source.progress);
     run_reader("stl", buffer, true, true, false, mesh);
     if (count > mesh.face_count()) {
-        warn(source,
-             std::to_string(count - mesh.face_count()) + " facets with fewer than three different corners were left out");
+        warn(source, counted(count - mesh.face_count(), "facet") + " left out: fewer than three different corners");
     }
 }
 
@@ -76,8 +75,7 @@ void read_ascii(const Source& source, FlatImporter& mesh) {
                                  " facets: it is cut off or damaged");
     }
     if (facets > mesh.face_count()) {
-        warn(source,
-             std::to_string(facets - mesh.face_count()) + " facets with fewer than three different corners were left out");
+        warn(source, counted(facets - mesh.face_count(), "facet") + " left out: fewer than three different corners");
     }
 }
 

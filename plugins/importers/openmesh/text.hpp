@@ -65,6 +65,11 @@ inline bool parse_integer(std::string_view word, long long& value) {
     return error == std::errc() && end == word.data() + word.size() && !word.empty();
 }
 
+// "1 face", "3 faces".
+inline std::string counted(unsigned long long count, const char* what) {
+    return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
+}
+
 // For messages: short, printable, in quotes.
 inline std::string quoted(std::string_view text) {
     std::string out = "'";
