@@ -1,9 +1,10 @@
 /* camera.h -- which pixels a work-item computes, and the camera rays through them.
  *
  * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels. A
- * work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture run close in time. On a CPU (RT_SERIAL_GROUP)
- * it is one work-item that does these packets in turn: PoCL would keep the private arrays of all its work-items side by side,
- * and they would fall out of the cache. The packet's size is no define but a number of the frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
+ * work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture run close in time. On a CPU (RT_CPU) it is
+ * one work-item that does these packets in turn: PoCL would keep the private arrays of all work-items of a group side by side,
+ * and they would fall out of the cache. The packet's size is no define but a number of the frame, so changing it compiles
+ * nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
 
@@ -17,7 +18,7 @@
 #define RT_BLOCKS(frame) ((frame)->blocks_x * (frame)->blocks_y)
 #endif
 
-#if RT_SERIAL_GROUP
+#if RT_CPU
 #define RT_LOCAL_SIZE 1
 #define RT_FOR_PACKETS(packet) for (uint packet = 0; packet < RT_GROUP_W * RT_GROUP_H; ++packet)
 #else
@@ -104,6 +105,7 @@ RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
     h->t = rt_select(active, RT_INFINITY, rt_vfloat(-1.0f));
     h->u = h->v = h->nx = h->ny = h->nz = rt_vfloat(0.0f);
     h->leaf = h->instance = rt_vint(-1);
+    h->prim = rt_vint(-1); /* below all: t_max itself is out of the ray's reach */
 #ifdef RT_COUNT_STEPS
     h->steps = 0;
 #endif

@@ -15,11 +15,12 @@ RT_INLINE void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint index, const rt_ra
     inner.dz = fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz));
     inner.t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
     rt_prepare(&inner, active);
-    const vfloat before = h->t;
+    /* Leaves of a mesh count their primitives from 0: the number to beat is turned into theirs, and back. */
+    const vint before = h->prim, first = rt_vint((int)instance->first_prim);
+    h->prim = before - first;
     RT_FN(rt_mesh)(ctx, instance->root, &inner, h);
-#if !RT_ANY_HIT
-    h->instance = rt_select(RT_MASK(h->t < before), rt_vint(index), h->instance);
-#endif
+    h->prim += first;
+    h->instance = rt_select(RT_MASK(h->prim != before), rt_vint((int)index), h->instance);
 }
 #endif
 

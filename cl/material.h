@@ -3,10 +3,9 @@
 #define RT_MATERIAL_H
 
 typedef struct rt_shade {
-    vfloat r, g, b;    /* diffuse colour, texture included */
-    vfloat er, eg, eb; /* emission */
-    vfloat spr, spg, spb, shininess;
-    vfloat reflect, refract, ior;
+    rt_vec color; /* diffuse, texture included */
+    rt_vec emission, specular;
+    vfloat shininess, reflect, refract, ior;
 } rt_shade;
 
 #if RT_HAS_TEXTURES
@@ -32,12 +31,12 @@ RT_INLINE float3 rt_sample_texture(const rt_ctx *ctx, uint index, float u, float
 }
 #endif
 
-/* Fills in the material of each lane; lanes that share one are served together. (px, py, pz): the hit points. */
-RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uint bits, vfloat px, vfloat pz)
+/* Fills in the material of each lane; lanes that share one are served together. at: the hit points. */
+RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uint bits, rt_vec at)
 {
     rt_shade out;
-    const vfloat zero = rt_vfloat(0.0f);
-    out.r = out.g = out.b = out.er = out.eg = out.eb = out.spr = out.spg = out.spb = out.reflect = out.refract = zero;
+    out.color = out.emission = out.specular = rt_splat(0.0f, 0.0f, 0.0f);
+    out.reflect = out.refract = rt_vfloat(0.0f);
     out.shininess = out.ior = rt_vfloat(1.0f);
     int material[RT_LANES];
     rt_store(s->material, material);
@@ -48,13 +47,11 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
         const vmask mine = RT_MASK(s->material == rt_vint(id));
         left &= ~rt_bits(mine);
         const global rt_material *m = ctx->materials + id;
-        vfloat r = rt_vfloat(m->color[0]), g = rt_vfloat(m->color[1]), b = rt_vfloat(m->color[2]);
+        rt_vec color = rt_spread(m->color);
         if (m->flags & RT_MATERIAL_CHECKER) {
-            const vint cell = rt_to_int(floor(px)) + rt_to_int(floor(pz));
+            const vint cell = rt_to_int(floor(at.x)) + rt_to_int(floor(at.z));
             const vfloat dim = rt_select(RT_MASK((cell & rt_vint(1)) != rt_vint(0)), rt_vfloat(1.0f / 3.0f), rt_vfloat(1.0f));
-            r *= dim;
-            g *= dim;
-            b *= dim;
+            color = rt_scale(dim, color);
         }
 #if RT_HAS_TEXTURES
         if (m->texture != RT_NONE) {
@@ -69,20 +66,12 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
                 tg[l] = c.y;
                 tb[l] = c.z;
             }
-            r *= rt_load(tr);
-            g *= rt_load(tg);
-            b *= rt_load(tb);
+            color = rt_mul(color, rt_vec_of(rt_load(tr), rt_load(tg), rt_load(tb)));
         }
 #endif
-        out.r = rt_select(mine, r, out.r);
-        out.g = rt_select(mine, g, out.g);
-        out.b = rt_select(mine, b, out.b);
-        out.er = rt_select(mine, rt_vfloat(m->emission[0]), out.er);
-        out.eg = rt_select(mine, rt_vfloat(m->emission[1]), out.eg);
-        out.eb = rt_select(mine, rt_vfloat(m->emission[2]), out.eb);
-        out.spr = rt_select(mine, rt_vfloat(m->specular[0]), out.spr);
-        out.spg = rt_select(mine, rt_vfloat(m->specular[1]), out.spg);
-        out.spb = rt_select(mine, rt_vfloat(m->specular[2]), out.spb);
+        out.color = rt_choose(mine, color, out.color);
+        out.emission = rt_choose(mine, rt_spread(m->emission), out.emission);
+        out.specular = rt_choose(mine, rt_spread(m->specular), out.specular);
         out.shininess = rt_select(mine, rt_vfloat(m->shininess), out.shininess);
         out.reflect = rt_select(mine, rt_vfloat(m->reflect), out.reflect);
         out.refract = rt_select(mine, rt_vfloat(m->refract), out.refract);
@@ -91,8 +80,8 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
     return out;
 }
 
-/* x^y for x in [0,1], y >= 1: exp2(y log2 x) by polynomials, 1e-3 relative at y = 100. Plain arithmetic, so that all lanes counts and
- * devices agree, where library pow would differ. */
+/* x^y for x in [0,1], y >= 1, as exp2(y log2 x) by polynomials: 1e-3 relative at y = 100. Plain arithmetic, so that all lane
+ * counts and devices agree, where a library's pow would differ. */
 RT_INLINE vfloat rt_power(vfloat x, vfloat y)
 {
     const vint xi = rt_as_vint(rt_max(x, rt_vfloat(1e-20f)));
@@ -100,11 +89,20 @@ RT_INLINE vfloat rt_power(vfloat x, vfloat y)
     const vfloat m = rt_as_vfloat((xi & 0x007fffff) | 0x3f800000); /* 1..2 */
     /* log2(m) = 2/ln2 (z + z^3/3 + z^5/5 + ..), z = (m-1)/(m+1) <= 1/3 */
     const vfloat z = (m - 1.0f) / (m + 1.0f), z2 = z * z;
-    const vfloat series = fma(z2, fma(z2, fma(z2, fma(z2, rt_vfloat(0.32059889f), rt_vfloat(0.41219858f)), rt_vfloat(0.57707802f)), rt_vfloat(0.96179669f)), rt_vfloat(2.8853901f));
+    vfloat series = rt_vfloat(0.32059889f);
+    series = fma(series, z2, rt_vfloat(0.41219858f));
+    series = fma(series, z2, rt_vfloat(0.57707802f));
+    series = fma(series, z2, rt_vfloat(0.96179669f));
+    series = fma(series, z2, rt_vfloat(2.8853901f));
     const vfloat l = rt_max(y * fma(z, series, rt_to_float(e)), rt_vfloat(-126.0f));
     const vfloat whole = floor(l), f = l - whole;
-    const vfloat p = fma(f, fma(f, fma(f, fma(f, fma(f, rt_vfloat(0.0013333558f), rt_vfloat(0.0096181291f)), rt_vfloat(0.055504109f)), rt_vfloat(0.24022651f)), rt_vfloat(0.69314718f)), rt_vfloat(1.0f));
-    return p * rt_as_vfloat((rt_to_int(whole) + 127) << 23);
+    vfloat power = rt_vfloat(0.0013333558f); /* 2^f by its Taylor series, f in 0..1 */
+    power = fma(power, f, rt_vfloat(0.0096181291f));
+    power = fma(power, f, rt_vfloat(0.055504109f));
+    power = fma(power, f, rt_vfloat(0.24022651f));
+    power = fma(power, f, rt_vfloat(0.69314718f));
+    power = fma(power, f, rt_vfloat(1.0f));
+    return power * rt_as_vfloat((rt_to_int(whole) + 127) << 23);
 }
 
 #endif

@@ -11,14 +11,18 @@ typedef struct rt_rays {
     vfloat far_ix, far_iy, far_iz; /* 1 / direction, a little larger in magnitude */
     vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up */
     vmask neg_x, neg_y, neg_z;     /* where the direction's component is negative */
-    vfloat px, py, pz;             /* two vectors across the ray: the plane in which triangles are tested */
-    vfloat qx, qy, qz;
-    vfloat rx, ry, rz;             /* dot(x - origin, r) = t on the ray */
     int coherent;                  /* all active lanes have the same signs: then */
     uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
+#if RT_CPU
     int same_axis;                 /* all active lanes have the same dominant axis: then */
-    uint kx, ky, kz;               /* kz is it, and the shear below replaces p, q, r */
-    vfloat sx, sy, sz;
+    uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
+    vmask is_y, is_z;              /* it differs by lane */
+    vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
+#else
+    vfloat px, py, pz;             /* two vectors across the ray: the same shear, without a choice of axes */
+    vfloat qx, qy, qz;
+    vfloat rx, ry, rz;             /* dot(x - origin, r) = t on the ray */
+#endif
 } rt_rays;
 
 /* The nearest hit so far. A lane that is inactive, or occluded in an any-hit query, has t = -1: every test then fails for it. */
@@ -27,6 +31,7 @@ typedef struct rt_hits {
     vfloat u, v;       /* weights of corners b and c of a triangle */
     vfloat nx, ny, nz; /* geometric normal in the space of the hit's group, not unit, either side */
     vint leaf;         /* position in leaf order; -1: none; -2 - i: plane i */
+    vint prim;         /* its number; of two primitives at the same t the lower one wins, whatever the order of visits */
     vint instance;     /* -1: none */
 #ifdef RT_COUNT_STEPS
     uint steps;
@@ -75,34 +80,35 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->neg_y = RT_MASK(r->iy < rt_vfloat(0.0f));
     r->neg_z = RT_MASK(r->iz < rt_vfloat(0.0f));
 
-    /* Across the ray: p and q are the axes other than the dominant one, sheared along the direction (Woop, Benthin, Wald 2013,
-     * Watertight Ray/Triangle Intersection). Any two vectors across d would do; these keep coordinates exact where they can be. */
+    /* Triangles are tested in a plane across the ray: the two axes other than the dominant one, sheared along the direction
+     * (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection). x: y, z;  y: z, x;  z: x, y. */
     const vfloat ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
     const vmask is_z = RT_MASK(az >= ax) & RT_MASK(az >= ay), is_y = ~is_z & RT_MASK(ay >= ax), is_x = ~is_z & ~is_y;
-    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     const vfloat along = rt_select(is_z, r->iz, rt_select(is_y, r->iy, r->ix));
-    /* x: p = y, q = z;  y: p = z, q = x;  z: p = x, q = y */
     const vfloat shear_p = -along * rt_select(is_z, r->dx, rt_select(is_y, r->dz, r->dy));
     const vfloat shear_q = -along * rt_select(is_z, r->dy, rt_select(is_y, r->dx, r->dz));
 #if RT_LANES == 1
-    const uint any_x = is_x, any_y = is_y;
     r->coherent = 1;
-    r->same_axis = 0;
 #else
-    const uint any_x = rt_bits(is_x) & bits, any_y = rt_bits(is_y) & bits, any_z = rt_bits(is_z) & bits;
     const uint neg_x = rt_bits(r->neg_x) & bits, neg_y = rt_bits(r->neg_y) & bits, neg_z = rt_bits(r->neg_z) & bits;
     r->coherent = (neg_x == 0u || neg_x == bits) && (neg_y == 0u || neg_y == bits) && (neg_z == 0u || neg_z == bits);
     r->lo_x = neg_x ? 3u : 0u;
     r->lo_y = neg_y ? 4u : 1u;
     r->lo_z = neg_z ? 5u : 2u;
-    r->same_axis = (any_x == bits) || (any_y == bits) || (any_z == bits);
 #endif
+#if RT_CPU
+    const uint any_x = rt_bits(is_x) & bits, any_y = rt_bits(is_y) & bits, any_z = rt_bits(is_z) & bits;
+    r->same_axis = (any_x == bits) || (any_y == bits) || (any_z == bits);
     r->kz = any_x ? 0u : any_y ? 1u : 2u;
     r->kx = r->kz == 2u ? 0u : r->kz + 1u;
     r->ky = r->kz == 0u ? 2u : r->kz - 1u;
+    r->is_y = is_y;
+    r->is_z = is_z;
     r->sx = shear_p;
     r->sy = shear_q;
     r->sz = along;
+#else
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     r->px = rt_select(is_x, shear_p, rt_select(is_y, zero, one));
     r->py = rt_select(is_x, one, rt_select(is_y, shear_p, zero));
     r->pz = rt_select(is_x, zero, rt_select(is_y, one, shear_p));
@@ -112,6 +118,13 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->rx = rt_select(is_x, along, zero);
     r->ry = rt_select(is_y, along, zero);
     r->rz = rt_select(is_z, along, zero);
+#endif
+}
+
+/* Lanes in which a primitive at t beats what was hit so far. */
+RT_INLINE vmask rt_closer(const rt_rays *r, const rt_hits *h, vfloat t, uint prim)
+{
+    return RT_MASK(t >= r->t_min) & (RT_MASK(t < h->t) | (RT_MASK(t == h->t) & RT_MASK(rt_vint((int)prim) < h->prim)));
 }
 
 /* Which lanes enter the box lo..hi before their nearest hit; *entry is where. Rounding never loses a lane. */

@@ -15,30 +15,19 @@
 
 typedef struct rt_surface {
     vmask hit;
-    vfloat nx, ny, nz;       /* geometric normal, unit, world, as the primitive has it */
-    vfloat sx, sy, sz;       /* shading normal, unit, on the side of the geometric one */
-    vfloat tex_u, tex_v;     /* (0,0) at the bottom left of a texture */
-    vint prim;               /* -1: nothing hit */
+    rt_vec geometric;    /* unit normal, world, on the side that the primitive has it */
+    rt_vec normal;       /* for shading: interpolated where there are vertex normals; unit, on the geometric one's side */
+    vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
+    vint prim;           /* -1: nothing hit */
     vint material;
 } rt_surface;
-
-RT_INLINE vfloat rt_dot3(vfloat ax, vfloat ay, vfloat az, vfloat bx, vfloat by, vfloat bz)
-{
-    return fma(ax, bx, fma(ay, by, az * bz));
-}
-/* 1 / length; finite also for a null vector. */
-RT_INLINE vfloat rt_inverse_length(vfloat x, vfloat y, vfloat z)
-{
-    return rt_vfloat(1.0f) / sqrt(rt_max(rt_dot3(x, y, z, x, y, z), rt_vfloat(1e-36f)));
-}
 
 RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, uint bits)
 {
     float nx[RT_LANES], ny[RT_LANES], nz[RT_LANES], tex_u[RT_LANES], tex_v[RT_LANES];
-    int leaf_at[RT_LANES], instance_at[RT_LANES], prim[RT_LANES], material[RT_LANES];
+    int leaf_at[RT_LANES], instance_at[RT_LANES], material[RT_LANES];
     rt_store(hit->leaf, leaf_at);
     rt_store(hit->instance, instance_at);
-    rt_store(rt_vint(-1), prim);
     rt_store(rt_vint(0), material);
     rt_store(rt_vfloat(0.0f), tex_u);
     rt_store(rt_vfloat(0.0f), tex_v);
@@ -68,7 +57,6 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_PLANES
         if (leaf_at[l] < -1) {
             const global rt_plane *plane = ctx->planes + (-2 - leaf_at[l]);
-            prim[l] = (int)plane->prim;
             material[l] = (int)plane->material;
             planar = 1;
         } else
@@ -76,7 +64,6 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         {
             const global rt_leaf *leaf = ctx->leaves + leaf_at[l];
             const uint kind = RT_REF_KIND(leaf->ref);
-            prim[l] = (int)leaf->prim;
             material[l] = (int)leaf->material;
             planar = kind == RT_REF_POLYGON;
 #if RT_HAS_ATTRIBUTES
@@ -120,7 +107,6 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         if (instance_at[l] >= 0) {
             const global rt_instance *instance = ctx->instances + instance_at[l];
             const global float *m = instance->object_from_world;
-            prim[l] += (int)instance->first_prim;
             if (instance->material != RT_NONE) material[l] = (int)instance->material;
             /* Normals go with the transpose of the inverse. */
             const float x = nx[l], y = ny[l], z = nz[l];
@@ -138,30 +124,17 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     }
 
     rt_surface s;
-    s.prim = rt_load(prim);
+    s.prim = hit->prim;
     s.material = rt_load(material);
     s.hit = RT_MASK(s.prim >= rt_vint(0));
-    s.nx = rt_load(nx);
-    s.ny = rt_load(ny);
-    s.nz = rt_load(nz);
-    const vfloat n_scale = rt_inverse_length(s.nx, s.ny, s.nz);
-    s.nx *= n_scale;
-    s.ny *= n_scale;
-    s.nz *= n_scale;
+    s.geometric = rt_normalize(rt_vec_of(rt_load(nx), rt_load(ny), rt_load(nz)));
 #if RT_HAS_ATTRIBUTES
-    s.sx = rt_load(sx);
-    s.sy = rt_load(sy);
-    s.sz = rt_load(sz);
-    vfloat s_scale = rt_inverse_length(s.sx, s.sy, s.sz);
+    s.normal = rt_normalize(rt_vec_of(rt_load(sx), rt_load(sy), rt_load(sz)));
     /* Files disagree on which side corners turn; the geometric normal decides. */
-    s_scale = rt_select(RT_MASK(rt_dot3(s.sx, s.sy, s.sz, s.nx, s.ny, s.nz) < rt_vfloat(0.0f)), -s_scale, s_scale);
-    s.sx *= s_scale;
-    s.sy *= s_scale;
-    s.sz *= s_scale;
+    const vmask against = RT_MASK(rt_dot(s.normal, s.geometric) < rt_vfloat(0.0f));
+    s.normal = rt_scale(rt_select(against, rt_vfloat(-1.0f), rt_vfloat(1.0f)), s.normal);
 #else
-    s.sx = s.nx;
-    s.sy = s.ny;
-    s.sz = s.nz;
+    s.normal = s.geometric;
 #endif
     s.tex_u = rt_load(tex_u);
     s.tex_v = rt_load(tex_v);

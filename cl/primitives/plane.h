@@ -7,7 +7,7 @@ RT_INLINE void RT_FN(rt_hit_planes)(const rt_ctx *ctx, uint count, const rt_rays
         const vfloat facing = fma(nx, r->dx, fma(ny, r->dy, nz * r->dz));
         const vfloat height = rt_vfloat(plane->offset) - fma(nx, r->ox, fma(ny, r->oy, nz * r->oz));
         const vfloat t = height / facing, zero = rt_vfloat(0.0f);
-        const vmask closer = RT_MASK(facing != zero) & RT_MASK(t > r->t_min) & RT_MASK(t < h->t) & RT_MASK(h->t >= zero);
+        const vmask closer = RT_MASK(facing != zero) & RT_MASK(h->t >= zero) & rt_closer(r, h, t, plane->prim);
         if (!rt_any(closer)) continue;
 #if RT_ANY_HIT
         h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
@@ -19,6 +19,7 @@ RT_INLINE void RT_FN(rt_hit_planes)(const rt_ctx *ctx, uint count, const rt_rays
         h->ny = rt_select(closer, ny, h->ny);
         h->nz = rt_select(closer, nz, h->nz);
         h->leaf = rt_select(closer, rt_vint(-2 - (int)i), h->leaf);
+        h->prim = rt_select(closer, rt_vint((int)plane->prim), h->prim);
         h->instance = rt_select(closer, rt_vint(-1), h->instance);
 #endif
     }

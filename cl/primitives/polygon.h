@@ -7,7 +7,7 @@ RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *le
     const vfloat facing = fma(rt_vfloat(nx), r->dx, fma(rt_vfloat(ny), r->dy, rt_vfloat(nz) * r->dz));
     const vfloat height = rt_vfloat(leaf->b[0]) - fma(rt_vfloat(nx), r->ox, fma(rt_vfloat(ny), r->oy, rt_vfloat(nz) * r->oz));
     const vfloat t = height / facing;
-    vmask closer = RT_MASK(facing != zero) & RT_MASK(t >= r->t_min) & RT_MASK(t < h->t) & RT_MASK(h->t >= zero);
+    vmask closer = RT_MASK(facing != zero) & RT_MASK(h->t >= zero) & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
 
     const rt_polygon polygon = ctx->polygons[RT_REF_INDEX(leaf->ref)];
@@ -39,6 +39,7 @@ RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *le
     h->ny = rt_select(closer, rt_vfloat(ny), h->ny);
     h->nz = rt_select(closer, rt_vfloat(nz), h->nz);
     h->leaf = rt_select(closer, rt_vint(at), h->leaf);
+    h->prim = rt_select(closer, rt_vint((int)leaf->prim), h->prim);
     h->instance = rt_select(closer, rt_vint(-1), h->instance);
 #endif
 }

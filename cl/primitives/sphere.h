@@ -20,7 +20,7 @@ RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_leaf *leaf, uint at, const r
     const vfloat t_a = rt_select(RT_MASK(q != zero), c / q, zero), t_b = q / a;
     const vfloat t_near = rt_min(t_a, t_b), t_far = rt_max(t_a, t_b);
     const vfloat t = rt_select(RT_MASK(t_near >= r->t_min) & RT_MASK(t_near > zero), t_near, t_far);
-    const vmask closer = meets & RT_MASK(t >= r->t_min) & RT_MASK(t > zero) & RT_MASK(t < h->t);
+    const vmask closer = meets & RT_MASK(t > zero) & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
 #if RT_ANY_HIT
     h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
@@ -32,6 +32,7 @@ RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_leaf *leaf, uint at, const r
     h->ny = rt_select(closer, fma(t, r->dy, fy), h->ny);
     h->nz = rt_select(closer, fma(t, r->dz, fz), h->nz);
     h->leaf = rt_select(closer, rt_vint(at), h->leaf);
+    h->prim = rt_select(closer, rt_vint((int)leaf->prim), h->prim);
     h->instance = rt_select(closer, rt_vint(-1), h->instance);
 #endif
 }

@@ -8,37 +8,51 @@
 RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
-    vfloat ax, ay, bx, by, cx, cy;
-#if RT_LANES > 1
+    /* Corners across the ray (x, y) and along it (z, in units of the dominant axis), from corner to origin: the sign of the edge
+     * functions does not mind, and o - corner takes the corner straight from memory. */
+    vfloat ax, ay, az, bx, by, bz, cx, cy, cz;
+#if RT_CPU
     if (r->same_axis) {
-        /* Corners relative to the origin, negated: both products of an edge function change sign twice. */
         const vfloat o_x = r->kz == 2u ? r->ox : r->kz == 1u ? r->oz : r->oy;
         const vfloat o_y = r->kz == 2u ? r->oy : r->kz == 1u ? r->ox : r->oz;
         const vfloat o_z = r->kz == 2u ? r->oz : r->kz == 1u ? r->oy : r->ox;
-        const vfloat az = o_z - rt_vfloat(leaf->a[r->kz]);
-        const vfloat bz = o_z - rt_vfloat(leaf->b[r->kz]);
-        const vfloat cz = o_z - rt_vfloat(leaf->c[r->kz]);
+        az = o_z - rt_vfloat(leaf->a[r->kz]);
+        bz = o_z - rt_vfloat(leaf->b[r->kz]);
+        cz = o_z - rt_vfloat(leaf->c[r->kz]);
         ax = fma(r->sx, az, o_x - rt_vfloat(leaf->a[r->kx]));
         ay = fma(r->sy, az, o_y - rt_vfloat(leaf->a[r->ky]));
         bx = fma(r->sx, bz, o_x - rt_vfloat(leaf->b[r->kx]));
         by = fma(r->sy, bz, o_y - rt_vfloat(leaf->b[r->ky]));
         cx = fma(r->sx, cz, o_x - rt_vfloat(leaf->c[r->kx]));
         cy = fma(r->sy, cz, o_y - rt_vfloat(leaf->c[r->ky]));
-    } else
-#endif
-    {
-#define RT_ACROSS(corner, x, y)                                                                                                  \
+    } else { /* the same numbers, lane by lane: a ray's hit does not depend on who travels with it */
+#define RT_ACROSS(corner, x, y, z)                                                                                               \
     {                                                                                                                            \
-        const vfloat kx = r->ox - rt_vfloat(leaf->corner[0]), ky = r->oy - rt_vfloat(leaf->corner[1]),                           \
-                     kz = r->oz - rt_vfloat(leaf->corner[2]);                                                                    \
-        x = fma(r->px, kx, fma(r->py, ky, r->pz * kz));                                                                          \
-        y = fma(r->qx, kx, fma(r->qy, ky, r->qz * kz));                                                                          \
+        const vfloat from_x = r->ox - rt_vfloat(leaf->corner[0]), from_y = r->oy - rt_vfloat(leaf->corner[1]),                   \
+                     from_z = r->oz - rt_vfloat(leaf->corner[2]);                                                                \
+        z = rt_select(r->is_z, from_z, rt_select(r->is_y, from_y, from_x));                                                      \
+        x = fma(r->sx, z, rt_select(r->is_z, from_x, rt_select(r->is_y, from_z, from_y)));                                       \
+        y = fma(r->sy, z, rt_select(r->is_z, from_y, rt_select(r->is_y, from_x, from_z)));                                       \
     }
-        RT_ACROSS(a, ax, ay)
-        RT_ACROSS(b, bx, by)
-        RT_ACROSS(c, cx, cy)
+        RT_ACROSS(a, ax, ay, az)
+        RT_ACROSS(b, bx, by, bz)
+        RT_ACROSS(c, cx, cy, cz)
 #undef RT_ACROSS
     }
+#else
+#define RT_ACROSS(corner, x, y, z)                                                                                               \
+    {                                                                                                                            \
+        const vfloat from_x = r->ox - rt_vfloat(leaf->corner[0]), from_y = r->oy - rt_vfloat(leaf->corner[1]),                   \
+                     from_z = r->oz - rt_vfloat(leaf->corner[2]);                                                                \
+        x = fma(r->px, from_x, fma(r->py, from_y, r->pz * from_z));                                                              \
+        y = fma(r->qx, from_x, fma(r->qy, from_y, r->qz * from_z));                                                              \
+        z = fma(r->rx, from_x, fma(r->ry, from_y, r->rz * from_z));                                                              \
+    }
+    RT_ACROSS(a, ax, ay, az)
+    RT_ACROSS(b, bx, by, bz)
+    RT_ACROSS(c, cx, cy, cz)
+#undef RT_ACROSS
+#endif
     const vfloat u = cx * by - cy * bx;
     const vfloat v = ax * cy - ay * cx;
     const vfloat w = bx * ay - by * ax;
@@ -48,14 +62,13 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
     if (!rt_any(inside & RT_MASK(h->t >= zero))) return;
 
     const vfloat det = u + v + w, scale = rt_vfloat(1.0f) / det;
-    vfloat sum;
-#define RT_ALONG(corner)                                                                                                         \
-    fma(r->rx, rt_vfloat(leaf->corner[0]) - r->ox,                                                                               \
-        fma(r->ry, rt_vfloat(leaf->corner[1]) - r->oy, r->rz * (rt_vfloat(leaf->corner[2]) - r->oz)))
-    sum = fma(u, RT_ALONG(a), fma(v, RT_ALONG(b), w * RT_ALONG(c)));
-#undef RT_ALONG
-    const vfloat t = sum * scale;
-    const vmask closer = inside & RT_MASK(det != zero) & RT_MASK(t >= r->t_min) & RT_MASK(t < h->t);
+    const vfloat depth = -fma(u, az, fma(v, bz, w * cz));
+#if RT_CPU
+    const vfloat t = depth * r->sz * scale;
+#else
+    const vfloat t = depth * scale;
+#endif
+    const vmask closer = inside & RT_MASK(det != zero) & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
 #if RT_ANY_HIT
     h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
@@ -69,6 +82,7 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
     h->ny = rt_select(closer, rt_vfloat(e1z * e2x - e1x * e2z), h->ny);
     h->nz = rt_select(closer, rt_vfloat(e1x * e2y - e1y * e2x), h->nz);
     h->leaf = rt_select(closer, rt_vint(at), h->leaf);
+    h->prim = rt_select(closer, rt_vint((int)leaf->prim), h->prim);
     h->instance = rt_select(closer, rt_vint(-1), h->instance);
 #endif
 }

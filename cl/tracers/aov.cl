@@ -39,9 +39,9 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
         RT_FOR_LANES_STORE(out, at, rt_as_vfloat(hit.instance), bits)
 #elif RT_AOV == RT_AOV_NORMAL
         const vint at3 = at * 3;
-        RT_FOR_LANES_STORE(out, at3, s.nx, bits)
-        RT_FOR_LANES_STORE(out, at3 + 1, s.ny, bits)
-        RT_FOR_LANES_STORE(out, at3 + 2, s.nz, bits)
+        RT_FOR_LANES_STORE(out, at3, s.geometric.x, bits)
+        RT_FOR_LANES_STORE(out, at3 + 1, s.geometric.y, bits)
+        RT_FOR_LANES_STORE(out, at3 + 2, s.geometric.z, bits)
 #else
         const vint at3 = at * 3;
         RT_FOR_LANES_STORE(out, at3, s.tex_u, bits)

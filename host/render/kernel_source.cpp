@@ -122,7 +122,7 @@ Layout make_layout(const Settings& settings, bool cpu) {
                                      " at most: take a smaller packet or fewer ray slots");
     layout.max_pixels = 1;
     while (layout.max_pixels < pixels) layout.max_pixels *= 2;
-    layout.serial_group = cpu;
+    layout.cpu = cpu;
     if (!cpu) return layout;  // a group is 64 neighbours, of which a warp has 8x4
     // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
     layout.group_w = layout.group_h = 4;
@@ -135,7 +135,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     std::ostringstream out;
     define_int(out, "RT_LANES", layout.lanes);
     define_int(out, "RT_MAX_PIXELS", layout.max_pixels);
-    define_int(out, "RT_SERIAL_GROUP", layout.serial_group);
+    define_int(out, "RT_CPU", layout.cpu);
     define_int(out, "RT_GROUP_W", layout.group_w);
     define_int(out, "RT_GROUP_H", layout.group_h);
     define_int(out, "RT_HAS_INSTANCES", features.instances);
@@ -183,9 +183,11 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     const std::string text = plugin_kernel_text(accel.id, traverse.name, traverse.text);
     query(out, false, features, folder + traverse.name, text);
     if (kind != KernelKind::aov) query(out, true, features, folder + traverse.name, text);
+    include(out, "vec.h");
     include(out, "surface.h");
-    if (kind == KernelKind::color) include(out, "material.h");
     include(out, "camera.h");
+    if (kind == KernelKind::color)
+        for (const char* name : {"material.h", "shading.h", "ray_queue.h"}) include(out, name);
     include(out, kernel_file);
 
     source.text = out.str();

@@ -20,7 +20,7 @@ enum class KernelKind { color, aov, rays };
 // How a picture is cut. The first four are compiled in, the rest are numbers of the frame.
 struct Layout {
     unsigned lanes = 1;
-    bool serial_group = false;            // a work-group is one work-item that does its packets in turn
+    bool cpu = false;                     // a work-group is one work-item that does its packets in turn
     unsigned group_w = 8, group_h = 8;    // packets of a work-group
     unsigned max_pixels = 1;              // room for a packet's pixels
     unsigned packet_w = 1, packet_h = 1;  // pixels of a work-item
@@ -28,7 +28,7 @@ struct Layout {
     unsigned groups_x(unsigned width) const { return (width + packet_w * group_w - 1) / (packet_w * group_w); }
     unsigned groups_y(unsigned height) const { return (height + packet_h * group_h - 1) / (packet_h * group_h); }
     unsigned group_packets() const { return group_w * group_h; }
-    unsigned local_size() const { return serial_group ? 1 : group_packets(); }
+    unsigned local_size() const { return cpu ? 1 : group_packets(); }
 };
 // settings: packet and lanes resolved. Throws Error(usage) if packet x ray_slots asks for more private memory than devices
 // have.
