@@ -174,7 +174,7 @@ class RenderJob {
         write_image(path, values, display);
         char times[96] = "";
         if (!stats_.frame_ms.empty())
-            std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", stats_.frame_ms.back(), mrays_per_s(stats_));
+            std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
         log(LogLevel::info, path + times);
     }
 

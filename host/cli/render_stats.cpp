@@ -49,8 +49,12 @@ Json accel_parameters(const AccelData& accel) {
 
 }  // namespace
 
+double median_frame_ms(const RenderStats& stats) {
+    return median(stats.frame_ms);
+}
+
 double mrays_per_s(const RenderStats& stats) {
-    const double ms = median(stats.frame_ms);
+    const double ms = median_frame_ms(stats);
     return ms > 0 ? double(stats.primary + stats.shadow + stats.secondary) / ms / 1000 : 0;
 }
 

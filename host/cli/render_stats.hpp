@@ -20,6 +20,8 @@ struct RenderStats {
 
 // The JSON of DESIGN.md section 5, ends in a newline.
 std::string stats_json(const RenderStats& stats);
+// 0 if nothing was timed.
+double median_frame_ms(const RenderStats& stats);
 // All rays of a frame by its median time, in millions a second; 0 if nothing was timed.
 double mrays_per_s(const RenderStats& stats);
 
