@@ -166,6 +166,8 @@ bool is_plugin_id(std::string_view text) {
 
 std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes) {
     const char* rebuild = ": rebuild it against this SDK";
+    if (head[0] == 0 && head[1] == 0 && head[2] == 0)
+        return "rt_plugin_v1 is zero in the file, so it is filled in by code at start: make all that it is made of constexpr";
     if (head[0] != RT_ABI_VERSION)
         return "ABI version " + std::to_string(head[0]) + ", this host speaks " + std::to_string(RT_ABI_VERSION) +
                (head[0] > RT_ABI_VERSION ? ": update clarity, or rebuild the plugin against this SDK" : rebuild);

@@ -74,6 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Refusal{"wrong_abi", {"ABI version 2", "this host speaks 1", "rebuild"}},
         Refusal{"old_abi", {"ABI version 0", "this host speaks 1", "rebuild"}},
+        Refusal{"not_constant", {"zero in the file", "constexpr"}},
         Refusal{"aborts_when_loaded", {"ABI version 2", "this host speaks 1"}},
         Refusal{"wrong_digest", {"digest", "0x", "rt_types.h", "rebuild"}},
         Refusal{"small_struct", {"rt_plugin has struct_bytes", "expects", "rebuild"}},
