@@ -53,6 +53,7 @@ void accel_rows(Session& session) {
         }
         ImGui::EndCombo();
     }
+    current = session.plugins().accel(settings.accel);  // it may just have been chosen
     if (!current) return;
     if (settings.accel_params.size() != current->param_count) session.set_accel(current->id);
     ImGui::PushID(current->id);

@@ -92,7 +92,8 @@ TEST_F(Window, OpensWithoutASceneAndTakesOne) {
     EXPECT_NE(window.line("fps 0.0", 5), "");
     ASSERT_EQ(window.command("open " + source_path("scenes/cornell.scene")), "");
     window.settle();
-    EXPECT_GT(window.state()["triangles"], 0);
+    EXPECT_EQ(window.state()["files"][0], source_path("scenes/cornell.scene"));
+    EXPECT_GT(window.state()["primary"], 0);
 }
 
 TEST_F(Window, NamesADeviceThatIsMissing) {
