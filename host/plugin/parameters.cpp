@@ -80,7 +80,7 @@ bool parse_value(const rt_param& param, std::string_view text, double& value) {
 
 std::string value_text(const rt_param& param, double value) {
     if (param.kind == RT_PARAM_BOOL) return value != 0 ? "true" : "false";
-    if (param.kind == RT_PARAM_ENUM) return param.choices[static_cast<size_t>(value)];
+    if (param.kind == RT_PARAM_ENUM && value >= 0 && value <= param.max) return param.choices[static_cast<size_t>(value)];
     return number_text(value);
 }
 
