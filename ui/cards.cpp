@@ -116,7 +116,7 @@ void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
 }
 
 void draw_empty_hint(const Rect& viewport, const Session& session) {
-    if (session.picture() || session.activity().busy) return;
+    if (session.picture() || session.activity().busy || !session.message().text.empty()) return;
     const char* const lines[] = {"No scene yet", "Drop a file here, or open one in the Scene tab"};
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     float y = viewport.y + viewport.height / 2 - ImGui::GetTextLineHeightWithSpacing();

@@ -108,6 +108,35 @@ TEST_F(Window, NamesADeviceThatIsMissing) {
     EXPECT_GT(difference(before, window->picture()), 0.01);
 }
 
+// An author's mistake in a kernel: its place is named, the last good program runs on, and the repair is taken.
+TEST_F(Window, AKernelErrorKeepsTheLastGoodProgram) {
+    const TemporaryFolder folder;
+    fs::copy(source_path("cl"), folder.path() + "/cl", fs::copy_options::recursive);
+    const auto window = open({{"CLARITY_KERNEL_PATH", folder.path() + "/cl"}});
+    const Pixels before = window->picture();
+    const fs::path kernel = folder.path() + "/cl/tracers/iterative.cl", good = folder.path() + "/good.cl";
+    fs::copy_file(kernel, good);
+    std::ofstream(kernel, std::ios::app) << "\nthis is no OpenCL C\n";
+    ASSERT_EQ(window->command("set lanes 4"), "");
+    window->settle();
+    const auto now = window->state();
+    EXPECT_EQ(now["messages"], 1);
+    EXPECT_NE(std::string(now["message"]).find("iterative.cl:"), std::string::npos) << now["message"];
+    EXPECT_TRUE(now["behind"]);
+    EXPECT_EQ(now["lanes"], window->state()["lanes"]);
+    EXPECT_EQ(difference(before, window->picture(), 0), 0);
+    window->key("Left");
+    window->settle();
+    EXPECT_GT(difference(before, window->picture()), 0.01);
+
+    fs::copy_file(good, kernel, fs::copy_options::overwrite_existing);
+    ASSERT_EQ(window->command("set lanes 1"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["message"], "");
+    EXPECT_EQ(window->state()["lanes"], 1);
+    EXPECT_FALSE(window->state()["behind"]);
+}
+
 // Real key presses while a large model is imported and built: time from the press to the line that F prints.
 TEST_F(Window, AnswersWhileImportingAndBuilding) {
     const auto window = open();
