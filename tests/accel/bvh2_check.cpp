@@ -21,6 +21,7 @@ struct Bounds {
         const double x = hi[0] - lo[0], y = hi[1] - lo[1], z = hi[2] - lo[2];
         return 2 * (x * y + y * z + z * x);
     }
+    double longest() const { return std::max({hi[0] - lo[0], hi[1] - lo[1], hi[2] - lo[2]}); }
 };
 
 bool is_nothing(rt_u32 child) {
@@ -78,6 +79,12 @@ class Checker {
         depth_ = std::max(depth_, depth);
         const bvh2_node& node = built_.slot<bvh2_node>()[index];
         if (reinterpret_cast<uintptr_t>(&node) % 64 != 0) say() << "node " << index << " is not aligned";
+        Bounds b0, b1;
+        b0.add(node.box0, node.box0 + 3);
+        b1.add(node.box1, node.box1 + 3);
+        // The builder compares in float, and a line has no area to speak of.
+        if (!is_nothing(node.child1) && b0.area() < 0.99 * b1.area() && b0.longest() < 0.99 * b1.longest())
+            say() << "child 0 of node " << index << " is the smaller one";
         visit_child(index, node.box0, node.child0, depth, both);
         visit_child(index, node.box1, node.child1, depth, both);
         return both;
