@@ -45,7 +45,7 @@ Channel make_channel(bool terminal) {
     std::vector<char*> argv;
     for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
     argv.push_back(nullptr);
-    execv(argv[0], argv.data());
+    execvp(argv[0], argv.data());
     _exit(127);
 }
 
@@ -62,7 +62,8 @@ bool drain(int from, std::string& to) {
 ProgramResult run_program(const std::vector<std::string>& arguments, const RunOptions& options) {
     const char* program = std::getenv("CLARITY_WORKER");
     if (!program) throw std::runtime_error("CLARITY_WORKER does not name the program: run this test through ctest");
-    std::vector<std::string> words = {program};
+    std::vector<std::string> words = options.wrapper;
+    words.push_back(program);
     words.insert(words.end(), arguments.begin(), arguments.end());
 
     const Channel out = make_channel(false), err = make_channel(options.terminal);

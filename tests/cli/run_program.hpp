@@ -15,9 +15,10 @@ struct RunOptions {
     double signal_after_s = -1;                      // then `signal` is sent
     std::string signal_when;                         // ... or as soon as this stands in stderr
     int signal = 0;
-    bool terminal = false;    // stderr is a terminal (its text comes with CR LF)
-    double limit_s = 120;     // then it is killed, and the exit code is 137
-    std::string stdout_path;  // written to instead of `out`
+    bool terminal = false;             // stderr is a terminal (its text comes with CR LF)
+    double limit_s = 120;              // then it is killed, and the exit code is 137
+    std::vector<std::string> wrapper;  // words before the program: a tool that runs it
+    std::string stdout_path;           // written to instead of `out`
 };
 
 // The program that CLARITY_WORKER names: the build's `clarity`.
