@@ -90,7 +90,6 @@ class RenderJob {
 
  private:
     void import() {
-        bar_.stage("importing");
         const auto begin = Clock::now();
         scene_ = std::make_shared<const Scene>(import_scene(plugins_, options_.scene.files, options_.scene.import, bar_));
         stats_.import_ms = ms_since(begin);
@@ -100,7 +99,6 @@ class RenderJob {
     }
 
     void prepare(const std::shared_ptr<Device>& device) {
-        bar_.stage("building " + settings_.accel);
         preparer_ = std::make_unique<Preparer>(plugins_, device);
         stats_.prepared = preparer_->prepare(scene_, settings_, bar_);
         const Prepared& prepared = *stats_.prepared;
