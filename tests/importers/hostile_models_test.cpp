@@ -121,6 +121,12 @@ TEST_F(HostileModel, OmCountsBeyondTheFile) {
     expect_refused("counts.om", std::string("OMT\x20\xFF\xFF\xFF\x7F\xFF\xFF\xFF\x7F\xFF\xFF\xFF\x7F", 16), "declares");
 }
 
+TEST_F(HostileModel, OmChunkOfAnotherKind) {
+    // Positions of two dimensions: Debian's OpenMesh ends the process by an assertion.
+    const std::string header("OMPB\3\0\0\0\1\0\0\0\3\0\0\0", 16), chunk("\0\x0E\0\0", 4);
+    expect_refused("chunk.om", header + chunk + std::string(96, '\0'), "chunk.om: ");
+}
+
 #ifdef CLARITY_HAVE_ASSIMP
 const std::string kFbxHead =
     "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7400\n}\n";
