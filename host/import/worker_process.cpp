@@ -30,6 +30,13 @@ namespace {
 
 // ---- last words: what the parent cannot see from outside
 
+// AddressSanitizer handles crashes itself, and says more.
+#if defined(__SANITIZE_ADDRESS__)
+constexpr bool kHasCrashReports = true;
+#else
+constexpr bool kHasCrashReports = false;
+#endif
+
 alignas(16) char signal_stack[64 << 10];
 
 void on_crash(int signal, siginfo_t* info, void* context) {
@@ -71,14 +78,13 @@ void on_no_memory() {
 void prepare_last_words() {
     std::set_terminate(on_terminate);
     std::set_new_handler(on_no_memory);
-#if !defined(__SANITIZE_ADDRESS__)  // it has handlers of its own, which say more
+    if (kHasCrashReports) return;
     const stack_t stack = {signal_stack, 0, sizeof signal_stack};
     sigaltstack(&stack, nullptr);
     struct sigaction action {};
     action.sa_sigaction = on_crash;
     action.sa_flags = SA_SIGINFO | SA_ONSTACK;
     for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
-#endif
 }
 
 // ---- talking to the parent

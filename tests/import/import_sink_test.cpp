@@ -151,7 +151,9 @@ TEST_P(Sink, warnings_are_bounded_and_logged) {
     ASSERT_EQ(scene.warnings.size(), 101u);
     EXPECT_EQ(scene.warnings[100], "and 150 warnings more");
     EXPECT_TRUE(contains(scene.warnings[7], "case.cltest: number 7"));
-    EXPECT_EQ(logged().size(), 101u);
+    size_t lines = 0;
+    for (const std::string& line : logged()) lines += contains(line, "number ") || contains(line, "warnings more");
+    EXPECT_EQ(lines, 101u) << "each once, whichever process it was found in";
 }
 
 TEST_P(Sink, files_that_no_importer_can_read) {

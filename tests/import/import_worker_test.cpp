@@ -109,7 +109,10 @@ TEST_F(Worker, cancel_answers_at_once) {
 }
 
 TEST_F(Worker, the_sandbox_refuses) {
-    if (kAddressSanitizer) GTEST_SKIP() << "the sanitizer intercepts some of these calls";
+    import_text("triangles good 1");
+    for (const std::string& line : logged()) {
+        if (contains(line, "not restricted")) GTEST_SKIP() << "on this kernel: " << line;
+    }
     const std::string outside =
         std::filesystem::temp_directory_path().string() + "/clarity-import-outside-" + std::to_string(getpid());
     std::ofstream(outside) << "secret";
