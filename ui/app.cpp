@@ -26,6 +26,7 @@ double now_s() {
 constexpr float kTapSeconds = 0.06f;  // what a short press is worth, however short it was
 constexpr float kLongestStep = 0.1f;  // after a pause of the loop, motion does not jump
 constexpr float kTurnRadPerSecond = 0.9f;
+constexpr double kShortestTurn = 0.01;
 
 }  // namespace
 
@@ -41,8 +42,12 @@ App::App(const ViewOptions& options) {
     const std::string& id = options.key_map.empty() ? preferences.key_map : options.key_map;
     if (const KeyMap* map = find_key_map(id)) state_.key_map = map;
     texture_ = std::make_unique<PictureTexture>();
-    session_ = std::make_unique<Session>(options, GlWindow::wake);
-    overlay_ = std::make_unique<VolumeOverlay>(GlWindow::wake);
+    const auto wake = [this] {
+        woken_ = true;
+        GlWindow::wake();
+    };
+    session_ = std::make_unique<Session>(options, wake);
+    overlay_ = std::make_unique<VolumeOverlay>(wake);
     script_ = Script::from_environment();
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
 }
@@ -65,28 +70,42 @@ App::~App() {
 }
 
 int App::run() {
-    last_turn_s_ = now_s();
+    turn();
     while (!window_->closing()) {
         if (window_->wait_events(wait_seconds())) settle_frames_ = 3;
-        turn();
+        if (due()) turn();
     }
     return 0;
 }
 
-// Frames are drawn when something changed. While nothing does, the loop sleeps until an event or a thread's news.
-double App::wait_seconds() const {
-    if (settle_frames_ > 0 || held_.any_held(*state_.key_map)) return 1.0 / 120;
-    if (script_ && script_->busy()) return 0.005;
+// Frames are drawn when something changed: an event, a thread's news, a key that is down, a line of the script, the clock. A
+// flood of news (a small picture traced a thousand times a second) is shown a hundred times a second.
+bool App::due() const {
+    const double since = now_s() - last_turn_s_;
+    if (settle_frames_ > 0 || (script_ && script_->has_lines())) return true;
+    if (woken_ || held_.any_held(*state_.key_map)) return since >= kShortestTurn;
+    return since >= longest_wait();
+}
+
+double App::longest_wait() const {
     if (session_->activity().busy || !overlay_->ready()) return 1.0 / 30;
     return typing() ? 0.1 : 0.5;  // a text field's cursor blinks
+}
+
+double App::wait_seconds() const {
+    if (settle_frames_ > 0) return 0;
+    if (woken_ || held_.any_held(*state_.key_map)) return std::max(kShortestTurn - (now_s() - last_turn_s_), 1e-4);
+    const double wait = std::max(longest_wait() - (now_s() - last_turn_s_), 1e-4);
+    return script_ ? std::min(wait, 0.005) : wait;  // nobody wakes us for its lines
 }
 
 bool App::typing() const {
     return ImGui::GetIO().WantTextInput;
 }
 
-bool App::turn() {
+void App::turn() {
     const double begin = now_s();
+    woken_ = false;
     const auto seconds = static_cast<float>(std::min(begin - last_turn_s_, static_cast<double>(kLongestStep)));
     last_turn_s_ = begin;
     take_keys();
@@ -110,7 +129,6 @@ bool App::turn() {
     times_.slowest_frame_ms = std::max(times_.slowest_frame_ms, (end - begin) * 1e3);
     if (oldest_key_s_ > 0) times_.slowest_answer_ms = std::max(times_.slowest_answer_ms, (end - oldest_key_s_) * 1e3);
     oldest_key_s_ = 0;
-    return true;
 }
 
 void App::finish_frame() {
@@ -130,7 +148,7 @@ void App::finish_frame() {
 void App::upload_picture() {
     const auto picture = session_->picture();
     if (!picture || picture == uploaded_) return;
-    texture_->upload(picture->image);
+    if (const std::string why = texture_->upload(picture->image); !why.empty()) session_->report(why);
     uploaded_ = picture;
     std::string title = "Clarity";
     if (const auto files = session_->files(); !files.empty())

@@ -1,5 +1,6 @@
 // app.hpp -- the running window: events to wishes, the session's newest to the screen, once a frame.
 #pragma once
+#include <atomic>
 #include <memory>
 
 #include "ui/gl_window.hpp"
@@ -38,8 +39,10 @@ class App {
     void capture(const std::string& path) { capture_path_ = path; }
 
  private:
-    bool turn();  // whether something moved, so that the next turn should come soon
+    void turn();
+    bool due() const;  // something to draw has come
     double wait_seconds() const;
+    double longest_wait() const;  // to the next turn if nothing happens
     void take_keys();
     void press(const KeyBinding& binding);
     void move_held(float seconds);
@@ -50,7 +53,8 @@ class App {
     void upload_picture();
     void finish_frame();
 
-    std::string folder_;  // of the preferences; empty: none
+    std::atomic<bool> woken_{false};  // a thread has news
+    std::string folder_;              // of the preferences; empty: none
     std::unique_ptr<GlWindow> window_;
     std::unique_ptr<PictureTexture> texture_;
     std::unique_ptr<Session> session_;
@@ -62,7 +66,7 @@ class App {
     std::shared_ptr<const Picture> uploaded_;
     Rect picture_area_;
     std::string capture_path_;
-    double last_turn_s_ = 0;
+    double last_turn_s_ = 0;   // when it began
     double oldest_key_s_ = 0;  // of the keys taken in since the last frame; 0: none
     int settle_frames_ = 3;    // ImGui needs a few to settle after an event
 };

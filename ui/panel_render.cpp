@@ -87,6 +87,11 @@ bool in_a_group(const std::string& key) {
 }  // namespace
 
 void draw_render_tab(Session& session, VolumeOverlay& overlay) {
+    if (session.behind() && !session.activity().busy) {
+        ImGui::PushStyleColor(ImGuiCol_Text, colors::kAmber);
+        ImGui::TextWrapped("Not in force: the picture shows the last settings that worked.");
+        ImGui::PopStyleColor();
+    }
     section("DEVICE");
     device_row(session);
     section("ACCELERATION STRUCTURE");
@@ -100,12 +105,6 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay) {
     section("MORE");
     for (const Setting& row : settings_table())
         if (!in_a_group(row.key)) setting_row(row, session.wish.settings);
-    ImGui::Dummy({0, 6 * ui_scale()});
-    if (session.behind() && !session.activity().busy) {
-        ImGui::PushStyleColor(ImGuiCol_Text, colors::kAmber);
-        ImGui::TextWrapped("The picture still shows the last settings that worked.");
-        ImGui::PopStyleColor();
-    }
 }
 
 }  // namespace clarity

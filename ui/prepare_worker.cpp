@@ -202,6 +202,13 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     loaded->files_revision = request.files_revision;
     loaded->bounds = loaded->scene->bounds();
     loaded->placed_triangles = loaded->scene->placed_triangle_count();
+    const float aspect = static_cast<float>(request.settings.width) / static_cast<float>(request.settings.height);
+    try {
+        loaded->first_view = make_view(*loaded->scene, aspect, request.camera, request.light);
+    } catch (const Error& error) {
+        loaded->view_error = error.what();
+        loaded->first_view = make_view(*loaded->scene, aspect);
+    }
     loaded_ = std::move(loaded);
     tried(request.files_revision);
 }

@@ -21,6 +21,7 @@ struct PrepareRequest {
     std::vector<std::string> files;
     uint64_t files_revision = 0;  // a new number: import (again)
     std::string device;
+    std::string camera, light;  // as on the command line, for the first view of newly imported files
     Settings settings;
 };
 
@@ -32,6 +33,8 @@ struct LoadedScene {
     Bounds bounds;
     uint64_t placed_triangles = 0;
     double import_ms = 0;
+    View first_view;
+    std::string view_error;  // why it is not the one asked for: a camera that the scene does not have
 };
 
 struct Ready {

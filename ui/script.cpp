@@ -78,6 +78,11 @@ void Script::read_lines() {
     }
 }
 
+bool Script::has_lines() {
+    read_lines();
+    return !lines_.empty();
+}
+
 void Script::step(App& app) {
     read_lines();
     while (!lines_.empty()) {

@@ -29,7 +29,8 @@ class Script {
     Script(const Script&) = delete;
     Script& operator=(const Script&) = delete;
 
-    bool busy() const { return true; }
+    // Reads what came; whether there are lines to run.
+    bool has_lines();
     // Runs the lines that came, up to the first that waits.
     void step(App& app);
 

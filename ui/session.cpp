@@ -96,7 +96,7 @@ void Session::post_request() {
     const std::string key = request_key();
     if (key == posted_key_) return;
     posted_key_ = key;
-    worker_.request({files_, files_revision_, wish.device, wish.settings});
+    worker_.request({files_, files_revision_, wish.device, first_camera_, first_light_, wish.settings});
 }
 
 View Session::wished_view() const {
@@ -158,6 +158,7 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     if (viewed_files_revision_ == ready->loaded->files_revision) return;
     viewed_files_revision_ = ready->loaded->files_revision;
     reset_view();
+    if (!ready->loaded->view_error.empty()) report(ready->loaded->view_error);
     first_camera_.clear();
     first_light_.clear();
     for (const std::string& warning : ready->loaded->scene->warnings) log(LogLevel::warning, warning);
@@ -165,15 +166,8 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
 
 void Session::reset_view() {
     if (!ready_) return;
-    const float aspect = static_cast<float>(wish.settings.width) / static_cast<float>(wish.settings.height);
     const Scene& scene = *ready_->loaded->scene;
-    View view;
-    try {
-        view = make_view(scene, aspect, first_camera_, first_light_);
-    } catch (const Error& error) {  // a camera that the scene does not have
-        report(error.what());
-        view = make_view(scene, aspect);
-    }
+    const View& view = ready_->loaded->first_view;
     wish.camera = view.camera;
     wish.background = view.background;
     wish.ambient = view.ambient;

@@ -12,8 +12,14 @@ PictureTexture::~PictureTexture() {
     if (buffer_) glDeleteBuffers(1, &buffer_);
 }
 
-void PictureTexture::upload(const ByteImage& image) {
-    if (image.width == 0 || image.height == 0) return;
+std::string PictureTexture::upload(const ByteImage& image) {
+    if (image.width == 0 || image.height == 0) return {};
+    GLint largest = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+    if (image.width > static_cast<unsigned>(largest) || image.height > static_cast<unsigned>(largest))
+        return "a picture of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
+               " cannot be shown: OpenGL takes " + std::to_string(largest) +
+               " pixels a side here; `clarity render` writes it to a file";
     const bool fresh = texture_ == 0;
     if (fresh) {
         glGenTextures(1, &texture_);
@@ -44,6 +50,7 @@ void PictureTexture::upload(const ByteImage& image) {
         glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
     }
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+    return {};
 }
 
 void PictureTexture::set_magnified(bool magnified) {

@@ -1,6 +1,6 @@
 // viewport.hpp -- the picture on the screen: a texture fed through a pixel buffer object, letter-boxed.
 #pragma once
-#include <memory>
+#include <string>
 
 #include "render/image_io.hpp"
 
@@ -14,7 +14,8 @@ class PictureTexture {
     PictureTexture(const PictureTexture&) = delete;
     PictureTexture& operator=(const PictureTexture&) = delete;
 
-    void upload(const ByteImage& image);
+    // Empty, or why the picture cannot be shown: this OpenGL's textures are not that large.
+    std::string upload(const ByteImage& image);
     // Nearest texel where the picture is shown larger than it is, so that pixels can be told apart.
     void set_magnified(bool magnified);
     unsigned name() const { return texture_; }
