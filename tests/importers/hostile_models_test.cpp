@@ -3,8 +3,6 @@
 #include <sys/resource.h>
 
 #include <chrono>
-#include <filesystem>
-#include <fstream>
 
 #include "base/error.hpp"
 #include "measure.hpp"
@@ -16,19 +14,9 @@ constexpr double kSecondsAtMost = 10;
 
 class HostileModel : public testing::Test {
  protected:
-    void SetUp() override {
-        char folder[] = "/tmp/clarity_hostile_XXXXXX";
-        ASSERT_NE(mkdtemp(folder), nullptr);
-        folder_ = folder;
-    }
-    void TearDown() override {
-        std::error_code ignored;
-        std::filesystem::remove_all(folder_, ignored);
-    }
     // The message of the failed import; empty if it was imported.
     std::string refusal(const std::string& name, const std::string& bytes) {
-        const std::string path = folder_ + "/" + name;
-        std::ofstream(path, std::ios::binary) << bytes;
+        const std::string path = folder_.write(name, bytes);
         const auto start = std::chrono::steady_clock::now();
         std::string message;
         try {
@@ -59,7 +47,7 @@ class HostileModel : public testing::Test {
     }
 
  private:
-    std::string folder_;
+    TemporaryFolder folder_;
 };
 
 const std::string kPlyVertices =

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 
 #include "import/import.hpp"
 
@@ -16,6 +17,19 @@ Scene import_file(const std::string& path) {
     static const PluginRegistry plugins = PluginRegistry::discover();
     Progress progress;
     return import_scene(plugins, {path}, ImportOptions{}, progress);
+}
+
+TemporaryFolder::TemporaryFolder() {
+    path_ = (fs::temp_directory_path() / "clarity_test_XXXXXX").string();
+    if (!mkdtemp(path_.data())) throw std::runtime_error("cannot make a temporary folder " + path_);
+}
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+}
+std::string TemporaryFolder::write(const std::string& name, const std::string& bytes) const {
+    std::ofstream(path(name), std::ios::binary) << bytes;
+    return path(name);
 }
 
 std::string shared_scenes() {

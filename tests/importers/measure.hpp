@@ -11,6 +11,21 @@ namespace clarity::test {
 // Through the built plugins, in the worker process. Throws what import_scene throws.
 Scene import_file(const std::string& path);
 
+// In the system's folder for temporary files; removed with all that is in it.
+class TemporaryFolder {
+ public:
+    TemporaryFolder();
+    ~TemporaryFolder();
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    std::string path(const std::string& name) const { return path_ + "/" + name; }
+    // The new file's path.
+    std::string write(const std::string& name, const std::string& bytes) const;
+
+ private:
+    std::string path_;
+};
+
 // The shared test scenes' folder, with a slash at its end; empty where there are none.
 std::string shared_scenes();
 // Names of a folder's files that end so, sorted.

@@ -23,28 +23,6 @@ std::string data(const std::string& name) {
     return std::string(CLARITY_SOURCE_DIR "/tests/importers/data/") + name;
 }
 
-// Removed with all that is in it.
-class TemporaryFolder {
- public:
-    TemporaryFolder() {
-        char folder[] = "/tmp/clarity_models_XXXXXX";
-        if (!mkdtemp(folder)) throw std::runtime_error("no temporary folder");
-        path_ = folder;
-    }
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        std::filesystem::remove_all(path_, ignored);
-    }
-    std::string write(const std::string& name, const std::string& bytes) const {
-        std::ofstream(path_ + "/" + name, std::ios::binary) << bytes;
-        return path_ + "/" + name;
-    }
-    std::string path(const std::string& name) const { return path_ + "/" + name; }
-
- private:
-    std::string path_;
-};
-
 const Material& material_named(const Scene& scene, const std::string& name) {
     for (const Material& material : scene.materials) {
         if (material.name == name) return material;

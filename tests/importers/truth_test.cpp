@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
-#include <set>
+#include <optional>
 
 #include "base/error.hpp"
 #include "measure.hpp"
@@ -57,24 +57,19 @@ class ModelFile {
  public:
     explicit ModelFile(const std::string& file) : path_(shared_scenes() + file) {
         if (std::filesystem::path(file).extension() != ".gz") return;
-        char folder[] = "/tmp/clarity_truth_XXXXXX";
-        if (!mkdtemp(folder)) throw std::runtime_error("no temporary folder");
-        folder_ = folder;
-        const std::string unpacked = folder_ + "/" + std::filesystem::path(file).stem().string();
+        folder_.emplace();
+        const std::string unpacked = folder_->path(std::filesystem::path(file).stem().string());
         if (std::system(("gzip -dc '" + path_ + "' > '" + unpacked + "'").c_str()) != 0)
             throw std::runtime_error("gzip failed");
         path_ = unpacked;
-    }
-    ~ModelFile() {
-        std::error_code ignored;
-        if (!folder_.empty()) std::filesystem::remove_all(folder_, ignored);
     }
     ModelFile(const ModelFile&) = delete;
     ModelFile& operator=(const ModelFile&) = delete;
     const std::string& path() const { return path_; }
 
  private:
-    std::string path_, folder_;
+    std::string path_;
+    std::optional<TemporaryFolder> folder_;
 };
 
 class Truth : public testing::TestWithParam<std::string> {};
