@@ -8,6 +8,8 @@ namespace {
 
 using Vec = std::array<double, 3>;
 
+constexpr rt_u32 kShaped = 64;  // corners of a face up to which ears are chosen by shape; it takes quadratic time
+
 Vec corner_at(const float* positions, rt_u32 vertex) {
     const float* p = positions + 3 * size_t(vertex);
     return {p[0], p[1], p[2]};
@@ -28,15 +30,46 @@ void fan(const rt_u32* corners, rt_u32 count, std::vector<rt_u32>& out) {
     }
 }
 
+// Of the two ways to cut a quad the one along the shorter diagonal, unless its triangles face apart: then the one that folds
+// less.
+void split_quad(const float* positions, const rt_u32* corners, std::vector<rt_u32>& out) {
+    Vec p[4];
+    for (int i = 0; i < 4; ++i) p[i] = corner_at(positions, corners[i]);
+    const Vec a = minus(p[2], p[0]), b = minus(p[3], p[1]);
+    // Agreement of the two triangles' normals, for each diagonal.
+    const double agree_a = dot(cross(minus(p[1], p[0]), a), cross(a, minus(p[3], p[0])));
+    const double agree_b = dot(cross(minus(p[2], p[1]), b), cross(b, minus(p[0], p[1])));
+    const bool along_a = agree_a < 0 || agree_b < 0 ? agree_a >= agree_b : dot(a, a) <= dot(b, b);
+    const int order[2][6] = {{0, 1, 3, 1, 2, 3}, {0, 1, 2, 0, 2, 3}};
+    for (const int i : order[along_a]) out.push_back(corners[i]);
+}
+
 }  // namespace
 
 void Triangulator::add(const float* positions, const rt_u32* corners, rt_u32 corner_count, std::vector<rt_u32>& out) {
     if (corner_count < 3) return;
-    if (corner_count == 3 || !project(positions, corners, corner_count) || is_convex()) {
+    if (corner_count == 3 || !project(positions, corners, corner_count) ||
+        (is_convex() && fan_is_flat(positions, corners, corner_count)))
         fan(corners, corner_count, out);
-        return;
+    else if (corner_count == 4)
+        split_quad(positions, corners, out);
+    else
+        clip_ears(corners, out);
+}
+
+// The triangles of a fan add up to the area of the face's projection only if all lie in one plane.
+bool Triangulator::fan_is_flat(const float* positions, const rt_u32* corners, rt_u32 count) const {
+    constexpr double kBend = 1e-4;  // relative
+    const Vec origin = corner_at(positions, corners[0]);
+    Vec before = minus(corner_at(positions, corners[1]), origin), sum{};
+    double area = 0;
+    for (rt_u32 i = 2; i < count; ++i) {
+        const Vec p = minus(corner_at(positions, corners[i]), origin), n = cross(before, p);
+        area += std::sqrt(dot(n, n));
+        for (int k = 0; k < 3; ++k) sum[k] += n[k];
+        before = p;
     }
-    clip_ears(corners, out);
+    return area <= (1 + kBend) * std::sqrt(dot(sum, sum));
 }
 
 // Into points_, counter-clockwise. False for a face without area, as seen along its Newell normal.
@@ -180,6 +213,32 @@ bool Triangulator::is_ear(rt_u32 corner, int leniency) {
     return true;
 }
 
+// How well an ear is shaped: higher the larger its smallest angle is.
+double Triangulator::shape(rt_u32 corner) const {
+    const Point &p = points_[prev_[corner]], &q = points_[corner], &r = points_[next_[corner]];
+    const auto square = [](const Point& a, const Point& b) {
+        return (a[0] - b[0]) * (a[0] - b[0]) + (a[1] - b[1]) * (a[1] - b[1]);
+    };
+    const double a = square(p, q), b = square(q, r), c = square(r, p);
+    const double sharpest =
+        std::max({(a + b - c) / std::sqrt(4 * a * b), (b + c - a) / std::sqrt(4 * b * c), (c + a - b) / std::sqrt(4 * c * a)});
+    return std::isfinite(sharpest) ? 1 - sharpest : 0;
+}
+
+// From `at` on, the corner after it that makes the best ear; `at` itself if none does.
+rt_u32 Triangulator::best_ear(rt_u32 at, rt_u32 left) {
+    rt_u32 best = at;
+    double best_shape = -1;
+    for (rt_u32 i = 0; i < left; ++i, at = next_[at]) {
+        if (!is_ear(at, 0)) continue;
+        if (const double s = shape(at); s > best_shape) {
+            best = at;
+            best_shape = s;
+        }
+    }
+    return best;
+}
+
 void Triangulator::clip_ears(const rt_u32* corners, std::vector<rt_u32>& out) {
     const rt_u32 n = static_cast<rt_u32>(points_.size());
     prev_.resize(n);
@@ -198,6 +257,7 @@ void Triangulator::clip_ears(const rt_u32* corners, std::vector<rt_u32>& out) {
     rt_u32 at = 1, left = n, tried = 0;
     int leniency = 0;
     while (left > 3 && budget_ > 0) {
+        if (leniency == 0 && tried == 0 && n <= kShaped) at = best_ear(at, left);
         if (!is_ear(at, leniency)) {
             at = next_[at];
             if (++tried >= left) {
