@@ -36,12 +36,16 @@ void App::draw_viewport(const Rect& area) {
                      ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav |
                      ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleVar();
+    const float margin = std::round(12 * ui_scale());
+    const Rect room{area.x + margin, area.y + margin, std::max(area.width - 2 * margin, 1.0f),
+                    std::max(area.height - 2 * margin, 1.0f)};
+    const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
+    state_.room_width = static_cast<int>(room.width * pixels.x);
+    state_.room_height = static_cast<int>(room.height * pixels.y);
     if (uploaded_ && texture_->name() != 0) {
         const float aspect = static_cast<float>(texture_->width()) / static_cast<float>(texture_->height());
-        const float margin = std::round(12 * ui_scale());
-        picture_area_ =
-            letter_box({area.x + margin, area.y + margin, area.width - 2 * margin, area.height - 2 * margin}, aspect);
-        // At its own size where it nearly fits: pixels then stay sharp.
+        picture_area_ = letter_box(room, aspect);
+        // Enlarged pixels stay sharp.
         const float zoom = picture_area_.width / static_cast<float>(texture_->width());
         texture_->set_magnified(zoom >= 2);
         const ImVec2 from(picture_area_.x, picture_area_.y), to(from.x + picture_area_.width, from.y + picture_area_.height);

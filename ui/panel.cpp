@@ -23,7 +23,7 @@ void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiSt
             ImGui::BeginChild("body", {0, 0}, false, tab == Tab::log ? ImGuiWindowFlags_NoScrollbar : 0);
             switch (tab) {
                 case Tab::render:
-                    draw_render_tab(session, overlay);
+                    draw_render_tab(session, overlay, state);
                     break;
                 case Tab::scene:
                     draw_scene_tab(session, state);

@@ -8,7 +8,7 @@ namespace clarity {
 
 void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state, const std::string& gl_text);
 
-void draw_render_tab(Session& session, VolumeOverlay& overlay);
+void draw_render_tab(Session& session, VolumeOverlay& overlay, const UiState& state);
 void draw_scene_tab(Session& session, UiState& state);
 void draw_statistics_tab(Session& session);
 void draw_log_tab(Session& session);

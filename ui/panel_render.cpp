@@ -78,6 +78,16 @@ void level_row(VolumeOverlay& overlay) {
     ImGui::EndCombo();
 }
 
+void fit_button(Settings& settings, const UiState& state) {
+    row_label("");
+    if (ImGui::Button("Fit the window", {-FLT_MIN, 0})) {
+        settings.width = state.room_width;
+        settings.height = state.room_height;
+    }
+    tooltip("as many pixels as the picture has room for: " + std::to_string(state.room_width) + "x" +
+            std::to_string(state.room_height));
+}
+
 bool in_a_group(const std::string& key) {
     for (const Group& group : groups())
         if (std::any_of(group.keys.begin(), group.keys.end(), [&](const char* k) { return key == k; })) return true;
@@ -86,7 +96,7 @@ bool in_a_group(const std::string& key) {
 
 }  // namespace
 
-void draw_render_tab(Session& session, VolumeOverlay& overlay) {
+void draw_render_tab(Session& session, VolumeOverlay& overlay, const UiState& state) {
     if (session.behind() && !session.activity().busy) {
         ImGui::PushStyleColor(ImGuiCol_Text, colors::kAmber);
         ImGui::TextWrapped("Not in force: the picture shows the last settings that worked.");
@@ -100,7 +110,10 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay) {
     for (const Group& group : groups()) {
         section(group.title);
         for (const char* key : group.keys)
-            if (const Setting* row = find_setting(key)) setting_row(*row, session.wish.settings);
+            if (const Setting* row = find_setting(key)) {
+                setting_row(*row, session.wish.settings);
+                if (row->key == "size") fit_button(session.wish.settings, state);
+            }
     }
     section("MORE");
     for (const Setting& row : settings_table())

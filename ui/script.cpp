@@ -148,6 +148,12 @@ bool Script::run(App& app, const std::string& line) {
         choose_tab(app.state(), text);
     } else if (command == "map") {
         choose_map(app.state(), text);
+    } else if (command == "level") {
+        if (text == "off")
+            app.overlay().show(std::nullopt);
+        else
+            app.overlay().show(text == "bottom" ? RT_LEVEL_BOTTOM
+                                                : static_cast<rt_u32>(std::strtoul(text.c_str(), nullptr, 10)));
     } else if (command == "focus") {
         app.state().show_tab(Tab::scene);
         app.state().focus_path_asked = true;

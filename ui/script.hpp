@@ -10,7 +10,7 @@
 //   screenshot FILE    the window as PNG                       picture FILE               the traced picture as PNG
 //   state              one line of JSON: what is shown, and how the window fares; `state reset` starts its maxima anew
 //   find LABEL         where that row's widget, or that entry of a list, was drawn last: JSON x, y, w, h
-//   scale FACTOR       of the text                             quit
+//   scale FACTOR       of the text                             level N|bottom|off         quit
 #pragma once
 #include <deque>
 #include <memory>

@@ -36,30 +36,44 @@ bool settled(ImGuiID id, bool edited, bool at_once, Value shown, Value& value, V
     return true;
 }
 
-// A slider's value as a bar from its left edge: easier to read than ImGui's grab, which covers the number.
-void fill_slider(double value, double min, double max, bool logarithmic) {
+// A slider's value as a bar from its left edge, under the number, instead of ImGui's grab, which covers it. Call before the
+// slider, with its frame's colours off.
+void draw_slider_bar(double value, double min, double max, bool logarithmic) {
     double share = max > min ? (value - min) / (max - min) : 0;
     if (logarithmic) {  // as ImGui maps it: zero is taken as the smallest number shown
         const double least = min > 0 ? min : 1e-3;
         share = std::log(std::max(value, least) / least) / std::log(max / least);
     }
-    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const ImVec2 to(from.x + ImGui::CalcItemWidth(), from.y + ImGui::GetFrameHeight());
     const auto end = from.x + (to.x - from.x) * static_cast<float>(std::clamp(share, 0.0, 1.0));
+    const bool hovered = ImGui::IsMouseHoveringRect(from, to) && ImGui::IsWindowHovered();
+    const float rounding = ImGui::GetStyle().FrameRounding;
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.AddRectFilled(from, to, ImGui::GetColorU32(hovered ? ImGuiCol_FrameBgHovered : ImGuiCol_FrameBg), rounding);
     const ImVec4& accent = colors::kAccent;
-    const float strength = ImGui::IsItemActive() ? 0.55f : ImGui::IsItemHovered() ? 0.45f : 0.34f;
     if (end > from.x + 1)
-        ImGui::GetWindowDrawList()->AddRectFilled(
-            from, {end, to.y}, ImGui::GetColorU32(ImVec4(accent.x, accent.y, accent.z, strength)),
-            ImGui::GetStyle().FrameRounding, end < to.x - 1 ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersAll);
+        list.AddRectFilled(from, {end, to.y}, ImGui::GetColorU32(ImVec4(accent.x, accent.y, accent.z, hovered ? 0.5f : 0.4f)),
+                           rounding, end < to.x - 1 ? ImDrawFlags_RoundCornersLeft : ImDrawFlags_RoundCornersAll);
 }
+
+// Hides the frames of the sliders drawn while it lives.
+struct BareFrames {
+    BareFrames() {
+        for (const ImGuiCol color : {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive})
+            ImGui::PushStyleColor(color, ImVec4(0, 0, 0, 0));
+    }
+    ~BareFrames() { ImGui::PopStyleColor(3); }
+};
 
 bool whole_slider(const char* id_text, int& value, int min, int max, bool at_once) {
     const ImGuiID id = ImGui::GetID(id_text);
     int shown = pending.id == id ? pending.whole : value;
     const bool wide = max - min > 100;
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
+    draw_slider_bar(shown, min, max, wide);
+    const BareFrames bare;
     const bool edited = ImGui::SliderInt(id_text, &shown, min, max, "%d", flags);
-    fill_slider(shown, min, max, wide);
     return settled(id, edited, at_once, shown, value, &PendingEdit::whole);
 }
 
@@ -70,8 +84,9 @@ bool real_slider(const char* id_text, double& value, double min, double max, boo
     const bool wide = max - min > 100;
     const char* format = max - min <= 0.1 ? "%.4f" : "%.3f";
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (wide ? ImGuiSliderFlags_Logarithmic : 0);
+    draw_slider_bar(shown, min, max, wide);
+    const BareFrames bare;
     const bool edited = ImGui::SliderFloat(id_text, &shown, static_cast<float>(min), static_cast<float>(max), format, flags);
-    fill_slider(shown, min, max, wide);
     if (!settled(id, edited, at_once, shown, held, &PendingEdit::real)) return false;
     value = held;
     return true;
@@ -201,14 +216,13 @@ bool edit_value(const Setting& row, const Settings& settings, std::string& text)
 }  // namespace
 
 void section(const char* title) {
-    ImGui::Dummy({0, 4 * ui_scale()});
+    ImGui::Dummy({0, 6 * ui_scale()});
     ImGui::PushFont(fonts().bold);
     ImGui::PushStyleColor(ImGuiCol_Text, colors::kDim);
     ImGui::TextUnformatted(title);
     ImGui::PopStyleColor();
     ImGui::PopFont();
     ImGui::Separator();
-    ImGui::Dummy({0, 1 * ui_scale()});
 }
 
 void tooltip(const std::string& text) {
@@ -231,9 +245,9 @@ bool option(const std::string& label, bool chosen) {
 
 bool slider(const char* id, float& value, float min, float max, const char* format, bool logarithmic) {
     const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
-    const bool edited = ImGui::SliderFloat(id, &value, min, max, format, flags);
-    fill_slider(value, min, max, logarithmic);
-    return edited;
+    draw_slider_bar(value, min, max, logarithmic);
+    const BareFrames bare;
+    return ImGui::SliderFloat(id, &value, min, max, format, flags);
 }
 
 const Rect* drawn_place(const std::string& label) {
@@ -324,7 +338,7 @@ bool parameter_row(const rt_param& param, double& value) {
 
 std::string number_text(double value) {
     char text[48];
-    std::snprintf(text, sizeof text, "%.6g", value);
+    std::snprintf(text, sizeof text, value == std::floor(value) && std::abs(value) < 1e15 ? "%.0f" : "%.6g", value);
     return text;
 }
 
