@@ -66,12 +66,12 @@ std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, 
     // One second from the signal that says why to the one that cannot be caught.
     if (limits.cpu_s > 0) limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1, "processor time", notes);
     signal(SIGXFSZ, SIG_IGN);
-    const uint64_t memory = limits.memory_bytes > 0 ? limits.memory_bytes : RLIM_INFINITY;
-    limit(RLIMIT_FSIZE, 0, memory, "writing", notes);
+    const uint64_t most = std::max(limits.memory_bytes, limits.most_memory_bytes);
+    limit(RLIMIT_FSIZE, 0, most > 0 ? most : RLIM_INFINITY, "writing", notes);
     if (limits.memory_bytes > 0) {
         if (kLimitAddressSpace) {
-            const uint64_t bytes = mapped_bytes() + limits.memory_bytes;
-            limit(RLIMIT_AS, bytes, bytes, "memory", notes);
+            const uint64_t mapped = mapped_bytes();
+            limit(RLIMIT_AS, mapped + limits.memory_bytes, mapped + most, "memory", notes);
         } else {
             notes.push_back("address space is not limited in a build with AddressSanitizer");
         }
@@ -84,10 +84,10 @@ std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, 
     return notes;
 }
 
-void allow_writing_result(uint64_t bytes) {
+void allow_writing_result() {
     rlimit now{};
     getrlimit(RLIMIT_FSIZE, &now);
-    now.rlim_cur = bytes > 0 ? std::min<rlim_t>(bytes, now.rlim_max) : now.rlim_max;
+    now.rlim_cur = now.rlim_max;
     // Not through the C library, which may use prlimit64, and the sandbox lets no process set limits that way.
     syscall(SYS_setrlimit, RLIMIT_FSIZE, &now);
 }

@@ -7,8 +7,9 @@
 namespace clarity {
 
 struct WorkerLimits {
-    uint64_t memory_bytes = 0;  // address space that may be added to what is mapped already; 0: no limit
-    uint64_t cpu_s = 0;         // processor time
+    uint64_t memory_bytes = 0;       // address space that may be added to what is mapped already; 0: no limit
+    uint64_t most_memory_bytes = 0;  // up to which the parent may raise that while the worker runs
+    uint64_t cpu_s = 0;              // processor time
     uint64_t stack_bytes = 64u << 20;
 };
 
@@ -19,7 +20,7 @@ std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, 
                                        const WorkerLimits& limits);
 
 // The result goes into a file in memory, which no other limit would allow to grow.
-void allow_writing_result(uint64_t bytes);
+void allow_writing_result();
 
 namespace detail {
 // Empty on success, else why the kernel refused.

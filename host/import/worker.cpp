@@ -27,30 +27,31 @@ constexpr double kGreetingSeconds = 5;  // a program of ours greets within milli
 constexpr double kCancelGraceSeconds = 0.05;
 constexpr size_t kMaxOutputLines = 200;
 
-struct Limits {
-    uint64_t memory_bytes;
-    double idle_s;  // without progress
-    uint64_t cpu_s;
-};
-
-Limits limits_for(const std::vector<std::string>& files, const ImportOptions& options) {
-    uint64_t bytes = 0;
-    for (const std::string& file : files) {
+// What a worker may use, by the sizes of the files that it has come to read, those that files load included.
+class Limits {
+ public:
+    explicit Limits(const ImportOptions& options) : options_(options) {}
+    void add_file(const std::string& path) {
         std::error_code error;
-        const uint64_t size = std::filesystem::file_size(file, error);
-        if (!error) bytes += size;
-    }
-    const uint64_t physical = static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
-    Limits limits{};
-    limits.memory_bytes = options.memory_limit_bytes;
-    if (limits.memory_bytes == 0) {
-        limits.memory_bytes = std::min(std::max(uint64_t(1) << 30, 64 * std::min(bytes, uint64_t(1) << 50)), physical / 4 * 3);
+        const uint64_t size = std::filesystem::file_size(path, error);
+        if (!error) file_bytes_ += std::min(size, uint64_t(1) << 50);
     }
     // Small files are read in milliseconds. A damaged one that sends a parser round in circles must be over within ten seconds.
-    limits.idle_s = std::min(7 + 2 * static_cast<double>(bytes) / (1 << 20), options.time_limit_s);
-    limits.cpu_s = static_cast<uint64_t>(std::ceil(std::clamp(options.time_limit_s, 1.0, 1e9)));
-    return limits;
-}
+    double idle_s() const { return std::min(7 + 2 * static_cast<double>(file_bytes_) / (1 << 20), options_.time_limit_s); }
+    uint64_t cpu_s() const { return static_cast<uint64_t>(std::ceil(std::clamp(options_.time_limit_s, 1.0, 1e9))); }
+    uint64_t memory_bytes() const {
+        if (options_.memory_limit_bytes > 0) return options_.memory_limit_bytes;
+        return std::min(std::max(uint64_t(1) << 30, 64 * file_bytes_), most_memory_bytes());
+    }
+    uint64_t most_memory_bytes() const {
+        if (options_.memory_limit_bytes > 0) return options_.memory_limit_bytes;
+        return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) / 4 * 3;
+    }
+
+ private:
+    const ImportOptions& options_;
+    uint64_t file_bytes_ = 0;
+};
 
 std::string worker_program(const ImportOptions& options) {
     if (!options.worker.empty()) return options.worker;
@@ -70,7 +71,7 @@ std::string in_words(double seconds) {
 // One import: follows the worker until it is done or dead.
 class Supervisor {
  public:
-    Supervisor(WorkerProcess& worker, const Limits& limits, std::string first_file, std::string program, Progress& progress)
+    Supervisor(WorkerProcess& worker, Limits limits, std::string first_file, std::string program, Progress& progress)
         : worker_(worker), limits_(limits), program_(std::move(program)), progress_(progress), file_(std::move(first_file)) {}
 
     // Returns once the result lies in shared memory. Throws Error(import_failed) or Cancelled.
@@ -123,6 +124,10 @@ class Supervisor {
                 file_ = message.text.substr(0, end);
                 importer_ = end == std::string::npos ? "" : message.text.substr(end + 1);
                 idle_s_ = 0;
+                const uint64_t before = limits_.memory_bytes();
+                limits_.add_file(file_);
+                worker_.raise_memory_limit(limits_.memory_bytes() - before);
+                send_message(worker_.channel(), {MessageKind::proceed, 0, 0, {}});
                 break;
             }
             case MessageKind::stage:
@@ -194,19 +199,19 @@ class Supervisor {
                                                  ": does not answer as an import worker; name the program `clarity` in "
                                                  "CLARITY_WORKER or unset it");
         }
-        if (idle_s_ > limits_.idle_s) {
-            fail(importer() + " made no progress for " + in_words(limits_.idle_s) +
+        if (idle_s_ > limits_.idle_s()) {
+            fail(importer() + " made no progress for " + in_words(limits_.idle_s()) +
                  " and was stopped; the file is damaged or too much for the library that reads it");
         }
         // The address space is limited in the worker; this is the net under that.
         memory_look_s_ += passed_s;
         if (memory_look_s_ < 0.1) return;
         memory_look_s_ = 0;
-        if (worker_.resident_bytes() > limits_.memory_bytes + (uint64_t(256) << 20)) out_of_memory();
+        if (worker_.resident_bytes() > limits_.memory_bytes() + (uint64_t(256) << 20)) out_of_memory();
     }
 
     [[noreturn]] void out_of_memory() const {
-        fail(importer() + " needs more than " + in_words(limits_.memory_bytes) +
+        fail(importer() + " needs more than " + in_words(limits_.memory_bytes()) +
              " of memory; the file is damaged, or larger than this machine can import");
     }
 
@@ -224,7 +229,7 @@ class Supervisor {
         }
         const int signal = WIFSIGNALED(status) ? WTERMSIG(status) : 0;
         if (signal == SIGXCPU) {
-            fail(importer() + " used more than " + in_words(static_cast<double>(limits_.cpu_s)) +
+            fail(importer() + " used more than " + in_words(static_cast<double>(limits_.cpu_s())) +
                  " of processor time and was stopped" + advice);
         }
         if (signal == SIGKILL) {
@@ -240,7 +245,7 @@ class Supervisor {
     }
 
     WorkerProcess& worker_;
-    const Limits limits_;
+    Limits limits_;
     const std::string program_;
     Progress& progress_;
     std::string file_, importer_, last_words_, line_;
@@ -260,11 +265,14 @@ Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::str
                                              ": this process is an import worker itself and starts no other; set "
                                              "CLARITY_WORKER to the program `clarity`");
     }
-    const Limits limits = limits_for(files, options);
+    const Limits limits(options);
     const std::string program = worker_program(options);
-    std::vector<std::string> arguments = {"--memory", std::to_string(limits.memory_bytes),
-                                          "--cpu",    std::to_string(limits.cpu_s),
-                                          "--parent", std::to_string(getpid())};
+    std::vector<std::string> arguments;
+    const std::pair<const char*, uint64_t> numbers[] = {{"--memory", limits.memory_bytes()},
+                                                        {"--most-memory", limits.most_memory_bytes()},
+                                                        {"--cpu", limits.cpu_s()},
+                                                        {"--parent", static_cast<uint64_t>(getpid())}};
+    for (const auto& [key, value] : numbers) arguments.insert(arguments.end(), {key, std::to_string(value)});
     for (const PluginRecord& record : plugins.records()) {
         if (!record.plugin || record.shadowed || !record.plugin->importer) continue;
         arguments.insert(arguments.end(), {"--plugin", record.path});

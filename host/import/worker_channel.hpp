@@ -14,7 +14,7 @@ inline constexpr const char* kWorkerGreeting = "clarity import worker 1";
 
 enum class MessageKind : uint32_t {
     greeting = 1,  // text: kWorkerGreeting
-    running,       // text: file, line break, importer
+    running,       // text: file, line break, importer; the worker waits for `proceed`
     stage,         // text: as Progress::stage
     progress,      // fraction
     log,           // level, text
@@ -22,6 +22,7 @@ enum class MessageKind : uint32_t {
     failed,        // text: error message, naming the file
     done,          // the result is complete and sealed
     cancel,        // to the worker
+    proceed,       // to the worker: its limits are right for the file that it named
 };
 
 struct Message {

@@ -1,6 +1,7 @@
 // worker_process.cpp -- the worker's own side: loads the importers, locks itself in, imports, leaves the scene in shared
 // memory.
 #include <fcntl.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/syscall.h>
 #include <ucontext.h>
@@ -109,6 +110,13 @@ class ChannelProgress : public Progress, public ImportObserver {
     }
     void running(const std::string& file, const std::string& importer) override {
         send(MessageKind::running, 0, file + '\n' + importer);
+        Message answer;
+        do {
+            pollfd ready = {kChannelFd, POLLIN, 0};
+            poll(&ready, 1, -1);
+            if (receive_message(kChannelFd, answer) == Received::closed) _exit(1);
+            if (answer.kind == MessageKind::cancel) throw Cancelled();
+        } while (answer.kind != MessageKind::proceed);
     }
 
  private:
@@ -129,7 +137,8 @@ struct Arguments {
     long parent = 0;
 };
 
-// import-worker [--memory BYTES] [--cpu SECONDS] [--parent PID] [--plugin FILE]... [--search FOLDER]... -- FILE...
+// import-worker [--memory BYTES] [--most-memory BYTES] [--cpu SECONDS] [--parent PID] [--plugin FILE]... [--search FOLDER]...
+// -- FILE...
 bool parse(int argc, char** argv, Arguments& arguments) {
     int i = 1;
     if (i < argc && std::strcmp(argv[i], "import-worker") == 0) ++i;
@@ -137,6 +146,8 @@ bool parse(int argc, char** argv, Arguments& arguments) {
         const std::string key = argv[i], value = argv[i + 1];
         if (key == "--memory") {
             arguments.limits.memory_bytes = std::strtoull(value.c_str(), nullptr, 10);
+        } else if (key == "--most-memory") {
+            arguments.limits.most_memory_bytes = std::strtoull(value.c_str(), nullptr, 10);
         } else if (key == "--cpu") {
             arguments.limits.cpu_s = std::strtoull(value.c_str(), nullptr, 10);
         } else if (key == "--parent") {
@@ -166,7 +177,7 @@ std::string import_files(const Arguments& arguments, ChannelProgress& progress) 
     SceneBuilder builder(plugins, access, progress, &progress);
     for (const std::string& file : arguments.files) builder.add_root(file);
     const Scene scene = builder.take();
-    allow_writing_result(arguments.limits.memory_bytes);
+    allow_writing_result();
     const std::string why = write_scene(kResultFd, scene);
     return why.empty() ? why : arguments.files.front() + ": " + why;
 }

@@ -3,10 +3,12 @@
 #include <fcntl.h>
 #include <spawn.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -115,6 +117,13 @@ int WorkerProcess::wait() {
         if (waitpid(pid_, &status_, 0) == pid_ || errno != EINTR) pid_ = -1;
     }
     return status_;
+}
+
+void WorkerProcess::raise_memory_limit(uint64_t more_bytes) const {
+    rlimit now{};
+    if (pid_ <= 0 || prlimit(pid_, RLIMIT_AS, nullptr, &now) != 0 || now.rlim_cur == RLIM_INFINITY) return;
+    now.rlim_cur = std::min<rlim_t>(now.rlim_cur + more_bytes, now.rlim_max);
+    prlimit(pid_, RLIMIT_AS, &now, nullptr);
 }
 
 uint64_t WorkerProcess::resident_bytes() const {

@@ -1,7 +1,7 @@
 // worker_spawn.hpp -- a worker process and its descriptors.
 #pragma once
-#include <cstdint>
 #include <sys/types.h>
+#include <cstdint>
 
 #include <string>
 #include <utility>
@@ -42,6 +42,8 @@ class WorkerProcess {
     // Waits for the end; status as waitpid gives it.
     int wait();
     uint64_t resident_bytes() const;
+    // Lets it map that much more than it may now, up to its own hard limit.
+    void raise_memory_limit(uint64_t more_bytes) const;
 
  private:
     pid_t pid_ = -1;

@@ -36,9 +36,13 @@ void split_quad(const float* positions, const rt_u32* corners, std::vector<rt_u3
     Vec p[4];
     for (int i = 0; i < 4; ++i) p[i] = corner_at(positions, corners[i]);
     const Vec a = minus(p[2], p[0]), b = minus(p[3], p[1]);
-    // Agreement of the two triangles' normals, for each diagonal.
-    const double agree_a = dot(cross(minus(p[1], p[0]), a), cross(a, minus(p[3], p[0])));
-    const double agree_b = dot(cross(minus(p[2], p[1]), b), cross(b, minus(p[0], p[1])));
+    // Cosine between the two triangles' normals, for each diagonal; 0 where one has no area.
+    const auto agreement = [](const Vec& m, const Vec& n) {
+        const double lengths = std::sqrt(dot(m, m) * dot(n, n));
+        return lengths > 0 ? dot(m, n) / lengths : 0;
+    };
+    const double agree_a = agreement(cross(minus(p[1], p[0]), a), cross(a, minus(p[3], p[0])));
+    const double agree_b = agreement(cross(minus(p[2], p[1]), b), cross(b, minus(p[0], p[1])));
     const bool along_a = agree_a < 0 || agree_b < 0 ? agree_a >= agree_b : dot(a, a) <= dot(b, b);
     const int order[2][6] = {{0, 1, 3, 1, 2, 3}, {0, 1, 2, 0, 2, 3}};
     for (const int i : order[along_a]) out.push_back(corners[i]);
@@ -254,6 +258,9 @@ void Triangulator::clip_ears(const rt_u32* corners, std::vector<rt_u32>& out) {
     const auto emit = [&](rt_u32 a, rt_u32 b, rt_u32 c) {
         for (const rt_u32 corner : {a, b, c}) out.push_back(corners[corner]);
     };
+    // Small faces are bounded by their size, and must not come off worse for a monster before them.
+    const uint64_t budget = budget_;
+    if (n <= kShaped) budget_ = ~uint64_t{0};
     rt_u32 at = 1, left = n, tried = 0;
     int leniency = 0;
     while (left > 3 && budget_ > 0) {
@@ -279,6 +286,7 @@ void Triangulator::clip_ears(const rt_u32* corners, std::vector<rt_u32>& out) {
         leniency = 0;
         at = c;
     }
+    if (n <= kShaped) budget_ = budget;
     given_up_ += left > 3 ? 1 : 0;
     const rt_u32 first = at;
     for (rt_u32 b = next_[first]; next_[b] != first; b = next_[b]) emit(first, b, next_[b]);

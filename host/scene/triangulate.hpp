@@ -44,7 +44,7 @@ class Triangulator {
     std::vector<rt_u32> cell_first_, cell_items_;
     Point grid_min_{}, cells_per_unit_{};
     rt_u32 grid_size_ = 0;
-    uint64_t budget_ = 400000000;  // point tests in the life of an object: about two seconds
+    uint64_t budget_ = 400000000;  // point tests for large faces in the life of an object: about two seconds
     uint64_t given_up_ = 0;
 };
 
