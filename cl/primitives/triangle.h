@@ -61,26 +61,32 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
     const vmask inside = RT_MASK(lowest >= zero) | RT_MASK(highest <= zero);
     if (!rt_any(inside & RT_MASK(h->t >= zero))) return;
 
-    const vfloat det = u + v + w, scale = rt_vfloat(1.0f) / det;
-    const vfloat depth = -fma(u, az, fma(v, bz, w * cz));
+    /* t by the triangle's plane: weighing the corners with u, v, w cancels where they are far away, as a floor's are. Seen
+     * edge-on the plane says nothing, so t is kept within the corners'. */
+    const float e1x = leaf->b[0] - leaf->a[0], e1y = leaf->b[1] - leaf->a[1], e1z = leaf->b[2] - leaf->a[2];
+    const float e2x = leaf->c[0] - leaf->a[0], e2y = leaf->c[1] - leaf->a[1], e2z = leaf->c[2] - leaf->a[2];
+    const float nx = e1y * e2z - e1z * e2y, ny = e1z * e2x - e1x * e2z, nz = e1x * e2y - e1y * e2x;
+    const vfloat facing = fma(rt_vfloat(nx), r->dx, fma(rt_vfloat(ny), r->dy, rt_vfloat(nz) * r->dz));
+    const vfloat height = fma(rt_vfloat(nx), rt_vfloat(leaf->a[0]) - r->ox,
+                              fma(rt_vfloat(ny), rt_vfloat(leaf->a[1]) - r->oy, rt_vfloat(nz) * (rt_vfloat(leaf->a[2]) - r->oz)));
 #if RT_CPU
-    const vfloat t = depth * r->sz * scale;
+    const vfloat ta = -az * r->sz, tb = -bz * r->sz, tc = -cz * r->sz;
 #else
-    const vfloat t = depth * scale;
+    const vfloat ta = -az, tb = -bz, tc = -cz;
 #endif
+    const vfloat t = rt_min(rt_max(height / facing, rt_min(rt_min(ta, tb), tc)), rt_max(rt_max(ta, tb), tc));
+    const vfloat det = u + v + w, scale = rt_vfloat(1.0f) / det;
     const vmask closer = inside & RT_MASK(det != zero) & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
 #if RT_ANY_HIT
     h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
 #else
-    const float e1x = leaf->b[0] - leaf->a[0], e1y = leaf->b[1] - leaf->a[1], e1z = leaf->b[2] - leaf->a[2];
-    const float e2x = leaf->c[0] - leaf->a[0], e2y = leaf->c[1] - leaf->a[1], e2z = leaf->c[2] - leaf->a[2];
     h->t = rt_select(closer, t, h->t);
     h->u = rt_select(closer, v * scale, h->u);
     h->v = rt_select(closer, w * scale, h->v);
-    h->nx = rt_select(closer, rt_vfloat(e1y * e2z - e1z * e2y), h->nx);
-    h->ny = rt_select(closer, rt_vfloat(e1z * e2x - e1x * e2z), h->ny);
-    h->nz = rt_select(closer, rt_vfloat(e1x * e2y - e1y * e2x), h->nz);
+    h->nx = rt_select(closer, rt_vfloat(nx), h->nx);
+    h->ny = rt_select(closer, rt_vfloat(ny), h->ny);
+    h->nz = rt_select(closer, rt_vfloat(nz), h->nz);
     h->leaf = rt_select(closer, rt_vint(at), h->leaf);
     h->prim = rt_select(closer, rt_vint((int)leaf->prim), h->prim);
     h->instance = rt_select(closer, rt_vint(-1), h->instance);
