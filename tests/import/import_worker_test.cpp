@@ -54,6 +54,16 @@ TEST_F(Worker, memory_is_bounded) {
     EXPECT_LT(seconds_since(start), 10);
 }
 
+TEST_F(Worker, memory_follows_the_size_of_what_is_loaded) {
+    if (kAddressSanitizer) GTEST_SKIP() << "address space is not limited with AddressSanitizer";
+    const std::string need = "reserve 1300\ntriangles good 1\n";
+    EXPECT_TRUE(contains(failure_of_text(need), "no room for 1300")) << "a small file gets 1 GiB";
+    file("large.cltest", need + "# " + std::string(32u << 20, 'x') + "\n");
+    EXPECT_EQ(import_text("load large.cltest").placed_triangle_count(), 1u) << "one of 32 MiB gets 64 times that";
+    options_.memory_limit_bytes = uint64_t(1) << 30;
+    EXPECT_TRUE(contains(failure_of_text("load large.cltest"), "no room for 1300")) << "but not more than the user says";
+}
+
 TEST_F(Worker, hangs_end_at_the_limit) {
     options_.time_limit_s = 1.5;
     for (const char* text : {"hang", "sleep", "stuck 1000"}) {

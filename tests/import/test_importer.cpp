@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <fstream>
 #include <limits>
+#include <memory>
+#include <new>
 #include <sstream>
 #include <string>
 #include <thread>
@@ -196,6 +198,7 @@ struct Run {
         std::string what, argument;
         words >> what;
         rt_u32 count = 0, bad = 0;
+        if (what == "#") return RT_OK;
         if (what == "triangles") {
             words >> argument >> count >> bad;
             return triangles(argument, count, bad);
@@ -226,6 +229,10 @@ struct Run {
             for (int i = 0; i < 5000; ++i) std::puts(argument.c_str());
             std::fflush(stdout);
             return RT_OK;
+        }
+        if (what == "reserve") {  // MiB of address space, not touched
+            const std::vector<char>::size_type bytes = std::strtoull(argument.c_str(), nullptr, 10) << 20;
+            return std::unique_ptr<char[]>(new (std::nothrow) char[bytes]) ? int32_t(RT_OK) : fail("no room for " + argument);
         }
         if (what == "threads") {
             std::vector<std::thread> threads;
