@@ -124,7 +124,8 @@ typedef struct rt_accel {
 /* ---- importers ------------------------------------------------------------------------------------------------------------ */
 
 /* Strides are in bytes. The host copies all of it before it returns. Faces may have any number of corners: the host triangulates
- * them (convex ones as a fan from the first corner, others by ear clipping), drops those of fewer than three, and keeps order. */
+ * them (flat convex ones as a fan from the first corner, bent or concave ones as scene/triangulate.hpp says), drops those of
+ * fewer than three, and keeps order. */
 typedef struct rt_mesh {
     rt_u32 struct_bytes;
     const char *name; /* or NULL */
