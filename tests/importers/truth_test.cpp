@@ -18,8 +18,6 @@ using nlohmann::json;
 // Files that differ from the truth, each with its reason. Each is asserted to differ: this list shrinks when they are mended.
 enum class Differs { area, lights_or_cameras, instances };
 const std::map<std::string, std::pair<Differs, const char*>> kDeviations = {
-    // Two bent quads, mirror images of each other, which the truth cuts along different diagonals, the host along the shorter
-    // one.
     {"fbx/maya_node_attribute_zoo_7500_binary.fbx",
      {Differs::lights_or_cameras, "the two halves of a stereo camera are left out"}},
     {"fbx/motionbuilder_cube_7700_binary.fbx",
