@@ -1,0 +1,243 @@
+// rays_test.cpp -- rays of the caller's own: nearest and any hit, their limits, and directions that no camera makes.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <limits>
+#include <random>
+
+#include "conformance/compare.hpp"
+#include "conformance/degenerate.hpp"
+#include "support/scenes.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+
+Workbench& bench() { return Workbench::get(); }
+
+Settings settings_of(const std::string& accel, int lanes) {
+    Settings settings;
+    settings.accel = accel;
+    settings.lanes = lanes;
+    return settings;
+}
+
+rt_ray ray_of(const Point& origin, const Point& direction, float t_min = 0, float t_max = kInf) {
+    return {{origin[0], origin[1], origin[2]}, t_min, {direction[0], direction[1], direction[2]}, t_max};
+}
+
+// Origins in and around the scene's box, directions all over the sphere, some of them not unit.
+std::vector<rt_ray> random_rays(const Scene& scene, size_t count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> at(-0.3f, 1.3f), any(0, 1);
+    std::normal_distribution<float> normal;
+    const Bounds box = scene.bounds();
+    std::vector<rt_ray> rays(count);
+    for (rt_ray& ray : rays) {
+        float length = 0;
+        for (int k = 0; k < 3; ++k) {
+            ray.origin[k] = box.min[k] + at(random) * (box.max[k] - box.min[k]);
+            ray.direction[k] = normal(random);
+            length += ray.direction[k] * ray.direction[k];
+        }
+        const float scale = (any(random) < 0.5f ? 1 : 1 + 9 * any(random)) / std::sqrt(length);
+        for (float& d : ray.direction) d *= scale;
+        ray.t_min = 0;
+        ray.t_max = kInf;
+    }
+    return rays;
+}
+
+void expect_as_oracle(const ScenePtr& scene, const Oracle& oracle, const std::vector<rt_ray>& rays, const std::string& accel, int lanes,
+                      size_t allowed) {
+    const Settings settings = settings_of(accel, lanes);
+    const std::vector<rt_hit> closest = bench().rays(scene, settings, rays, false), any = bench().rays(scene, settings, rays, true);
+    ASSERT_EQ(closest.size(), rays.size());
+    ASSERT_EQ(any.size(), rays.size());
+    std::vector<Truth> truth;
+    std::vector<Ray> wide;
+    std::vector<float> t, prims;
+    size_t contradictions = 0, outside = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        wide.push_back(widened(rays[i]));
+        truth.push_back(oracle.closest(wide.back()));
+        t.push_back(closest[i].t);
+        prims.push_back(static_cast<float>(closest[i].prim));
+        contradictions += std::isfinite(closest[i].t) != (any[i].t == 0);
+        outside += std::isfinite(t[i]) && (t[i] < rays[i].t_min || t[i] > rays[i].t_max);
+    }
+    const Comparison c = compare(oracle, truth, wide, t, &prims);
+    const std::string what = accel + ", " + std::to_string(lanes) + " lanes: " + c.text();
+    EXPECT_GT(c.hits, c.rays / 20) << what;
+    EXPECT_LE(c.wrong(), allowed) << what;
+    EXPECT_EQ(c.other_prim, 0u) << what;
+    EXPECT_EQ(contradictions, 0u) << what << ": any hit and nearest hit contradict each other";
+    EXPECT_EQ(outside, 0u) << what << ": hits outside t_min..t_max";
+    if (std::getenv("CLARITY_TEST_VERBOSE")) std::printf("%s\n", what.c_str());
+}
+
+void expect_everywhere(const ScenePtr& scene, const Oracle& oracle, const std::vector<rt_ray>& rays, size_t allowed) {
+    for (const std::string& accel : bench().accels())
+        for (const int lanes : {1, 4, 8, 16}) expect_as_oracle(scene, oracle, rays, accel, lanes, allowed);
+}
+
+// A sphere, a torus and boxes that touch: small enough for structures that try everything.
+ScenePtr shapes() {
+    static const ScenePtr scene = [] {
+        TriangleMesh mesh = uv_sphere(1, 24, 16), ring = torus(1.6, 0.3, 24, 12), cube = box(0.5);
+        mesh.add(ring);
+        for (int i = 0; i < 3; ++i) {
+            cube.transform(1, {i == 0 ? -3.0 : 1.0, i == 0 ? -2.0 : 0.0, 0});
+            mesh.add(cube);
+        }
+        return shared_scene(scene_of(mesh));
+    }();
+    return scene;
+}
+
+TEST(Rays, RandomOnesOnShapes) {
+    const Oracle oracle(shapes());
+    expect_everywhere(shapes(), oracle, random_rays(*shapes(), 20000, 1), 0);
+}
+
+TEST(Rays, RandomOnesOnEveryPrimitive) {
+    const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
+    const Oracle oracle(scene);
+    for (const std::string& accel : bench().accels()) expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 2), accel, 16, 0);
+}
+
+TEST(Rays, RandomOnesOnTheBunny) {
+    CLARITY_SHARED_OR_SKIP(file, "scenes/models/bunny.ply");
+    const ScenePtr scene = geometry_of(load_scene(file));
+    const Oracle oracle(scene);
+    for (const std::string& accel : bench().fast_accels())
+        for (const int lanes : {1, 16}) expect_as_oracle(scene, oracle, random_rays(*scene, 200000, 3), accel, lanes, 2);
+}
+
+TEST(Rays, LimitsAreHonoured) {
+    std::vector<rt_ray> rays = random_rays(*shapes(), 20000, 4);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> t(0, 4);
+    for (rt_ray& ray : rays) {
+        const float a = t(random), b = t(random);
+        ray.t_min = std::min(a, b);
+        ray.t_max = std::max(a, b);
+    }
+    expect_everywhere(shapes(), Oracle(shapes()), rays, 0);
+}
+
+TEST(Rays, AlongTheAxes) {
+    std::mt19937 random(6);
+    std::uniform_real_distribution<float> at(-2.5f, 2.5f);
+    std::vector<rt_ray> rays;
+    for (int i = 0; i < 12000; ++i) {
+        const Point origin{at(random), at(random), at(random)};
+        Point direction{};
+        // One axis, or two of them; the zeros are zeros of either sign.
+        for (float& d : direction) d = random() & 1 ? 0.0f : -0.0f;
+        direction[i % 3] = i & 8 ? 1.0f : -1.0f;
+        if (i % 2) direction[(i + 1) % 3] = at(random);
+        rays.push_back(ray_of(origin, direction));
+    }
+    expect_everywhere(shapes(), Oracle(shapes()), rays, 0);
+}
+
+// From points of the boxes' planes along these planes, and exactly at corners: ties, where only agreement among structures and
+// with their own any-hit queries can be asked for.
+TEST(Rays, AtCornersAndAlongFaces) {
+    std::vector<rt_ray> rays;
+    const ScenePtr scene = shared_scene(degenerate_scene());
+    for (int x = -6; x <= 6; ++x)
+        for (int y = -6; y <= 6; ++y) {
+            rays.push_back(ray_of({0.5f * x, 0.5f * y, 6}, {0, 0, -1}));
+            rays.push_back(ray_of({6, 0.5f * x, 0.5f * y}, {-1, 0, 0}));
+            rays.push_back(ray_of({0.5f * x, 6, 0.5f * y}, {0, -1, 0}));
+        }
+    for (const std::string& accel : bench().accels()) {
+        const std::vector<rt_hit> one = bench().rays(scene, settings_of(accel, 1), rays, false);
+        for (const int lanes : {1, 16}) {
+            const std::vector<rt_hit> closest = bench().rays(scene, settings_of(accel, lanes), rays, false),
+                                      any = bench().rays(scene, settings_of(accel, lanes), rays, true);
+            for (size_t i = 0; i < rays.size(); ++i) {
+                EXPECT_EQ(std::isfinite(closest[i].t), any[i].t == 0) << accel << ", " << lanes << " lanes, ray " << i;
+                if (std::isfinite(one[i].t) || std::isfinite(closest[i].t)) {
+                    EXPECT_FLOAT_EQ(closest[i].t, one[i].t) << accel << ", " << lanes << " lanes, ray " << i;
+                }
+            }
+        }
+    }
+}
+
+// Directions of no length, of no number, of no end: whatever is answered, in time, and sound; and who travels in the same packet
+// gets the same answer as without them.
+TEST(Rays, StrangeOnesHarmNobody) {
+    const float denormal = 1e-40f;
+    const std::vector<rt_ray> strange = {
+        ray_of({0, 0, 5}, {0, 0, 0}),
+        ray_of({0, 0, 5}, {kNan, 0, -1}),
+        ray_of({0, 0, 5}, {kNan, kNan, kNan}),
+        ray_of({kNan, 0, 5}, {0, 0, -1}),
+        ray_of({kInf, 0, 5}, {0, 0, -1}),
+        ray_of({0, 0, 5}, {kInf, 0, -1}),
+        ray_of({0, 0, 5}, {0, -kInf, kInf}),
+        ray_of({0, 0, 5}, {1e30f, -1e30f, 1e30f}),
+        ray_of({0, 0, 5}, {denormal, -denormal, -1}),
+        ray_of({0, 0, 5}, {denormal, denormal, denormal}),
+        ray_of({1e30f, 1e30f, -1e30f}, {-1, -1, 1}),
+        ray_of({0, 0, 5}, {0, 0, -1}, kNan, kInf),
+        ray_of({0, 0, 5}, {0, 0, -1}, 0, kNan),
+        ray_of({0, 0, 5}, {0, 0, -1}, 10, 1),
+        ray_of({0, 0, 5}, {0, 0, -1}, 0, -1),
+    };
+    const std::vector<rt_ray> sane = random_rays(*shapes(), 16 * strange.size(), 7);
+    std::vector<rt_ray> mixed;
+    for (size_t i = 0; i < sane.size(); ++i) mixed.push_back(i % 5 == 2 ? strange[i / 5 % strange.size()] : sane[i]);
+    const int triangles = static_cast<int>(shapes()->triangle_count());
+    for (const std::string& accel : bench().accels())
+        for (const int lanes : {1, 4, 8, 16})
+            for (const bool any : {false, true}) {
+                const std::string what = accel + ", " + std::to_string(lanes) + " lanes" + (any ? ", any" : ", closest");
+                const std::vector<rt_hit> alone = bench().rays(shapes(), settings_of(accel, lanes), sane, any),
+                                          together = bench().rays(shapes(), settings_of(accel, lanes), mixed, any);
+                for (size_t i = 0; i < sane.size(); ++i) {
+                    if (i % 5 == 2) {
+                        EXPECT_FALSE(std::isnan(together[i].t)) << what << ", strange ray " << i / 5 % strange.size();
+                        EXPECT_GE(together[i].prim, -1) << what;
+                        EXPECT_LT(together[i].prim, triangles) << what;
+                    } else {
+                        EXPECT_EQ(together[i].t, alone[i].t) << what << ", ray " << i << " beside strange ones";
+                    }
+                }
+            }
+    // Nearly along an axis is along it.
+    for (const std::string& accel : bench().accels()) {
+        const rt_hit straight = bench().rays(shapes(), settings_of(accel, 1), {ray_of({0.1f, 0.2f, 5}, {0, 0, -1})}, false)[0],
+                     nearly = bench().rays(shapes(), settings_of(accel, 1), {ray_of({0.1f, 0.2f, 5}, {denormal, -denormal, -1})}, false)[0];
+        EXPECT_FLOAT_EQ(straight.t, nearly.t) << accel;
+        EXPECT_TRUE(std::isfinite(straight.t)) << accel;
+    }
+}
+
+TEST(Rays, NoneAndOne) {
+    for (const std::string& accel : bench().accels()) {
+        EXPECT_TRUE(bench().rays(shapes(), settings_of(accel, 16), {}, false).empty());
+        const std::vector<rt_hit> one = bench().rays(shapes(), settings_of(accel, 16), {ray_of({0.1f, 0.2f, 5}, {0, 0, -1})}, false);
+        ASSERT_EQ(one.size(), 1u);
+        EXPECT_NEAR(one[0].t, 4.03f, 0.05f) << accel;
+    }
+}
+
+TEST(Rays, AnEmptySceneIsEmpty) {
+    const ScenePtr empty = shared_scene(scene_of(TriangleMesh()));
+    for (const std::string& accel : bench().accels())
+        for (const bool any : {false, true})
+            for (const rt_hit& hit : bench().rays(empty, settings_of(accel, 16), random_rays(*shapes(), 100, 8), any)) {
+                EXPECT_EQ(hit.t, kInf) << accel;
+                EXPECT_EQ(hit.prim, -1) << accel;
+            }
+}
+
+}  // namespace

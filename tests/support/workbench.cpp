@@ -1,0 +1,100 @@
+#include "support/workbench.hpp"
+
+namespace clarity::test {
+namespace {
+
+constexpr int kLanes[] = {1, 4, 8, 16};
+constexpr int kPackets[][2] = {{1, 1}, {2, 2}, {3, 5}, {4, 4}, {8, 8}};
+
+}  // namespace
+
+Workbench::Workbench()
+    : plugins_(PluginRegistry::discover()),
+      device_(std::make_shared<Device>(choose_device(""))),
+      preparer_(plugins_, device_),
+      frames_(device_) {}
+
+Workbench& Workbench::get() {
+    // Never destroyed: an OpenCL driver may be gone before static objects are.
+    static Workbench* const workbench = new Workbench;
+    return *workbench;
+}
+
+std::vector<std::string> Workbench::accels() const {
+    std::vector<std::string> ids;
+    for (const rt_plugin* plugin : plugins_.accels()) ids.push_back(plugin->id);
+    return ids;
+}
+
+std::vector<std::string> Workbench::fast_accels() const {
+    std::vector<std::string> ids;
+    for (const std::string& id : accels())
+        if (id != "linear") ids.push_back(id);
+    return ids;
+}
+
+std::shared_ptr<const Prepared> Workbench::prepare(const ScenePtr& scene, const Settings& settings) {
+    return preparer_.prepare(scene, settings, progress_);
+}
+
+FloatImage Workbench::values(const ScenePtr& scene, const Settings& settings, const View& view, FrameStats* stats) {
+    const FrameStats traced = frames_.trace(*prepare(scene, settings), settings, view, 0, true, progress_);
+    if (stats) *stats = traced;
+    return frames_.read_values();
+}
+
+ByteImage Workbench::display(const ScenePtr& scene, const Settings& settings, const View& view, FrameStats* stats) {
+    const FrameStats traced = frames_.trace(*prepare(scene, settings), settings, view, 0, true, progress_);
+    if (stats) *stats = traced;
+    return frames_.read_display(settings);
+}
+
+std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays, bool any_hit) {
+    return frames_.trace_rays(*prepare(scene, settings), rays, any_hit);
+}
+
+Settings make_settings(const std::vector<std::pair<std::string, std::string>>& pairs) {
+    Settings settings;
+    for (const auto& [key, value] : pairs) {
+        if (key == "accel")
+            settings.accel = value;
+        else
+            set_setting(settings, key, value);
+    }
+    return settings;
+}
+
+std::string Configuration::text() const {
+    return accel + ", " + std::to_string(lanes) + " lanes, packet " + std::to_string(packet_w) + "x" + std::to_string(packet_h);
+}
+
+void Configuration::apply(Settings& settings) const {
+    settings.accel = accel;
+    settings.lanes = lanes;
+    settings.packet_w = packet_w;
+    settings.packet_h = packet_h;
+}
+
+std::vector<Configuration> all_pairs(const std::vector<std::string>& accels) {
+    std::vector<Configuration> all;
+    size_t l = 0;
+    for (const int lanes : kLanes) {
+        size_t p = 0;
+        for (const auto& packet : kPackets) all.push_back({accels[(l + p++) % accels.size()], lanes, packet[0], packet[1]});
+        ++l;
+    }
+    return all;
+}
+
+std::vector<Configuration> each_accel_and_lanes(const std::vector<std::string>& accels) {
+    std::vector<Configuration> all;
+    size_t p = 0;
+    for (const std::string& accel : accels)
+        for (const int lanes : kLanes) {
+            const auto& packet = kPackets[p++ % std::size(kPackets)];
+            all.push_back({accel, lanes, packet[0], packet[1]});
+        }
+    return all;
+}
+
+}  // namespace clarity::test
