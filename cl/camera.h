@@ -56,35 +56,11 @@ RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, ui
 #endif
 }
 
-/* lowbias32, a full-avalanche integer hash (Wellons 2018). */
-RT_INLINE vuint rt_hash(vuint x)
-{
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    x ^= x >> 16;
-    return x;
-}
-
-/* Camera rays through pixels (x, y) of the picture: their centres for sample 0, else a point that depends on pixel and sample
- * alone, so that pictures do not depend on who renders what when. */
+/* Camera rays through pixels (x, y) of the picture, at the place within a pixel that the frame says. It is the same for all
+ * pixels, so that pictures do not depend on who renders what when, and packets stay as coherent as they are. */
 RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
 {
-    vfloat px = rt_to_float(x) + rt_vfloat(0.5f), py = rt_to_float(y) + rt_vfloat(0.5f);
-    if (frame->sample != 0u) {
-#if RT_LANES == 1
-        const vuint seed = (uint)(x + y * (int)frame->width) * 4099u + frame->sample * 2u;
-        const vuint a = rt_hash(seed), b = rt_hash(seed + 0x9e3779b9u);
-        px = (float)x + (float)(a >> 8) * 5.9604645e-8f;
-        py = (float)y + (float)(b >> 8) * 5.9604645e-8f;
-#else
-        const vuint seed = RT_CAT(convert_uint, RT_LANES)(x + y * rt_vint((int)frame->width)) * 4099u + frame->sample * 2u;
-        const vuint a = rt_hash(seed), b = rt_hash(seed + 0x9e3779b9u);
-        px = rt_to_float(x) + RT_CAT(convert_float, RT_LANES)(a >> 8) * 5.9604645e-8f;
-        py = rt_to_float(y) + RT_CAT(convert_float, RT_LANES)(b >> 8) * 5.9604645e-8f;
-#endif
-    }
+    const vfloat px = rt_to_float(x) + rt_vfloat(frame->within_x), py = rt_to_float(y) + rt_vfloat(frame->within_y);
     const vfloat sx = fma(px, rt_vfloat(2.0f * frame->pixel_x), rt_vfloat(-1.0f));
     const vfloat sy = fma(py, rt_vfloat(-2.0f * frame->pixel_y), rt_vfloat(1.0f));
     const vfloat dx = fma(sx, rt_vfloat(frame->right[0]), fma(sy, rt_vfloat(frame->up[0]), rt_vfloat(frame->forward[0])));

@@ -113,7 +113,7 @@ typedef struct rt_frame {
     rt_f32 ambient[3];
     rt_u32 light_count;
     rt_u32 plane_count;
-    rt_u32 sample; /* number of this sample; 0 goes through the pixel's centre */
+    rt_u32 sample; /* number of this sample; 0 starts the film anew */
     rt_u32 packet_w, packet_h; /* pixels of one work-item */
     rt_f32 min_weight; /* rays that would add less than this are not spawned */
     rt_u32 shadows;    /* 0: none */
@@ -121,7 +121,8 @@ typedef struct rt_frame {
     rt_u32 root; /* of group 0 */
     rt_u32 block_w, block_w_log2; /* pixels traced side by side: block_w wide, RT_LANES in all */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
-    rt_u32 pad[4];
+    rt_f32 within_x, within_y;    /* where in each pixel this sample's rays go through, 0..1 */
+    rt_u32 pad[2];
 } rt_frame;
 
 /* What the kernels count, added up with atomics once a packet. 32 B. */
