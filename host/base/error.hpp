@@ -6,7 +6,15 @@
 namespace clarity {
 
 // Exit codes of the program, part of its contract.
-enum class Exit { done = 0, failed = 1, usage = 2, no_device = 3, import_failed = 4, kernel_build_failed = 5, interrupted = 130 };
+enum class Exit {
+    done = 0,
+    failed = 1,
+    usage = 2,
+    no_device = 3,
+    import_failed = 4,
+    kernel_build_failed = 5,
+    interrupted = 130
+};
 
 // A failure that a person reads: what was tried, on which file or device, why it failed and what to do.
 class Error : public std::runtime_error {

@@ -11,11 +11,11 @@
 namespace clarity {
 
 struct ImportOptions {
-    bool in_process = false;                     // for debugging a plugin; a crash is then ours
-    double time_limit_s = 600;                   // of CPU time and of wall-clock time without progress
-    uint64_t memory_limit_bytes = 0;             // address space of the worker; 0: by the file's size
-    std::vector<std::string> search_paths;       // folders besides the file's own that it may read from
-    std::string worker;                          // program to run as worker; empty: this one (or CLARITY_WORKER)
+    bool in_process = false;                // for debugging a plugin; a crash is then ours
+    double time_limit_s = 600;              // of CPU time and of wall-clock time without progress
+    uint64_t memory_limit_bytes = 0;        // address space of the worker; 0: by the file's size
+    std::vector<std::string> search_paths;  // folders besides the file's own that it may read from
+    std::string worker;                     // program to run as worker; empty: this one (or CLARITY_WORKER)
 };
 
 // Several files become one scene. Throws Error(import_failed) "FILE: why", or Cancelled. The scene is validated.

@@ -64,20 +64,20 @@ struct Camera {
 
 // Valid once `validate` accepted it: every index in range, every number finite, materials[0] the default material.
 struct Scene {
-    std::vector<float> positions;               // 3 per vertex
-    std::vector<float> normals;                 // 3 per vertex, (0,0,0) where a mesh has none; or empty
-    std::vector<float> uvs;                     // 2 per vertex; or empty
-    std::vector<rt_u32> triangles;              // 3 per triangle, indices into the vertices of the whole scene
-    std::vector<rt_u32> triangle_materials;     // 1 per triangle
+    std::vector<float> positions;            // 3 per vertex
+    std::vector<float> normals;              // 3 per vertex, (0,0,0) where a mesh has none; or empty
+    std::vector<float> uvs;                  // 2 per vertex; or empty
+    std::vector<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
+    std::vector<rt_u32> triangle_materials;  // 1 per triangle
     std::vector<Mesh> meshes;
-    std::vector<Instance> instances;            // meshes without an instance are not in the world
+    std::vector<Instance> instances;  // meshes without an instance are not in the world
     std::vector<Sphere> spheres;
     std::vector<Plane> planes;
     std::vector<Polygon> polygons;
-    std::vector<float> polygon_corners;         // 3 per corner
+    std::vector<float> polygon_corners;  // 3 per corner
     std::vector<Material> materials;
     std::vector<rt_texture> textures;
-    std::vector<uint32_t> texels;               // RGBA8, R in the low byte
+    std::vector<uint32_t> texels;  // RGBA8, R in the low byte
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     std::array<float, 3> background{0.12f, 0.16f, 0.22f}, ambient{0.08f, 0.08f, 0.08f};

@@ -7,7 +7,8 @@
 
 namespace clarity::test {
 
-// t within this of the oracle's, relative; anything else counts as a differing hit.
+// t within this of the oracle's, relative, or as near as the origin's own coordinates are known (for rays that start close to what
+// they hit); anything else counts as a differing hit.
 inline constexpr double kTolerance = 1e-5;
 
 struct Comparison {
