@@ -1,0 +1,192 @@
+// light_test.cpp -- background, Lambert's cosine, ambient light and shadows, against formulas.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "images/optics.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+rt_light point_light(const Point& position, float intensity) {
+    rt_light light{};
+    light.kind = RT_LIGHT_POINT;
+    for (int k = 0; k < 3; ++k) {
+        light.position[k] = position[k];
+        light.color[k] = intensity;
+    }
+    return light;
+}
+
+rt_light directional_light(const Vec& towards, float intensity) {
+    rt_light light = point_light({}, intensity);
+    light.kind = RT_LIGHT_DIRECTIONAL;
+    const Vec unit = normalized(towards);
+    for (int k = 0; k < 3; ++k) light.position[k] = static_cast<float>(unit[k]);
+    return light;
+}
+
+// A plane through the origin that faces +z, of albedo .5, and black surroundings.
+Scene plane_scene() {
+    Scene scene = scene_of(TriangleMesh());
+    scene.planes.push_back({{0, 0, 1}, 0, add_material(scene, diffuse(0.5f, 0.5f, 0.5f))});
+    return scene;
+}
+
+View black_view(const Point& eye, const Point& target, double fov_deg) {
+    View view = view_from(eye, target, fov_deg);
+    view.camera.up = {0, 1, 0};
+    view.background = view.ambient = {0, 0, 0};
+    return view;
+}
+
+TEST(Light, BackgroundFillsAnEmptyPicture) {
+    View view = black_view({0, 0, 5}, {0, 0, 0}, 45);
+    view.background = {0.25f, 0.5f, 0.75f};
+    const Picture picture = trace(scene_of(TriangleMesh()), view, 37, 23, 4);
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) ASSERT_EQ(picture.at(x, y), (std::array<float, 3>{0.25f, 0.5f, 0.75f})) << x << "," << y;
+    EXPECT_EQ(picture.stats.primary, 37u * 23u);
+    EXPECT_EQ(picture.stats.shadow, 0u);
+    EXPECT_EQ(picture.stats.secondary, 0u);
+}
+
+TEST(Light, DisplayIsSrgb) {
+    View view = black_view({0, 0, 5}, {0, 0, 0}, 45);
+    view.background = {0.0f, 0.214041f, 1.0f};  // half of the range in sRGB
+    const ByteImage image = Workbench::get().display(shared_scene(scene_of(TriangleMesh())), make_settings({{"size", "8x8"}}), view);
+    ASSERT_EQ(image.pixels.size(), 8u * 8u * 4u);
+    EXPECT_EQ(image.pixels[0], 0);
+    EXPECT_NEAR(image.pixels[1], 128, 1);
+    EXPECT_EQ(image.pixels[2], 255);
+    EXPECT_EQ(image.pixels[3], 255);
+}
+
+TEST(Light, LambertsCosineFromADirection) {
+    for (const double degrees : {0.0, 30.0, 60.0, 85.0, 95.0}) {
+        const double angle = degrees * 3.14159265358979 / 180;
+        View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
+        view.lights = {directional_light({std::sin(angle), 0, std::cos(angle)}, 0.8f)};
+        const double expected = 0.5 * 0.8 * std::max(0.0, std::cos(angle));
+        SCOPED_TRACE(std::to_string(degrees) + " degrees");
+        expect_picture(trace(plane_scene(), view, 64, 48, 1), view, [&](const Line&) { return expected; }, 1e-5, 64 * 48);
+    }
+}
+
+TEST(Light, LambertsCosineFromAPointWithoutFalloff) {
+    View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
+    const Vec lamp{0.7, -0.4, 1.5};
+    view.lights = {point_light({0.7f, -0.4f, 1.5f}, 1)};
+    expect_picture(
+        trace(plane_scene(), view, 64, 48, 1), view,
+        [&](const Line& line) {
+            const Vec p = line.at(-line.origin[2] / line.direction[2]);
+            return 0.5 * normalized(lamp - p)[2];
+        },
+        1e-5, 64 * 48);
+}
+
+TEST(Light, LightsAndAmbientAddUp) {
+    View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
+    view.lights = {directional_light({0, 0, 1}, 0.25f), directional_light({0, 1, 1}, 0.5f), directional_light({0, 0, -1}, 9)};
+    view.ambient = {0.1f, 0.2f, 0.3f};
+    const double expected = 0.5 * (0.25 + 0.5 * std::sqrt(0.5) + 0.2);
+    expect_picture(trace(plane_scene(), view, 16, 16, 1), view, [&](const Line&) { return expected; }, 1e-5, 256);
+}
+
+// The blinn-phong highlight where the half vector meets the normal: on a plane under a lamp beside the eye it is the whole of it.
+TEST(Light, HighlightAtTheMirrorPoint) {
+    Scene scene = plane_scene();
+    rt_material& shiny = scene.materials.back().values;
+    shiny.specular[0] = shiny.specular[1] = shiny.specular[2] = 0.3f;
+    shiny.shininess = 50;
+    View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
+    view.lights = {directional_light({0, 0, 1}, 1)};
+    expect_picture(
+        trace(scene, view, 65, 49, 1), view,
+        [](const Line& line) {
+            const Vec half = normalized(Vec{0, 0, 1} - line.direction);
+            return 0.5 + 0.3 * std::pow(half[2], 50);
+        },
+        2e-3, 65 * 49);
+}
+
+void expect_shadow_of_a_sphere(const rt_light& light) {
+    Scene scene = plane_scene();
+    const Vec center{0.2, -0.1, 1};
+    const double radius = 0.5;
+    Sphere ball;
+    ball.center = {0.2f, -0.1f, 1};
+    ball.radius = 0.5f;
+    ball.material = 1;
+    scene.spheres.push_back(ball);
+    View view = black_view({0.5f, -6, 5}, {0.3f, 0, 0}, 40);
+    view.lights = {light};
+    const Picture picture = trace(scene, view, 160, 120, 1);
+    size_t dark = 0;
+    const auto expected = [&](const Line& line) {
+        double margin = 0;
+        if (meet_sphere(line, center, radius, &margin) < INFINITY || margin < 0.02) return -1.0;
+        const Vec p = line.at(-line.origin[2] / line.direction[2]);
+        const Vec lamp{light.position[0], light.position[1], light.position[2]};
+        const Vec towards = light.kind == RT_LIGHT_POINT ? normalized(lamp - p) : lamp;
+        const bool shadow = meet_sphere({p, towards}, center, radius, &margin) < INFINITY;
+        if (margin < 0.02) return -1.0;
+        dark += shadow;
+        return shadow ? 0.0 : 0.5 * towards[2];
+    };
+    expect_picture(picture, view, expected, 1e-4, 160 * 120 / 2);
+    EXPECT_GT(dark, 300u) << "no shadow in the picture";
+    EXPECT_GT(picture.stats.shadow, 160u * 120u / 2);
+
+    // Without shadows the same pixels are lit.
+    const Picture without = trace(scene, view, 160, 120, 1, {{"shadows", "false"}});
+    EXPECT_EQ(without.stats.shadow, 0u);
+    size_t brighter = 0;
+    for (size_t i = 0; i < without.image.pixels.size(); ++i) brighter += without.image.pixels[i] > picture.image.pixels[i] + 0.01f;
+    EXPECT_GT(brighter, 3 * 300u);
+}
+
+TEST(Shadow, OfASphereUnderALamp) { expect_shadow_of_a_sphere(point_light({-0.4f, 0.3f, 3}, 1)); }
+TEST(Shadow, OfASphereInTheSun) { expect_shadow_of_a_sphere(directional_light({0.5, 0.3, 1}, 1)); }
+
+// A lamp between the surface and an obstacle casts no shadow of what is behind it.
+TEST(Shadow, NotFromBehindTheLamp) {
+    Scene scene = plane_scene();
+    Sphere ball;
+    ball.center = {0, 0, 20};
+    ball.radius = 3;
+    scene.spheres.push_back(ball);
+    View view = black_view({0, 0, 3}, {0, 0, 0}, 60);
+    view.lights = {point_light({0, 0, 2}, 1)};
+    expect_picture(
+        trace(scene, view, 48, 48, 1), view,
+        [](const Line& line) { return 0.5 * normalized(Vec{0, 0, 2} - line.at(-line.origin[2] / line.direction[2]))[2]; }, 1e-5, 48 * 48);
+}
+
+// No acne: a surface does not shade itself, whatever the scale, the place and the angle.
+TEST(Shadow, NoneOfTheSurfaceItself) {
+    for (const double scale : {1e-3, 1.0, 1e3})
+        for (const double offset : {0.0, 10.0}) {
+            TriangleMesh mesh = uv_sphere(1, 96, 64);
+            mesh.transform(scale, {offset * scale, 0, 0});
+            Scene scene = scene_of(mesh);
+            scene.materials[0].values = diffuse(1, 1, 1);
+            const auto s = static_cast<float>(scale), x = static_cast<float>(offset * scale);
+            View view = black_view({x + 0.5f * s, 0.7f * s, 4 * s}, {x, 0, 0}, 35);
+            view.lights = {directional_light({0.3, 0.5, 1}, 1)};
+            const Picture with = trace(scene, view, 200, 150, 1), without = trace(scene, view, 200, 150, 1, {{"shadows", "false"}});
+            size_t differ = 0, lit = 0;
+            for (size_t i = 0; i < with.image.pixels.size(); ++i) {
+                lit += without.image.pixels[i] > 0;
+                // Near the edge of its own shadow a faceted sphere may shade its next facet.
+                differ += without.image.pixels[i] > 0.03f && with.image.pixels[i] != without.image.pixels[i];
+            }
+            EXPECT_GT(lit, 10000u);
+            EXPECT_EQ(differ, 0u) << "of " << lit << " at scale " << scale << ", offset " << offset;
+        }
+}
+
+}  // namespace

@@ -1,0 +1,141 @@
+// texture_test.cpp -- textures the right way up, on every kind of primitive that carries one, and the AOVs that describe surfaces.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "images/optics.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+constexpr uint32_t kRed = 0xff0000ffu, kGreen = 0xff00ff00u, kBlue = 0xffff0000u, kWhite = 0xffffffffu;
+
+// Two by two texels, top row first: red green / blue white.
+rt_u32 add_texture(Scene& scene) {
+    scene.textures.push_back({static_cast<rt_u32>(scene.texels.size()), 2, 2, 0});
+    for (const uint32_t texel : {kRed, kGreen, kBlue, kWhite}) scene.texels.push_back(texel);
+    return static_cast<rt_u32>(scene.textures.size() - 1);
+}
+
+// A square of the xy plane, corners at (0,0) and (2,2) with uv as the corners' halves.
+Scene textured_square(const Affine& placed = kIdentity) {
+    TriangleMesh mesh;
+    const rt_u32 a = mesh.add_vertex(0, 0, 0), b = mesh.add_vertex(2, 0, 0), c = mesh.add_vertex(2, 2, 0), d = mesh.add_vertex(0, 2, 0);
+    mesh.add_triangle(a, b, c);
+    mesh.add_triangle(a, c, d);
+    Scene scene = scene_of(mesh);
+    scene.uvs = {0, 0, 1, 0, 1, 1, 0, 1};
+    scene.instances[0].world_from_object = placed;
+    scene.materials[0].values = diffuse(1, 1, 1);
+    scene.materials[0].values.texture = add_texture(scene);
+    return scene;
+}
+
+View flat_view() {
+    View view = view_from({1, 1, 5}, {1, 1, 0}, 2 * std::atan(1.0 / 5) * 180 / 3.14159265358979);  // exactly the square
+    view.background = {0, 0, 0};
+    view.ambient = {1, 1, 1};
+    return view;
+}
+
+void expect_color(const std::array<float, 3>& seen, const std::array<float, 3>& wanted, const char* where) {
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(seen[k], wanted[k], 0.02) << where << ", channel " << k;
+}
+
+TEST(Texture, BottomLeftIsUvZero) {
+    const Picture picture = trace(textured_square(), flat_view(), 64, 64, 1);
+    expect_color(picture.at(15, 15), {1, 0, 0}, "top left");
+    expect_color(picture.at(48, 15), {0, 1, 0}, "top right");
+    expect_color(picture.at(15, 48), {0, 0, 1}, "bottom left");
+    expect_color(picture.at(48, 48), {1, 1, 1}, "bottom right");
+}
+
+TEST(Texture, IsBilinearBetweenTexels) {
+    const Picture picture = trace(textured_square(), flat_view(), 64, 64, 1);
+    const std::array<float, 3> middle = picture.at(31, 15);  // half a pixel left of between red and green
+    EXPECT_NEAR(middle[0], 0.5, 0.05);
+    EXPECT_NEAR(middle[1], 0.5, 0.05);
+    EXPECT_NEAR(middle[2], 0.0, 0.02);
+}
+
+TEST(Texture, RepeatsOutsideItsRange) {
+    Scene scene = textured_square();
+    for (float& uv : scene.uvs) uv += -3;
+    const Picture shifted = trace(scene, flat_view(), 64, 64, 1), plain = trace(textured_square(), flat_view(), 64, 64, 1);
+    for (size_t i = 0; i < plain.image.pixels.size(); ++i) ASSERT_NEAR(shifted.image.pixels[i], plain.image.pixels[i], 1e-3) << i;
+}
+
+TEST(Texture, GoesWithTheMeshThatIsTurned) {
+    // A quarter turn about the square's centre, counter-clockwise: what was at the top right is now at the top left.
+    const Picture picture = trace(textured_square({0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, 0}), flat_view(), 64, 64, 1);
+    expect_color(picture.at(15, 15), {0, 1, 0}, "top left");
+    expect_color(picture.at(48, 15), {1, 1, 1}, "top right");
+    expect_color(picture.at(15, 48), {1, 0, 0}, "bottom left");
+    expect_color(picture.at(48, 48), {0, 0, 1}, "bottom right");
+}
+
+TEST(Texture, OnInstancesToo) {
+    Scene scene = textured_square();
+    Instance second = scene.instances[0];
+    second.world_from_object = {0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, -1};  // turned, behind the first: hidden
+    scene.instances.push_back(second);
+    const Picture front = trace(scene, flat_view(), 64, 64, 1);
+    expect_color(front.at(15, 48), {0, 0, 1}, "bottom left of the first");
+    std::swap(scene.instances[0].world_from_object[11], scene.instances[1].world_from_object[11]);
+    const Picture turned = trace(scene, flat_view(), 64, 64, 1);
+    expect_color(turned.at(15, 48), {1, 0, 0}, "bottom left of the second");
+}
+
+TEST(Texture, UprightOnASphere) {
+    Scene scene = scene_of(TriangleMesh());
+    scene.materials[0].values = diffuse(1, 1, 1);
+    scene.materials[0].values.texture = add_texture(scene);
+    Sphere ball;
+    ball.center = {0, 0, 0};
+    ball.radius = 1;
+    scene.spheres.push_back(ball);
+    View view = view_from({0, 0, 6}, {0, 0, 0}, 25);
+    view.ambient = {1, 1, 1};
+    const Picture picture = trace(scene, view, 64, 64, 1);
+    // The middle of the map looks along +z: left of it is its left half, above it the upper one.
+    const std::array<float, 3> above_left = picture.at(16, 16), below_right = picture.at(47, 47);
+    EXPECT_GT(above_left[0], above_left[2]) << "red is at the top left";
+    EXPECT_GT(above_left[0], 0.5f);
+    EXPECT_GT(below_right[2], 0.2f) << "white is at the bottom right";
+    EXPECT_GT(below_right[0], 0.2f);
+}
+
+FloatImage aov(const Scene& scene, const View& view, const std::string& name) {
+    return Workbench::get().values(shared_scene(scene), make_settings({{"aov", name}, {"size", "64x64"}}), view);
+}
+
+TEST(Aov, UvNormalInstanceAndPrim) {
+    Scene scene = textured_square();
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[1].world_from_object[3] = 1;  // to the right by half of it
+    scene.instances[1].world_from_object[11] = -1;
+    const View view = flat_view();
+    const FloatImage uv = aov(scene, view, "uv"), normal = aov(scene, view, "normal"), instance = aov(scene, view, "instance"),
+                     prim = aov(scene, view, "prim"), t = aov(scene, view, "t");
+    const size_t middle = 40 * 64 + 20;
+    EXPECT_NEAR(uv.pixels[3 * middle], 20.5 / 64, 1e-4);
+    EXPECT_NEAR(uv.pixels[3 * middle + 1], 1 - 40.5 / 64, 1e-4);
+    EXPECT_NEAR(std::fabs(normal.pixels[3 * middle + 2]), 1, 1e-5);
+    EXPECT_EQ(instance.pixels[middle], 0);
+    EXPECT_EQ(prim.pixels[middle], 1) << "above the diagonal: the second triangle";
+    EXPECT_EQ(prim.pixels[60 * 64 + 40], 0) << "below it: the first";
+    const Line line = pixel_line(view.camera, 64, 64, 20, 40);
+    EXPECT_NEAR(t.pixels[middle], -5 / line.direction[2], 1e-5);
+
+    // Pulled away, the first leaves the second alone, whose numbers go on.
+    scene.instances[0].world_from_object[3] = 50;
+    EXPECT_EQ(aov(scene, view, "instance").pixels[40 * 64 + 50], 1);
+    EXPECT_GE(aov(scene, view, "prim").pixels[40 * 64 + 50], 2);
+    EXPECT_EQ(aov(scene, view, "instance").pixels[40 * 64 + 5], -1);
+    EXPECT_EQ(aov(scene, view, "prim").pixels[40 * 64 + 5], -1);
+    EXPECT_TRUE(std::isinf(aov(scene, view, "t").pixels[40 * 64 + 5]));
+}
+
+}  // namespace
