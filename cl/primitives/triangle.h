@@ -58,8 +58,12 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
     const vfloat w = bx * ay - by * ax;
     const vfloat lowest = rt_min(rt_min(u, v), w), highest = rt_max(rt_max(u, v), w);
     const vfloat zero = rt_vfloat(0.0f);
-    const vmask inside = RT_MASK(lowest >= zero) | RT_MASK(highest <= zero);
+    vmask inside = RT_MASK(lowest >= zero) | RT_MASK(highest <= zero);
     if (!rt_any(inside & RT_MASK(h->t >= zero))) return;
+    /* A ray that passes a slim triangle at a million times its size finds all three products equal by rounding. The ray is the
+     * origin here, so a triangle around it has corners on both sides of either axis: exact, and so still watertight. */
+    inside &= RT_MASK(rt_min(rt_min(ax, bx), cx) <= zero) & RT_MASK(rt_max(rt_max(ax, bx), cx) >= zero) &
+              RT_MASK(rt_min(rt_min(ay, by), cy) <= zero) & RT_MASK(rt_max(rt_max(ay, by), cy) >= zero);
 
     /* t by the triangle's plane: weighing the corners with u, v, w cancels where they are far away, as a floor's are. Seen
      * edge-on the plane says nothing, so t is kept within the corners'. */
