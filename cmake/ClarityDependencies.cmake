@@ -36,8 +36,6 @@ find_library(CLARITY_STB_LIBRARY stb)
 if(NOT CLARITY_STB_INCLUDE)
   message(FATAL_ERROR "stb_image.h not found: install libstb-dev")
 endif()
-find_package(spdlog CONFIG QUIET)
-find_package(fmt CONFIG QUIET)
 
 set(ui_missing "")
 find_package(PkgConfig QUIET)

@@ -9,18 +9,6 @@ RT_INLINE void RT_FN(rt_hit_planes)(const rt_ctx *ctx, uint count, const rt_rays
         const vfloat t = height / facing, zero = rt_vfloat(0.0f);
         const vmask closer = RT_MASK(facing != zero) & RT_MASK(h->t >= zero) & rt_closer(r, h, t, plane->prim);
         if (!rt_any(closer)) continue;
-#if RT_ANY_HIT
-        h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
-#else
-        h->t = rt_select(closer, t, h->t);
-        h->u = rt_select(closer, zero, h->u);
-        h->v = rt_select(closer, zero, h->v);
-        h->nx = rt_select(closer, nx, h->nx);
-        h->ny = rt_select(closer, ny, h->ny);
-        h->nz = rt_select(closer, nz, h->nz);
-        h->leaf = rt_select(closer, rt_vint(-2 - (int)i), h->leaf);
-        h->prim = rt_select(closer, rt_vint((int)plane->prim), h->prim);
-        h->instance = rt_select(closer, rt_vint(-1), h->instance);
-#endif
+        RT_FN(rt_record)(h, closer, t, zero, zero, nx, ny, nz, -2 - (int)i, plane->prim);
     }
 }

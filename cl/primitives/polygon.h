@@ -29,17 +29,5 @@ RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *le
     }
     closer &= inside;
     if (!rt_any(closer)) return;
-#if RT_ANY_HIT
-    h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
-#else
-    h->t = rt_select(closer, t, h->t);
-    h->u = rt_select(closer, zero, h->u);
-    h->v = rt_select(closer, zero, h->v);
-    h->nx = rt_select(closer, rt_vfloat(nx), h->nx);
-    h->ny = rt_select(closer, rt_vfloat(ny), h->ny);
-    h->nz = rt_select(closer, rt_vfloat(nz), h->nz);
-    h->leaf = rt_select(closer, rt_vint(at), h->leaf);
-    h->prim = rt_select(closer, rt_vint((int)leaf->prim), h->prim);
-    h->instance = rt_select(closer, rt_vint(-1), h->instance);
-#endif
+    RT_FN(rt_record)(h, closer, t, zero, zero, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, leaf->prim);
 }

@@ -22,17 +22,5 @@ RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_leaf *leaf, uint at, const r
     const vfloat t = rt_select(RT_MASK(t_near >= r->t_min) & RT_MASK(t_near > zero), t_near, t_far);
     const vmask closer = meets & RT_MASK(t > zero) & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
-#if RT_ANY_HIT
-    h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
-#else
-    h->t = rt_select(closer, t, h->t);
-    h->u = rt_select(closer, zero, h->u);
-    h->v = rt_select(closer, zero, h->v);
-    h->nx = rt_select(closer, fma(t, r->dx, fx), h->nx);
-    h->ny = rt_select(closer, fma(t, r->dy, fy), h->ny);
-    h->nz = rt_select(closer, fma(t, r->dz, fz), h->nz);
-    h->leaf = rt_select(closer, rt_vint(at), h->leaf);
-    h->prim = rt_select(closer, rt_vint((int)leaf->prim), h->prim);
-    h->instance = rt_select(closer, rt_vint(-1), h->instance);
-#endif
+    RT_FN(rt_record)(h, closer, t, zero, zero, fma(t, r->dx, fx), fma(t, r->dy, fy), fma(t, r->dz, fz), (int)at, leaf->prim);
 }

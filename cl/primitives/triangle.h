@@ -82,17 +82,5 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
     const vfloat det = u + v + w, scale = rt_vfloat(1.0f) / det;
     const vmask closer = inside & RT_MASK(det != zero) & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
-#if RT_ANY_HIT
-    h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
-#else
-    h->t = rt_select(closer, t, h->t);
-    h->u = rt_select(closer, v * scale, h->u);
-    h->v = rt_select(closer, w * scale, h->v);
-    h->nx = rt_select(closer, rt_vfloat(nx), h->nx);
-    h->ny = rt_select(closer, rt_vfloat(ny), h->ny);
-    h->nz = rt_select(closer, rt_vfloat(nz), h->nz);
-    h->leaf = rt_select(closer, rt_vint(at), h->leaf);
-    h->prim = rt_select(closer, rt_vint((int)leaf->prim), h->prim);
-    h->instance = rt_select(closer, rt_vint(-1), h->instance);
-#endif
+    RT_FN(rt_record)(h, closer, t, v * scale, w * scale, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, leaf->prim);
 }

@@ -74,6 +74,7 @@ void traversal(std::ostream& out, const std::string& name, const std::string& le
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const std::string& file, const std::string& text) {
     out << "#define RT_ANY_HIT " << any_hit << "\n#define RT_FN(name) RT_CAT(name, " << (any_hit ? "_any" : "_closest")
         << ")\n";
+    include(out, "primitives/record.h");
     include(out, "primitives/triangle.h");
     if (features.spheres) include(out, "primitives/sphere.h");
     if (features.polygons) include(out, "primitives/polygon.h");

@@ -1,0 +1,18 @@
+/* record.h -- what a primitive test leaves behind in the lanes that it wins. A template, see CONTRACT.md. */
+RT_INLINE void RT_FN(rt_record)(rt_hits *h, vmask closer, vfloat t, vfloat u, vfloat v, vfloat nx, vfloat ny, vfloat nz, int leaf,
+                                uint prim)
+{
+#if RT_ANY_HIT
+    h->t = rt_select(closer, rt_vfloat(-1.0f), h->t);
+#else
+    h->t = rt_select(closer, t, h->t);
+    h->u = rt_select(closer, u, h->u);
+    h->v = rt_select(closer, v, h->v);
+    h->nx = rt_select(closer, nx, h->nx);
+    h->ny = rt_select(closer, ny, h->ny);
+    h->nz = rt_select(closer, nz, h->nz);
+    h->leaf = rt_select(closer, rt_vint(leaf), h->leaf);
+    h->prim = rt_select(closer, rt_vint((int)prim), h->prim);
+    h->instance = rt_select(closer, rt_vint(-1), h->instance);
+#endif
+}
