@@ -36,13 +36,16 @@ void Comparison::add(const Comparison& other) {
 
 std::string Comparison::text() const {
     char line[512];
-    std::snprintf(line, sizeof line, "%zu rays, %zu hits: %zu missed, %zu invented, %zu elsewhere (%zu of them grazing), %zu of all overruled, worst t %.1e, %zu ties, %zu wrong prims%s%s",
-                  rays, hits, missed, invented, elsewhere, grazing, overruled, worst_t, ties, other_prim, first.empty() ? "" : "; first: ", first.c_str());
+    std::snprintf(line, sizeof line,
+                  "%zu rays, %zu hits: %zu missed, %zu invented, %zu elsewhere (%zu of them grazing), %zu of all overruled, "
+                  "worst t %.1e, %zu ties, %zu wrong prims%s%s",
+                  rays, hits, missed, invented, elsewhere, grazing, overruled, worst_t, ties, other_prim,
+                  first.empty() ? "" : "; first: ", first.c_str());
     return line;
 }
 
-Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const std::vector<Ray>& rays, const std::vector<float>& t,
-                   const std::vector<float>* prims) {
+Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const std::vector<Ray>& rays,
+                   const std::vector<float>& t, const std::vector<float>* prims) {
     Comparison c;
     c.rays = truth.size();
     for (size_t i = 0; i < truth.size(); ++i) {
@@ -81,8 +84,9 @@ Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const 
         }
         if (c.first.empty()) {
             char line[256];
-            std::snprintf(line, sizeof line, "ray %zu: t %.9g, prim %d; oracle %.9g, prim %d; all triangles in doubles %.9g, prim %d", i,
-                          double(t[i]), prims ? static_cast<int>((*prims)[i]) : -2, truth[i].t, truth[i].prim, exact.t, exact.prim);
+            std::snprintf(
+                line, sizeof line, "ray %zu: t %.9g, prim %d; oracle %.9g, prim %d; all triangles in doubles %.9g, prim %d", i,
+                double(t[i]), prims ? static_cast<int>((*prims)[i]) : -2, truth[i].t, truth[i].prim, exact.t, exact.prim);
             c.first = line;
         }
     }

@@ -27,8 +27,8 @@ Scene degenerate_scene() {
     // A wall of axis-parallel squares whose corners lie on powers of two, so that centre rays run along their edges.
     for (int x = -4; x < 4; ++x)
         for (int y = -4; y < 4; ++y) {
-            const rt_u32 a = mesh.add_vertex(x, y, -4), b = mesh.add_vertex(x + 1, y, -4), c = mesh.add_vertex(x + 1, y + 1, -4),
-                         d = mesh.add_vertex(x, y + 1, -4);
+            const rt_u32 a = mesh.add_vertex(x, y, -4), b = mesh.add_vertex(x + 1, y, -4),
+                         c = mesh.add_vertex(x + 1, y + 1, -4), d = mesh.add_vertex(x, y + 1, -4);
             mesh.add_triangle(a, b, c);
             mesh.add_triangle(a, c, d);
         }
@@ -40,14 +40,17 @@ Scene degenerate_scene() {
         mesh.add_triangle(a, b, c);
     }
     constexpr double kFar = 1e6;
-    const rt_u32 a = mesh.add_vertex(-kFar, -1, -kFar), b = mesh.add_vertex(kFar, -1, -kFar), c = mesh.add_vertex(kFar, -1, kFar),
-                 d = mesh.add_vertex(-kFar, -1, kFar);
+    const rt_u32 a = mesh.add_vertex(-kFar, -1, -kFar), b = mesh.add_vertex(kFar, -1, -kFar),
+                 c = mesh.add_vertex(kFar, -1, kFar), d = mesh.add_vertex(-kFar, -1, kFar);
     mesh.add_triangle(a, c, b);
     mesh.add_triangle(a, d, c);
     return scene_of(mesh);
 }
 
-// Straight along -z from a round position, so that with an odd number of pixels the middle row and column run in the planes of the axes.
-View view_of_degenerate() { return view_from({0, 0, 8}, {0, 0, 0}, 60); }
+// Straight along -z from a round position, so that with an odd number of pixels the middle row and column run in the planes of
+// the axes.
+View view_of_degenerate() {
+    return view_from({0, 0, 8}, {0, 0, 0}, 60);
+}
 
 }  // namespace clarity::test

@@ -11,15 +11,27 @@ namespace {
 
 using Vec = std::array<double, 3>;
 
-Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec operator+(const Vec& a, const Vec& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vec operator*(double s, const Vec& a) { return {s * a[0], s * a[1], s * a[2]}; }
-double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+Vec operator-(const Vec& a, const Vec& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vec operator+(const Vec& a, const Vec& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+Vec operator*(double s, const Vec& a) {
+    return {s * a[0], s * a[1], s * a[2]};
+}
+double dot(const Vec& a, const Vec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 Vec cross(const Vec& a, const Vec& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Vec normalized(const Vec& a) { return (1 / std::sqrt(dot(a, a))) * a; }
-Vec vec(const float* p) { return {p[0], p[1], p[2]}; }
+Vec normalized(const Vec& a) {
+    return (1 / std::sqrt(dot(a, a))) * a;
+}
+Vec vec(const float* p) {
+    return {p[0], p[1], p[2]};
+}
 
 // Distance of a triangle widened by `slack` of its size; +inf: missed.
 double hit_triangle(const float* corners, const Ray& ray, double slack) {
@@ -70,8 +82,8 @@ std::vector<float> world_corners(const Scene& scene) {
             const float* p = &scene.positions[3 * size_t(scene.triangles[3 * size_t(mesh.first_triangle) + i])];
             for (int k = 0; k < 3; ++k) {
                 const float* m = &instance.world_from_object[4 * k];
-                corners.push_back(placed ? static_cast<float>(double(m[0]) * p[0] + double(m[1]) * p[1] + double(m[2]) * p[2] + m[3])
-                                         : p[k]);
+                corners.push_back(
+                    placed ? static_cast<float>(double(m[0]) * p[0] + double(m[1]) * p[1] + double(m[2]) * p[2] + m[3]) : p[k]);
             }
         }
     }
@@ -160,8 +172,8 @@ double Oracle::hit_polygon(size_t i, const Ray& ray) const {
     }
     const double t = dot(normal, centroid - ray.origin) / dot(normal, ray.direction);
     if (!(t > 0 && t >= ray.t_min && t <= ray.t_max)) return INFINITY;
-    // The sum of the angles under which the point sees the edges, in the polygon's plane: 0 or a multiple of a turn. The kernels
-    // count crossings instead.
+    // The sum of the angles under which the point sees the edges, in the polygon's plane: 0 or a multiple of a turn. The
+    // kernels count crossings instead.
     const Vec p = ray.origin + t * ray.direction, n = normalized(normal);
     double angle = 0;
     for (rt_u32 c = 0; c < count; ++c) {
@@ -192,7 +204,8 @@ Truth Oracle::closest(const Ray& ray) const {
 std::vector<Truth> Oracle::picture(const Camera& camera, int width, int height) const {
     std::vector<Truth> pixels(size_t(width) * height);
     parallel_for(static_cast<uint32_t>(height), [&](uint32_t y) {
-        for (int x = 0; x < width; ++x) pixels[size_t(y) * width + x] = closest(camera_ray(camera, width, height, x, static_cast<int>(y)));
+        for (int x = 0; x < width; ++x)
+            pixels[size_t(y) * width + x] = closest(camera_ray(camera, width, height, x, static_cast<int>(y)));
     });
     return pixels;
 }

@@ -13,7 +13,9 @@ using namespace clarity::test;
 
 namespace {
 
-Workbench& bench() { return Workbench::get(); }
+Workbench& bench() {
+    return Workbench::get();
+}
 
 // A scene, its camera and what the oracle sees at the two sizes that are compared.
 class Case {
@@ -48,7 +50,8 @@ class Case {
             }
         }
         size_t turn = 0;
-        for (const Configuration& configuration : small) expect(picture(configuration, 259, 193, turn++ % 4 == 0), configuration.text());
+        for (const Configuration& configuration : small)
+            expect(picture(configuration, 259, 193, turn++ % 4 == 0), configuration.text());
     }
     // Surfaces seen flatly up to the horizon: what the rounding of rays explains is no difference.
     Case& hostile() {
@@ -63,7 +66,8 @@ class Case {
         height_ = height;
         truth_ = oracle_.picture(view_.camera, width, height);
         rays_.resize(truth_.size());
-        for (size_t i = 0; i < rays_.size(); ++i) rays_[i] = camera_ray(view_.camera, width, height, int(i % width), int(i / width));
+        for (size_t i = 0; i < rays_.size(); ++i)
+            rays_[i] = camera_ray(view_.camera, width, height, int(i % width), int(i / width));
     }
     static void expect(const Comparison& c, const std::string& what) {
         EXPECT_GT(c.hits, c.rays / 10) << what << ": the picture shows too little to prove anything";
@@ -106,7 +110,8 @@ TEST(Pictures, InstancesFromFbx) {
 }
 
 TEST(Pictures, EveryPrimitiveOfTheTextScene) {
-    Case(load_scene(source_file("scenes/primitives.scene")), "").check(bench().accels(), each_accel_and_lanes(bench().accels()));
+    Case(load_scene(source_file("scenes/primitives.scene")), "")
+        .check(bench().accels(), each_accel_and_lanes(bench().accels()));
 }
 
 TEST(Pictures, DegenerateGeometry) {

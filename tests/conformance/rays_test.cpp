@@ -16,7 +16,9 @@ namespace {
 
 constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
-Workbench& bench() { return Workbench::get(); }
+Workbench& bench() {
+    return Workbench::get();
+}
 
 Settings settings_of(const std::string& accel, int lanes) {
     Settings settings;
@@ -51,10 +53,11 @@ std::vector<rt_ray> random_rays(const Scene& scene, size_t count, unsigned seed)
     return rays;
 }
 
-void expect_as_oracle(const ScenePtr& scene, const Oracle& oracle, const std::vector<rt_ray>& rays, const std::string& accel, int lanes,
-                      size_t allowed) {
+void expect_as_oracle(const ScenePtr& scene, const Oracle& oracle, const std::vector<rt_ray>& rays, const std::string& accel,
+                      int lanes, size_t allowed) {
     const Settings settings = settings_of(accel, lanes);
-    const std::vector<rt_hit> closest = bench().rays(scene, settings, rays, false), any = bench().rays(scene, settings, rays, true);
+    const std::vector<rt_hit> closest = bench().rays(scene, settings, rays, false),
+                              any = bench().rays(scene, settings, rays, true);
     ASSERT_EQ(closest.size(), rays.size());
     ASSERT_EQ(any.size(), rays.size());
     std::vector<Truth> truth;
@@ -106,7 +109,8 @@ TEST(Rays, RandomOnesOnShapes) {
 TEST(Rays, RandomOnesOnEveryPrimitive) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Oracle oracle(scene);
-    for (const std::string& accel : bench().accels()) expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 2), accel, 16, 0);
+    for (const std::string& accel : bench().accels())
+        expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 2), accel, 16, 0);
 }
 
 TEST(Rays, RandomOnesOnTheBunny) {
@@ -127,6 +131,30 @@ TEST(Rays, LimitsAreHonoured) {
         ray.t_max = std::max(a, b);
     }
     expect_everywhere(shapes(), Oracle(shapes()), rays, 0);
+}
+
+// From afar, where the coordinates of what is near each other agree in most digits: half aimed at the scene, half past it at
+// any distance, a million times a triangle's size included.
+TEST(Rays, FromAfar) {
+    const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
+    const Oracle oracle(scene);
+    std::vector<rt_ray> rays = random_rays(*scene, 20000, 9);
+    std::mt19937 random(10);
+    std::uniform_real_distribution<float> decades(1, 5), one(-1, 1);
+    for (size_t i = 0; i < rays.size(); ++i) {
+        rt_ray& ray = rays[i];
+        const float far = std::pow(10.0f, decades(random));
+        if (i % 2) {
+            // Along the floor, and from there towards a lamp in the sky.
+            ray = ray_of({far * one(random), 0.7f, far * one(random)}, {0.486664265f, 0.811107099f, 0.324442834f});
+            continue;
+        }
+        const float* d = ray.direction;
+        const float length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int k = 0; k < 3; ++k) ray.origin[k] -= std::min(far, 1e4f) / length * d[k];
+        ray.origin[1] = std::fabs(ray.origin[1]);  // above the floor
+    }
+    for (const std::string& accel : bench().accels()) expect_as_oracle(scene, oracle, rays, accel, 16, 0);
 }
 
 TEST(Rays, AlongTheAxes) {
@@ -171,8 +199,8 @@ TEST(Rays, AtCornersAndAlongFaces) {
     }
 }
 
-// Directions of no length, of no number, of no end: whatever is answered, in time, and sound; and who travels in the same packet
-// gets the same answer as without them.
+// Directions of no length, of no number, of no end: whatever is answered, in time, and sound; and who travels in the same
+// packet gets the same answer as without them.
 TEST(Rays, StrangeOnesHarmNobody) {
     const float denormal = 1e-40f;
     const std::vector<rt_ray> strange = {
@@ -215,7 +243,8 @@ TEST(Rays, StrangeOnesHarmNobody) {
     // Nearly along an axis is along it.
     for (const std::string& accel : bench().accels()) {
         const rt_hit straight = bench().rays(shapes(), settings_of(accel, 1), {ray_of({0.1f, 0.2f, 5}, {0, 0, -1})}, false)[0],
-                     nearly = bench().rays(shapes(), settings_of(accel, 1), {ray_of({0.1f, 0.2f, 5}, {denormal, -denormal, -1})}, false)[0];
+                     nearly = bench().rays(shapes(), settings_of(accel, 1),
+                                           {ray_of({0.1f, 0.2f, 5}, {denormal, -denormal, -1})}, false)[0];
         EXPECT_FLOAT_EQ(straight.t, nearly.t) << accel;
         EXPECT_TRUE(std::isfinite(straight.t)) << accel;
     }

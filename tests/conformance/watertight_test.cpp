@@ -1,5 +1,5 @@
-// watertight_test.cpp -- no ray leaves a closed mesh: not through edges, not through corners, wherever the mesh lies and whatever
-// its size. (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection, has the reasons.)
+// watertight_test.cpp -- no ray leaves a closed mesh: not through edges, not through corners, wherever the mesh lies and
+// whatever its size. (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection, has the reasons.)
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,9 @@ namespace {
 
 constexpr size_t kBatch = 1000000;
 
-Workbench& bench() { return Workbench::get(); }
+Workbench& bench() {
+    return Workbench::get();
+}
 
 struct Leaks {
     size_t count = 0;
@@ -29,8 +31,8 @@ void count_leaks(const ScenePtr& scene, const Settings& settings, const std::vec
         if (!std::isfinite(hits[i].t) && leaks.count++ == 0) {
             char text[160];
             const rt_ray& r = rays[i];
-            std::snprintf(text, sizeof text, "from %.9g %.9g %.9g along %.9g %.9g %.9g", r.origin[0], r.origin[1], r.origin[2], r.direction[0],
-                          r.direction[1], r.direction[2]);
+            std::snprintf(text, sizeof text, "from %.9g %.9g %.9g along %.9g %.9g %.9g", r.origin[0], r.origin[1], r.origin[2],
+                          r.direction[0], r.direction[1], r.direction[2]);
             leaks.first = text;
         }
 }
@@ -69,7 +71,8 @@ Leaks aimed_leaks(const ScenePtr& scene, const Point& inside, const Settings& se
     };
     for (size_t i = 0; i < scene->triangles.size(); ++i) {
         const size_t next = i % 3 == 2 ? i - 2 : i + 1;
-        const float *a = &scene->positions[3 * size_t(scene->triangles[i])], *b = &scene->positions[3 * size_t(scene->triangles[next])];
+        const float *a = &scene->positions[3 * size_t(scene->triangles[i])],
+                    *b = &scene->positions[3 * size_t(scene->triangles[next])];
         aim(a, b, 0);
         aim(a, b, 0.5f);
         aim(a, b, any(random));
@@ -79,7 +82,8 @@ Leaks aimed_leaks(const ScenePtr& scene, const Point& inside, const Settings& se
     return leaks;
 }
 
-void expect_tight(const std::string& name, const TriangleMesh& mesh, const Point& inside, float spread, size_t count, size_t fewer) {
+void expect_tight(const std::string& name, const TriangleMesh& mesh, const Point& inside, float spread, size_t count,
+                  size_t fewer) {
     ASSERT_TRUE(mesh.is_closed()) << name << ": not a closed mesh, it proves nothing";
     const ScenePtr scene = shared_scene(scene_of(mesh));
     for (const std::string& accel : bench().fast_accels())
@@ -95,9 +99,13 @@ void expect_tight(const std::string& name, const TriangleMesh& mesh, const Point
         }
 }
 
-TEST(Watertight, TenMillionRaysInASphere) { expect_tight("sphere", uv_sphere(1, 200, 120), {0.1f, -0.2f, 0.05f}, 0.3f, 10000000, 1000000); }
+TEST(Watertight, TenMillionRaysInASphere) {
+    expect_tight("sphere", uv_sphere(1, 200, 120), {0.1f, -0.2f, 0.05f}, 0.3f, 10000000, 1000000);
+}
 
-TEST(Watertight, Torus) { expect_tight("torus", torus(1, 0.4, 160, 80), {0, 0, 1}, 0.1f, 1000000, 100000); }
+TEST(Watertight, Torus) {
+    expect_tight("torus", torus(1, 0.4, 160, 80), {0, 0, 1}, 0.1f, 1000000, 100000);
+}
 
 TEST(Watertight, BoxesWithinBoxes) {
     TriangleMesh soup;

@@ -31,7 +31,8 @@ void add_sphere(Scene& scene, const Point& center, float radius, rt_u32 material
 }
 
 void add_polygon(Scene& scene, const std::vector<Point>& corners, rt_u32 material) {
-    scene.polygons.push_back({static_cast<rt_u32>(scene.polygon_corners.size() / 3), static_cast<rt_u32>(corners.size()), material});
+    scene.polygons.push_back(
+        {static_cast<rt_u32>(scene.polygon_corners.size() / 3), static_cast<rt_u32>(corners.size()), material});
     for (const Point& p : corners) scene.polygon_corners.insert(scene.polygon_corners.end(), p.begin(), p.end());
 }
 
@@ -42,7 +43,9 @@ Scene lamp_over_mirror() {
     add_sphere(scene, {0.3f, 1, -0.5f}, 0.7f, add_material(scene, glowing(1)));
     return scene;
 }
-View lamp_view() { return dark_view({0, 1.5f, 5}, {0, 0, 0}, 50); }
+View lamp_view() {
+    return dark_view({0, 1.5f, 5}, {0, 0, 0}, 50);
+}
 
 double lamp_truth(const Line& line, double share) {
     double margin = 0, mirrored_margin = 0;
@@ -55,18 +58,21 @@ double lamp_truth(const Line& line, double share) {
 
 TEST(Mirror, ShowsThingsAsFarBehindAsTheyAreBefore) {
     const View view = lamp_view();
-    expect_picture(trace(lamp_over_mirror(), view, 160, 120, 2), view, [](const Line& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
+    expect_picture(
+        trace(lamp_over_mirror(), view, 160, 120, 2), view, [](const Line& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
 }
 
 TEST(Mirror, DepthOneShowsNone) {
     const View view = lamp_view();
     const Picture picture = trace(lamp_over_mirror(), view, 160, 120, 1);
-    expect_picture(picture, view, [](const Line& l) { return lamp_truth(l, 0); }, 1e-5, 15000);
+    expect_picture(
+        picture, view, [](const Line& l) { return lamp_truth(l, 0); }, 1e-5, 15000);
     EXPECT_EQ(picture.stats.secondary, 0u);
 }
 
 TEST(Mirror, DepthCountsGenerations) {
-    // Between two parallel mirrors of .5, behind which nothing shines but the background at the end of the last generation's rays.
+    // Between two parallel mirrors of .5, behind which nothing shines but the background at the end of the last generation's
+    // rays.
     Scene scene = scene_of(TriangleMesh());
     const rt_u32 half = add_material(scene, mirror(0.5f));
     rt_material lit = mirror(0.5f);
@@ -98,7 +104,8 @@ TEST(Mirror, OfAMeshReflectsLikeAPlane) {
     mesh.meshes = triangles.meshes;
     mesh.instances = triangles.instances;
     const View view = lamp_view();
-    expect_picture(trace(mesh, view, 160, 120, 2), view, [](const Line& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
+    expect_picture(
+        trace(mesh, view, 160, 120, 2), view, [](const Line& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
 }
 
 TEST(Glass, FresnelAtNormalIncidence) {
@@ -144,7 +151,7 @@ TEST(Glass, SlabShiftsBySnellsLaw) {
 TEST(Glass, TotalInternalReflection) {
     Scene scene = scene_of(box(1));
     scene.materials[0].values = glass(1.5f);
-    View view = dark_view({0, 0, 0.9f}, {0, 0, -1}, 70);
+    View view = dark_view({0, 0, 0}, {0, 0, -1}, 80);  // the wall's edges are at 45 degrees, its corners at 55
     view.background = {1, 1, 1};
     size_t total = 0;
     const auto expected = [&](const Line& line) {
@@ -155,8 +162,7 @@ TEST(Glass, TotalInternalReflection) {
         total += sin2 > 1;
         return 1 - fresnel(cos_in, 1.5);
     };
-    view.camera.eye = {0, 0, 0};  // the wall's corners are at 45 degrees and more
-    expect_picture(trace(scene, view, 160, 160, 2), view, expected, 2e-4, 15000);
+    expect_picture(trace(scene, view, 160, 160, 2), view, expected, 2e-4, 12000);
     EXPECT_GT(total, 500u);
 }
 
@@ -175,7 +181,8 @@ TEST(Glass, TintsWhatPasses) {
     EXPECT_NEAR(seen[2], 0.8, 1e-4);
 }
 
-// Nothing is lost in a lossless ball: where all is equally bright, so is what is seen through it, but for the generations cut off.
+// Nothing is lost in a lossless ball: where all is equally bright, so is what is seen through it, but for the generations cut
+// off.
 TEST(Glass, ABallInAnEvenlyBrightWorldIsInvisible) {
     Scene scene = scene_of(TriangleMesh());
     add_sphere(scene, {0, 0, 0}, 1, add_material(scene, glass(1.5f)));
@@ -200,12 +207,14 @@ TEST(RayArrays, FullOnesDropAndCount) {
     scene.planes.push_back({{0, 1, 0}, -1, add_material(scene, mirror(0.5f))});
     View view = dark_view({0, 0, 5}, {0, 0, 0}, 30);
     view.background = {1, 1, 1};
-    const Picture narrow = trace(scene, view, 64, 48, 4, {{"ray_slots", "1"}}), wide = trace(scene, view, 64, 48, 4, {{"ray_slots", "8"}});
+    const Picture narrow = trace(scene, view, 64, 48, 4, {{"ray_slots", "1"}}),
+                  wide = trace(scene, view, 64, 48, 4, {{"ray_slots", "8"}});
     EXPECT_GT(narrow.stats.dropped, 0u);
     EXPECT_EQ(wide.stats.dropped, 0u);
     EXPECT_LT(narrow.stats.secondary, wide.stats.secondary);
     // What is dropped is missing, never invented.
-    for (size_t i = 0; i < wide.image.pixels.size(); ++i) ASSERT_LE(narrow.image.pixels[i], wide.image.pixels[i] + 1e-4f) << "value " << i;
+    for (size_t i = 0; i < wide.image.pixels.size(); ++i)
+        ASSERT_LE(narrow.image.pixels[i], wide.image.pixels[i] + 1e-4f) << "value " << i;
 }
 
 }  // namespace

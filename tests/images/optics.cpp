@@ -6,18 +6,30 @@
 
 namespace clarity::test {
 
-Vec operator+(const Vec& a, const Vec& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
-Vec operator-(const Vec& a, const Vec& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
-Vec operator*(double s, const Vec& a) { return {s * a[0], s * a[1], s * a[2]}; }
-double dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
-Vec normalized(const Vec& a) { return (1 / std::sqrt(dot(a, a))) * a; }
+Vec operator+(const Vec& a, const Vec& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+Vec operator-(const Vec& a, const Vec& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vec operator*(double s, const Vec& a) {
+    return {s * a[0], s * a[1], s * a[2]};
+}
+double dot(const Vec& a, const Vec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec normalized(const Vec& a) {
+    return (1 / std::sqrt(dot(a, a))) * a;
+}
 
 namespace {
 
 Vec cross(const Vec& a, const Vec& b) {
     return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Vec vec(const Point& p) { return {p[0], p[1], p[2]}; }
+Vec vec(const Point& p) {
+    return {p[0], p[1], p[2]};
+}
 
 }  // namespace
 
@@ -42,7 +54,8 @@ double fresnel(double cos_in, double eta) {
     const double sin2 = eta * eta * (1 - cos_in * cos_in);
     if (sin2 >= 1) return 1;
     const double cos_out = std::sqrt(1 - sin2);
-    const double s = (eta * cos_in - cos_out) / (eta * cos_in + cos_out), p = (eta * cos_out - cos_in) / (eta * cos_out + cos_in);
+    const double s = (eta * cos_in - cos_out) / (eta * cos_in + cos_out),
+                 p = (eta * cos_out - cos_in) / (eta * cos_out + cos_in);
     return 0.5 * (s * s + p * p);
 }
 
@@ -68,8 +81,8 @@ Picture trace(const Scene& scene, const View& view, int width, int height, int d
     return picture;
 }
 
-void expect_picture(const Picture& picture, const View& view, const std::function<double(const Line&)>& expected, double tolerance,
-                    size_t least) {
+void expect_picture(const Picture& picture, const View& view, const std::function<double(const Line&)>& expected,
+                    double tolerance, size_t least) {
     size_t compared = 0, wrong = 0;
     double worst = 0;
     char where[200] = "";
@@ -82,7 +95,8 @@ void expect_picture(const Picture& picture, const View& view, const std::functio
             wrong += !(difference <= tolerance);
             if (!(difference <= worst)) {
                 worst = difference;
-                std::snprintf(where, sizeof where, "pixel %d,%d is %.6f instead of %.6f", x, y, double(picture.at(x, y)[1]), wanted);
+                std::snprintf(where, sizeof where, "pixel %d,%d is %.6f instead of %.6f", x, y, double(picture.at(x, y)[1]),
+                              wanted);
             }
         }
     EXPECT_GE(compared, least) << "too few pixels to prove anything";

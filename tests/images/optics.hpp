@@ -39,7 +39,7 @@ Picture trace(const Scene& scene, const View& view, int width, int height, int d
 
 // Compares every pixel's green with what `expected` says of it; a negative answer leaves the pixel out (too near to an edge).
 // Fails with the worst pixel; at least `least` pixels must have been compared.
-void expect_picture(const Picture& picture, const View& view, const std::function<double(const Line&)>& expected, double tolerance,
-                    size_t least);
+void expect_picture(const Picture& picture, const View& view, const std::function<double(const Line&)>& expected,
+                    double tolerance, size_t least);
 
 }  // namespace clarity::test

@@ -1,4 +1,5 @@
-// errors_test.cpp -- a kernel that does not compile: which file, which line, which exit code; and what worked before still works.
+// errors_test.cpp -- a kernel that does not compile: which file, which line, which exit code; and what worked before still
+// works.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -99,8 +100,8 @@ TEST_F(Errors, ExitCodeOfTheProgram) {
     if (!program || !fs::exists(program)) GTEST_SKIP() << "SKIPPED: no program `clarity`; ctest names it in CLARITY_WORKER";
     break_line("cl/tracers/iterative.cl", 20);
     const std::string out = scratch_.path("a.png"), said = scratch_.path("said");
-    const std::string command = std::string(program) + " render " + source_file("scenes/primitives.scene") + " -o " + out +
-                                " --size 32x24 2>" + said;
+    const std::string command =
+        std::string(program) + " render " + source_file("scenes/primitives.scene") + " -o " + out + " --size 32x24 2>" + said;
     const int status = std::system(command.c_str());
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), static_cast<int>(Exit::kernel_build_failed));

@@ -46,7 +46,8 @@ TriangleMesh uv_sphere(double radius, unsigned segments, unsigned rings) {
     for (unsigned r = 1; r < rings; ++r)
         for (unsigned s = 0; s < segments; ++s) {
             const double theta = kPi * r / rings, phi = 2 * kPi * s / segments;
-            mesh.add_vertex(radius * std::sin(theta) * std::sin(phi), radius * std::cos(theta), radius * std::sin(theta) * std::cos(phi));
+            mesh.add_vertex(radius * std::sin(theta) * std::sin(phi), radius * std::cos(theta),
+                            radius * std::sin(theta) * std::cos(phi));
         }
     const auto at = [&](unsigned r, unsigned s) { return 2 + (r - 1) * segments + s % segments; };
     for (unsigned s = 0; s < segments; ++s) {
@@ -104,7 +105,9 @@ Scene scene_of(const TriangleMesh& mesh) {
     return scene;
 }
 
-ScenePtr shared_scene(Scene scene) { return std::make_shared<const Scene>(std::move(scene)); }
+ScenePtr shared_scene(Scene scene) {
+    return std::make_shared<const Scene>(std::move(scene));
+}
 
 rt_u32 add_material(Scene& scene, const rt_material& values) {
     scene.materials.push_back({"", values});

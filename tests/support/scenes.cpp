@@ -8,11 +8,14 @@
 
 namespace clarity::test {
 
-std::string source_file(const std::string& name) { return std::string(CLARITY_SOURCE_DIR) + "/" + name; }
+std::string source_file(const std::string& name) {
+    return std::string(CLARITY_SOURCE_DIR) + "/" + name;
+}
 
 std::string shared_file(const std::string& name) {
     const char* folder = std::getenv("CLARITY_SHARED");
-    const std::filesystem::path path = std::filesystem::path(folder && *folder ? folder : CLARITY_SOURCE_DIR "/../shared") / name;
+    const std::filesystem::path path =
+        std::filesystem::path(folder && *folder ? folder : CLARITY_SOURCE_DIR "/../shared") / name;
     return std::filesystem::exists(path) ? path.string() : std::string();
 }
 

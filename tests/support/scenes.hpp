@@ -19,8 +19,8 @@ ScenePtr load_scene(const std::string& path);
 ScenePtr geometry_of(const ScenePtr& scene);
 
 // For tests that need a shared model: skips the test, and says so, where it is missing.
-#define CLARITY_SHARED_OR_SKIP(path, name)                                                                     \
-    const std::string path = ::clarity::test::shared_file(name);                                               \
+#define CLARITY_SHARED_OR_SKIP(path, name)                       \
+    const std::string path = ::clarity::test::shared_file(name); \
     if (path.empty()) GTEST_SKIP() << "SKIPPED: no shared model " << (name) << "; CLARITY_SHARED names their folder"
 
 }  // namespace clarity::test

@@ -49,7 +49,8 @@ ByteImage Workbench::display(const ScenePtr& scene, const Settings& settings, co
     return frames_.read_display(settings);
 }
 
-std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays, bool any_hit) {
+std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays,
+                                    bool any_hit) {
     return frames_.trace_rays(*prepare(scene, settings), rays, any_hit);
 }
 
