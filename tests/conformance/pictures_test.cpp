@@ -7,6 +7,7 @@
 #include "conformance/compare.hpp"
 #include "conformance/degenerate.hpp"
 #include "support/scenes.hpp"
+#include "unit/scratch.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -96,6 +97,15 @@ TEST(Pictures, Bunny) {
 
 TEST(Pictures, Dragon) {
     CLARITY_SHARED_OR_SKIP(file, "scenes/models/dragon_res3.ply");
+    Case(load_scene(file), kDragonCamera).check(bench().fast_accels(), {});
+}
+
+TEST(Pictures, DragonOfAMillionTriangles) {
+    CLARITY_SHARED_OR_SKIP(packed, "scenes/models/dragon_871k.ply.gz");
+    const Scratch scratch;
+    const std::string file = scratch.path("dragon.ply");
+    if (std::system(("gzip -dc '" + packed + "' > '" + file + "'").c_str()) != 0)
+        GTEST_SKIP() << "SKIPPED: no gzip to unpack " << packed;
     Case(load_scene(file), kDragonCamera).check(bench().fast_accels(), {});
 }
 
