@@ -2,9 +2,13 @@
 //
 // A machine may have platforms without devices (Mesa's rusticl without a GPU), drivers that fail, or no driver at all: each of
 // them is one line of warning, never the end.
+#include <sched.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
+#include <mutex>
 #include <tuple>
 
 #include "base/error.hpp"
@@ -13,6 +17,18 @@
 
 namespace clarity {
 namespace {
+
+// Two of PoCL's threads on one core halve the speed of a frame of a few milliseconds: the system's scheduler takes longer than
+// that to part them. PoCL pins thread i to core i if it is told before it starts, and aborts where that core is not to be had, so
+// only a process that may use all cores asks for it. A user's own choice stands.
+void pin_pocl_threads() {
+    cpu_set_t allowed;
+    if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
+    const long cores = sysconf(_SC_NPROCESSORS_ONLN);
+    for (long core = 0; core < cores; ++core)
+        if (core >= CPU_SETSIZE || !CPU_ISSET(static_cast<size_t>(core), &allowed)) return;
+    setenv("POCL_AFFINITY", "1", 0);
+}
 
 constexpr const char* kInstallDriver =
     "install an OpenCL driver: on Debian `apt-get install pocl-opencl-icd` runs on every CPU, a GPU needs its vendor's "
@@ -135,6 +151,8 @@ bool matches(const DeviceInfo& device, const std::string& choice) {
 }  // namespace
 
 std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
+    static std::once_flag once;
+    std::call_once(once, pin_pocl_threads);
     const auto warn = [&](const std::string& text) {
         if (warnings) warnings->push_back(text);
     };
