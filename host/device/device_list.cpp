@@ -19,8 +19,8 @@ namespace clarity {
 namespace {
 
 // Two of PoCL's threads on one core halve the speed of a frame of a few milliseconds: the system's scheduler takes longer than
-// that to part them. PoCL pins thread i to core i if it is told before it starts, and aborts where that core is not to be had, so
-// only a process that may use all cores asks for it. A user's own choice stands.
+// that to part them. PoCL pins thread i to core i if it is told before it starts, and aborts where that core is not to be had,
+// so only a process that may use all cores asks for it. A user's own choice stands.
 void pin_pocl_threads() {
     cpu_set_t allowed;
     if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
