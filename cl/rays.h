@@ -8,21 +8,14 @@ typedef struct rt_rays {
     vfloat t_min;
     vfloat ix, iy, iz;             /* 1 / direction, finite: components are clamped away from zero */
     vfloat near_x, near_y, near_z; /* -origin / direction, rounded down */
-    vfloat far_ix, far_iy, far_iz; /* 1 / direction, a little larger in magnitude */
     vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up */
     vmask neg_x, neg_y, neg_z;     /* where the direction's component is negative */
     int coherent;                  /* all active lanes have the same signs: then */
     uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
-#if RT_CPU
     int same_axis;                 /* all active lanes have the same dominant axis: then */
     uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
     vmask is_y, is_z;              /* it differs by lane */
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
-#else
-    vfloat px, py, pz;             /* two vectors across the ray: the same shear, without a choice of axes */
-    vfloat qx, qy, qz;
-    vfloat rx, ry, rz;             /* dot(x - origin, r) = t on the ray */
-#endif
 } rt_rays;
 
 /* The nearest hit so far. A lane that is inactive, or occluded in an any-hit query, has t = -1: every test then fails for it. */
@@ -48,6 +41,7 @@ typedef struct rt_hits {
 #endif
 
 #define RT_EPS 5.9604645e-8f /* 2^-24, half an ulp of 1 */
+#define RT_WIDE (1.0f + 16.0f * RT_EPS)
 
 RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
 {
@@ -65,17 +59,14 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->ix = rt_safe_reciprocal(r->dx);
     r->iy = rt_safe_reciprocal(r->dy);
     r->iz = rt_safe_reciprocal(r->dz);
-    const vfloat wide = rt_vfloat(1.0f + 16.0f * RT_EPS), slack = rt_vfloat(8.0f * RT_EPS);
+    const vfloat slack = rt_vfloat(8.0f * RT_EPS);
     const vfloat nx = -r->ox * r->ix, ny = -r->oy * r->iy, nz = -r->oz * r->iz;
     r->near_x = fma(fabs(nx), -slack, nx);
     r->near_y = fma(fabs(ny), -slack, ny);
     r->near_z = fma(fabs(nz), -slack, nz);
-    r->far_ix = r->ix * wide;
-    r->far_iy = r->iy * wide;
-    r->far_iz = r->iz * wide;
-    r->far_x = fma(fabs(nx), slack, nx * wide);
-    r->far_y = fma(fabs(ny), slack, ny * wide);
-    r->far_z = fma(fabs(nz), slack, nz * wide);
+    r->far_x = fma(fabs(nx), slack, nx);
+    r->far_y = fma(fabs(ny), slack, ny);
+    r->far_z = fma(fabs(nz), slack, nz);
     r->neg_x = RT_MASK(r->ix < rt_vfloat(0.0f));
     r->neg_y = RT_MASK(r->iy < rt_vfloat(0.0f));
     r->neg_z = RT_MASK(r->iz < rt_vfloat(0.0f));
@@ -96,7 +87,6 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->lo_y = neg_y ? 4u : 1u;
     r->lo_z = neg_z ? 5u : 2u;
 #endif
-#if RT_CPU
     const uint any_x = rt_bits(is_x) & bits, any_y = rt_bits(is_y) & bits, any_z = rt_bits(is_z) & bits;
     r->same_axis = (any_x == bits) || (any_y == bits) || (any_z == bits);
     r->kz = any_x ? 0u : any_y ? 1u : 2u;
@@ -107,18 +97,6 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->sx = shear_p;
     r->sy = shear_q;
     r->sz = along;
-#else
-    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    r->px = rt_select(is_x, shear_p, rt_select(is_y, zero, one));
-    r->py = rt_select(is_x, one, rt_select(is_y, shear_p, zero));
-    r->pz = rt_select(is_x, zero, rt_select(is_y, one, shear_p));
-    r->qx = rt_select(is_x, shear_q, rt_select(is_y, one, zero));
-    r->qy = rt_select(is_x, zero, rt_select(is_y, shear_q, one));
-    r->qz = rt_select(is_x, one, rt_select(is_y, zero, shear_q));
-    r->rx = rt_select(is_x, along, zero);
-    r->ry = rt_select(is_y, along, zero);
-    r->rz = rt_select(is_z, along, zero);
-#endif
 }
 
 /* Lanes in which a primitive at t beats what was hit so far. */
@@ -134,11 +112,11 @@ RT_INLINE vmask rt_enter_bounds(vfloat lo_x, vfloat lo_y, vfloat lo_z, vfloat hi
     const vfloat ax = fma(r->ix, rt_select(r->neg_x, hi_x, lo_x), r->near_x);
     const vfloat ay = fma(r->iy, rt_select(r->neg_y, hi_y, lo_y), r->near_y);
     const vfloat az = fma(r->iz, rt_select(r->neg_z, hi_z, lo_z), r->near_z);
-    const vfloat bx = fma(r->far_ix, rt_select(r->neg_x, lo_x, hi_x), r->far_x);
-    const vfloat by = fma(r->far_iy, rt_select(r->neg_y, lo_y, hi_y), r->far_y);
-    const vfloat bz = fma(r->far_iz, rt_select(r->neg_z, lo_z, hi_z), r->far_z);
+    const vfloat bx = fma(r->ix, rt_select(r->neg_x, lo_x, hi_x), r->far_x);
+    const vfloat by = fma(r->iy, rt_select(r->neg_y, lo_y, hi_y), r->far_y);
+    const vfloat bz = fma(r->iz, rt_select(r->neg_z, lo_z, hi_z), r->far_z);
     const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
-    const vfloat out = rt_min(rt_min(bx, by), rt_min(bz, h->t));
+    const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, h->t);
     *entry = in;
     return RT_MASK(in <= out);
 }
@@ -151,11 +129,11 @@ RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt
         const vfloat ax = fma(r->ix, rt_vfloat(box[r->lo_x]), r->near_x);
         const vfloat ay = fma(r->iy, rt_vfloat(box[r->lo_y]), r->near_y);
         const vfloat az = fma(r->iz, rt_vfloat(box[r->lo_z]), r->near_z);
-        const vfloat bx = fma(r->far_ix, rt_vfloat(box[3u - r->lo_x]), r->far_x);
-        const vfloat by = fma(r->far_iy, rt_vfloat(box[5u - r->lo_y]), r->far_y);
-        const vfloat bz = fma(r->far_iz, rt_vfloat(box[7u - r->lo_z]), r->far_z);
+        const vfloat bx = fma(r->ix, rt_vfloat(box[3u - r->lo_x]), r->far_x);
+        const vfloat by = fma(r->iy, rt_vfloat(box[5u - r->lo_y]), r->far_y);
+        const vfloat bz = fma(r->iz, rt_vfloat(box[7u - r->lo_z]), r->far_z);
         const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
-        const vfloat out = rt_min(rt_min(bx, by), rt_min(bz, h->t));
+        const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, h->t);
         *entry = in;
         return RT_MASK(in <= out);
     }

@@ -8,6 +8,15 @@
 RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
+#if RT_CPU
+#define RT_CORNER(corner, k) leaf->corner[k]
+    const uint prim = leaf->prim;
+#else
+#define RT_CORNER(corner, k) quad_##corner.s##k
+    const global float4 *quads = (const global float4 *)leaf; /* three 16-byte loads */
+    const float4 quad_a = quads[0], quad_b = quads[1], quad_c = quads[2];
+    const uint prim = as_uint(quad_c.s3);
+#endif
     /* Corners across the ray (x, y) and along it (z, in units of the dominant axis), from corner to origin: the sign of the edge
      * functions does not mind, and o - corner takes the corner straight from memory. */
     vfloat ax, ay, az, bx, by, bz, cx, cy, cz;
@@ -25,11 +34,13 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
         by = fma(r->sy, bz, o_y - rt_vfloat(leaf->b[r->ky]));
         cx = fma(r->sx, cz, o_x - rt_vfloat(leaf->c[r->kx]));
         cy = fma(r->sy, cz, o_y - rt_vfloat(leaf->c[r->ky]));
-    } else { /* the same numbers, lane by lane: a ray's hit does not depend on who travels with it */
+    } else /* the same numbers, lane by lane: a ray's hit does not depend on who travels with it */
+#endif
+    {
 #define RT_ACROSS(corner, x, y, z)                                                                                               \
     {                                                                                                                            \
-        const vfloat from_x = r->ox - rt_vfloat(leaf->corner[0]), from_y = r->oy - rt_vfloat(leaf->corner[1]),                   \
-                     from_z = r->oz - rt_vfloat(leaf->corner[2]);                                                                \
+        const vfloat from_x = r->ox - rt_vfloat(RT_CORNER(corner, 0)), from_y = r->oy - rt_vfloat(RT_CORNER(corner, 1)),         \
+                     from_z = r->oz - rt_vfloat(RT_CORNER(corner, 2));                                                           \
         z = rt_select(r->is_z, from_z, rt_select(r->is_y, from_y, from_x));                                                      \
         x = fma(r->sx, z, rt_select(r->is_z, from_x, rt_select(r->is_y, from_z, from_y)));                                       \
         y = fma(r->sy, z, rt_select(r->is_z, from_y, rt_select(r->is_y, from_x, from_z)));                                       \
@@ -39,20 +50,6 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
         RT_ACROSS(c, cx, cy, cz)
 #undef RT_ACROSS
     }
-#else
-#define RT_ACROSS(corner, x, y, z)                                                                                               \
-    {                                                                                                                            \
-        const vfloat from_x = r->ox - rt_vfloat(leaf->corner[0]), from_y = r->oy - rt_vfloat(leaf->corner[1]),                   \
-                     from_z = r->oz - rt_vfloat(leaf->corner[2]);                                                                \
-        x = fma(r->px, from_x, fma(r->py, from_y, r->pz * from_z));                                                              \
-        y = fma(r->qx, from_x, fma(r->qy, from_y, r->qz * from_z));                                                              \
-        z = fma(r->rx, from_x, fma(r->ry, from_y, r->rz * from_z));                                                              \
-    }
-    RT_ACROSS(a, ax, ay, az)
-    RT_ACROSS(b, bx, by, bz)
-    RT_ACROSS(c, cx, cy, cz)
-#undef RT_ACROSS
-#endif
     const vfloat u = cx * by - cy * bx;
     const vfloat v = ax * cy - ay * cx;
     const vfloat w = bx * ay - by * ax;
@@ -67,20 +64,17 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
 
     /* t by the triangle's plane: weighing the corners with u, v, w cancels where they are far away, as a floor's are. Seen
      * edge-on the plane says nothing, so t is kept within the corners'. */
-    const float e1x = leaf->b[0] - leaf->a[0], e1y = leaf->b[1] - leaf->a[1], e1z = leaf->b[2] - leaf->a[2];
-    const float e2x = leaf->c[0] - leaf->a[0], e2y = leaf->c[1] - leaf->a[1], e2z = leaf->c[2] - leaf->a[2];
+    const float e1x = RT_CORNER(b, 0) - RT_CORNER(a, 0), e1y = RT_CORNER(b, 1) - RT_CORNER(a, 1), e1z = RT_CORNER(b, 2) - RT_CORNER(a, 2);
+    const float e2x = RT_CORNER(c, 0) - RT_CORNER(a, 0), e2y = RT_CORNER(c, 1) - RT_CORNER(a, 1), e2z = RT_CORNER(c, 2) - RT_CORNER(a, 2);
     const float nx = e1y * e2z - e1z * e2y, ny = e1z * e2x - e1x * e2z, nz = e1x * e2y - e1y * e2x;
     const vfloat facing = fma(rt_vfloat(nx), r->dx, fma(rt_vfloat(ny), r->dy, rt_vfloat(nz) * r->dz));
-    const vfloat height = fma(rt_vfloat(nx), rt_vfloat(leaf->a[0]) - r->ox,
-                              fma(rt_vfloat(ny), rt_vfloat(leaf->a[1]) - r->oy, rt_vfloat(nz) * (rt_vfloat(leaf->a[2]) - r->oz)));
-#if RT_CPU
+    const vfloat height = fma(rt_vfloat(nx), rt_vfloat(RT_CORNER(a, 0)) - r->ox,
+                              fma(rt_vfloat(ny), rt_vfloat(RT_CORNER(a, 1)) - r->oy, rt_vfloat(nz) * (rt_vfloat(RT_CORNER(a, 2)) - r->oz)));
     const vfloat ta = -az * r->sz, tb = -bz * r->sz, tc = -cz * r->sz;
-#else
-    const vfloat ta = -az, tb = -bz, tc = -cz;
-#endif
     const vfloat t = rt_min(rt_max(height / facing, rt_min(rt_min(ta, tb), tc)), rt_max(rt_max(ta, tb), tc));
     const vfloat det = u + v + w, scale = rt_vfloat(1.0f) / det;
-    const vmask closer = inside & RT_MASK(det != zero) & rt_closer(r, h, t, leaf->prim);
+    const vmask closer = inside & RT_MASK(det != zero) & rt_closer(r, h, t, prim);
     if (!rt_any(closer)) return;
-    RT_FN(rt_record)(h, closer, t, v * scale, w * scale, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, leaf->prim);
+    RT_FN(rt_record)(h, closer, t, v * scale, w * scale, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, prim);
 }
+#undef RT_CORNER
