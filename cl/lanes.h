@@ -87,7 +87,6 @@ RT_INLINE uint rt_bits4(int4 m)
 /* One instruction each; fmin and fmax have to look for NaN and take three. */
 #define rt_min(a, b) ((a) < (b) ? (a) : (b))
 #define rt_max(a, b) ((a) > (b) ? (a) : (b))
-#define rt_all_bits ((uint)((1ul << RT_LANES) - 1ul))
 
 #define RT_INFINITY ((vfloat)(INFINITY))
 

@@ -117,20 +117,12 @@ typedef struct rt_frame {
     rt_u32 packet_w, packet_h; /* pixels of one work-item */
     rt_f32 min_weight; /* rays that would add less than this are not spawned */
     rt_u32 shadows;    /* 0: none */
-    rt_u32 instance_count;
     rt_u32 root; /* of group 0 */
     rt_u32 block_w, block_w_log2; /* pixels traced side by side: block_w wide, RT_LANES in all */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
     rt_f32 within_x, within_y;    /* where in each pixel this sample's rays go through, 0..1 */
-    rt_u32 pad[2];
-} rt_frame;
-
-/* What the kernels count, added up with atomics once a packet. 32 B. */
-typedef struct rt_counters {
-    rt_u32 primary, shadow, secondary, dropped; /* rays */
-    rt_u32 overflow;                            /* a traversal stack was full (debug builds look) */
     rt_u32 pad[3];
-} rt_counters;
+} rt_frame;
 
 /* A ray and its answer, for tests and benches that bring their own rays. 32 B each. */
 typedef struct rt_ray {

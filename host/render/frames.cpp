@@ -57,7 +57,7 @@ struct Frames::Impl {
         return buffer;
     }
 
-    // The mapped bytes of a buffer, copied out: no copy within a CPU device's memory, pinned on others.
+    // Waits for all that is queued.
     void read(const cl::Buffer& buffer, void* out, size_t bytes) {
         device->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, out);
     }

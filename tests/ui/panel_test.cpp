@@ -1,26 +1,14 @@
 // Settings changed live, by clicks in the panel and by the script: new pictures, the right ones.
 #include <gtest/gtest.h>
 
-#include "window_driver.hpp"
+#include "window_fixture.hpp"
 
 namespace clarity {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
-class Panel : public ::testing::Test {
- protected:
-    void SetUp() override {
-        if (const std::string& missing = VirtualScreen::instance().missing(); !missing.empty())
-            GTEST_SKIP() << "NOT TESTED: the window needs " << missing;
-    }
-    std::unique_ptr<WindowDriver> open(std::map<std::string, std::string> environment = {}) {
-        const std::vector<std::string> arguments = {"--size", "320x240", source_path("scenes/primitives.scene")};
-        auto window = std::make_unique<WindowDriver>(arguments, std::move(environment));
-        window->settle();
-        return window;
-    }
-};
+class Panel : public WindowTest {};
 
 TEST_F(Panel, ClicksChangeSettings) {
     const auto window = open();

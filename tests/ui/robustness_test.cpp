@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "window_driver.hpp"
+#include "window_fixture.hpp"
 
 namespace clarity {
 namespace {
@@ -14,19 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-class Window : public ::testing::Test {
- protected:
-    void SetUp() override {
-        if (const std::string& missing = VirtualScreen::instance().missing(); !missing.empty())
-            GTEST_SKIP() << "NOT TESTED: the window needs " << missing;
-    }
-    std::unique_ptr<WindowDriver> open(std::map<std::string, std::string> environment = {}) {
-        const std::vector<std::string> arguments = {"--size", "320x240", source_path("scenes/primitives.scene")};
-        auto window = std::make_unique<WindowDriver>(arguments, std::move(environment));
-        window->settle();
-        return window;
-    }
-};
+class Window : public WindowTest {};
 
 // A wavy sheet of 2 n^2 triangles: a model that takes a while.
 void write_sheet(const std::string& path, int n) {
