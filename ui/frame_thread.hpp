@@ -5,10 +5,12 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
 
+#include "render/false_colors.hpp"
 #include "render/renderer.hpp"
 #include "ui/prepare_worker.hpp"
 
@@ -16,18 +18,39 @@ namespace clarity {
 
 struct FrameJob {
     std::shared_ptr<const Ready> ready;
-    Settings settings;  // as wished; what `ready` was not prepared for is ignored
+    Settings settings;                      // as wished; what `ready` was not prepared for is ignored
+    std::optional<Settings> other_settings;  // traced too, if `ready` has that side
     View view;
-    uint64_t revision = 0;          // a new number: the film starts anew
-    uint64_t display_revision = 0;  // a new number: the film is shown anew
+    uint64_t revision = 0;          // a new number: the films start anew
+    uint64_t display_revision = 0;  // a new number: the films are shown anew
     bool continuous = false;        // trace on and on, for measuring
+    float resolution_scale = 1;     // of the settings' size, each way
+    float moving_fps = 0;           // > 0: so many frames a second matter more than pixels now
+};
+
+// One side of a picture.
+struct PictureSide {
+    ByteImage image;
+    FalseColorScale scale;  // of an AOV; without a unit for colours
+    Settings settings;      // as traced
+    FrameStats stats;
+    double frame_ms = 0;    // tracing and reading back
+    FloatImage distance;    // of the camera rays of sample 0, if it was asked for
+};
+
+// How two images differ.
+struct PictureDifference {
+    ByteImage image;             // |a - b| in each channel, eight times as bright
+    double mean = 0, largest = 0;  // of 255
+    double share = 0;            // of pixels that differ by more than 1 of 255
 };
 
 struct Picture {
-    ByteImage image;
     FrameJob job;
-    FrameStats stats;
-    double frame_ms = 0;  // tracing and reading back
+    PictureSide main;
+    std::optional<PictureSide> other;
+    std::optional<PictureDifference> difference;
+    bool reduced = false;  // fewer pixels than asked for, because something moves
 };
 
 class FrameThread {
@@ -41,33 +64,57 @@ class FrameThread {
     bool idle() const;
     // Empty, or why frames stopped; once.
     std::string take_failure();
-    // Milliseconds of the last frames, oldest first.
-    std::vector<float> times() const;
+    // Milliseconds of a side's last frames, oldest first.
+    std::vector<float> times(unsigned side = 0) const;
+    // From now on pictures bring their distances, or do not.
+    void want_distance(bool wanted);
+    // Writes the main picture once all its samples are in. Outcomes: see take_saved().
+    void save(const std::string& path);
+    struct Saved {
+        std::string path, failure;  // empty failure: it is there
+    };
+    std::vector<Saved> take_saved();
 
  private:
     class StopProgress;
+    // What traces one side; of the thread alone.
+    struct Tracer {
+        std::shared_ptr<Device> device;
+        std::unique_ptr<Frames> frames;
+    };
+    struct Times {
+        std::vector<float> ms;
+        const Prepared* of = nullptr;
+        bool cold = false;  // only its first frame is in
+    };
     void run();
     void trace(const FrameJob& job, unsigned sample, bool retrace);
+    PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const FrameJob& job, const Settings& settings, unsigned sample,
+                           const PictureSide* last, bool distance, Progress& progress);
     bool wants_work(unsigned& sample, bool& retrace) const;
+    void save_waiting(const Picture& picture);
+    double moving_scale(const FrameJob& job) const;
+    void note_time(Times& times, const Prepared* of, double ms);
 
     const std::function<void()> wake_;
-    // Of the thread alone.
-    std::shared_ptr<Device> device_;
-    std::unique_ptr<Frames> frames_;
+    Tracer tracers_[2];
+    double ms_per_pixel_ = 0;  // of the last pictures; 0: not known
+    const void* paced_ = nullptr;
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    bool stop_ = false, tracing_ = false, failed_ = false;
+    bool stop_ = false, tracing_ = false, failed_ = false, distance_ = false;
     FrameJob job_;
     uint64_t traced_revision_ = 0, shown_revision_ = 0;
-    unsigned samples_ = 0;  // in the film
+    bool traced_reduced_ = false;  // the films hold fewer pixels than asked for
+    unsigned samples_ = 0;         // in the films
     std::shared_ptr<StopProgress> running_;
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
-    std::vector<float> times_;
-    std::shared_ptr<const Ready> timed_;  // what times_ are of
-    bool cold_ = false;                   // times_ holds only its first frame
-    std::thread thread_;                  // last: it sees the rest complete
+    Times times_[2];
+    std::vector<std::string> to_save_;
+    std::vector<Saved> saved_;
+    std::thread thread_;  // last: it sees the rest complete
 };
 
 // The settings to trace with: those of `wished` that apply at once, the others as prepared.

@@ -32,6 +32,17 @@ enum class Action {
     cancel_work,
     show_help,
     toggle_panel,
+    undo,
+    redo,
+    open_file,
+    save_picture,
+    toggle_compare,
+    swap_sides,
+    toggle_inspector,
+    toggle_lights,
+    add_bookmark,
+    next_bookmark,  // also the scene's own cameras
+    frame_scene,    // all of it, or what is selected
 };
 inline bool is_held(Action action) {
     return action < Action::print_frame_rate;

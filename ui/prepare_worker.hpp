@@ -13,6 +13,7 @@
 #include "device/device.hpp"
 #include "import/import.hpp"
 #include "render/renderer.hpp"
+#include "ui/wish.hpp"
 
 namespace clarity {
 
@@ -20,9 +21,11 @@ namespace clarity {
 struct PrepareRequest {
     std::vector<std::string> files;
     uint64_t files_revision = 0;  // a new number: import (again)
-    std::string device;
     std::string camera, light;  // as on the command line, for the first view of newly imported files
-    Settings settings;
+    Side main;
+    std::optional<Side> other;
+    std::vector<rt_u32> hidden;    // instances
+    uint64_t kernel_revision = 0;  // a new number: kernels are read (again)
 };
 
 // A scene as imported, with what the window asks about it, computed where it does not hold up the window.
@@ -37,11 +40,16 @@ struct LoadedScene {
     std::string view_error;  // why it is not the one asked for: a camera that the scene does not have
 };
 
+struct ReadySide {
+    std::shared_ptr<Device> device;
+    std::shared_ptr<const Prepared> prepared;
+};
+
 struct Ready {
     PrepareRequest request;
-    std::shared_ptr<Device> device;
     std::shared_ptr<const LoadedScene> loaded;
-    std::shared_ptr<const Prepared> prepared;
+    ReadySide main;
+    std::optional<ReadySide> other;
 };
 
 struct Outcome {
@@ -77,7 +85,13 @@ class PrepareWorker {
     class StageProgress;
     void run();
     void handle(const PrepareRequest& request, StageProgress& progress);
-    void open_device(const PrepareRequest& request, StageProgress& progress);
+    // One side's device and what was prepared on it.
+    struct Workshop {
+        std::shared_ptr<Device> device;
+        std::string choice;
+        std::unique_ptr<Preparer> preparer;
+    };
+    void open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress);
     void import_files(const PrepareRequest& request, StageProgress& progress);
     void list_all_devices();
     void tried(uint64_t files_revision);  // whatever came of it, it is not imported again
@@ -88,10 +102,10 @@ class PrepareWorker {
     const std::function<void()> wake_;
 
     // Of the worker thread alone.
-    std::shared_ptr<Device> device_;
-    std::string device_choice_;
-    std::unique_ptr<Preparer> preparer_;
+    Workshop main_, other_;
     std::shared_ptr<const LoadedScene> loaded_;
+    std::shared_ptr<const Scene> visible_;  // loaded_ without what is hidden
+    std::vector<rt_u32> hidden_;
     uint64_t files_revision_ = 0;  // last one tried
 
     mutable std::mutex mutex_;

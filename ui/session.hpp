@@ -9,31 +9,27 @@
 #include <string>
 #include <vector>
 
+#include "device/kernel_watch.hpp"
 #include "ui/frame_thread.hpp"
+#include "ui/history.hpp"
+#include "ui/inspect_thread.hpp"
 #include "ui/log_buffer.hpp"
 #include "ui/prepare_worker.hpp"
+#include "ui/sequence.hpp"
 #include "ui/window_main.hpp"
+#include "ui/wish.hpp"
 
 namespace clarity {
-
-struct WishedLight {
-    std::string name;
-    rt_light values{};
-    bool on = true;
-};
-
-struct Wish {
-    std::string device;
-    Settings settings;
-    Camera camera;
-    std::vector<WishedLight> lights;
-    std::array<float, 3> background{}, ambient{};
-    bool continuous = false;
-};
 
 // What stands over the picture until it is dismissed or mended.
 struct Message {
     std::string text, details;
+};
+
+// What was picked in the picture or in the scene's tree.
+struct Selection {
+    rt_i32 instance = -1, prim = -1, material = -1;  // -1: none
+    bool any() const { return instance >= 0 || prim >= 0 || material >= 0; }
 };
 
 class Session {
@@ -42,6 +38,8 @@ class Session {
 
     Wish wish;
     unsigned selected_light = 0;
+    Selection selection;
+    bool editing_other = false;  // the panel's rows are of wish.other
 
     const PluginRegistry& plugins() const { return plugins_; }
     LogBuffer& log_lines() { return log_; }
@@ -52,22 +50,58 @@ class Session {
     // Drops what is being prepared and wishes for what is on the screen again.
     void cancel();
     void reset_view();
-    void set_accel(const std::string& id);  // with its parameters' defaults
+    void set_accel(const std::string& id);  // with its parameters' defaults, of the side that is edited
+    Side& edited() { return editing_other && wish.other ? *wish.other : wish.main; }
+    // Starts or ends the comparison; the second side begins as a copy of the first.
+    void compare(bool on);
+    void swap_sides();
 
-    // Once a frame of the window; aspect: of the picture.
-    void update();
+    void undo() { history_.undo(wish); }
+    void redo() { history_.redo(wish); }
+    const History& history() const { return history_; }
+
+    // Throw Error; what was wished stays as it was.
+    void save_preset(const std::string& path) const;
+    void load_preset(const std::string& path);
+    // `clarity render ...` that makes the main picture as it is wished, on the device that it has.
+    std::string render_command(const std::string& output) const;
+    // The picture as it is now, when its samples are in: .png as shown, .exr or .pfm with the film's values. The outcome is a line
+    // in the log, or a message.
+    void save_picture(const std::string& path);
+    Sequence& sequence() { return sequence_; }
+
+    // Follows the rays of a pixel of the newest picture.
+    void inspect(unsigned x, unsigned y);
+    // The same, and then selects what its camera ray met.
+    void pick(unsigned x, unsigned y);
+    std::shared_ptr<const Inspection> inspection() const { return inspector_.latest(); }
+    bool inspecting() const { return inspector_.busy(); }
+    // Moves the camera's target, and the eye with `nearer` < 1 towards it.
+    void focus_on(const std::array<float, 3>& point, float nearer = 1);
+    void focus_on_instance(rt_u32 instance);
+    // The materials to edit: the wish's own, copied from the scene at the first edit.
+    rt_material& edited_material(rt_u32 index);
+    const rt_material& material(rt_u32 index) const;
+    bool hidden(rt_u32 instance) const;
+    void hide(rt_u32 instance, bool hidden);
+
+    // Once a frame of the window. gesture: a slider is being dragged, a key is down.
+    void update(bool gesture);
 
     std::shared_ptr<const Ready> ready() const { return ready_; }        // nullptr until something is prepared
     std::shared_ptr<const Picture> picture() const { return picture_; }  // newest; nullptr at first
     std::vector<std::string> files() const;                              // of the scene on the screen
     Activity activity() const { return worker_.activity(); }
-    std::vector<float> frame_times() const { return frames_.times(); }
+    std::vector<float> frame_times(unsigned side = 0) const { return frames_.times(side); }
+    // The camera or a light moved a moment ago: pictures may be coarse.
+    bool moving() const { return moving_; }
+    const KernelWatch& kernels() const { return kernels_; }
     // Nothing is being prepared or traced, and the newest picture is here.
     bool idle() const;
     // Whether the wish differs from what the picture was prepared with: something is under way, or failed.
     bool behind() const;
-    double frames_per_second() const;
-    double mrays_per_second() const;
+    double frames_per_second(unsigned side = 0) const;
+    double mrays_per_second(unsigned side = 0) const;
     std::string frame_rate_line() const;
     // Length that steps are measured by: the scene's diagonal.
     float scene_size() const;
@@ -83,7 +117,9 @@ class Session {
     void post_request();
     void post_frame();
     std::string request_key() const;
-    View wished_view() const;
+    void follow_main();  // what of the other side is always the main one's
+    void take_inspection();
+    Preset wished_preset() const;
 
     const PluginRegistry& plugins_;
     std::string first_camera_, first_light_;  // from the command line, for the first scene
@@ -97,9 +133,16 @@ class Session {
     FrameJob posted_job_;
     Message message_;
     uint64_t message_count_ = 0;
+    History history_;
+    Sequence sequence_;
+    bool moving_ = false;
+    double moved_at_s_ = -1e9;
+    uint64_t pick_request_ = 0, picked_request_ = 0;
     LogBuffer log_;
+    KernelWatch kernels_;
     PrepareWorker worker_;
     FrameThread frames_;
+    InspectThread inspector_;
 };
 
 }  // namespace clarity

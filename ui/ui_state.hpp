@@ -1,13 +1,25 @@
 // ui_state.hpp -- what the window remembers by itself, besides the session.
 #pragma once
 #include <string>
+#include <vector>
 
+#include "scene/scene.hpp"
 #include "ui/key_map.hpp"
 
 namespace clarity {
 
-enum class Tab { render, scene, statistics, log, plugins, help };
-inline constexpr const char* kTabNames[] = {"Render", "Scene", "Stats", "Log", "Plugins", "Help"};
+enum class Tab { render, scene, inspect, statistics, log, plugins, help };
+inline constexpr const char* kTabNames[] = {"Render", "Scene", "Inspect", "Stats", "Log", "Plugins", "Help"};
+inline constexpr int kTabCount = 7;
+
+// How two sides are shown.
+enum class CompareMode { wipe, side_by_side, difference };
+inline constexpr const char* kCompareNames[] = {"Wipe", "Side by side", "Difference"};
+
+struct Bookmark {
+    std::string name;
+    Camera camera;
+};
 
 struct UiState {
     const KeyMap* key_map = &key_maps().front();
@@ -18,6 +30,16 @@ struct UiState {
     bool tab_asked = false;                    // bring `tab` to the front
     bool focus_path_asked = false;             // put the keyboard into the field for a file's path
     std::string path;                          // in that field
+    CompareMode compare_mode = CompareMode::wipe;
+    float wipe = 0.5f;                         // of the picture's width: `main` is left of it
+    bool inspect_hover = false;                // the inspector follows the mouse
+    bool show_lights = false;                  // as handles in the picture, to be dragged
+    bool show_rays = true;                     // of the inspected pixel, drawn in the scene
+    bool browser_open = false;                 // the file browser
+    bool keys_open = false;                    // the list of keys over the picture
+    std::string browser_folder;                // where it is
+    std::vector<std::string> recent_files;     // newest first
+    std::vector<Bookmark> bookmarks;           // of the scene that is open
     int room_width = 1024, room_height = 768;  // pixels of the screen that a picture could fill
     void show_tab(Tab which) {
         tab = which;
