@@ -41,7 +41,7 @@ App::App(const ViewOptions& options) {
     state_.panel_visible = preferences.panel_visible;
     const std::string& id = options.key_map.empty() ? preferences.key_map : options.key_map;
     if (const KeyMap* map = find_key_map(id)) state_.key_map = map;
-    texture_ = std::make_unique<PictureTexture>();
+    pane_ = std::make_unique<PicturePane>();
     const auto wake = [this] {
         woken_ = true;
         GlWindow::wake();
@@ -66,7 +66,7 @@ App::~App() {
     window_->wait_events(0);
     overlay_.reset();
     session_.reset();
-    texture_.reset();
+    pane_.reset();
 }
 
 int App::run() {
@@ -143,17 +143,6 @@ void App::finish_frame() {
         session_->report(error.what());
     }
     capture_path_.clear();
-}
-
-void App::upload_picture() {
-    const auto picture = session_->picture();
-    if (!picture || picture == uploaded_) return;
-    if (const std::string why = texture_->upload(picture->image); !why.empty()) session_->report(why);
-    uploaded_ = picture;
-    std::string title = "Clarity";
-    if (const auto files = session_->files(); !files.empty())
-        title = files.front().substr(files.front().find_last_of('/') + 1) + " - Clarity";
-    window_->set_title(title);
 }
 
 void App::take_keys() {

@@ -5,10 +5,10 @@
 
 #include "ui/gl_window.hpp"
 #include "ui/overlay.hpp"
+#include "ui/picture_pane.hpp"
 #include "ui/preferences.hpp"
 #include "ui/session.hpp"
 #include "ui/ui_state.hpp"
-#include "ui/viewport.hpp"
 
 namespace clarity {
 
@@ -32,7 +32,8 @@ class App {
     UiState& state() { return state_; }
     VolumeOverlay& overlay() { return *overlay_; }
     UiTimes& times() { return times_; }
-    const Rect& picture_area() const { return picture_area_; }
+    const PicturePane& pane() const { return *pane_; }
+    const Rect& picture_area() const { return pane_->area(); }
     bool typing() const;
     void close() { window_->close(); }
     // The next frame is written there as PNG.
@@ -48,15 +49,13 @@ class App {
     void move_held(float seconds);
     void apply_motion(float seconds, const HeldKeys& keys);
     void draw();
-    void draw_viewport(const Rect& area);
-    void mouse_on_picture();
     void upload_picture();
     void finish_frame();
 
     std::atomic<bool> woken_{false};  // a thread has news
     std::string folder_;              // of the preferences; empty: none
     std::unique_ptr<GlWindow> window_;
-    std::unique_ptr<PictureTexture> texture_;
+    std::unique_ptr<PicturePane> pane_;
     std::unique_ptr<Session> session_;
     std::unique_ptr<VolumeOverlay> overlay_;
     std::unique_ptr<Script> script_;
@@ -64,7 +63,6 @@ class App {
     UiTimes times_;
     HeldKeys held_;
     std::shared_ptr<const Picture> uploaded_;
-    Rect picture_area_;
     std::string capture_path_;
     double last_turn_s_ = 0;   // when it began
     double oldest_key_s_ = 0;  // of the keys taken in since the last frame; 0: none
