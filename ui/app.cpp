@@ -88,7 +88,7 @@ bool App::due() const {
 }
 
 double App::longest_wait() const {
-    if (session_->activity().busy || !overlay_->ready()) return 1.0 / 30;
+    if (session_->activity().busy || !overlay_->ready() || session_->moving()) return 1.0 / 30;
     return typing() ? 0.1 : 0.5;  // a text field's cursor blinks
 }
 
@@ -113,11 +113,11 @@ void App::turn() {
     if (script_) script_->step(*this);
     move_held(seconds);
     try {
-        session_->update();
+        session_->update(ImGui::IsAnyItemActive() || held_.any_held(*state_.key_map));
     } catch (const Error& error) {
         session_->report(error.what(), error.details());
     }
-    overlay_->update(session_->ready() ? session_->ready()->prepared : nullptr);
+    overlay_->update(session_->ready() ? session_->ready()->main.prepared : nullptr);
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
     upload_picture();
     window_->begin_frame();
@@ -152,9 +152,18 @@ void App::take_keys() {
             held_.clear();
         } else if (event.kind == KeyEvent::Kind::release) {
             held_.release(event.key);
-        } else if (!event.with_modifier && !typing()) {
-            if (const KeyBinding* binding = state_.key_map->find(event.key)) press(*binding);
+        } else if (!event.other_modifier && !typing()) {
+            if (const KeyBinding* binding = state_.key_map->find(event.key, event.ctrl)) act(*binding);
         }
+    }
+}
+
+// A key's failure is a message like any other.
+void App::act(const KeyBinding& binding) {
+    try {
+        press(binding);
+    } catch (const Error& error) {
+        session_->report(error.what(), error.details());
     }
 }
 
@@ -181,10 +190,44 @@ void App::press(const KeyBinding& binding) {
             session_->reset_view();
             break;
         case Action::cancel_work:
-            session_->cancel();
+            close_or_cancel();
             break;
         case Action::show_help:
-            state_.show_tab(Tab::help);
+            state_.keys_open = !state_.keys_open;
+            break;
+        case Action::undo:
+            session_->undo();
+            break;
+        case Action::redo:
+            session_->redo();
+            break;
+        case Action::open_file:
+            state_.browser_open = true;
+            break;
+        case Action::save_picture:
+            session_->save_picture(next_picture_path(state_.pictures_folder));
+            break;
+        case Action::toggle_compare:
+            session_->compare(!session_->wish.other);
+            break;
+        case Action::swap_sides:
+            session_->swap_sides();
+            break;
+        case Action::toggle_inspector:
+            state_.inspect_hover = !state_.inspect_hover;
+            if (state_.inspect_hover) state_.show_tab(Tab::inspect);
+            break;
+        case Action::toggle_lights:
+            state_.show_lights = !state_.show_lights;
+            break;
+        case Action::add_bookmark:
+            state_.bookmarks.push_back({"view " + std::to_string(state_.bookmarks.size() + 1), session_->wish.camera});
+            break;
+        case Action::next_bookmark:
+            go_to_next_bookmark();
+            break;
+        case Action::frame_scene:
+            session_->frame_selection();
             break;
         case Action::toggle_panel:
             state_.panel_visible = !state_.panel_visible;
@@ -192,6 +235,25 @@ void App::press(const KeyBinding& binding) {
         default:
             break;
     }
+}
+
+// The nearest thing first: what lies over the picture, then what is under way.
+void App::close_or_cancel() {
+    if (state_.keys_open)
+        state_.keys_open = false;
+    else if (state_.browser_open)
+        state_.browser_open = false;
+    else if (session_->sequence().running())
+        session_->sequence().stop(*session_);
+    else
+        session_->cancel();
+}
+
+void App::go_to_next_bookmark() {
+    std::vector<Camera> cameras;
+    if (session_->ready()) cameras = session_->ready()->loaded->scene->cameras;
+    for (const Bookmark& bookmark : state_.bookmarks) cameras.push_back(bookmark.camera);
+    if (!cameras.empty()) session_->wish.camera = cameras[next_bookmark_++ % cameras.size()];
 }
 
 void App::move_held(float seconds) {

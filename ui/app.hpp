@@ -45,7 +45,10 @@ class App {
     double wait_seconds() const;
     double longest_wait() const;  // to the next turn if nothing happens
     void take_keys();
+    void act(const KeyBinding& binding);
     void press(const KeyBinding& binding);
+    void close_or_cancel();
+    void go_to_next_bookmark();
     void move_held(float seconds);
     void apply_motion(float seconds, const HeldKeys& keys);
     void draw();
@@ -64,6 +67,7 @@ class App {
     HeldKeys held_;
     std::shared_ptr<const Picture> uploaded_;
     std::string capture_path_;
+    size_t next_bookmark_ = 0;
     double last_turn_s_ = 0;   // when it began
     double oldest_key_s_ = 0;  // of the keys taken in since the last frame; 0: none
     int settle_frames_ = 3;    // ImGui needs a few to settle after an event

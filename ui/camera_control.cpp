@@ -101,6 +101,17 @@ void zoom_camera(Camera& camera, float factor) {
     camera.eye = arr(target + (vec(camera.eye) - target) * factor);
 }
 
+void frame_bounds(Camera& camera, const Bounds& bounds, float aspect) {
+    if (bounds.empty) return;
+    const float half_y = camera.fov_y_rad / 2, half_x = std::atan(std::tan(half_y) * aspect);
+    const float radius = std::max(bounds.diagonal() / 2, 1e-6f);
+    const float distance = 1.05f * radius / std::sin(std::min(half_x, half_y));
+    const Axes axes = axes_of(camera);
+    const glm::vec3 middle = (vec(bounds.min) + vec(bounds.max)) * 0.5f;
+    camera.target = arr(middle);
+    camera.eye = arr(middle - axes.forward * distance);
+}
+
 void move_light(rt_light& light, const Camera& camera, const Step& step, float size) {
     glm::vec3 place(light.position[0], light.position[1], light.position[2]);
     const glm::vec3 offset = ground_offset(camera, step);

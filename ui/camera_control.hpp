@@ -33,6 +33,9 @@ void pan_camera(Camera& camera, float right, float up);
 // Towards the target: factor < 1 nears it.
 void zoom_camera(Camera& camera, float factor);
 
+// All of the box comes into view, along the line of sight that the camera has.
+void frame_bounds(Camera& camera, const Bounds& bounds, float aspect);
+
 // A point light moves like the camera, in the camera's ground axes; a directional one swings: its direction is moved and
 // brought back to unit length, `size` being the length that stands for one unit.
 void move_light(rt_light& light, const Camera& camera, const Step& step, float size);

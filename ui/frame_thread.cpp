@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 
 #include "base/error.hpp"
+#include "ui/picture_difference.hpp"
 #include "ui/thread_priority.hpp"
 
 namespace clarity {
@@ -60,22 +62,49 @@ std::string FrameThread::take_failure() {
     return std::exchange(failure_, {});
 }
 
-std::vector<float> FrameThread::times() const {
+std::vector<float> FrameThread::times(unsigned side) const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return times_;
+    return times_[side].ms;
+}
+
+void FrameThread::want_distance(bool wanted) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (wanted == distance_) return;
+    distance_ = wanted;
+    changed_.notify_all();
+}
+
+void FrameThread::save(const std::string& path) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    to_save_.push_back(path);
+    changed_.notify_all();
+}
+
+std::vector<FrameThread::Saved> FrameThread::take_saved() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(saved_, {});
 }
 
 // With the lock held: whether there is something to do, which sample, and whether it needs tracing at all.
 bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     if (!job_.ready || failed_) return false;
-    const bool fresh = job_.revision != traced_revision_;
+    const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
+    const bool fresh = job_.revision != traced_revision_ || sharpen;
     sample = fresh ? 0 : samples_;
-    retrace = fresh || samples_ < static_cast<unsigned>(job_.settings.spp);
+    // What moves is shown once; its samples would be gone with the next step.
+    retrace = fresh || (!traced_reduced_ && samples_ < static_cast<unsigned>(job_.settings.spp));
     if (!retrace && job_.continuous) {
         sample = 0;
         retrace = true;
     }
-    return retrace || job_.display_revision != shown_revision_;
+    const bool distance = distance_ && latest_ && !latest_->main.distance;
+    return retrace || distance || job_.display_revision != shown_revision_ || has_saving();
+}
+
+// With the lock held: the picture in the films is the one to be written.
+bool FrameThread::has_saving() const {
+    return !to_save_.empty() && latest_ && !failed_ && job_.revision == traced_revision_ && !traced_reduced_ &&
+           samples_ >= static_cast<unsigned>(job_.settings.spp) && job_.display_revision == shown_revision_;
 }
 
 void FrameThread::run() {
@@ -83,19 +112,23 @@ void FrameThread::run() {
     for (;;) {
         FrameJob job;
         unsigned sample = 0;
-        bool retrace = false;
+        bool retrace = false, save = false;
         {
             std::unique_lock<std::mutex> lock(mutex_);
             changed_.wait(lock, [&] { return stop_ || wants_work(sample, retrace); });
             if (stop_) return;
             job = job_;
+            save = has_saving();
             tracing_ = true;
             running_ = std::make_shared<StopProgress>();
-            if (sample == 0 && retrace) samples_ = 0;
+            if (sample == 0 && retrace && !save) samples_ = 0;
         }
         std::string failure;
         try {
-            trace(job, sample, retrace);
+            if (save)
+                save_waiting();
+            else
+                trace(job, sample, retrace);
         } catch (const Cancelled&) {
         } catch (const std::exception& error) {
             failure = std::string("tracing stopped: ") + error.what();
@@ -113,50 +146,138 @@ void FrameThread::run() {
     }
 }
 
-void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
-    if (device_ != job.ready->device) {
-        frames_.reset();
-        device_ = job.ready->device;
-        frames_ = std::make_unique<Frames>(device_);
+void FrameThread::save_waiting() {
+    std::vector<std::string> paths;
+    std::shared_ptr<const Picture> picture;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        paths.swap(to_save_);
+        picture = latest_;
     }
+    for (const std::string& path : paths) {
+        Saved outcome{path, {}};
+        try {
+            if (writes_display(path))
+                write_image(path, {}, picture->main.image);
+            else
+                write_image(path, tracers_[0].frames->read_values(), {});
+        } catch (const std::exception& error) {
+            outcome.failure = error.what();
+        }
+        const std::lock_guard<std::mutex> lock(mutex_);
+        saved_.push_back(outcome);
+    }
+}
+
+// Each way, of the pixels asked for, so that what moves keeps its pace.
+float FrameThread::moving_scale(const FrameJob& job) const {
+    if (job.moving_fps <= 0 || ms_per_pixel_ <= 0 || paced_ != job.ready) return 1;
+    const double pixels = double(job.settings.width) * job.settings.height * job.resolution_scale * job.resolution_scale;
+    const double expected = ms_per_pixel_ * pixels, budget = 1000.0 / job.moving_fps;
+    if (expected <= budget) return 1;
+    // Few steps, so that pictures do not breathe.
+    const double steps = std::floor(std::sqrt(budget / expected) * 16);
+    return static_cast<float>(std::clamp(steps, 2.0, 16.0) / 16);
+}
+
+PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
+                                    const Order& order, const PictureSide* last, Progress& progress) {
+    if (tracer.device != ready.device) {
+        tracer.frames.reset();
+        tracer.device = ready.device;
+        tracer.frames = std::make_unique<Frames>(ready.device);
+    }
+    PictureSide side;
+    side.settings = settings;
+    const auto begin = Clock::now();
+    if (order.retrace)
+        side.stats = tracer.frames->trace(*ready.prepared, settings, view, order.sample, true, progress);
+    else if (last)
+        side.stats = last->stats;
+    side.image = tracer.frames->read_display(settings, &side.scale);
+    side.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    if (!order.retrace && last) side.frame_ms = last->frame_ms;
+    if (order.distance) {
+        if (last && last->distance && order.sample > 0)
+            side.distance = last->distance;
+        else
+            side.distance = std::make_shared<const FloatImage>(tracer.frames->read_distance());
+    }
+    return side;
+}
+
+void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     std::shared_ptr<StopProgress> progress;
     std::shared_ptr<const Picture> last;
+    bool distance = false, reduced = false;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         progress = running_;
         last = latest_;
+        distance = distance_;
+        reduced = traced_reduced_;
     }
-    const Settings settings = frame_settings(job.ready->prepared->settings, job.settings);
+    // What is only shown anew keeps the size that its film has.
+    float scale = job.resolution_scale;
+    if (retrace) {
+        const float moving = moving_scale(job);
+        reduced = moving < 1;
+        scale *= moving;
+    }
     auto picture = std::make_shared<Picture>();
     picture->job = job;
-    picture->job.settings = settings;
-    const auto begin = Clock::now();
-    if (retrace)
-        picture->stats = frames_->trace(*job.ready->prepared, settings, job.view, sample, true, *progress);
-    else if (last)
-        picture->stats = last->stats;
-    picture->image = frames_->read_display(settings);
-    picture->frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-    if (!retrace && last) picture->frame_ms = last->frame_ms;
+    const auto sized = [&](const ReadySide& side, const Settings& wished, const PictureSide* before) {
+        Settings settings = frame_settings(side.prepared->settings, wished);
+        const bool keep = !retrace && before;
+        settings.width = keep ? before->settings.width : std::max(1, static_cast<int>(std::lround(settings.width * scale)));
+        settings.height = keep ? before->settings.height : std::max(1, static_cast<int>(std::lround(settings.height * scale)));
+        return settings;
+    };
+    const bool two = job.other_settings && job.ready->other;
+    if (!two) tracers_[1] = {};
+    const Order order{sample, retrace, distance};
+    const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
+    picture->main = trace_side(tracers_[0], job.ready->main, sized(job.ready->main, job.settings, before[0]), job.view, order,
+                               before[0], *progress);
+    double ms = picture->main.frame_ms;
+    if (two) {
+        picture->other = trace_side(tracers_[1], *job.ready->other, sized(*job.ready->other, *job.other_settings, before[1]),
+                                    job.view, order, before[1], *progress);
+        ms += picture->other->frame_ms;
+        picture->difference = compare_pictures(picture->main.image, picture->other->image);
+    }
+    picture->job.settings = picture->main.settings;
+    picture->reduced = reduced;
 
     const std::lock_guard<std::mutex> lock(mutex_);
-    latest_ = std::move(picture);
+    latest_ = picture;
     traced_revision_ = job.revision;
     shown_revision_ = job.display_revision;
     if (!retrace) return;
+    traced_reduced_ = reduced;
     samples_ = sample + 1;
-    constexpr size_t kTimes = 120;
-    // Times of another program say nothing of this one, nor does its first frame: drivers compile the last bit then.
-    if (timed_ != job.ready) {
-        times_.clear();
-        timed_ = job.ready;
-        cold_ = true;
-    } else if (cold_) {
-        times_.clear();
-        cold_ = false;
+    const double pixels = double(picture->main.settings.width) * picture->main.settings.height;
+    // The first frame of a program is slower than those that follow.
+    ms_per_pixel_ = paced_ == job.ready ? ms / pixels : 0;
+    paced_ = job.ready;
+    note_time(times_[0], job.ready->main.prepared, picture->main.frame_ms);
+    if (two)
+        note_time(times_[1], job.ready->other->prepared, picture->other->frame_ms);
+    else
+        times_[1] = {};
+}
+
+// Times of another program say nothing of this one, nor does its first frame: drivers compile the last bit then.
+void FrameThread::note_time(Times& times, const std::shared_ptr<const Prepared>& of, double ms) {
+    constexpr size_t kTimes = 240;
+    if (times.of != of) {
+        times = {{}, of, true};
+    } else if (times.cold) {
+        times.ms.clear();
+        times.cold = false;
     }
-    times_.push_back(static_cast<float>(latest_->frame_ms));
-    if (times_.size() > kTimes) times_.erase(times_.begin());
+    times.ms.push_back(static_cast<float>(ms));
+    if (times.ms.size() > kTimes) times.ms.erase(times.ms.begin());
 }
 
 }  // namespace clarity

@@ -35,7 +35,8 @@ struct PictureSide {
     Settings settings;      // as traced
     FrameStats stats;
     double frame_ms = 0;    // tracing and reading back
-    FloatImage distance;    // of the camera rays of sample 0, if it was asked for
+    std::shared_ptr<const FloatImage> distance;  // of the camera rays of sample 0, +inf: nothing; nullptr if not asked for, empty
+                                                 // where it is not known
 };
 
 // How two images differ.
@@ -84,22 +85,27 @@ class FrameThread {
     };
     struct Times {
         std::vector<float> ms;
-        const Prepared* of = nullptr;
+        std::shared_ptr<const Prepared> of;
         bool cold = false;  // only its first frame is in
     };
     void run();
     void trace(const FrameJob& job, unsigned sample, bool retrace);
-    PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const FrameJob& job, const Settings& settings, unsigned sample,
-                           const PictureSide* last, bool distance, Progress& progress);
+    struct Order {  // what of a side is to be done
+        unsigned sample = 0;
+        bool retrace = false, distance = false;
+    };
+    static PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
+                                  const Order& order, const PictureSide* last, Progress& progress);
     bool wants_work(unsigned& sample, bool& retrace) const;
-    void save_waiting(const Picture& picture);
-    double moving_scale(const FrameJob& job) const;
-    void note_time(Times& times, const Prepared* of, double ms);
+    bool has_saving() const;
+    void save_waiting();
+    float moving_scale(const FrameJob& job) const;
+    static void note_time(Times& times, const std::shared_ptr<const Prepared>& of, double ms);
 
     const std::function<void()> wake_;
     Tracer tracers_[2];
-    double ms_per_pixel_ = 0;  // of the last pictures; 0: not known
-    const void* paced_ = nullptr;
+    double ms_per_pixel_ = 0;             // of the last picture; 0: not known
+    std::shared_ptr<const Ready> paced_;  // what it is of
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;

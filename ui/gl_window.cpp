@@ -41,14 +41,14 @@ struct Callbacks {
         GlWindow& self = of(window);
         self.any_event_ = true;
         if (action == GLFW_REPEAT) return;
-        const bool modified = mods & (GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER);
+        const bool ctrl = mods & GLFW_MOD_CONTROL, other = mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER);
         const auto kind = action == GLFW_PRESS ? KeyEvent::Kind::press : KeyEvent::Kind::release;
-        self.keys_.push_back({key, kind, modified, glfwGetTime()});
+        self.keys_.push_back({key, kind, ctrl, other, glfwGetTime()});
     }
     static void focus(GLFWwindow* window, int focused) {
         GlWindow& self = of(window);
         self.any_event_ = true;
-        if (!focused) self.keys_.push_back({0, KeyEvent::Kind::lost_focus, false, glfwGetTime()});
+        if (!focused) self.keys_.push_back({0, KeyEvent::Kind::lost_focus, false, false, glfwGetTime()});
     }
     static void drop(GLFWwindow* window, int count, const char** paths) {
         GlWindow& self = of(window);

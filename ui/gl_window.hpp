@@ -12,7 +12,8 @@ namespace clarity {
 struct KeyEvent {
     int key = 0;
     enum class Kind { press, release, lost_focus } kind = Kind::press;
-    bool with_modifier = false;  // Ctrl, Alt or Super
+    bool ctrl = false;
+    bool other_modifier = false;  // Alt or Super
     double time_s = 0;           // as glfwGetTime counts
     double age_s() const;
 };

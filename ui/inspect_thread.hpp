@@ -36,7 +36,7 @@ class InspectThread {
         uint64_t number = 0;
     };
     void run();
-    void answer(const Request& request);
+    void follow(const Request& request, Inspection& answer);
 
     const std::function<void()> wake_;
     std::shared_ptr<Device> device_;  // of the thread alone, as is

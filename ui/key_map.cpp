@@ -13,8 +13,19 @@ void add_common(KeyMap& map) {
     for (int i = 0; i < 9; ++i) map.bindings.push_back({GLFW_KEY_1 + i, digits[i], Action::show_level, i, levels});
     map.bindings.push_back({GLFW_KEY_0, "0", Action::show_bottom_level, 0, "show the bottom level"});
     map.bindings.push_back({GLFW_KEY_F, "F", Action::print_frame_rate, 0, "print the frame rate to the console"});
+    map.bindings.push_back({GLFW_KEY_C, "C", Action::toggle_compare, 0, "compare two settings, or no longer"});
+    map.bindings.push_back({GLFW_KEY_X, "X", Action::swap_sides, 0, "swap the two sides"});
+    map.bindings.push_back({GLFW_KEY_R, "R", Action::toggle_inspector, 0, "follow the rays of the pixel under the mouse"});
+    map.bindings.push_back({GLFW_KEY_L, "L", Action::toggle_lights, 0, "show the lights, to drag them"});
+    map.bindings.push_back({GLFW_KEY_G, "G", Action::frame_scene, 0, "bring what is selected into view, or all"});
+    map.bindings.push_back({GLFW_KEY_B, "B", Action::add_bookmark, 0, "bookmark this view"});
+    map.bindings.push_back({GLFW_KEY_N, "N", Action::next_bookmark, 0, "next bookmark, or camera of the file"});
+    map.bindings.push_back({GLFW_KEY_Z, "Ctrl+Z", Action::undo, 0, "undo, redo a setting", true});
+    map.bindings.push_back({GLFW_KEY_Y, "Ctrl+Y", Action::redo, 0, "undo, redo a setting", true});
+    map.bindings.push_back({GLFW_KEY_O, "Ctrl+O", Action::open_file, 0, "open a file", true});
+    map.bindings.push_back({GLFW_KEY_S, "Ctrl+S", Action::save_picture, 0, "save the picture", true});
     map.bindings.push_back({GLFW_KEY_HOME, "Home", Action::reset_camera, 0, "back to the first view of the scene"});
-    map.bindings.push_back({GLFW_KEY_ESCAPE, "Esc", Action::cancel_work, 0, "cancel what is being prepared"});
+    map.bindings.push_back({GLFW_KEY_ESCAPE, "Esc", Action::cancel_work, 0, "cancel what is being prepared; close what is open"});
     map.bindings.push_back({GLFW_KEY_F1, "F1", Action::show_help, 0, "this list"});
     map.bindings.push_back({GLFW_KEY_F2, "F2", Action::toggle_panel, 0, "hide or show the panel"});
 }
@@ -67,9 +78,9 @@ KeyMap make_viewer() {
 
 }  // namespace
 
-const KeyBinding* KeyMap::find(int key) const {
+const KeyBinding* KeyMap::find(int key, bool ctrl) const {
     for (const KeyBinding& binding : bindings)
-        if (binding.key == key) return &binding;
+        if (binding.key == key && binding.ctrl == ctrl) return &binding;
     return nullptr;
 }
 

@@ -53,7 +53,8 @@ struct KeyBinding {
     const char* name;
     Action action;
     int argument;
-    const char* help;  // neighbours with the same text are shown as one line
+    const char* help;   // neighbours with the same text are shown as one line
+    bool ctrl = false;  // only with Ctrl; the others only without
 };
 
 struct KeyMap {
@@ -61,7 +62,7 @@ struct KeyMap {
     const char* name;
     bool mouse_look;  // dragging turns the camera about itself; else it orbits the target
     std::vector<KeyBinding> bindings;
-    const KeyBinding* find(int key) const;
+    const KeyBinding* find(int key, bool ctrl = false) const;
 };
 
 const std::vector<KeyMap>& key_maps();  // "thesis" first

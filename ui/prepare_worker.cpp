@@ -69,7 +69,7 @@ void PrepareWorker::request(PrepareRequest request) {
         // An import goes on if only settings changed: they are used once it is done.
         const bool importing = files_revision_ != running_request_.files_revision;
         const bool same_source =
-            request.files_revision == running_request_.files_revision && request.device == running_request_.device;
+            request.files_revision == running_request_.files_revision && request.main.device == running_request_.main.device;
         if (running_ && !(importing && same_source)) running_->cancel();
         waiting_ = std::make_unique<PrepareRequest>(std::move(request));
     }
@@ -155,12 +155,19 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     if (!devices()) list_all_devices();
     // A scene that cannot be read must not keep the old one from new settings, nor a missing device the scene from loading.
     bool whole = true;
-    try {
-        open_device(request, progress);
-    } catch (const Error& error) {
-        whole = false;
-        publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
-    }
+    const auto open = [&](const Side& side, Workshop& shop, const Workshop& neighbour) {
+        try {
+            open_device(side.device, shop, neighbour, progress);
+        } catch (const Error& error) {
+            whole = false;
+            publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
+        }
+    };
+    open(request.main, main_, other_);
+    if (request.other)
+        open(*request.other, other_, main_);
+    else
+        other_ = {};
     try {
         import_files(request, progress);
     } catch (const Cancelled&) {  // superseded: the next request imports them
@@ -170,28 +177,57 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
         tried(request.files_revision);
         publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), true, false});
     }
-    if (!preparer_ || !loaded_) return;
+    if (!main_.preparer || !loaded_) return;
+    hide(request);
     auto ready = std::make_shared<Ready>();
     ready->request = request;
-    ready->request.device = device_choice_;
+    ready->request.main.device = main_.choice;
     ready->request.files = loaded_->files;
-    ready->device = device_;
+    ready->request.files_revision = loaded_->files_revision;
+    ready->request.hidden = hidden_;
     ready->loaded = loaded_;
-    ready->prepared = preparer_->prepare(loaded_->scene, request.settings, progress);
+    ready->main = {main_.device, main_.preparer->prepare(visible_, request.main.settings, progress)};
+    if (request.other && other_.preparer) {
+        ready->request.other->device = other_.choice;
+        // What the second side cannot have must not keep the first from changing.
+        try {
+            ready->other = ReadySide{other_.device, other_.preparer->prepare(visible_, request.other->settings, progress)};
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& error) {
+            whole = false;
+            publish({Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false, false});
+        }
+    }
     publish({Outcome::Kind::ready, ready, "", "", false, whole});
 }
 
-void PrepareWorker::open_device(const PrepareRequest& request, StageProgress& progress) {
-    if (device_ && request.device == device_choice_) return;
+// The scene that is built: without what is hidden. Kept while neither changes, since a new one is built anew.
+void PrepareWorker::hide(const PrepareRequest& request) {
+    const bool same_files = request.files_revision == loaded_->files_revision;
+    const std::vector<rt_u32>& hidden = same_files ? request.hidden : hidden_;
+    if (visible_ && visible_of_ == loaded_ && hidden_ == hidden) return;
+    hidden_ = same_files ? hidden : std::vector<rt_u32>();
+    visible_of_ = loaded_;
+    visible_ = hidden_.empty() ? loaded_->scene : std::make_shared<const Scene>(without_instances(*loaded_->scene, hidden_));
+}
+
+void PrepareWorker::open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour,
+                                StageProgress& progress) {
+    if (shop.device && choice == shop.choice) return;
     progress.stage("opening the device");
-    auto device = std::make_shared<Device>(choose_device(request.device));
-    preparer_ = std::make_unique<Preparer>(plugins_, device);
-    device_ = std::move(device);
-    device_choice_ = request.device;
+    DeviceInfo info = choose_device(choice);
+    // One context a device, so that both sides share what the driver keeps.
+    const bool shared = neighbour.device && neighbour.device->info().id() == info.id();
+    auto device = shared ? neighbour.device : std::make_shared<Device>(std::move(info));
+    shop.preparer = std::make_unique<Preparer>(plugins_, device);
+    shop.device = std::move(device);
+    shop.choice = choice;
 }
 
 void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& progress) {
     if (request.files_revision == files_revision_) return;
+    if (loaded_ && request.files_revision == loaded_->files_revision) return tried(request.files_revision);
     if (request.files.empty()) return tried(request.files_revision);
     progress.stage("importing " + request.files.front());
     const auto begin = Clock::now();
@@ -202,7 +238,7 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     loaded->files_revision = request.files_revision;
     loaded->bounds = loaded->scene->bounds();
     loaded->placed_triangles = loaded->scene->placed_triangle_count();
-    const float aspect = static_cast<float>(request.settings.width) / static_cast<float>(request.settings.height);
+    const float aspect = static_cast<float>(request.main.settings.width) / static_cast<float>(request.main.settings.height);
     try {
         loaded->first_view = make_view(*loaded->scene, aspect, request.camera, request.light);
     } catch (const Error& error) {

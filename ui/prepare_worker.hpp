@@ -93,6 +93,7 @@ class PrepareWorker {
     };
     void open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress);
     void import_files(const PrepareRequest& request, StageProgress& progress);
+    void hide(const PrepareRequest& request);
     void list_all_devices();
     void tried(uint64_t files_revision);  // whatever came of it, it is not imported again
     void publish(Outcome outcome);
@@ -104,7 +105,8 @@ class PrepareWorker {
     // Of the worker thread alone.
     Workshop main_, other_;
     std::shared_ptr<const LoadedScene> loaded_;
-    std::shared_ptr<const Scene> visible_;  // loaded_ without what is hidden
+    std::shared_ptr<const Scene> visible_;  // visible_of_ without what is hidden
+    std::shared_ptr<const LoadedScene> visible_of_;
     std::vector<rt_u32> hidden_;
     uint64_t files_revision_ = 0;  // last one tried
 

@@ -5,9 +5,11 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -28,19 +30,49 @@ std::string rest_of(std::istringstream& in) {
 
 void choose_accel(Session& session, const std::string& text) {
     const PluginChoice choice = parse_plugin_choice(text);
-    const Settings before = session.wish.settings;
+    const Settings before = session.edited().settings;
     session.set_accel(choice.id);
     try {
         for (const auto& [key, value] : choice.settings)
-            set_parameter(*session.plugins().accel(choice.id), session.wish.settings.accel_params, key, value);
+            set_parameter(*session.plugins().accel(choice.id), session.edited().settings.accel_params, key, value);
     } catch (const Error&) {
-        session.wish.settings = before;
+        session.edited().settings = before;
         throw;
     }
 }
 
+long resident_kilobytes() {
+    std::ifstream statm("/proc/self/statm");
+    long total = 0, resident = 0;
+    statm >> total >> resident;
+    return resident * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+// "background 1,0,0": a change of the view, as edit.hpp has it.
+void edit(Session& session, const std::string& text) {
+    if (!session.ready()) throw Error(Exit::usage, "no scene yet");
+    const size_t space = text.find(' ');
+    EditedView edited = edited_view(session.wish);
+    apply_edit(*session.ready()->loaded->scene, edited, text.substr(0, space),
+               space == std::string::npos ? "" : text.substr(space + 1));
+    session.adopt_view(edited);
+}
+
+std::string inspection_text(const Session& session) {
+    const auto inspection = session.inspection();
+    if (!inspection) throw Error(Exit::failed, "no pixel was inspected");
+    if (!inspection->failure.empty()) throw Error(Exit::failed, inspection->failure);
+    nlohmann::json json = {{"x", inspection->x}, {"y", inspection->y}, {"rays", nlohmann::json::array()}};
+    for (const RayRecord& ray : inspection->result.rays)
+        json["rays"].push_back({{"kind", static_cast<int>(ray.kind)},
+                                {"parent", ray.parent},
+                                {"t", std::isfinite(ray.t) ? nlohmann::json(ray.t) : nlohmann::json()},
+                                {"prim", ray.prim}});
+    return json.dump();
+}
+
 void choose_tab(UiState& state, const std::string& name) {
-    for (int i = 0; i < 6; ++i)
+    for (int i = 0; i < kTabCount; ++i)
         if (name == kTabNames[i]) return state.show_tab(static_cast<Tab>(i));
     throw Error(Exit::usage, "no tab `" + name + "`");
 }
@@ -133,15 +165,43 @@ bool Script::run(App& app, const std::string& line) {
     if (command == "wait") return wait(app, text);
     if (command == "set") {
         const size_t space = text.find(' ');
-        set_setting(session.wish.settings, text.substr(0, space), space == std::string::npos ? "" : text.substr(space + 1));
+        set_setting(session.edited().settings, text.substr(0, space), space == std::string::npos ? "" : text.substr(space + 1));
     } else if (command == "accel") {
         choose_accel(session, text);
     } else if (command == "device") {
-        session.wish.device = text;
+        session.edited().device = text;
     } else if (command == "open") {
         session.open({text});
     } else if (command == "cancel") {
         session.cancel();
+    } else if (command == "edit") {
+        edit(session, text);
+    } else if (command == "compare") {
+        session.compare(text != "off");
+        session.editing_other = text == "b";
+    } else if (command == "swap") {
+        session.swap_sides();
+    } else if (command == "undo") {
+        session.undo();
+    } else if (command == "redo") {
+        session.redo();
+    } else if (command == "save_preset") {
+        session.save_preset(text);
+    } else if (command == "load_preset") {
+        session.load_preset(text);
+    } else if (command == "command_line") {
+        std::printf("%s\n", nlohmann::json{{"command", session.render_command(text)}}.dump().c_str());
+    } else if (command == "save") {
+        session.save_picture(text);
+    } else if (command == "turntable") {
+        const size_t space = text.find(' ');
+        session.sequence().start_turntable(session, text.substr(space + 1), std::atoi(text.c_str()));
+    } else if (command == "inspect" || command == "pick") {
+        unsigned x = 0, y = 0;
+        std::istringstream(text) >> x >> y;
+        command == "pick" ? session.pick(x, y) : session.inspect(x, y);
+    } else if (command == "inspection") {
+        std::printf("%s\n", inspection_text(session).c_str());
     } else if (command == "continuous") {
         session.wish.continuous = text == "1";
     } else if (command == "tab") {
@@ -163,7 +223,7 @@ bool Script::run(App& app, const std::string& line) {
         app.capture(text);
     } else if (command == "picture") {
         if (!session.picture()) throw Error(Exit::failed, "no picture yet");
-        write_image(text, {}, session.picture()->image);
+        write_image(text, {}, session.picture()->main.image);
     } else if (command == "state") {
         if (text == "reset") app.times() = {};
         std::printf("%s\n", state_text(app).c_str());
@@ -203,17 +263,42 @@ std::string Script::state_text(App& app) const {
     json["level"] = app.overlay().level() ? static_cast<long>(*app.overlay().level()) : -1L;
     if (session.selected_light < session.wish.lights.size())
         json["light"] = session.wish.lights[session.selected_light].values.position;
+    json["selected"] = {{"prim", session.selection.prim},
+                        {"instance", session.selection.instance},
+                        {"material", session.selection.material}};
+    json["hidden"] = session.wish.hidden;
+    json["undo"] = session.history().undo_name();
+    json["redo"] = session.history().redo_name();
+    json["comparing"] = session.wish.other.has_value();
+    json["kernel_revision"] = session.kernels().revision();
+    json["bookmarks"] = app.state().bookmarks.size();
+    json["keys_open"] = app.state().keys_open;
+    json["browser_open"] = app.state().browser_open;
+    json["compare_mode"] = kCompareNames[static_cast<int>(app.state().compare_mode)];
+    json["wipe"] = app.state().wipe;
+    json["resident_kb"] = resident_kilobytes();
+    if (const auto picture = session.picture(); picture && picture->other) {
+        json["other"] = {{"accel", picture->other->settings.accel},
+                         {"depth", picture->other->settings.depth},
+                         {"samples", picture->other->stats.samples},
+                         {"frame_ms", picture->other->frame_ms}};
+        if (picture->difference)
+            json["difference"] = {{"share", picture->difference->share}, {"largest", picture->difference->largest}};
+    }
     if (const auto picture = session.picture()) {
-        const Settings& s = picture->job.settings;
+        const Settings& s = picture->main.settings;
+        json["aov"] = s.aov;
+        json["reduced"] = picture->reduced;
+        json["device"] = picture->job.ready->main.device->info().id();
         json["accel"] = s.accel;
         json["packet"] = std::to_string(s.packet_w) + "x" + std::to_string(s.packet_h);
         json["lanes"] = s.lanes;
         json["depth"] = s.depth;
         json["size"] = std::to_string(s.width) + "x" + std::to_string(s.height);
-        json["samples"] = picture->stats.samples;
+        json["samples"] = picture->main.stats.samples;
         json["spp"] = s.spp;
         json["triangles"] = picture->job.ready->loaded->placed_triangles;
-        json["primary"] = picture->stats.primary;
+        json["primary"] = picture->main.stats.primary;
     }
     return json.dump();
 }

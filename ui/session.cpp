@@ -1,24 +1,38 @@
 #include "ui/session.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "plugin/parameters.hpp"
+#include "ui/camera_control.hpp"
 
 namespace clarity {
 namespace {
 
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
 bool same_view(const View& a, const View& b) {
     const bool cameras = a.camera.eye == b.camera.eye && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
                          a.camera.fov_y_rad == b.camera.fov_y_rad;
-    return cameras && a.background == b.background && a.ambient == b.ambient && a.lights.size() == b.lights.size() &&
-           std::equal(a.lights.begin(), a.lights.end(), b.lights.begin(),
-                      [](const rt_light& x, const rt_light& y) { return std::memcmp(&x, &y, sizeof x) == 0; });
+    return cameras && a.background == b.background && a.ambient == b.ambient && same_bytes(a.lights, b.lights) &&
+           same_bytes(a.materials, b.materials);
 }
+
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+constexpr double kMovingSeconds = 0.25;  // after the last change of the view, pictures are sharp again
 
 // Exposure and tone map what is in the film already; every other setting of a frame, but for the count of samples, traces it
 // anew.
@@ -34,11 +48,18 @@ std::string frame_key(const Settings& settings, bool displaying) {
     return key;
 }
 
-std::string prepare_key(const Settings& settings) {
-    std::string key = settings.accel;
-    for (const double value : settings.accel_params) key += "," + std::to_string(value);
+std::string prepare_key(const Side& side) {
+    std::string key = side.device + ";" + side.settings.accel;
+    for (const double value : side.settings.accel_params) key += "," + std::to_string(value);
     for (const Setting& row : settings_table())
-        if (row.effect != Effect::frame) key += ";" + row.key + "=" + row.get(settings);
+        if (row.effect != Effect::frame) key += ";" + row.key + "=" + row.get(side.settings);
+    return key;
+}
+
+std::string prepare_key(const PrepareRequest& request) {
+    std::string key = std::to_string(request.files_revision) + "|" + std::to_string(request.kernel_revision) + "|" +
+                      prepare_key(request.main) + "|" + (request.other ? prepare_key(*request.other) : std::string()) + "|";
+    for (const rt_u32 i : request.hidden) key += std::to_string(i) + ",";
     return key;
 }
 
@@ -48,14 +69,16 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
     : plugins_(*options.plugins),
       first_camera_(options.camera),
       first_light_(options.light),
+      first_edits_(options.edits),
       log_(wake),
+      kernels_(plugins_, wake),
       worker_(plugins_, options.import, wake),
-      frames_(wake) {
-    wish.device = options.device;
-    wish.settings = options.settings;
-    if (wish.settings.accel_params.empty())
-        if (const rt_plugin* accel = plugins_.accel(wish.settings.accel))
-            wish.settings.accel_params = default_parameters(*accel);
+      frames_(wake),
+      inspector_(wake) {
+    wish.main = {options.device, options.settings};
+    if (wish.main.settings.accel_params.empty())
+        if (const rt_plugin* accel = plugins_.accel(wish.main.settings.accel))
+            wish.main.settings.accel_params = default_parameters(*accel);
     if (!options.scenes.empty()) open(options.scenes);
 }
 
@@ -67,8 +90,18 @@ void Session::open(std::vector<std::string> files) {
 void Session::set_accel(const std::string& id) {
     const rt_plugin* plugin = plugins_.accel(id);
     if (!plugin) throw Error(Exit::usage, "no acceleration structure `" + id + "` among the plugins");
-    wish.settings.accel = id;
-    wish.settings.accel_params = default_parameters(*plugin);
+    edited().settings.accel = id;
+    edited().settings.accel_params = default_parameters(*plugin);
+}
+
+void Session::compare(bool on) {
+    editing_other = false;
+    if (on && !wish.other) wish.other = wish.main;
+    if (!on) wish.other.reset();
+}
+
+void Session::swap_sides() {
+    if (wish.other) std::swap(wish.main, *wish.other);
 }
 
 std::vector<std::string> Session::files() const {
@@ -78,59 +111,218 @@ std::vector<std::string> Session::files() const {
 void Session::cancel() {
     worker_.cancel();
     if (!ready_) return;
-    wish.device = ready_->request.device;
-    const Settings now = wish.settings;
-    wish.settings = ready_->request.settings;
-    for (const Setting& row : settings_table())
-        if (row.effect == Effect::frame) row.set(wish.settings, row.get(now));
-    files_ = ready_->request.files;
-    files_revision_ = ready_->request.files_revision;
-    posted_key_ = request_key();  // it is what we have: nothing to ask for
+    const PrepareRequest& was = ready_->request;
+    // What only concerns frames stays as it is wished.
+    const auto back = [](Side& side, const Side& to) {
+        side.device = to.device;
+        side.settings = frame_settings(to.settings, side.settings);
+    };
+    back(wish.main, was.main);
+    if (was.other && wish.other)
+        back(*wish.other, *was.other);
+    else
+        wish.other = was.other;
+    wish.hidden = was.hidden;
+    files_ = was.files;
+    files_revision_ = was.files_revision;
+    posted_key_ = prepare_key(wished_request());  // it is what we have: nothing to ask for
 }
 
-std::string Session::request_key() const {
-    return std::to_string(files_revision_) + "|" + wish.device + "|" + prepare_key(wish.settings);
+void Session::follow_main() {
+    if (!wish.other) {
+        editing_other = false;
+        return;
+    }
+    Settings& other = wish.other->settings;
+    for (const char* key : {"size", "spp", "aov", "exposure", "tone"})
+        if (const Setting* row = find_setting(key)) row->set(other, row->get(wish.main.settings));
+}
+
+PrepareRequest Session::wished_request() const {
+    PrepareRequest request{files_, files_revision_, first_camera_, first_light_, wish.main, wish.other, {}, kernels_.revision()};
+    // Numbers of instances mean nothing in another scene.
+    if (files_revision_ == viewed_files_revision_) request.hidden = wish.hidden;
+    return request;
 }
 
 void Session::post_request() {
-    const std::string key = request_key();
+    PrepareRequest request = wished_request();
+    const std::string key = prepare_key(request);
     if (key == posted_key_) return;
     posted_key_ = key;
-    worker_.request({files_, files_revision_, wish.device, first_camera_, first_light_, wish.settings});
-}
-
-View Session::wished_view() const {
-    View view;
-    view.camera = wish.camera;
-    for (const WishedLight& light : wish.lights)
-        if (light.on) view.lights.push_back(light.values);
-    view.background = wish.background;
-    view.ambient = wish.ambient;
-    return view;
+    worker_.request(std::move(request));
 }
 
 void Session::post_frame() {
     if (!ready_) return;
-    FrameJob job{ready_, wish.settings, wished_view(), posted_job_.revision, posted_job_.display_revision, wish.continuous};
-    const bool first = !posted_job_.ready;
-    const bool anew = first || job.ready != posted_job_.ready || !same_view(job.view, posted_job_.view) ||
-                      frame_key(job.settings, false) != frame_key(posted_job_.settings, false) ||
-                      job.settings.spp < posted_job_.settings.spp;
-    const bool shown = first || frame_key(job.settings, true) != frame_key(posted_job_.settings, true);
-    const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous;
-    if (!anew && !shown && !other) return;
-    job.revision += anew;
-    job.display_revision += shown;
-    posted_job_ = job;
-    frames_.post(std::move(job));
+    FrameJob job = posted_job_;
+    job.ready = ready_;
+    job.settings = wish.main.settings;
+    job.other_settings.reset();
+    if (wish.other) job.other_settings = wish.other->settings;
+    job.view = visible_view(edited_view(wish));
+    job.continuous = wish.continuous;
+    job.resolution_scale = std::clamp(wish.resolution_scale, 0.05f, 4.0f);
+    const bool first = !posted_job_.ready, moved = !first && !same_view(job.view, posted_job_.view);
+    const double now = now_s();
+    if (moved) moved_at_s_ = now;
+    moving_ = now - moved_at_s_ < kMovingSeconds && !sequence_.running();
+    job.moving_fps = moving_ ? wish.moving_fps : 0;
+    const auto key = [](const FrameJob& j, bool displaying) {
+        return frame_key(j.settings, displaying) +
+               (j.other_settings && !displaying ? "|" + frame_key(*j.other_settings, false) : std::string());
+    };
+    const bool anew = first || moved || job.ready != posted_job_.ready || key(job, false) != key(posted_job_, false) ||
+                      job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
+    const bool shown = first || key(job, true) != key(posted_job_, true);
+    const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous ||
+                       job.moving_fps != posted_job_.moving_fps;
+    if (anew || shown || other) {
+        job.revision += anew;
+        job.display_revision += shown;
+        posted_job_ = job;
+        frames_.post(std::move(job));
+    }
 }
 
-void Session::update() {
+void Session::update(bool gesture) {
     take_outcomes();
     if (auto why = frames_.take_failure(); !why.empty()) report(why);
+    sequence_.update(*this);
+    follow_main();
+    if (ready_ && !sequence_.running()) history_.observe(wish, gesture);
     post_request();
     post_frame();
+    if (!behind()) sequence_.posted(*this);
     picture_ = frames_.latest();
+    take_saved();
+    take_pick();
+}
+
+void Session::take_saved() {
+    for (const FrameThread::Saved& saved : frames_.take_saved()) {
+        if (saved.failure.empty())
+            log(LogLevel::info, "saved " + saved.path);
+        else
+            report(saved.failure);
+        sequence_.saved(*this, saved.path, saved.failure.empty());
+    }
+}
+
+void Session::save_picture(const std::string& path) {
+    check_output_path(path);
+    if (!ready_) throw Error(Exit::usage, path + ": there is no picture yet to save");
+    frames_.save(path);
+}
+
+Preset Session::wished_preset(const View& base) const {
+    Preset preset{wish.main.device, wish.main.settings, {}};
+    if (ready_) preset.edits = edits_between(*ready_->loaded->scene, base, edited_view(wish));
+    return preset;
+}
+
+void Session::save_preset(const std::string& path) const {
+    clarity::save_preset(plugins_, wished_preset(ready_ ? ready_->loaded->first_view : View()), path);
+}
+
+void Session::load_preset(const std::string& path) {
+    const Preset preset = clarity::load_preset(plugins_, path);
+    if (!ready_ && !preset.edits.empty())
+        throw Error(Exit::usage, path + ": it changes a scene's view, and no scene is open yet");
+    EditedView edited;
+    if (ready_) {
+        edited.view = ready_->loaded->first_view;
+        for (const Word& word : preset.edits) apply_edit(*ready_->loaded->scene, edited, word.key, word.value);
+    }
+    wish.main = {preset.device.empty() ? wish.main.device : preset.device, preset.settings};
+    if (ready_) adopt_view(edited);
+    log(LogLevel::info, "preset " + path);
+}
+
+std::string Session::render_command(const std::string& output) const {
+    if (!ready_) throw Error(Exit::usage, "there is no scene yet to render");
+    // Exactly what the command line begins with, whatever this window was started with.
+    Preset preset;
+    const Settings& s = wish.main.settings;
+    const auto scaled = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * wish.resolution_scale))); };
+    const int width = scaled(s.width), height = scaled(s.height);
+    preset = wished_preset(make_view(*ready_->loaded->scene, static_cast<float>(width) / static_cast<float>(height)));
+    preset.settings.width = width;
+    preset.settings.height = height;
+    preset.device = ready_->main.device->info().id();
+    std::vector<std::string> files = ready_->loaded->files;
+    for (std::string& file : files) file = std::filesystem::absolute(file).lexically_normal().string();
+    return clarity::render_command(plugins_, preset, files, output);
+}
+
+void Session::inspect(unsigned x, unsigned y) {
+    if (!picture_) return;
+    inspector_.ask(picture_->job, x, y);
+}
+
+void Session::pick(unsigned x, unsigned y) {
+    if (!picture_) return;
+    pick_request_ = inspector_.ask(picture_->job, x, y);
+}
+
+// What the camera ray of the picked pixel met becomes the selection.
+void Session::take_pick() {
+    const auto inspection = inspector_.latest();
+    if (!inspection || inspection->request < pick_request_ || pick_request_ == picked_request_) return;
+    picked_request_ = pick_request_;
+    if (!inspection->failure.empty()) return report(inspection->failure);
+    selection = {};
+    if (!ready_ || inspection->job.ready->loaded != ready_->loaded || inspection->result.rays.empty()) return;
+    const PrimPlace place = place_of_prim(*ready_->loaded->scene, inspection->result.rays.front().prim);
+    if (place.kind == PrimPlace::Kind::none) return;
+    selection.prim = inspection->result.rays.front().prim;
+    selection.instance = place.instance == RT_NONE ? -1 : static_cast<rt_i32>(place.instance);
+    selection.material = place.material == RT_NONE ? -1 : static_cast<rt_i32>(place.material);
+}
+
+void Session::focus_on(const std::array<float, 3>& point, float nearer) {
+    Camera& camera = wish.camera;
+    for (int k = 0; k < 3; ++k) {
+        const float away = camera.eye[k] - camera.target[k];
+        camera.target[k] = point[k];
+        camera.eye[k] = point[k] + away * nearer;
+    }
+}
+
+void Session::focus_on_instance(rt_u32 instance) {
+    if (!ready_ || instance >= ready_->loaded->scene->instances.size()) return;
+    frame_bounds(wish.camera, instance_bounds(*ready_->loaded->scene, instance), picture_aspect());
+}
+
+void Session::frame_selection() {
+    if (!ready_) return;
+    if (selection.instance >= 0) return focus_on_instance(static_cast<rt_u32>(selection.instance));
+    if (!ready_->loaded->bounds.empty) frame_bounds(wish.camera, ready_->loaded->bounds, picture_aspect());
+}
+
+float Session::picture_aspect() const {
+    return static_cast<float>(wish.main.settings.width) / static_cast<float>(wish.main.settings.height);
+}
+
+rt_material& Session::edited_material(rt_u32 index) {
+    if (wish.materials.empty())
+        for (const Material& material : ready_->loaded->scene->materials) wish.materials.push_back(material.values);
+    return wish.materials.at(index);
+}
+
+const rt_material& Session::material(rt_u32 index) const {
+    return wish.materials.empty() ? ready_->loaded->scene->materials.at(index).values : wish.materials.at(index);
+}
+
+bool Session::hidden(rt_u32 instance) const {
+    return std::binary_search(wish.hidden.begin(), wish.hidden.end(), instance);
+}
+
+void Session::hide(rt_u32 instance, bool hidden) {
+    const auto at = std::lower_bound(wish.hidden.begin(), wish.hidden.end(), instance);
+    const bool is = at != wish.hidden.end() && *at == instance;
+    if (hidden && !is) wish.hidden.insert(at, instance);
+    if (!hidden && is) wish.hidden.erase(at);
 }
 
 void Session::take_outcomes() {
@@ -142,7 +334,10 @@ void Session::take_outcomes() {
                 break;
             case Outcome::Kind::failed:
                 report(outcome.message, outcome.details);
-                if (outcome.files_failed && ready_) files_ = ready_->loaded->files;
+                if (outcome.files_failed && ready_) {
+                    files_ = ready_->loaded->files;
+                    files_revision_ = ready_->loaded->files_revision;
+                }
                 break;
             case Outcome::Kind::cancelled:
                 log(LogLevel::debug, "work in hand was cancelled");
@@ -153,30 +348,45 @@ void Session::take_outcomes() {
 
 void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     ready_ = ready;
-    ready_key_ = std::to_string(ready->request.files_revision) + "|" + ready->request.device + "|" +
-                 prepare_key(ready->request.settings);
+    ready_key_ = prepare_key(ready->request);
     if (viewed_files_revision_ == ready->loaded->files_revision) return;
     viewed_files_revision_ = ready->loaded->files_revision;
+    selection = {};
     reset_view();
     if (!ready->loaded->view_error.empty()) report(ready->loaded->view_error);
     first_camera_.clear();
     first_light_.clear();
+    EditedView edited = edited_view(wish);
+    for (const Word& word : std::exchange(first_edits_, {})) {
+        try {
+            apply_edit(*ready->loaded->scene, edited, word.key, word.value);
+        } catch (const Error& error) {
+            report(error.what());
+        }
+    }
+    adopt_view(edited);
+    history_.forget();
     for (const std::string& warning : ready->loaded->scene->warnings) log(LogLevel::warning, warning);
 }
 
 void Session::reset_view() {
-    if (!ready_) return;
+    if (ready_) adopt_view({ready_->loaded->first_view, {}, {}});
+}
+
+void Session::adopt_view(const EditedView& edited) {
     const Scene& scene = *ready_->loaded->scene;
-    const View& view = ready_->loaded->first_view;
+    const View& view = edited.view;
     wish.camera = view.camera;
     wish.background = view.background;
     wish.ambient = view.ambient;
+    wish.materials = view.materials;
+    wish.hidden = edited.hidden;
     wish.lights.clear();
     selected_light = 0;
     for (size_t i = 0; i < view.lights.size(); ++i) {
         std::string name = i < scene.lights.size() ? scene.lights[i].name : "";
         if (name.empty()) name = "light " + std::to_string(i + 1);
-        wish.lights.push_back({name, view.lights[i], true});
+        wish.lights.push_back({name, view.lights[i], i >= edited.lights_on.size() || edited.lights_on[i]});
     }
 }
 
@@ -187,11 +397,12 @@ void Session::report(const std::string& text, const std::string& details) {
 }
 
 bool Session::behind() const {
-    return ready_ && ready_key_ != request_key();
+    return ready_ && ready_key_ != prepare_key(wished_request());
 }
 
 bool Session::idle() const {
-    return !worker_.activity().busy && posted_key_ == request_key() && frames_.idle() && picture_ == frames_.latest();
+    return !worker_.activity().busy && posted_key_ == prepare_key(wished_request()) && !moving_ && frames_.idle() &&
+           !inspector_.busy() && pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();
 }
 
 float Session::scene_size() const {
@@ -203,24 +414,24 @@ float Session::scene_size() const {
     return std::max(std::sqrt(squared), 1e-3f);
 }
 
-double Session::frames_per_second() const {
-    const std::vector<float> times = frames_.times();
+double Session::frames_per_second(unsigned side) const {
+    const std::vector<float> times = frames_.times(side);
     const size_t count = std::min<size_t>(times.size(), 10);
     double sum = 0;
     for (size_t i = times.size() - count; i < times.size(); ++i) sum += times[i];
     return sum > 0 ? 1000.0 * static_cast<double>(count) / sum : 0.0;
 }
 
-double Session::mrays_per_second() const {
-    if (!picture_) return 0;
-    const FrameStats& stats = picture_->stats;
+double Session::mrays_per_second(unsigned side) const {
+    if (!picture_ || (side == 1 && !picture_->other)) return 0;
+    const FrameStats& stats = side == 1 ? picture_->other->stats : picture_->main.stats;
     const double ms = stats.device_ms > 0 ? stats.device_ms : stats.wall_ms;
     return ms > 0 ? static_cast<double>(stats.primary + stats.shadow + stats.secondary) / ms * 1e-3 : 0;
 }
 
 std::string Session::frame_rate_line() const {
     if (!picture_) return "fps 0.0  no picture yet";
-    const Settings& s = picture_->job.settings;
+    const Settings& s = picture_->main.settings;
     const double fps = frames_per_second();
     char text[256];
     std::snprintf(text, sizeof text, "fps %.1f  %.1f ms  %.1f Mrays/s  %dx%d  %s  packet %dx%d  lanes %d  depth %d", fps,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "device/kernel_watch.hpp"
+#include "render/preset.hpp"
 #include "ui/frame_thread.hpp"
 #include "ui/history.hpp"
 #include "ui/inspect_thread.hpp"
@@ -50,6 +51,7 @@ class Session {
     // Drops what is being prepared and wishes for what is on the screen again.
     void cancel();
     void reset_view();
+    void adopt_view(const EditedView& edited);
     void set_accel(const std::string& id);  // with its parameters' defaults, of the side that is edited
     Side& edited() { return editing_other && wish.other ? *wish.other : wish.main; }
     // Starts or ends the comparison; the second side begins as a copy of the first.
@@ -79,6 +81,8 @@ class Session {
     // Moves the camera's target, and the eye with `nearer` < 1 towards it.
     void focus_on(const std::array<float, 3>& point, float nearer = 1);
     void focus_on_instance(rt_u32 instance);
+    void frame_selection();  // or all of the scene
+    float picture_aspect() const;
     // The materials to edit: the wish's own, copied from the scene at the first edit.
     rt_material& edited_material(rt_u32 index);
     const rt_material& material(rt_u32 index) const;
@@ -96,6 +100,8 @@ class Session {
     // The camera or a light moved a moment ago: pictures may be coarse.
     bool moving() const { return moving_; }
     const KernelWatch& kernels() const { return kernels_; }
+    // The window needs the distances of pictures, or no longer does.
+    void want_distance(bool wanted) { frames_.want_distance(wanted); }
     // Nothing is being prepared or traced, and the newest picture is here.
     bool idle() const;
     // Whether the wish differs from what the picture was prepared with: something is under way, or failed.
@@ -116,13 +122,15 @@ class Session {
     void adopt(const std::shared_ptr<const Ready>& ready);
     void post_request();
     void post_frame();
-    std::string request_key() const;
     void follow_main();  // what of the other side is always the main one's
-    void take_inspection();
-    Preset wished_preset() const;
+    void take_saved();
+    void take_pick();
+    PrepareRequest wished_request() const;
+    Preset wished_preset(const View& base) const;
 
     const PluginRegistry& plugins_;
     std::string first_camera_, first_light_;  // from the command line, for the first scene
+    std::vector<Word> first_edits_;
     std::vector<std::string> files_;          // asked for
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
     std::string posted_key_;

@@ -37,6 +37,8 @@ struct UiState {
     bool show_rays = true;                     // of the inspected pixel, drawn in the scene
     bool browser_open = false;                 // the file browser
     bool keys_open = false;                    // the list of keys over the picture
+    std::string pictures_folder = ".";         // where pictures are saved
+    int selected_ray = -1;                     // of the inspected pixel's, marked in the scene
     std::string browser_folder;                // where it is
     std::vector<std::string> recent_files;     // newest first
     std::vector<Bookmark> bookmarks;           // of the scene that is open

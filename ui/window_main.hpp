@@ -5,6 +5,7 @@
 
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
+#include "render/edit.hpp"
 #include "render/settings.hpp"
 
 namespace clarity {
@@ -16,6 +17,7 @@ struct ViewOptions {
     std::string device;                       // as --device: "", "P:D", "cpu", "gpu" or part of a name
     std::string camera;                       // as --camera: "", a name or "ex,ey,ez,tx,ty,tz[,fov_deg]"
     std::string light;                        // as --light: "" or "x,y,z"
+    std::vector<Word> edits;                  // of the first scene's view
     ImportOptions import;
     std::string key_map;  // "thesis", "viewer"; "": as remembered, at first "thesis"
 };

@@ -82,7 +82,7 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
         ->type_name("D");
     single(app.add_option("--accel", trace.accel, "Acceleration structure with its parameters (`clarity plugins` lists them)"))
         ->type_name("ID[,key=value...]")
-        ->capture_default_str();
+        ->default_str("bvh2");
     single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or where it stands and looks"))
         ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
     single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");
@@ -92,7 +92,14 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
             ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
             ->group("Settings");
     }
-    app.add_option("--set", trace.sets, "The same, as key=value with the setting's key (ray_slots=16); may be repeated")
+    single(app.add_option("--preset", trace.preset,
+                          "Settings and view saved from the window; options beside it win"))
+        ->type_name("FILE");
+    app.add_option("--set", trace.sets,
+                   "The same, as key=value with the setting's key (ray_slots=16), or a change of the view: "
+                   "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, "
+                   "light.N=off|point,x,y,z,r,g,b|directional,..., material.N.color=r,g,b (emission, specular, reflect, "
+                   "refract, ior, shininess), hide=3,5-9 (instances); may be repeated")
         ->type_name("key=value")
         ->allow_extra_args(false)
         ->group("Settings");

@@ -7,6 +7,7 @@
 
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
+#include "render/edit.hpp"
 #include "render/settings.hpp"
 
 namespace clarity {
@@ -19,13 +20,19 @@ struct SceneOptions {
 // What render and view share.
 struct TraceOptions {
     std::string device;                                         // "": CLARITY_DEVICE, else the best
-    std::string accel = "bvh2";                                 // ID[,key=value...]
+    std::string accel;                                          // ID[,key=value...]; "": the preset's, else bvh2
     std::vector<std::string> sets;                              // key=value, in the order given
     std::vector<std::pair<std::string, std::string>> settings;  // from options of their own; they win over `sets`
     std::string camera, light;                                  // as make_view reads them
+    std::string preset;                                         // file; what is given beside it wins
 };
-// Throws Error(usage) for an unknown plugin, key or value.
-Settings make_settings(const PluginRegistry& plugins, const TraceOptions& options);
+// Words that are checked without a scene, and those that need one. Throws Error(usage) for an unknown plugin, key or value.
+struct TraceWords {
+    std::string device;
+    Settings settings;
+    std::vector<Word> edits;  // of the view, in their order
+};
+TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions& options);
 
 struct RenderOptions {
     SceneOptions scene;

@@ -61,7 +61,8 @@ class RenderJob {
  public:
     RenderJob(const PluginRegistry& plugins, const RenderOptions& options)
         : options_(options),
-          settings_(make_settings(plugins, options.trace)),
+          words_(read_trace_options(plugins, options.trace)),
+          settings_(words_.settings),
           range_(options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames)),
           plugins_(plugins),
           bar_(options.quiet) {
@@ -73,7 +74,7 @@ class RenderJob {
         check_options(options_, settings_, range_);
         check_scene_files(options_.scene.files);
         const CancelOnSignal cancel(bar_);
-        auto device = std::make_shared<Device>(choose_device(options_.trace.device));
+        auto device = std::make_shared<Device>(choose_device(words_.device));
         stats_.device = device->info();
         log(LogLevel::debug, "device " + device->info().id() + " " + device->info().name);
         import();
@@ -95,7 +96,11 @@ class RenderJob {
         stats_.import_ms = ms_since(begin);
         for (const std::string& warning : scene_->warnings) log(LogLevel::warning, warning);
         const float aspect = float(settings_.width) / float(settings_.height);
-        view_ = make_view(*scene_, aspect, options_.trace.camera, options_.trace.light);
+        EditedView edited;
+        edited.view = make_view(*scene_, aspect, options_.trace.camera, options_.trace.light);
+        for (const Word& word : words_.edits) apply_edit(*scene_, edited, word.key, word.value);
+        view_ = visible_view(edited);
+        if (!edited.hidden.empty()) scene_ = std::make_shared<const Scene>(without_instances(*scene_, edited.hidden));
     }
 
     void prepare(const std::shared_ptr<Device>& device) {
@@ -194,7 +199,8 @@ class RenderJob {
 
     const RenderOptions& options_;
     const Clock::time_point begin_ = Clock::now();
-    const Settings settings_;
+    const TraceWords words_;
+    const Settings& settings_;
     const FrameRange range_;
     const PluginRegistry& plugins_;
     ProgressBar bar_;

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "plugin/parameters.hpp"
+#include "render/preset.hpp"
 
 namespace clarity {
 namespace {
@@ -31,17 +32,27 @@ void choose_accel(const PluginRegistry& plugins, const std::string& text, Settin
 
 }  // namespace
 
-Settings make_settings(const PluginRegistry& plugins, const TraceOptions& options) {
-    Settings settings;
+TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions& options) {
+    TraceWords words;
+    if (!options.preset.empty()) {
+        Preset preset = load_preset(plugins, options.preset);
+        words = {preset.device, preset.settings, preset.edits};
+    }
+    if (!options.device.empty()) words.device = options.device;
     for (const std::string& pair : options.sets) {
         const size_t equals = pair.find('=');
         if (equals == std::string::npos || equals == 0)
             throw Error(Exit::usage, "--set " + pair + ": expected key=value, as in --set shadows=false");
-        set_setting(settings, pair.substr(0, equals), pair.substr(equals + 1));
+        const std::string key = pair.substr(0, equals), value = pair.substr(equals + 1);
+        if (is_edit(key))
+            words.edits.push_back({key, value});
+        else
+            set_setting(words.settings, key, value);
     }
-    for (const auto& [key, value] : options.settings) set_setting(settings, key, value);
-    choose_accel(plugins, options.accel, settings);
-    return settings;
+    for (const auto& [key, value] : options.settings) set_setting(words.settings, key, value);
+    if (!options.accel.empty() || options.preset.empty())
+        choose_accel(plugins, options.accel.empty() ? words.settings.accel : options.accel, words.settings);
+    return words;
 }
 
 void check_scene_files(const std::vector<std::string>& files) {

@@ -8,14 +8,15 @@
 namespace clarity {
 
 int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
-    const Settings settings = make_settings(plugins, command.trace);
+    const TraceWords words = read_trace_options(plugins, command.trace);
     check_scene_files(command.scene.files);
 #ifdef CLARITY_HAVE_UI
     ViewOptions options;
     options.plugins = &plugins;
     options.scenes = command.scene.files;
-    options.settings = settings;
-    options.device = command.trace.device;
+    options.settings = words.settings;
+    options.edits = words.edits;
+    options.device = words.device;
     options.camera = command.trace.camera;
     options.light = command.trace.light;
     options.import = command.scene.import;

@@ -161,6 +161,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
+        if (!instance.visible) continue;
         flat[i] = uses[instance.mesh] == 1 || !invert(instance.world_from_object, inverse[i]) || count == 0;
         if (flat[i]) {
             world_prims += count;
@@ -202,7 +203,9 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        if (flat[i]) {
+        if (!instance.visible) {
+            // Only its numbers are kept free.
+        } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
             add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material, next_prim, next_ref,
                           static_cast<rt_u32>(i), at, out);

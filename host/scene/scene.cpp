@@ -148,6 +148,44 @@ double Scene::surface_area() const {
     return sum;
 }
 
+PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
+    if (prim < 0) return {};
+    uint64_t left = static_cast<uint64_t>(prim);
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (left < mesh.triangle_count) {
+            const rt_u32 triangle = mesh.first_triangle + static_cast<rt_u32>(left);
+            const rt_u32 material = instance.material == RT_NONE ? scene.triangle_materials[triangle] : instance.material;
+            return {PrimPlace::Kind::triangle, triangle, static_cast<rt_u32>(i), material};
+        }
+        left -= mesh.triangle_count;
+    }
+    const auto among = [&](const auto& all, PrimPlace::Kind kind, PrimPlace& place) {
+        if (left >= all.size()) {
+            left -= all.size();
+            return false;
+        }
+        place = {kind, static_cast<rt_u32>(left), RT_NONE, all[left].material};
+        return true;
+    };
+    PrimPlace place;
+    among(scene.spheres, PrimPlace::Kind::sphere, place) || among(scene.polygons, PrimPlace::Kind::polygon, place) ||
+        among(scene.planes, PrimPlace::Kind::plane, place);
+    return place;
+}
+
+Bounds instance_bounds(const Scene& scene, rt_u32 index) {
+    Bounds box;
+    const Instance& instance = scene.instances[index];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    for (size_t i = 0; i < 3 * size_t(mesh.triangle_count); ++i) {
+        const rt_u32 vertex = scene.triangles[3 * size_t(mesh.first_triangle) + i];
+        box.add(transform_point(instance.world_from_object, &scene.positions[3 * size_t(vertex)]).data());
+    }
+    return box;
+}
+
 rt_material default_material() {
     rt_material m{};
     for (float& channel : m.color) channel = 0.7f;

@@ -32,6 +32,7 @@ struct Instance {
     rt_u32 mesh = 0;
     rt_u32 material = RT_NONE;  // for the whole instance; RT_NONE: the mesh's own
     Affine world_from_object = kIdentity;
+    bool visible = true;  // else it is in no structure; its primitives keep their numbers
 };
 
 struct Sphere {
@@ -94,6 +95,18 @@ struct Scene {
     // World space, of all instances' triangles and of the polygons and spheres.
     double surface_area() const;
 };
+
+// What carries the number that `prim` shows: triangles of all instances in order, then spheres, polygons, planes.
+struct PrimPlace {
+    enum class Kind { none, triangle, sphere, polygon, plane } kind = Kind::none;
+    rt_u32 index = 0;            // within its kind; a triangle: of the scene's
+    rt_u32 instance = RT_NONE;   // of a triangle
+    rt_u32 material = RT_NONE;
+};
+PrimPlace place_of_prim(const Scene& scene, rt_i32 prim);
+
+// Of one instance's vertices, in world space.
+Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 
 rt_material default_material();
 

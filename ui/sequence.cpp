@@ -1,0 +1,109 @@
+#include "ui/sequence.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "render/image_io.hpp"
+#include "ui/camera_control.hpp"
+#include "ui/session.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr float kTurn = 6.2831853f;
+
+// Catmull-Rom through b and c, at u = 0..1.
+template <size_t N>
+std::array<float, N> between(const std::array<float, N>& a, const std::array<float, N>& b, const std::array<float, N>& c,
+                             const std::array<float, N>& d, float u) {
+    std::array<float, N> out;
+    for (size_t k = 0; k < N; ++k)
+        out[k] = 0.5f * (2 * b[k] + u * (c[k] - a[k] + u * (2 * a[k] - 5 * b[k] + 4 * c[k] - d[k] +
+                                                            u * (3 * b[k] - 3 * c[k] + d[k] - a[k]))));
+    return out;
+}
+
+}  // namespace
+
+void Sequence::start_turntable(Session& session, const std::string& pattern, int frames) {
+    if (frames < 1 || frames > 9999) throw Error(Exit::usage, "a turntable has 1 to 9999 frames");
+    std::vector<Camera> cameras;
+    for (int i = 0; i < frames; ++i) {
+        cameras.push_back(session.wish.camera);
+        orbit_camera(cameras.back(), kTurn * static_cast<float>(i) / static_cast<float>(frames), 0);
+    }
+    start(session, pattern, std::move(cameras));
+}
+
+void Sequence::start_path(Session& session, const std::string& pattern, int frames, const std::vector<Camera>& through) {
+    if (through.size() < 2) throw Error(Exit::usage, "a path needs at least two bookmarks");
+    if (frames < 2 || frames > 9999) throw Error(Exit::usage, "a path has 2 to 9999 frames");
+    const auto at = [&](long i) -> const Camera& {
+        return through[static_cast<size_t>(std::clamp<long>(i, 0, static_cast<long>(through.size()) - 1))];
+    };
+    std::vector<Camera> cameras;
+    for (int i = 0; i < frames; ++i) {
+        const float along = static_cast<float>(i) * static_cast<float>(through.size() - 1) / static_cast<float>(frames - 1);
+        const long k = std::min(static_cast<long>(along), static_cast<long>(through.size()) - 2);
+        const float u = along - static_cast<float>(k);
+        Camera camera = at(k);
+        camera.eye = between(at(k - 1).eye, at(k).eye, at(k + 1).eye, at(k + 2).eye, u);
+        camera.target = between(at(k - 1).target, at(k).target, at(k + 1).target, at(k + 2).target, u);
+        camera.fov_y_rad = at(k).fov_y_rad + u * (at(k + 1).fov_y_rad - at(k).fov_y_rad);
+        cameras.push_back(camera);
+    }
+    start(session, pattern, std::move(cameras));
+}
+
+void Sequence::start(Session& session, const std::string& pattern, std::vector<Camera> cameras) {
+    if (!session.ready()) throw Error(Exit::usage, "there is no picture yet to make a sequence of");
+    if (cameras.size() > 1 && frame_path(pattern, 1) == frame_path(pattern, 2))
+        throw Error(Exit::usage, pattern + ": put #### into its name, for the frame's number");
+    check_output_path(frame_path(pattern, 1));
+    if (!running()) before_ = session.wish.camera;
+    pattern_ = pattern;
+    cameras_ = std::move(cameras);
+    next_ = 0;
+    waiting_for_.clear();
+}
+
+void Sequence::stop(Session& session) {
+    if (!running()) return;
+    cameras_.clear();
+    session.wish.camera = before_;
+}
+
+void Sequence::update(Session& session) {
+    if (!running() || !waiting_for_.empty()) return;
+    if (next_ == count()) return stop(session);
+    session.wish.camera = cameras_[static_cast<size_t>(next_)];
+    waiting_for_ = frame_path(pattern_, next_ + 1);
+}
+
+void Sequence::posted(Session& session) {
+    if (!waiting_for_.empty() && !asked_) {
+        session.save_picture(waiting_for_);
+        asked_ = true;
+    }
+}
+
+void Sequence::saved(Session& session, const std::string& path, bool worked) {
+    if (path != waiting_for_) return;
+    waiting_for_.clear();
+    asked_ = false;
+    ++next_;
+    if (!worked) stop(session);
+}
+
+std::string next_picture_path(const std::string& folder) {
+    const std::filesystem::path base = folder.empty() ? "." : folder;
+    for (int number = 1; number < 10000; ++number) {
+        const std::string path = (base / frame_path("clarity_####.png", number)).string();
+        if (!std::filesystem::exists(path)) return path;
+    }
+    throw Error(Exit::failed, base.string() + ": holds 9999 saved pictures already; choose another folder");
+}
+
+}  // namespace clarity
