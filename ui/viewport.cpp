@@ -13,13 +13,22 @@ PictureTexture::~PictureTexture() {
 }
 
 std::string PictureTexture::upload(const ByteImage& image) {
-    if (image.width == 0 || image.height == 0) return {};
+    return stream(image.pixels.data(), image.width, image.height, GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE);
+}
+
+std::string PictureTexture::upload(const FloatImage& image) {
+    return stream(image.pixels.data(), image.width, image.height, GL_R32F, GL_RED, GL_FLOAT);
+}
+
+// Both kinds of texel have four bytes.
+std::string PictureTexture::stream(const void* pixels, unsigned width, unsigned height, int store, unsigned format,
+                                   unsigned type) {
+    if (width == 0 || height == 0) return {};
     GLint largest = 0;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
-    if (image.width > static_cast<unsigned>(largest) || image.height > static_cast<unsigned>(largest))
-        return "a picture of " + std::to_string(image.width) + "x" + std::to_string(image.height) +
-               " cannot be shown: OpenGL takes " + std::to_string(largest) +
-               " pixels a side here; `clarity render` writes it to a file";
+    if (width > static_cast<unsigned>(largest) || height > static_cast<unsigned>(largest))
+        return "a picture of " + std::to_string(width) + "x" + std::to_string(height) + " cannot be shown: OpenGL takes " +
+               std::to_string(largest) + " pixels a side here; `clarity render` writes it to a file";
     const bool fresh = texture_ == 0;
     if (fresh) {
         glGenTextures(1, &texture_);
@@ -27,27 +36,29 @@ std::string PictureTexture::upload(const ByteImage& image) {
     }
     glBindTexture(GL_TEXTURE_2D, texture_);
     if (fresh) {
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
-        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+        // Distances of neighbours have no meaningful mean.
+        const GLint filter = store == GL_R32F ? GL_NEAREST : GL_LINEAR;
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
     }
-    const auto width = static_cast<GLsizei>(image.width), height = static_cast<GLsizei>(image.height);
-    if (image.width != width_ || image.height != height_) {
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, width, height, 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
-        width_ = image.width;
-        height_ = image.height;
+    const auto columns = static_cast<GLsizei>(width), rows = static_cast<GLsizei>(height);
+    if (width != width_ || height != height_) {
+        glTexImage2D(GL_TEXTURE_2D, 0, store, columns, rows, 0, format, type, nullptr);
+        width_ = width;
+        height_ = height;
     }
     // A fresh store each time: the driver may still read the last one.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_);
-    const auto bytes = static_cast<GLsizeiptr>(image.pixels.size());
+    const auto bytes = static_cast<GLsizeiptr>(size_t{4} * width * height);
     glBufferData(GL_PIXEL_UNPACK_BUFFER, bytes, nullptr, GL_STREAM_DRAW);
     if (void* into = glMapBufferRange(GL_PIXEL_UNPACK_BUFFER, 0, bytes, GL_MAP_WRITE_BIT | GL_MAP_INVALIDATE_BUFFER_BIT)) {
-        std::memcpy(into, image.pixels.data(), image.pixels.size());
+        std::memcpy(into, pixels, static_cast<size_t>(bytes));
         glUnmapBuffer(GL_PIXEL_UNPACK_BUFFER);
         glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
         glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+        glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, columns, rows, format, type, nullptr);
     }
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
     return {};
