@@ -194,7 +194,10 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
         side.stats = tracer.frames->trace(*ready.prepared, settings, view, order.sample, true, progress);
     else if (last)
         side.stats = last->stats;
-    side.image = tracer.frames->read_display(settings, &side.scale);
+    side.image.width = static_cast<unsigned>(settings.width);
+    side.image.height = static_cast<unsigned>(settings.height);
+    side.image.pixels.resize(size_t(side.image.width) * side.image.height * 4);
+    side.scale = tracer.frames->read_display(settings, side.image.pixels.data(), &side.stats);
     side.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
     if (!order.retrace && last) side.frame_ms = last->frame_ms;
     if (order.distance) {

@@ -18,7 +18,7 @@ namespace clarity {
 
 struct FrameJob {
     std::shared_ptr<const Ready> ready;
-    Settings settings;                      // as wished; what `ready` was not prepared for is ignored
+    Settings settings;                       // as wished; what `ready` was not prepared for is ignored
     std::optional<Settings> other_settings;  // traced too, if `ready` has that side
     View view;
     uint64_t revision = 0;          // a new number: the films start anew
@@ -34,16 +34,16 @@ struct PictureSide {
     FalseColorScale scale;  // of an AOV; without a unit for colours
     Settings settings;      // as traced
     FrameStats stats;
-    double frame_ms = 0;    // tracing and reading back
-    std::shared_ptr<const FloatImage> distance;  // of the camera rays of sample 0, +inf: nothing; nullptr if not asked for, empty
-                                                 // where it is not known
+    double frame_ms = 0;                         // tracing and reading back
+    std::shared_ptr<const FloatImage> distance;  // of the camera rays of sample 0, +inf: nothing; nullptr if not asked for,
+                                                 // empty where it is not known
 };
 
 // How two images differ.
 struct PictureDifference {
-    ByteImage image;             // |a - b| in each channel, eight times as bright
+    ByteImage image;               // |a - b| in each channel, eight times as bright
     double mean = 0, largest = 0;  // of 255
-    double share = 0;            // of pixels that differ by more than 1 of 255
+    double share = 0;              // of pixels that differ by more than 1 of 255
 };
 
 struct Picture {

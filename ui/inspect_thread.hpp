@@ -14,11 +14,11 @@
 namespace clarity {
 
 struct Inspection {
-    FrameJob job;             // of the picture that was looked at
-    unsigned x = 0, y = 0;    // pixel of it
-    Inspected result;
-    std::string failure;      // empty, or why there are no rays
-    uint64_t request = 0;     // number that ask() gave
+    FrameJob job;           // of the picture that was looked at
+    unsigned x = 0, y = 0;  // pixel of it
+    RayTree result;
+    std::string failure;   // empty, or why there are no rays
+    uint64_t request = 0;  // number that ask() gave
 };
 
 class InspectThread {

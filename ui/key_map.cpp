@@ -25,7 +25,8 @@ void add_common(KeyMap& map) {
     map.bindings.push_back({GLFW_KEY_O, "Ctrl+O", Action::open_file, 0, "open a file", true});
     map.bindings.push_back({GLFW_KEY_S, "Ctrl+S", Action::save_picture, 0, "save the picture", true});
     map.bindings.push_back({GLFW_KEY_HOME, "Home", Action::reset_camera, 0, "back to the first view of the scene"});
-    map.bindings.push_back({GLFW_KEY_ESCAPE, "Esc", Action::cancel_work, 0, "cancel what is being prepared; close what is open"});
+    map.bindings.push_back(
+        {GLFW_KEY_ESCAPE, "Esc", Action::cancel_work, 0, "cancel what is being prepared; close what is open"});
     map.bindings.push_back({GLFW_KEY_F1, "F1", Action::show_help, 0, "this list"});
     map.bindings.push_back({GLFW_KEY_F2, "F2", Action::toggle_panel, 0, "hide or show the panel"});
 }

@@ -196,7 +196,8 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
             throw;
         } catch (const Error& error) {
             whole = false;
-            publish({Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false, false});
+            publish({Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false,
+                     false});
         }
     }
     publish({Outcome::Kind::ready, ready, "", "", false, whole});
@@ -212,8 +213,7 @@ void PrepareWorker::hide(const PrepareRequest& request) {
     visible_ = hidden_.empty() ? loaded_->scene : std::make_shared<const Scene>(without_instances(*loaded_->scene, hidden_));
 }
 
-void PrepareWorker::open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour,
-                                StageProgress& progress) {
+void PrepareWorker::open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress) {
     if (shop.device && choice == shop.choice) return;
     progress.stage("opening the device");
     DeviceInfo info = choose_device(choice);

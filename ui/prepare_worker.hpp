@@ -21,7 +21,7 @@ namespace clarity {
 struct PrepareRequest {
     std::vector<std::string> files;
     uint64_t files_revision = 0;  // a new number: import (again)
-    std::string camera, light;  // as on the command line, for the first view of newly imported files
+    std::string camera, light;    // as on the command line, for the first view of newly imported files
     Side main;
     std::optional<Side> other;
     std::vector<rt_u32> hidden;    // instances

@@ -263,9 +263,8 @@ std::string Script::state_text(App& app) const {
     json["level"] = app.overlay().level() ? static_cast<long>(*app.overlay().level()) : -1L;
     if (session.selected_light < session.wish.lights.size())
         json["light"] = session.wish.lights[session.selected_light].values.position;
-    json["selected"] = {{"prim", session.selection.prim},
-                        {"instance", session.selection.instance},
-                        {"material", session.selection.material}};
+    json["selected"] = {
+        {"prim", session.selection.prim}, {"instance", session.selection.instance}, {"material", session.selection.material}};
     json["hidden"] = session.wish.hidden;
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();

@@ -20,8 +20,9 @@ std::array<float, N> between(const std::array<float, N>& a, const std::array<flo
                              const std::array<float, N>& d, float u) {
     std::array<float, N> out;
     for (size_t k = 0; k < N; ++k)
-        out[k] = 0.5f * (2 * b[k] + u * (c[k] - a[k] + u * (2 * a[k] - 5 * b[k] + 4 * c[k] - d[k] +
-                                                            u * (3 * b[k] - 3 * c[k] + d[k] - a[k]))));
+        out[k] =
+            0.5f * (2 * b[k] +
+                    u * (c[k] - a[k] + u * (2 * a[k] - 5 * b[k] + 4 * c[k] - d[k] + u * (3 * b[k] - 3 * c[k] + d[k] - a[k]))));
     return out;
 }
 

@@ -67,8 +67,8 @@ class Session {
     void load_preset(const std::string& path);
     // `clarity render ...` that makes the main picture as it is wished, on the device that it has.
     std::string render_command(const std::string& output) const;
-    // The picture as it is now, when its samples are in: .png as shown, .exr or .pfm with the film's values. The outcome is a line
-    // in the log, or a message.
+    // The picture as it is now, when its samples are in: .png as shown, .exr or .pfm with the film's values. The outcome is a
+    // line in the log, or a message.
     void save_picture(const std::string& path);
     Sequence& sequence() { return sequence_; }
 
@@ -131,7 +131,7 @@ class Session {
     const PluginRegistry& plugins_;
     std::string first_camera_, first_light_;  // from the command line, for the first scene
     std::vector<Word> first_edits_;
-    std::vector<std::string> files_;          // asked for
+    std::vector<std::string> files_;  // asked for
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
     std::string posted_key_;
     std::string ready_key_;

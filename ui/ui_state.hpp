@@ -27,9 +27,9 @@ struct UiState {
     float camera_speed = 1, light_speed = 1;
     bool panel_visible = true;
     Tab tab = Tab::render;
-    bool tab_asked = false;                    // bring `tab` to the front
-    bool focus_path_asked = false;             // put the keyboard into the field for a file's path
-    std::string path;                          // in that field
+    bool tab_asked = false;         // bring `tab` to the front
+    bool focus_path_asked = false;  // put the keyboard into the field for a file's path
+    std::string path;               // in that field
     CompareMode compare_mode = CompareMode::wipe;
     float wipe = 0.5f;                         // of the picture's width: `main` is left of it
     bool inspect_hover = false;                // the inspector follows the mouse

@@ -92,8 +92,7 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
             ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
             ->group("Settings");
     }
-    single(app.add_option("--preset", trace.preset,
-                          "Settings and view saved from the window; options beside it win"))
+    single(app.add_option("--preset", trace.preset, "Settings and view saved from the window; options beside it win"))
         ->type_name("FILE");
     app.add_option("--set", trace.sets,
                    "The same, as key=value with the setting's key (ray_slots=16), or a change of the view: "

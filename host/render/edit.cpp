@@ -82,8 +82,8 @@ void read_light(EditedView& edited, const std::string& key, const std::string& v
     if (!read_index(key.substr(6), at)) refuse(key, value, "for a light: light.N counts from 0");
     auto& lights = edited.view.lights;
     if (at > lights.size())
-        throw Error(Exit::usage, key + ": the view has " + std::to_string(lights.size()) + " lights, counted from 0; the next new one is light." +
-                                     std::to_string(lights.size()));
+        throw Error(Exit::usage, key + ": the view has " + std::to_string(lights.size()) +
+                                     " lights, counted from 0; the next new one is light." + std::to_string(lights.size()));
     edited.lights_on.resize(std::max<size_t>(lights.size(), at + 1), true);
     if (value == "off") {
         if (at == lights.size()) throw Error(Exit::usage, key + ": there is no such light to switch off");
@@ -123,9 +123,9 @@ struct MaterialPart {
     float most;
 };
 constexpr MaterialPart kMaterialParts[] = {
-    {"color", offsetof(rt_material, color), 3, 1e6f},        {"emission", offsetof(rt_material, emission), 3, 1e6f},
-    {"specular", offsetof(rt_material, specular), 3, 1e6f},  {"reflect", offsetof(rt_material, reflect), 1, 1},
-    {"refract", offsetof(rt_material, refract), 1, 1},       {"ior", offsetof(rt_material, ior), 1, 100},
+    {"color", offsetof(rt_material, color), 3, 1e6f},         {"emission", offsetof(rt_material, emission), 3, 1e6f},
+    {"specular", offsetof(rt_material, specular), 3, 1e6f},   {"reflect", offsetof(rt_material, reflect), 1, 1},
+    {"refract", offsetof(rt_material, refract), 1, 1},        {"ior", offsetof(rt_material, ior), 1, 100},
     {"shininess", offsetof(rt_material, shininess), 1, 1e6f},
 };
 
@@ -228,7 +228,8 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
     } else if (begins(key, "material.")) {
         read_material(scene, edited, key, value);
     } else {
-        throw Error(Exit::usage, "no edit `" + key + "`; there are camera, background, ambient, light.N, material.N.PART, hide");
+        throw Error(Exit::usage,
+                    "no edit `" + key + "`; there are camera, background, ambient, light.N, material.N.PART, hide");
     }
 }
 

@@ -37,9 +37,8 @@ std::vector<Word> words_of(const Json& object, const std::string& name, const st
 }
 
 // As a shell takes it for one word.
-std::string quoted(const std::string& text) {
-    static const std::string plain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
+std::string shell_word(const std::string& text) {
+    static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
     if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
     std::string out = "'";
     for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -73,7 +72,8 @@ Preset parse_preset(const PluginRegistry& plugins, const std::string& text, cons
         if (!json.is_object() || !json.contains("clarity_preset"))
             throw Error(Exit::usage, name + ": is no preset of Clarity: it has no `clarity_preset`");
         if (json["clarity_preset"] != 1)
-            throw Error(Exit::usage, name + ": is a preset of version " + json["clarity_preset"].dump() + "; this program reads 1");
+            throw Error(Exit::usage,
+                        name + ": is a preset of version " + json["clarity_preset"].dump() + "; this program reads 1");
         for (const auto& [key, value] : json.items())
             if (key != "clarity_preset" && key != "device" && key != "accel" && key != "settings" && key != "edits")
                 throw Error(Exit::usage, name + ": `" + key + "` is not part of a preset (device, accel, settings, edits)");
@@ -120,20 +120,20 @@ std::string render_command(const PluginRegistry& plugins, const Preset& preset, 
                            const std::string& output) {
     static const Settings defaults;
     std::string line = "clarity render";
-    for (const std::string& file : files) line += " " + quoted(file);
-    line += " -o " + quoted(output);
-    if (!preset.device.empty()) line += " --device " + quoted(preset.device);
+    for (const std::string& file : files) line += " " + shell_word(file);
+    line += " -o " + shell_word(output);
+    if (!preset.device.empty()) line += " --device " + shell_word(preset.device);
     const rt_plugin& accel = accel_of(plugins, preset.settings.accel, "the command line");
     std::string structure = accel.id;
     const ParameterValues usual = default_parameters(accel);
     for (size_t i = 0; i < preset.settings.accel_params.size() && i < usual.size(); ++i)
         if (preset.settings.accel_params[i] != usual[i])
             structure += "," + parameter_text(accel, preset.settings.accel_params, i);
-    if (structure != defaults.accel) line += " --accel " + quoted(structure);
+    if (structure != defaults.accel) line += " --accel " + shell_word(structure);
     for (const Setting& row : settings_table())
         if (const std::string value = row.get(preset.settings); value != row.get(defaults))
-            line += " --set " + quoted(row.key + "=" + value);
-    for (const Word& word : preset.edits) line += " --set " + quoted(word.key + "=" + word.value);
+            line += " --set " + shell_word(row.key + "=" + value);
+    for (const Word& word : preset.edits) line += " --set " + shell_word(word.key + "=" + word.value);
     return line;
 }
 

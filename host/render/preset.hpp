@@ -1,4 +1,5 @@
-// preset.hpp -- all that makes a picture of a scene, as JSON: settings, structure, device, view. Also as words of a command line.
+// preset.hpp -- all that makes a picture of a scene, as JSON: settings, structure, device, view. Also as words of a command
+// line.
 //
 //   {"clarity_preset": 1, "device": "0:0", "accel": {"id": "bvh2", "max_leaf": "4"}, "settings": {"depth": "4", ...},
 //    "edits": [["camera", "..."], ["light.0", "off"], ...]}

@@ -99,8 +99,8 @@ struct Scene {
 // What carries the number that `prim` shows: triangles of all instances in order, then spheres, polygons, planes.
 struct PrimPlace {
     enum class Kind { none, triangle, sphere, polygon, plane } kind = Kind::none;
-    rt_u32 index = 0;            // within its kind; a triangle: of the scene's
-    rt_u32 instance = RT_NONE;   // of a triangle
+    rt_u32 index = 0;           // within its kind; a triangle: of the scene's
+    rt_u32 instance = RT_NONE;  // of a triangle
     rt_u32 material = RT_NONE;
 };
 PrimPlace place_of_prim(const Scene& scene, rt_i32 prim);
