@@ -83,7 +83,7 @@ RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
     h->leaf = h->instance = rt_vint(-1);
     h->prim = rt_vint(-1); /* below all: t_max itself is out of the ray's reach */
 #ifdef RT_COUNT_STEPS
-    h->steps = 0;
+    h->steps = h->leaf_tests = h->lane_steps = 0;
 #endif
 #ifdef RT_DEBUG
     h->overflow = 0;

@@ -29,6 +29,13 @@ RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *r
     const global rt_leaf *leaf = ctx->leaves + at;
 #if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_INSTANCES
     const uint kind = RT_REF_KIND(leaf->ref);
+#if RT_HAS_INSTANCES
+    if (kind == RT_REF_INSTANCE) {
+        RT_FN(rt_hit_instance)(ctx, RT_REF_INDEX(leaf->ref), ray, hit);
+        return;
+    }
+#endif
+    RT_COUNT_LEAF(hit);
 #if RT_HAS_SPHERES
     if (kind == RT_REF_SPHERE) {
         RT_FN(rt_hit_sphere)(leaf, at, ray, hit);
@@ -41,12 +48,8 @@ RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *r
         return;
     }
 #endif
-#if RT_HAS_INSTANCES
-    if (kind == RT_REF_INSTANCE) {
-        RT_FN(rt_hit_instance)(ctx, RT_REF_INDEX(leaf->ref), ray, hit);
-        return;
-    }
-#endif
+#else
+    RT_COUNT_LEAF(hit);
 #endif
     RT_FN(rt_hit_triangle)(leaf, at, ray, hit);
 }

@@ -27,18 +27,23 @@ typedef struct rt_hits {
     vint prim;         /* its number; of two primitives at the same t the lower one wins, whatever the order of visits */
     vint instance;     /* -1: none */
 #ifdef RT_COUNT_STEPS
-    uint steps;
+    uint steps, leaf_tests, lane_steps; /* of all lanes together, see rt_hit */
 #endif
 #ifdef RT_DEBUG
     uint overflow;
 #endif
 } rt_hits;
 
+/* Counting programs; see CONTRACT.md. The plain ones are not slowed by it: what only feeds these macros is dead code there. */
 #ifdef RT_COUNT_STEPS
-#define RT_COUNT_STEP(hit) ((hit)->steps++)
+#define RT_COUNT_VISIT(hit, inside) ((hit)->steps++, (hit)->lane_steps += popcount(inside))
+#define RT_COUNT_LEAF(hit) ((hit)->leaf_tests++)
 #else
-#define RT_COUNT_STEP(hit) ((void)0)
+#define RT_COUNT_VISIT(hit, inside) ((void)(inside))
+#define RT_COUNT_LEAF(hit) ((void)0)
 #endif
+/* For traversals that do not know who is in a node: all who are still looking. */
+#define RT_COUNT_STEP(hit) RT_COUNT_VISIT(hit, rt_bits(RT_MASK((hit)->t >= rt_vfloat(0.0f))))
 
 #define RT_EPS 5.9604645e-8f /* 2^-24, half an ulp of 1 */
 #define RT_WIDE (1.0f + 16.0f * RT_EPS)

@@ -132,9 +132,33 @@ typedef struct rt_hit {
     rt_f32 t, u, v;     /* t = INFINITY: nothing. any-hit: t = 0 where occluded */
     rt_i32 prim;        /* -1: none */
     rt_i32 instance;    /* -1: not instanced */
-    rt_u32 steps;
-    rt_u32 pad[2];
+    /* Counted on request, for the RT_LANES rays that were traced side by side: each has the sum of all. */
+    rt_u32 steps;      /* nodes visited */
+    rt_u32 leaf_tests; /* primitives tested, planes aside */
+    rt_u32 lane_steps; /* over the nodes visited, the rays that were in the node */
 } rt_hit;
+
+/* One ray of the tree behind a pixel. 96 B. */
+typedef struct rt_ray_record {
+    rt_f32 origin[3], t; /* +inf: nothing hit; shadow rays: distance of the light */
+    rt_f32 direction[3];
+    rt_u32 kind;         /* RT_RAY_* */
+    rt_f32 weight[3];
+    rt_u32 fate;         /* RT_FATE_* */
+    rt_f32 light[3];     /* that it adds to the pixel */
+    rt_u32 generation;   /* 1: the camera's */
+    rt_i32 parent, prim, instance, material, light_index; /* -1: none */
+    rt_u32 occluded, steps, leaf_tests;
+} rt_ray_record;
+#define RT_RAY_CAMERA 0u
+#define RT_RAY_MIRROR 1u
+#define RT_RAY_REFRACTED 2u
+#define RT_RAY_SHADOW 3u
+#define RT_FATE_TRACED 0u
+#define RT_FATE_DROPPED 1u   /* no ray slot left */
+#define RT_FATE_TOO_LIGHT 2u /* below min_weight */
+#define RT_FATE_TOO_DEEP 3u  /* beyond the last generation */
+#define RT_FATE_UNASKED 4u   /* shadows are off */
 
 /* A mix of the sizes of all structs above: host and plugin must have been compiled from the same page. */
 #define RT_TYPES_DIGEST                                                                                                          \

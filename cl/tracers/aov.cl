@@ -5,7 +5,10 @@
 #define RT_AOV_INSTANCE 3
 #define RT_AOV_NORMAL 4
 #define RT_AOV_UV 5
+/* From here on counted, for the packet of rays that the pixel's ray belongs to. */
 #define RT_AOV_STEPS 6
+#define RT_AOV_LEAF_TESTS 7
+#define RT_AOV_LANES 8
 
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_aov(const constant rt_frame *frame, const uint first_group, global float *out, RT_CTX_PARAMS)
@@ -31,6 +34,12 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
         RT_FOR_LANES_STORE(out, at, hit.t, bits)
 #elif RT_AOV == RT_AOV_STEPS
         RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit.steps), bits)
+#elif RT_AOV == RT_AOV_LEAF_TESTS
+        RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit.leaf_tests), bits)
+#elif RT_AOV == RT_AOV_LANES
+        /* Nothing visited, nothing idle. */
+        const float visited = (float)(hit.steps * popcount(bits));
+        RT_FOR_LANES_STORE(out, at, rt_vfloat(hit.steps != 0u ? (float)hit.lane_steps / visited : 1.0f), bits)
 #else
         const rt_surface s = rt_resolve(&ctx, &ray, &hit, bits);
 #if RT_AOV == RT_AOV_PRIM

@@ -61,8 +61,10 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint co
             out->instance = instances[l];
 #ifdef RT_COUNT_STEPS
             out->steps = hit.steps;
+            out->leaf_tests = hit.leaf_tests;
+            out->lane_steps = hit.lane_steps;
 #else
-            out->steps = 0u;
+            out->steps = out->leaf_tests = out->lane_steps = 0u;
 #endif
         }
     }

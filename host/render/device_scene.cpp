@@ -54,6 +54,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     add(upload(device, "polygons", build.polygon_table, bytes_));
     add(upload(device, "polygon corners", build.polygon_corners, bytes_));
     add(upload(device, "planes", build.planes, bytes_));
+    materials_at_ = before_lights_.size();
     add(upload(device, "materials", materials_, bytes_));
     add(upload(device, "triangles", attributes_, bytes_));
     add(upload(device, "normals", scene_->normals, bytes_));
@@ -66,8 +67,9 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
                                 accel_->slots[s].count * table.slots[s].elem_bytes, bytes_));
 }
 
-void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights) const {
-    for (const cl::Buffer& buffer : before_lights_) kernel.setArg(first++, buffer);
+void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {
+    for (size_t i = 0; i < before_lights_.size(); ++i)
+        kernel.setArg(first++, materials && i == materials_at_ ? *materials : before_lights_[i]);
     kernel.setArg(first++, lights);
     for (const cl::Buffer& buffer : slots_) kernel.setArg(first++, buffer);
 }

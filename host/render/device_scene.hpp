@@ -16,8 +16,9 @@ class DeviceScene {
     // Throws Error(failed) with the numbers where it does not fit.
     DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel);
 
-    // Sets the context's arguments from `first` on (see kernel_source.cpp for their order); lights come from the frame.
-    void bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights) const;
+    // Sets the context's arguments from `first` on (see kernel_source.cpp for their order); lights come from the frame, and
+    // materials where it brings its own.
+    void bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials = nullptr) const;
     uint64_t bytes() const { return bytes_; }
 
  private:
@@ -26,6 +27,7 @@ class DeviceScene {
     std::vector<rt_material> materials_;
     std::vector<rt_triangle> attributes_;
     std::vector<cl::Buffer> before_lights_, slots_;
+    size_t materials_at_ = 0;  // in before_lights_
     uint64_t bytes_ = 0;
 };
 

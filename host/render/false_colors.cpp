@@ -1,13 +1,65 @@
 #include "render/false_colors.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <cstring>
 
 namespace clarity {
 namespace {
 
-using Rgb = std::array<float, 3>;
+using Rgb = std::array<uint8_t, 3>;
+using Rgb3 = std::array<double, 3>;
+
+uint8_t byte_of(double x) {
+    return static_cast<uint8_t>(std::clamp(x, 0.0, 1.0) * 255 + 0.5);
+}
+
+// Ottosson 2020, A perceptual color space for image processing (Oklab), from lightness, chroma and hue to linear RGB.
+Rgb3 linear_from_oklch(double lightness, double chroma, double hue) {
+    const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
+    const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3),
+                 m = std::pow(lightness - 0.1055613458 * a - 0.0638541728 * b, 3),
+                 s = std::pow(lightness - 0.0894841775 * a - 1.2914855480 * b, 3);
+    return {4.0767416621 * l - 3.3077115913 * m + 0.2309699292 * s, -1.2684380046 * l + 2.6097574011 * m - 0.3413193965 * s,
+            -0.0041960863 * l - 0.7034186147 * m + 1.7076147010 * s};
+}
+
+double srgb_from_linear(double x) {
+    return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
+}
+
+// Dark blue, violet, red, orange, pale yellow: lightness rises in even steps, so equal differences of value look equally far
+// apart, with or without colour vision (Kovesi 2015, Good Colour Maps: How to Design Them); the hue only helps to name them.
+// The chroma is most of what sRGB has for that lightness and hue.
+std::array<Rgb, 256> make_heat() {
+    std::array<Rgb, 256> map;
+    constexpr double kDegree = 3.14159265358979 / 180;
+    for (int i = 0; i < 256; ++i) {
+        const double x = i / 255.0, lightness = 0.18 + 0.78 * x, hue = (275 + 190 * std::pow(x, 0.9)) * kDegree;
+        double least = 0, most = 0.4;
+        for (int step = 0; step < 30; ++step) {
+            const double chroma = 0.5 * (least + most);
+            const Rgb3 c = linear_from_oklch(lightness, chroma, hue);
+            const bool inside = *std::min_element(c.begin(), c.end()) >= 0 && *std::max_element(c.begin(), c.end()) <= 1;
+            (inside ? least : most) = chroma;
+        }
+        const Rgb3 c = linear_from_oklch(lightness, 0.92 * std::min(least, 0.2), hue);
+        for (int k = 0; k < 3; ++k) map[i][k] = byte_of(srgb_from_linear(c[k]));
+    }
+    return map;
+}
+
+// Near is bright, and what is hit is never quite black.
+std::array<Rgb, 256> make_gray() {
+    std::array<Rgb, 256> map;
+    for (int i = 0; i < 256; ++i) map[i].fill(byte_of(1 - 0.9 * i / 255.0));
+    return map;
+}
+
+const std::array<Rgb, 256>& entries(FalseColorScale::Map map) {
+    static const std::array<Rgb, 256> heat = make_heat(), gray = make_gray();
+    return map == FalseColorScale::Map::gray ? gray : heat;
+}
 
 // lowbias32 (Wellons 2018): neighbouring numbers get unlike colours.
 uint32_t hash(uint32_t x) {
@@ -19,55 +71,81 @@ uint32_t hash(uint32_t x) {
 }
 
 Rgb color_of_number(float number) {
-    if (number < 0) return {0, 0, 0};
+    if (!(number >= 0)) return {0, 0, 0};
     const uint32_t h = hash(static_cast<uint32_t>(number) + 1);
-    return {0.25f + 0.75f * float(h & 255) / 255, 0.25f + 0.75f * float(h >> 8 & 255) / 255,
-            0.25f + 0.75f * float(h >> 16 & 255) / 255};
+    Rgb color;
+    for (int k = 0; k < 3; ++k) color[k] = static_cast<uint8_t>(64 + (h >> (8 * k) & 255) * 191 / 255);
+    return color;
 }
 
-// Dark blue, violet, orange, yellow: even steps of brightness, readable without colour vision.
-Rgb heat(float x) {
-    static constexpr Rgb stops[] = {
-        {0.05f, 0.03f, 0.25f}, {0.45f, 0.05f, 0.55f}, {0.85f, 0.25f, 0.35f}, {0.98f, 0.6f, 0.15f}, {0.98f, 0.98f, 0.6f}};
-    const float at = std::clamp(x, 0.0f, 1.0f) * 4;
-    const int i = std::min(3, static_cast<int>(at));
-    Rgb out;
-    for (int k = 0; k < 3; ++k) out[k] = stops[i][k] + (at - float(i)) * (stops[i + 1][k] - stops[i][k]);
-    return out;
+size_t pixel_count(const FloatImage& values) {
+    return size_t(values.width) * values.height;
+}
+
+template <class Color>
+void paint(const FloatImage& values, uint8_t* rgba, Color&& color) {
+    const size_t pixels = pixel_count(values);
+    for (size_t i = 0; i < pixels; ++i) {
+        const Rgb c = color(&values.pixels[i * values.channels]);
+        const uint8_t quad[4] = {c[0], c[1], c[2], 255};
+        std::memcpy(rgba + 4 * i, quad, 4);
+    }
 }
 
 }  // namespace
 
-ByteImage false_colors(const FloatImage& values, const std::string& aov) {
-    ByteImage image;
-    image.width = values.width;
-    image.height = values.height;
-    const size_t pixels = size_t(values.width) * values.height;
-    image.pixels.resize(pixels * 4);
-    float least = INFINITY, most = 0;
-    for (const float value : values.pixels)
-        if (std::isfinite(value)) {
-            least = std::min(least, value);
-            most = std::max(most, value);
-        }
-    const float span = most > least ? most - least : 1;
-    for (size_t i = 0; i < pixels; ++i) {
-        const float* v = &values.pixels[i * values.channels];
-        Rgb c{};
-        if (aov == "t")
-            c.fill(std::isfinite(*v) ? 1 - 0.9f * (*v - least) / span : 0);
-        else if (aov == "prim" || aov == "instance")
-            c = color_of_number(*v);
-        else if (aov == "normal")
-            c = v[0] == 0 && v[1] == 0 && v[2] == 0 ? Rgb{} : Rgb{0.5f + 0.5f * v[0], 0.5f + 0.5f * v[1], 0.5f + 0.5f * v[2]};
-        else if (aov == "uv")
-            c = {v[0] - std::floor(v[0]), v[1] - std::floor(v[1]), 0};
-        else
-            c = heat(*v / std::max(most, 1.0f));
-        for (int k = 0; k < 3; ++k) image.pixels[4 * i + k] = static_cast<uint8_t>(std::clamp(c[k], 0.0f, 1.0f) * 255 + 0.5f);
-        image.pixels[4 * i + 3] = 255;
+std::array<uint8_t, 3> color_at(const FalseColorScale& scale, float position) {
+    // Written so that NaN, too, has a colour.
+    return entries(scale.map)[position > 0 ? static_cast<size_t>(std::min(position, 1.0f) * 255 + 0.5f) : 0];
+}
+
+FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float most) {
+    using Map = FalseColorScale::Map;
+    FalseColorScale scale;
+    if (aov == "t")
+        scale = {Map::gray, 0, 1, false, "Distance", "scene units"};
+    else if (aov == "steps")
+        scale = {Map::heat, 0, 1, true, "Nodes visited", "per packet of rays"};
+    else if (aov == "leaf_tests")
+        scale = {Map::heat, 0, 1, true, "Primitives tested", "per packet of rays"};
+    else if (aov == "lanes")
+        scale = {Map::heat, 0, 1, false, "Lanes alive", "share per node visit"};
+    else if (aov == "generations")
+        scale = {Map::heat, 1, 2, true, "Generations", "of rays"};
+    if (scale.map == Map::none || (aov == "lanes" && !(most > 0))) return scale;
+    float low = INFINITY, high = -INFINITY;
+    for (const float value : values.pixels) {
+        if (!(value < INFINITY)) continue;
+        low = std::min(low, value);
+        high = std::max(high, value);
     }
-    return image;
+    if (aov == "t" && low <= high) scale.min = low;
+    if (most > 0) high = most;
+    scale.max = std::max(high, scale.whole || aov == "lanes" ? scale.min + 1 : scale.min);
+    return scale;
+}
+
+void false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale, uint8_t* rgba) {
+    if (aov == "prim" || aov == "instance") {
+        paint(values, rgba, [](const float* v) { return color_of_number(*v); });
+    } else if (aov == "normal") {
+        paint(values, rgba, [](const float* v) {
+            if (v[0] == 0 && v[1] == 0 && v[2] == 0) return Rgb{};
+            return Rgb{byte_of(0.5 + 0.5 * v[0]), byte_of(0.5 + 0.5 * v[1]), byte_of(0.5 + 0.5 * v[2])};
+        });
+    } else if (aov == "uv") {
+        paint(values, rgba, [](const float* v) {
+            return Rgb{byte_of(v[0] - std::floor(v[0])), byte_of(v[1] - std::floor(v[1])), 0};
+        });
+    } else {
+        const std::array<Rgb, 256>& map = entries(scale.map);
+        const float factor = scale.max > scale.min ? 255 / (scale.max - scale.min) : 0;
+        paint(values, rgba, [&](const float* v) {
+            if (!(*v < INFINITY)) return Rgb{};
+            const float at = (*v - scale.min) * factor;
+            return map[at > 0 ? static_cast<size_t>(std::min(at, 255.0f) + 0.5f) : 0];
+        });
+    }
 }
 
 }  // namespace clarity

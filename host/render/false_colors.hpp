@@ -1,13 +1,30 @@
 // false_colors.hpp -- pictures of quantities that are no colours.
 #pragma once
+#include <array>
+#include <cstdint>
 #include <string>
 
 #include "render/image_io.hpp"
 
 namespace clarity {
 
-// t: near is bright; prim, instance: a colour a number; normal: xyz to rgb; uv: to red and green; steps: dark blue to yellow,
-// by the largest value. What was not hit is black.
-ByteImage false_colors(const FloatImage& values, const std::string& aov);
+// What the colours of a picture mean, for a colour bar beside it.
+struct FalseColorScale {
+    enum class Map { none, gray, heat };  // none: a colour says no amount, so there is no bar (color, prim, normal, ...)
+    Map map = Map::none;
+    float min = 0, max = 1;   // values at the two ends of the bar; beyond them the end's colour
+    bool whole = false;       // a count: numbers between are none
+    std::string label, unit;  // "Node visits", "per packet"
+};
+
+// sRGB of the bar at a position, 0 = min to 1 = max.
+std::array<uint8_t, 3> color_at(const FalseColorScale& scale, float position);
+
+// The scale that false_colors() would choose. most: value at the upper end; 0: the largest of the picture.
+FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float most = 0);
+
+// t: near is bright; prim, instance: a colour a number; normal: xyz to rgb; uv: to red and green; counts and shares: dark blue
+// to yellow. What was not hit is black. rgba: 4 bytes a pixel.
+void false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale, uint8_t* rgba);
 
 }  // namespace clarity

@@ -7,7 +7,6 @@
 #include "device/kernel_files.hpp"
 #include "device/program.hpp"
 #include "render/device_scene.hpp"
-#include "render/false_colors.hpp"
 #include "render/frame_constants.hpp"
 #include "render/launch.hpp"
 #include "render/renderer.hpp"
@@ -19,6 +18,19 @@ namespace {
 unsigned channels_of(const std::string& aov) {
     if (aov == "color") return 4;
     return aov == "normal" || aov == "uv" ? 3 : 1;
+}
+
+// Kernels look materials and textures up by number.
+void check_materials(const Scene& scene, const std::vector<rt_material>& materials) {
+    if (materials.empty()) return;
+    if (materials.size() != scene.materials.size())
+        throw Error(Exit::failed, "the view brings " + std::to_string(materials.size()) + " materials and the scene has " +
+                                      std::to_string(scene.materials.size()) + ": one for each is needed");
+    for (size_t i = 0; i < materials.size(); ++i)
+        if (materials[i].texture != RT_NONE && materials[i].texture >= scene.textures.size())
+            throw Error(Exit::failed, "material " + std::to_string(i) + " of the view names texture " +
+                                          std::to_string(materials[i].texture) + " and the scene has " +
+                                          std::to_string(scene.textures.size()));
 }
 
 template <class Work>
@@ -38,8 +50,8 @@ struct Frames::Impl {
     std::shared_ptr<Device> device;
     cl::Program film_program;
     cl::Kernel map_tones, sum_counters;
-    cl::Buffer film, display, counters, sums, frame, lights;
-    size_t film_bytes = 0, display_bytes = 0, counters_bytes = 0, lights_bytes = 0;
+    cl::Buffer film, display, counters, sums, frame, lights, materials;
+    size_t film_bytes = 0, display_bytes = 0, counters_bytes = 0, lights_bytes = 0, materials_bytes = 0;
     unsigned width = 0, height = 0, samples = 0;
     std::string aov;
     std::shared_ptr<const TraceProgram> program;  // whose pace and kernel these are:
@@ -106,12 +118,19 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         if (!view.lights.empty())
             queue.enqueueWriteBuffer(im.lights, CL_TRUE, 0, view.lights.size() * sizeof(rt_light), view.lights.data());
 
+        check_materials(*prepared.scene, view.materials);
+        if (!view.materials.empty()) {
+            const size_t bytes = view.materials.size() * sizeof(rt_material);
+            im.fit(im.materials, im.materials_bytes, bytes, CL_MEM_READ_ONLY);
+            queue.enqueueWriteBuffer(im.materials, CL_TRUE, 0, bytes, view.materials.data());
+        }
+
         cl_uint at = 0;
         im.kernel.setArg(at++, im.frame);
         const cl_uint first_group = at++;
         im.kernel.setArg(at++, im.film);
         if (color) im.kernel.setArg(at++, im.counters);
-        prepared.on_device->bind(im.kernel, at, im.lights);
+        prepared.on_device->bind(im.kernel, at, im.lights, view.materials.empty() ? nullptr : &im.materials);
         const LaunchTimes times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), [&] {
             if (progress.cancelled()) throw Cancelled();
         });
@@ -121,6 +140,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         stats.wall_ms = times.wall_ms;
         stats.primary = pixels;
         stats.samples = im.samples = sample + 1;
+        stats.kernels.push_back({"trace", times.device_ms});
         if (color && count_rays) {
             cl_uint sums[4] = {};
             queue.enqueueWriteBuffer(im.sums, CL_TRUE, 0, sizeof sums, sums);
@@ -166,15 +186,29 @@ FloatImage Frames::read_values() {
     });
 }
 
+FloatImage Frames::read_distance() {
+    return impl_->aov == "t" ? read_values() : FloatImage();
+}
+
 ByteImage Frames::read_display(const Settings& settings) {
+    ByteImage image;
+    image.width = impl_->width;
+    image.height = impl_->height;
+    image.pixels.resize(size_t(image.width) * image.height * 4);
+    read_display(settings, image.pixels.data());
+    return image;
+}
+
+FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, FrameStats*) {
     Impl& im = *impl_;
-    if (im.aov != "color") return false_colors(read_values(), im.aov);
-    return guarded(*im.device, "reading the picture", [&] {
+    if (im.aov != "color") {
+        const FloatImage values = read_values();
+        const FalseColorScale scale = scale_of(values, im.aov, static_cast<float>(settings.scale_max));
+        false_colors(values, im.aov, scale, rgba);
+        return scale;
+    }
+    guarded(*im.device, "reading the picture", [&] {
         const size_t pixels = size_t(im.width) * im.height;
-        ByteImage image;
-        image.width = im.width;
-        image.height = im.height;
-        image.pixels.resize(pixels * 4);
         im.fit(im.display, im.display_bytes, pixels * 4, CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR);
         im.map_tones.setArg(0, im.film);
         im.map_tones.setArg(1, im.display);
@@ -183,12 +217,12 @@ ByteImage Frames::read_display(const Settings& settings) {
         im.map_tones.setArg(4, static_cast<cl_uint>(settings.tone == "reinhard" ? 1 : settings.tone == "aces" ? 2 : 0));
         im.device->queue().enqueueNDRangeKernel(im.map_tones, cl::NullRange, cl::NDRange((pixels + 63) / 64 * 64),
                                                 cl::NDRange(64));
-        im.read(im.display, image.pixels.data(), image.pixels.size());
-        return image;
+        im.read(im.display, rgba, pixels * 4);
     });
+    return {};
 }
 
-std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, bool any_hit,
+std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
                                        double* device_ms) {
     Impl& im = *impl_;
     return guarded(*im.device, "tracing rays", [&] {
@@ -214,7 +248,7 @@ std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vect
         kernel.setArg(at++, im.frame);
         const cl_uint first_group = at++;
         kernel.setArg(at++, static_cast<cl_uint>(rays.size()));
-        kernel.setArg(at++, static_cast<cl_uint>(any_hit));
+        kernel.setArg(at++, static_cast<cl_uint>(query.any_hit));
         kernel.setArg(at++, in);
         kernel.setArg(at++, out);
         prepared.on_device->bind(kernel, at, im.lights);

@@ -158,10 +158,10 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
             source.entry = "trace_" + settings.tracer;
             break;
         case KernelKind::aov: {
-            static const std::map<std::string, unsigned> numbers = {{"t", 1},      {"prim", 2}, {"instance", 3},
-                                                                    {"normal", 4}, {"uv", 5},   {"steps", 6}};
+            static const std::map<std::string, unsigned> numbers = {{"t", 1},  {"prim", 2},  {"instance", 3},   {"normal", 4},
+                                                                    {"uv", 5}, {"steps", 6}, {"leaf_tests", 7}, {"lanes", 8}};
             define_int(out, "RT_AOV", numbers.at(settings.aov));
-            if (settings.aov == "steps") out << "#define RT_COUNT_STEPS\n";
+            if (numbers.at(settings.aov) >= numbers.at("steps")) out << "#define RT_COUNT_STEPS\n";
             kernel_file = "tracers/aov.cl";
             source.entry = "trace_aov";
             break;

@@ -15,6 +15,7 @@
 #include "device/device.hpp"
 #include "plugin/registry.hpp"
 #include "render/accel_build.hpp"
+#include "render/false_colors.hpp"
 #include "render/image_io.hpp"
 #include "render/settings.hpp"
 #include "scene/scene.hpp"
@@ -56,6 +57,7 @@ class Preparer {
 struct View {
     Camera camera;
     std::vector<rt_light> lights;
+    std::vector<rt_material> materials;  // one for each of the scene's; empty: the scene's own
     std::array<float, 3> background{}, ambient{};
 };
 // The scene's first camera (or the one of that name; or a framing one), its lights (or two that suit its size), background.
@@ -63,12 +65,25 @@ struct View {
 // Error(usage).
 View make_view(const Scene& scene, float aspect, const std::string& camera = {}, const std::string& light = {});
 
+// One piece of a frame's work, by the device's clock.
+struct KernelTime {
+    std::string name;
+    double ms = 0;
+};
+
 struct FrameStats {
     double device_ms = 0;                                          // the kernels of the last sample, by the device's clock
     double wall_ms = 0;                                            // the same by the host's, waiting included
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0;  // rays of the last sample; counted if asked for
     uint64_t overflowed = 0;                                       // traversal stacks that were full (debug programs)
     unsigned samples = 0;                                          // in the film now
+    std::vector<KernelTime> kernels;  // of the last sample: trace, counters; read_display() adds tone map and read-back
+};
+
+// How trace_rays() asks.
+struct RayQuery {
+    bool any_hit = false;  // only whether something lies between t_min and t_max
+    bool count = false;    // fill in steps, leaf_tests and lane_steps; another, slower program: leave it out to take times
 };
 
 // Owns the film of one device. Used from one thread.
@@ -83,13 +98,18 @@ class Frames {
     FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
                      Progress& progress);
 
-    // The film's mean as floats: 3 channels for color, normal, uv; 1 for t, steps, prim and instance (as numbers, -1 for none).
+    // The film's mean as floats: 3 channels for color, normal, uv; 1 for the others, prim and instance as numbers, -1 for none.
     FloatImage read_values();
-    // Tone-mapped sRGB; AOVs in false colours.
+    // Distance along the camera ray of sample 0 of the picture traced last, +inf where nothing is; 1 channel. Empty where the
+    // program does not know it: any AOV but `t`.
+    FloatImage read_distance();
+    // Tone-mapped sRGB; AOVs in false colours, whose scale is returned. rgba: width * height * 4 bytes of the caller's, top row
+    // first. stats: where given, gains the times of what this took.
+    FalseColorScale read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats = nullptr);
     ByteImage read_display(const Settings& settings);
 
-    // Rays of the caller's own, for tests and benches; any_hit: only whether something lies between t_min and t_max.
-    std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, bool any_hit,
+    // Rays of the caller's own, for tests and benches.
+    std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
                                    double* device_ms = nullptr);
 
  private:

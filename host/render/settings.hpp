@@ -27,10 +27,11 @@ struct Settings {
     int spp = 1;  // samples a pixel
     bool shadows = true;
     double min_weight = 1.0 / 512.0;  // rays that would add less are not followed
-    std::string aov = "color";        // color|t|prim|instance|normal|uv|steps
+    std::string aov = "color";        // color, t, prim, steps, ...: see the table
     // How it is shown.
     double exposure = 1.0;
-    std::string tone = "linear";  // linear|reinhard|aces
+    std::string tone = "linear";  // linear|reinhard|aces|agx
+    double scale_max = 0;         // value at the upper end of false colours; 0: the largest of the picture
 };
 
 // One row: how to show, read and write a setting.

@@ -51,7 +51,7 @@ ByteImage Workbench::display(const ScenePtr& scene, const Settings& settings, co
 
 std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays,
                                     bool any_hit) {
-    return frames_.trace_rays(*prepare(scene, settings), rays, any_hit);
+    return frames_.trace_rays(*prepare(scene, settings), rays, {any_hit, false});
 }
 
 Settings make_settings(const std::vector<std::pair<std::string, std::string>>& pairs) {

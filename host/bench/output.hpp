@@ -1,0 +1,19 @@
+// output.hpp -- records as text: a table for the terminal, JSON, CSV.
+#pragma once
+#include <string>
+
+#include "bench/record.hpp"
+
+namespace clarity {
+
+// A list of records, each whole with machine and run, so that lists of several runs may be joined (DESIGN.md section 5). Ends
+// in a newline.
+std::string bench_json(const BenchReport& report);
+// The same, a line a record, nested keys joined by a dot; RFC 4180.
+std::string bench_csv(const BenchReport& report);
+// Reads what bench_json wrote. Throws Error(failed): what is not understood.
+BenchReport read_bench_json(const std::string& text);
+// One table a suite and measure, at most 120 columns wide.
+std::string bench_table(const BenchReport& report);
+
+}  // namespace clarity

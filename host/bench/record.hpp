@@ -1,0 +1,96 @@
+// record.hpp -- what `clarity bench` measured: one flat record a row, from which table, JSON, CSV and HTML are all made.
+// docs/bench.md defines every figure.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/statistics.hpp"
+
+namespace clarity {
+
+enum class RowStatus {
+    ok,
+    refused,  // measured, but too unsteady to be believed, or its answers differ from the others': figures are withheld
+    failed,   // an error
+    skipped   // not measured, on purpose
+};
+
+// What the tracer did, by the counting program; of the active rays.
+struct Analysis {
+    bool present = false;
+    double nodes_per_ray = 0, leaf_tests_per_ray = 0;
+    double lanes_alive = 0;    // 0..1, of the lanes at each node visit, those whose ray is in the node; 1 lane: 1
+    double warp_alive = 0;     // 0..1, one lane only: mean over 32 neighbours of steps / most steps
+    double bytes_per_ray = 0;  // nodes and leaves fetched, each once a packet
+    double bytes_shared = 0;   // 0..1, one lane only 0: what the lanes together would have fetched alone, less what was
+    unsigned node_bytes = 0;
+};
+
+struct BenchRecord {
+    // ---- what
+    std::string suite;      // thesis | packets | accel | scale | quick
+    std::string case_name;  // "bunny/primary"; rows of one case were measured A B A B, so they may be compared
+    std::string scene;      // "bunny"
+    std::string measure;    // frame | primary | shadow | reflection | diffuse | build | dropped
+    std::string variant;    // tells the rows of a case apart on one device: "now", "then", "bvh2", "4x4, 16 lanes"
+    std::string peer;       // "" for ours, else "embree packet16 high"
+
+    // ---- on what
+    std::string device, device_id, driver;  // of a peer: the host's processor
+    unsigned threads = 0;                   // compute units of the device; threads of a peer
+
+    // ---- how; of ours only
+    std::string accel, accel_params;  // "bvh2", "max_leaf=4,bins=32"
+    std::string tracer;
+    int depth = 0;  // generations of rays: the thesis's steps
+    int packet_w = 0, packet_h = 0, lanes = 0, ray_slots = 0;
+    int width = 0, height = 0;
+    uint64_t triangles = 0, primitives = 0;  // placed in the world; primitives: triangles, spheres, polygons, planes
+
+    // ---- how it went
+    RowStatus status = RowStatus::ok;
+    std::string why;  // unless ok: what is wrong and what to do
+
+    // ---- figures; not refused ones
+    Summary time_ms;  // by the device's clock: kernels. build: builder and packing
+    Summary wall_ms;  // by the host's: a frame from the call to the pixels in host memory; else as the caller waited
+    double fps = 0;   // frame only: of the median wall time
+    uint64_t rays_primary = 0, rays_shadow = 0, rays_secondary = 0, rays_dropped = 0;  // of one repetition; active ones
+    uint64_t hits = 0;                                                                 // of ray rows
+    double mrays_per_s = 0;                                                            // all rays by the median device time
+
+    // ---- the structure
+    double build_ms = 0, pack_ms = 0, compile_ms = 0;
+    double mtris_per_s = 0;  // build only: triangles by builder and packing
+    double bytes_per_triangle = 0;
+    uint64_t accel_bytes = 0, nodes = 0;
+    double sah_cost = 0;  // 0: the structure does not say
+
+    Analysis analysis;
+
+    uint64_t rays() const { return rays_primary + rays_shadow + rays_secondary; }
+};
+
+// Where and when; the same for all rows of a run.
+struct BenchRun {
+    std::string version;   // of the program
+    std::string date;      // ISO 8601, UTC
+    std::string command;   // as typed
+    std::string host_cpu;  // "AMD EPYC ..."
+    unsigned host_threads = 0;
+    std::string governor;                              // "": not readable (a virtual machine)
+    double clock_mhz_before = 0, clock_mhz_after = 0;  // of the host's processor, mean over its cores; 0: not readable
+    double load_before = 0, load_after = 0;            // load average of the last minute
+    double max_spread = 0;                             // above it rows are refused
+    double seconds = 0;                                // that the run took
+};
+
+struct BenchReport {
+    BenchRun run;
+    std::vector<BenchRecord> records;  // in the order measured
+    std::vector<std::string> notes;    // what was left out and why, for a person
+    bool interrupted = false;
+};
+
+}  // namespace clarity

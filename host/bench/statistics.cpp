@@ -1,0 +1,31 @@
+#include "bench/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace clarity {
+namespace {
+
+double quantile(const std::vector<double>& sorted, double share) {
+    const double at = share * double(sorted.size() - 1);
+    const size_t below = static_cast<size_t>(std::floor(at));
+    const size_t above = std::min(below + 1, sorted.size() - 1);
+    return sorted[below] + (at - double(below)) * (sorted[above] - sorted[below]);
+}
+
+}  // namespace
+
+Summary summarize(std::vector<double> values) {
+    Summary summary;
+    if (values.empty()) return summary;
+    std::sort(values.begin(), values.end());
+    summary.n = static_cast<unsigned>(values.size());
+    summary.min = values.front();
+    summary.max = values.back();
+    summary.q1 = quantile(values, 0.25);
+    summary.median = quantile(values, 0.5);
+    summary.q3 = quantile(values, 0.75);
+    return summary;
+}
+
+}  // namespace clarity
