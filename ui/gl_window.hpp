@@ -14,7 +14,7 @@ struct KeyEvent {
     enum class Kind { press, release, lost_focus } kind = Kind::press;
     bool ctrl = false;
     bool other_modifier = false;  // Alt or Super
-    double time_s = 0;           // as glfwGetTime counts
+    double time_s = 0;            // as glfwGetTime counts
     double age_s() const;
 };
 

@@ -269,7 +269,6 @@ std::string Script::state_text(App& app) const {
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();
     json["comparing"] = session.wish.other.has_value();
-    json["kernel_revision"] = session.kernels().revision();
     json["bookmarks"] = app.state().bookmarks.size();
     json["keys_open"] = app.state().keys_open;
     json["browser_open"] = app.state().browser_open;

@@ -71,7 +71,6 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_light_(options.light),
       first_edits_(options.edits),
       log_(wake),
-      kernels_(plugins_, wake),
       worker_(plugins_, options.import, wake),
       frames_(wake),
       inspector_(wake) {
@@ -140,7 +139,7 @@ void Session::follow_main() {
 
 PrepareRequest Session::wished_request() const {
     PrepareRequest request{files_, files_revision_,    first_camera_, first_light_, wish.main, wish.other,
-                           {},     kernels_.revision()};
+                           {},     0};
     // Numbers of instances mean nothing in another scene.
     if (files_revision_ == viewed_files_revision_) request.hidden = wish.hidden;
     return request;

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "device/kernel_watch.hpp"
 #include "render/preset.hpp"
 #include "ui/frame_thread.hpp"
 #include "ui/history.hpp"
@@ -99,7 +98,6 @@ class Session {
     std::vector<float> frame_times(unsigned side = 0) const { return frames_.times(side); }
     // The camera or a light moved a moment ago: pictures may be coarse.
     bool moving() const { return moving_; }
-    const KernelWatch& kernels() const { return kernels_; }
     // The window needs the distances of pictures, or no longer does.
     void want_distance(bool wanted) { frames_.want_distance(wanted); }
     // Nothing is being prepared or traced, and the newest picture is here.
@@ -147,7 +145,6 @@ class Session {
     double moved_at_s_ = -1e9;
     uint64_t pick_request_ = 0, picked_request_ = 0;
     LogBuffer log_;
-    KernelWatch kernels_;
     PrepareWorker worker_;
     FrameThread frames_;
     InspectThread inspector_;
