@@ -1,18 +1,20 @@
-// overlay.hpp -- bounding volumes drawn over the picture as lines.
+// overlay.hpp -- bounding volumes to be drawn over the pictures: which level, and what there is of it.
 #pragma once
+#include <array>
+#include <cstdint>
+#include <functional>
 #include <future>
 #include <memory>
 #include <optional>
 
 #include "render/accel_build.hpp"
 #include "render/renderer.hpp"
+#include "ui/line_list.hpp"
 #include "ui/viewport.hpp"
-
-struct ImDrawList;
 
 namespace clarity {
 
-// Which level is shown, and its volumes, fetched on a thread of their own: a large tree takes a while to walk.
+// The volumes of each side's structure, fetched on a thread of their own: a large tree takes a while to walk.
 class VolumeOverlay {
  public:
     explicit VolumeOverlay(std::function<void()> wake) : wake_(std::move(wake)) {}
@@ -21,25 +23,47 @@ class VolumeOverlay {
     void toggle(rt_u32 level);
     void show(std::optional<rt_u32> level) { level_ = level; }
     std::optional<rt_u32> level() const { return level_; }
-    bool ready() const { return !fetching_.valid(); }
-    // Volumes drawn last, and whether there are more than are drawn.
-    size_t count() const { return volumes_ ? volumes_->boxes.size() + volumes_->spheres.size() : 0; }
-    static constexpr size_t kLimit = 4096;
+    // Whether parts behind the picture's surfaces are left out; else they are faint.
+    bool hides_behind() const { return hides_behind_; }
+    void hide_behind(bool hidden) { hides_behind_ = hidden; }
+    bool ready() const { return !sides_[0].fetching.valid() && !sides_[1].fetching.valid(); }
+    // Volumes drawn of a side, and whether there are more than are drawn.
+    size_t count(unsigned side = 0) const;
+    bool more(unsigned side = 0) const { return sides_[side].volumes && sides_[side].volumes->more; }
+    static constexpr size_t kLimit = 20000;
 
-    // Fetches what is missing; once a frame.
-    void update(const std::shared_ptr<const Prepared>& prepared);
-    // Draws into `area` as the camera of the picture sees them.
-    void draw(ImDrawList& list, const Rect& area, const Camera& camera) const;
+    // Fetches what is missing; once a frame. other: of the side that is compared with, or nullptr.
+    void update(const std::shared_ptr<const Prepared>& main, const std::shared_ptr<const Prepared>& other = nullptr);
+    // Changes whenever the lines of a side would.
+    uint64_t revision(unsigned side) const { return sides_[side].revision; }
+    // Appends a side's volumes as lines; `eye` sees spheres' outlines.
+    void append_lines(unsigned side, const glm::vec3& eye, float scale, LineList& lines) const;
+    bool has_spheres(unsigned side) const { return sides_[side].volumes && !sides_[side].volumes->spheres.empty(); }
 
  private:
-    using Result = std::shared_ptr<const Volumes>;
+    struct Level : Volumes {
+        bool more = false;
+    };
+    using Result = std::shared_ptr<const Level>;
+    struct Side {
+        // What `volumes` and `fetching` are of.
+        std::shared_ptr<const AccelData> accel;
+        std::optional<rt_u32> fetched;
+        Result volumes;
+        std::future<Result> fetching;
+        uint64_t revision = 0;
+    };
+    void update_side(Side& side, const std::shared_ptr<const Prepared>& prepared);
+
     std::function<void()> wake_;
     std::optional<rt_u32> level_;
-    // What `volumes_` and `fetching_` are of.
-    std::shared_ptr<const AccelData> accel_;
-    std::optional<rt_u32> fetched_;
-    Result volumes_;
-    std::future<Result> fetching_;
+    bool hides_behind_ = false;
+    std::array<Side, 2> sides_;
 };
+
+// "level 4", "bottom level": as the keys count.
+std::string level_name(rt_u32 level);
+// The colour of a level's volumes, opaque.
+uint32_t level_color(rt_u32 level);
 
 }  // namespace clarity

@@ -1,0 +1,102 @@
+#include "ui/picture_captions.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "ui/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+}
+
+// "Max leaf size" stands within a sentence; "SAH bins" keeps its capitals.
+std::string in_a_sentence(std::string label) {
+    if (label.size() > 1 && std::islower(static_cast<unsigned char>(label[1])))
+        label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
+    return label;
+}
+
+const ReadySide& ready_side(const Picture& picture, unsigned side) {
+    return side == 1 && picture.job.ready->other ? *picture.job.ready->other : picture.job.ready->main;
+}
+const PictureSide& picture_side(const Picture& picture, unsigned side) {
+    return side == 1 && picture.other ? *picture.other : picture.main;
+}
+
+std::string ms_text(double ms) {
+    char text[32];
+    std::snprintf(text, sizeof text, ms < 10 ? "%.2f ms" : "%.1f ms", ms);
+    return text;
+}
+
+}  // namespace
+
+Differences differing_settings(const Picture& picture) {
+    Differences out;
+    if (!picture.other) return out;
+    const Settings &a = picture.main.settings, &b = picture.other->settings;
+    const ReadySide &on_a = ready_side(picture, 0), &on_b = ready_side(picture, 1);
+    const auto add = [&](const std::string& label, const std::string& of_a, const std::string& of_b) {
+        if (of_a == of_b) return;
+        out.of[0].push_back(in_a_sentence(label) + " " + of_a);
+        out.of[1].push_back(in_a_sentence(label) + " " + of_b);
+    };
+    if (a.accel == b.accel && on_a.prepared->accel->plugin) {
+        const rt_plugin& plugin = *on_a.prepared->accel->plugin;
+        for (size_t i = 0; i < std::min(a.accel_params.size(), b.accel_params.size()) && i < plugin.param_count; ++i)
+            add(plugin.params[i].label, number_text(a.accel_params[i]), number_text(b.accel_params[i]));
+    }
+    for (const Setting& row : settings_table()) add(row.label, row.get(a), row.get(b));
+    if (on_a.device != on_b.device) {
+        out.of[0].push_back(on_a.device->info().name);
+        out.of[1].push_back(on_b.device->info().name);
+    }
+    return out;
+}
+
+double median_of(std::vector<float> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+Caption caption_of(const Session& session, const Picture& picture, unsigned side) {
+    Caption caption;
+    caption.title = std::string(side == 0 ? "A  " : "B  ") + picture_side(picture, side).settings.accel;
+    caption.details = joined(differing_settings(picture).of[side]);
+    // The last thirty: with more, an older camera's pictures would still count.
+    const auto recent = [&](unsigned of) {
+        std::vector<float> times = session.frame_times(of);
+        if (times.size() > 30) times.erase(times.begin(), times.end() - 30);
+        return median_of(std::move(times));
+    };
+    const double mine = recent(side), others = recent(1 - side);
+    char text[64] = "";
+    if (mine > 0) {
+        std::snprintf(text, sizeof text, "%s, %.1f Mrays/s", ms_text(mine).c_str(), session.mrays_per_second(side));
+        caption.speed = text;
+    }
+    if (mine > 0 && others / mine >= 1.005) {
+        std::snprintf(text, sizeof text, others / mine < 10 ? "%.2f\u00d7 faster" : "%.0f\u00d7 faster", others / mine);
+        caption.verdict = text;
+    }
+    return caption;
+}
+
+std::string difference_text(const PictureDifference& difference) {
+    if (difference.image.pixels.empty()) return "the pictures are of different sizes";
+    if (difference.largest <= 0) return "no pixel differs";
+    char text[160];
+    std::snprintf(text, sizeof text, "mean %.3g, largest %.0f of 255; %.3g %% of pixels differ by more than 1; shown 8 times as bright",
+                  difference.mean, difference.largest, difference.share * 100);
+    return text;
+}
+
+}  // namespace clarity

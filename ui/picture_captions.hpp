@@ -1,0 +1,29 @@
+// picture_captions.hpp -- what stands beside pictures that are compared: which is which, how they were made, how fast.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "ui/session.hpp"
+
+namespace clarity {
+
+// What differs between the two sides besides the structure, as a person says it: {"packet 4x4", "lanes 8"} of the first,
+// {"packet 8x8", "lanes 16"} of the second.
+struct Differences {
+    std::vector<std::string> of[2];
+};
+Differences differing_settings(const Picture& picture);
+
+struct Caption {
+    std::string title;    // "A  bvh2"
+    std::string details;  // "packet 4x4, lanes 8"; empty where nothing else differs
+    std::string speed;    // "12.3 ms, 48.1 Mrays/s"
+    std::string verdict;  // "1.8x faster"; empty for the slower one, and as long as it is not known
+};
+Caption caption_of(const Session& session, const Picture& picture, unsigned side);
+std::string difference_text(const PictureDifference& difference);
+
+// The middle one of the values; 0 of none.
+double median_of(std::vector<float> values);
+
+}  // namespace clarity
