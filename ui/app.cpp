@@ -117,7 +117,8 @@ void App::turn() {
     } catch (const Error& error) {
         session_->report(error.what(), error.details());
     }
-    overlay_->update(session_->ready() ? session_->ready()->main.prepared : nullptr);
+    const auto ready = session_->ready();
+    overlay_->update(ready ? ready->main.prepared : nullptr, ready && ready->other ? ready->other->prepared : nullptr);
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
     upload_picture();
     window_->begin_frame();

@@ -199,6 +199,8 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
     side.image.pixels.resize(size_t(side.image.width) * side.image.height * 4);
     side.scale = tracer.frames->read_display(settings, side.image.pixels.data(), &side.stats);
     side.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    if (side.scale.map != FalseColorScale::Map::none)
+        side.values = std::make_shared<const FloatImage>(tracer.frames->read_values());
     if (!order.retrace && last) side.frame_ms = last->frame_ms;
     if (order.distance) {
         if (last && last->distance && order.sample > 0)

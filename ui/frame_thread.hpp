@@ -37,6 +37,7 @@ struct PictureSide {
     double frame_ms = 0;                         // tracing and reading back
     std::shared_ptr<const FloatImage> distance;  // of the camera rays of sample 0, +inf: nothing; nullptr if not asked for,
                                                  // empty where it is not known
+    std::shared_ptr<const FloatImage> values;    // what a picture with a scale shows; else nullptr
 };
 
 // How two images differ.

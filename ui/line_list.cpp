@@ -1,5 +1,6 @@
 #include "ui/line_list.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -24,6 +25,13 @@ std::array<glm::vec3, 2> axes_across(const glm::vec3& unit) {
 uint32_t with_opacity(uint32_t color, float factor) {
     const float alpha = static_cast<float>(color >> 24) * factor;
     return (color & 0xFFFFFFu) | static_cast<uint32_t>(glm::clamp(alpha + 0.5f, 0.0f, 255.0f)) << 24;
+}
+
+bool LineList::operator==(const LineList& other) const {
+    const auto same = [](const Line& a, const Line& b) {
+        return a.a == b.a && a.b == b.b && a.color == b.color && a.width == b.width;
+    };
+    return std::equal(lines_.begin(), lines_.end(), other.lines_.begin(), other.lines_.end(), same);
 }
 
 void LineList::box(const std::array<std::array<float, 3>, 8>& corners, uint32_t color, float width) {

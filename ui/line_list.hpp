@@ -21,6 +21,7 @@ class LineList {
     size_t size() const { return lines_.size(); }
     const std::vector<Line>& lines() const { return lines_; }
 
+    bool operator==(const LineList& other) const;
     void line(const glm::vec3& a, const glm::vec3& b, uint32_t color, float width) { lines_.push_back({a, b, color, width}); }
     // Corners whose numbers differ in one bit share an edge.
     void box(const std::array<std::array<float, 3>, 8>& corners, uint32_t color, float width);

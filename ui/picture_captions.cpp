@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "ui/theme.hpp"
 #include "ui/widgets.hpp"
 
 namespace clarity {
@@ -88,6 +89,14 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
         caption.verdict = text;
     }
     return caption;
+}
+
+std::vector<CardText> caption_lines(const Caption& caption) {
+    std::vector<CardText> lines = {{caption.title, colors::kText, true}};
+    if (!caption.speed.empty()) lines.push_back({caption.speed, colors::kText, false, true});
+    if (!caption.verdict.empty()) lines.push_back({caption.verdict, colors::kGreen, true, true});
+    if (!caption.details.empty()) lines.push_back({caption.details, colors::kDim});
+    return lines;
 }
 
 std::string difference_text(const PictureDifference& difference) {

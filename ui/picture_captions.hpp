@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "ui/picture_cards.hpp"
 #include "ui/session.hpp"
 
 namespace clarity {
@@ -21,6 +22,7 @@ struct Caption {
     std::string verdict;  // "1.8x faster"; empty for the slower one, and as long as it is not known
 };
 Caption caption_of(const Session& session, const Picture& picture, unsigned side);
+std::vector<CardText> caption_lines(const Caption& caption);
 std::string difference_text(const PictureDifference& difference);
 
 // The middle one of the values; 0 of none.

@@ -4,12 +4,20 @@
 #include <cmath>
 
 namespace clarity {
+namespace {
+
+// Whole units: what is drawn over a picture meets it pixel by pixel.
+Rect whole(const Rect& area) {
+    return {area.x, area.y, std::max(1.0f, std::floor(area.width)), std::max(1.0f, std::floor(area.height))};
+}
+
+}  // namespace
 
 std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool compared, CompareMode mode, float wipe,
                                            float head) {
     using What = PicturePlace::What;
     if (!compared || mode != CompareMode::side_by_side) {
-        const Rect area = letter_box(room, aspect);
+        const Rect area = whole(letter_box(room, aspect));
         if (!compared) return {{What::main, area, area}};
         if (mode == CompareMode::difference) return {{What::difference, area, area}};
         const float at = std::round(area.width * std::clamp(wipe, 0.0f, 1.0f));
@@ -18,7 +26,7 @@ std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool 
     }
     const float gap = std::min(std::round(room.width * 0.02f), 12.0f), half = std::floor((room.width - gap) / 2);
     const float taken = std::min(head, room.height / 2);
-    const Rect left = letter_box({room.x, room.y + taken, half, room.height - taken}, aspect);
+    const Rect left = whole(letter_box({room.x, room.y + taken, half, room.height - taken}, aspect));
     Rect right = left;
     right.x += half + gap;
     return {{What::main, left, left}, {What::other, right, right}};

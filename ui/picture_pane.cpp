@@ -1,0 +1,190 @@
+#include "ui/picture_pane.hpp"
+
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/camera_control.hpp"
+#include "ui/picture_captions.hpp"
+#include "ui/ray_lines.hpp"
+#include "ui/selection_box.hpp"
+#include "ui/theme.hpp"
+
+namespace clarity {
+namespace {
+
+using What = PicturePlace::What;
+
+constexpr float kBehind = 0.15f;  // opacity of what lies behind a surface
+
+bool same(const Camera& a, const Camera& b) {
+    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
+}
+bool same(const Rect& a, const Rect& b) {
+    return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
+}
+
+// The shown part of a texture that covers `area`, its first row at the top or at the bottom.
+void add_part(ImDrawList& list, unsigned texture, const Rect& area, const Rect& shown, bool top_first) {
+    if (shown.width <= 0 || shown.height <= 0) return;
+    const float left = (shown.x - area.x) / area.width, right = left + shown.width / area.width;
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture)), {shown.x, shown.y},
+                  {shown.x + shown.width, shown.y + shown.height}, {left, top_first ? 0.0f : 1.0f},
+                  {right, top_first ? 1.0f : 0.0f});
+}
+
+void blend_premultiplied(const ImDrawList*, const ImDrawCmd*) {
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+}  // namespace
+
+std::string PicturePane::upload(const std::shared_ptr<const Picture>& picture) {
+    picture_ = picture;
+    std::string why = textures_[0].upload(picture->main.image);
+    if (picture->other && why.empty()) why = textures_[1].upload(picture->other->image);
+    if (picture->difference && why.empty()) why = difference_.upload(picture->difference->image);
+    if (!why.empty()) picture_.reset();
+    return why;
+}
+
+const PictureSide& PicturePane::side_of(const PicturePlace& place) const {
+    return place.side() == 1 && picture_->other ? *picture_->other : picture_->main;
+}
+
+void PicturePane::lay_out(const Rect& room, const Session& session, const UiState& state) {
+    const float aspect = static_cast<float>(textures_[0].width()) / static_cast<float>(std::max(1u, textures_[0].height()));
+    float head = 0;
+    if (picture_->other && state.compare_mode == CompareMode::side_by_side)
+        for (unsigned side = 0; side < 2; ++side)
+            head = std::max(head, card_size(caption_lines(caption_of(session, *picture_, side)), std::floor(room.width / 2 - 8)).y);
+    places_ = lay_out_pictures(room, aspect, picture_->other.has_value(), state.compare_mode, state.wipe, std::round(head + 6));
+    area_ = places_.front().area;
+    for (size_t i = 0; i < places_.size(); ++i) stacks_[i] = CardStack(places_[i].area, std::round(10 * ui_scale()));
+}
+
+void PicturePane::draw_pictures(ImDrawList& list) {
+    for (const PicturePlace& place : places_) {
+        PictureTexture& texture = place.what == What::difference && picture_->difference ? difference_ : textures_[place.side()];
+        // Enlarged pixels stay sharp.
+        texture.set_magnified(place.area.width >= 2 * static_cast<float>(texture.width()));
+        add_part(list, texture.name(), place.area, place.shown, true);
+    }
+}
+
+// Rays and what is selected, as lines of the world.
+void PicturePane::collect_marks(const Session& session, const UiState& state) {
+    const float scale = ui_scale();
+    const Camera& camera = picture_->job.view.camera;
+    const Projection projection(area_, camera);
+    LineList marks;
+    const Scene* scene = picture_->job.ready->loaded->scene.get();
+    const Selection& selection = session.selection;
+    if (selection.any() && session.ready() && session.ready()->loaded->scene.get() == scene) {
+        const bool known = selected_.scene == scene && selected_.selection.instance == selection.instance &&
+                           selected_.selection.prim == selection.prim;
+        if (!known) selected_ = {scene, selection, selection_box(*scene, selection)};
+        if (selected_.box) {
+            marks.box(*selected_.box, IM_COL32(0, 0, 0, 130), 3.4f * scale);
+            marks.box(*selected_.box, ImGui::GetColorU32(colors::kAccent), 1.6f * scale);
+        }
+    } else {
+        selected_ = {};
+    }
+    const auto inspection = session.inspection();
+    const bool looking = (state.tab == Tab::inspect && state.panel_visible) || state.inspect_hover || mouse_.rays_asked();
+    rays_shown_ = looking && state.show_rays && inspection && inspection->failure.empty() &&
+                  inspection->job.ready->loaded->scene.get() == scene;
+    if (rays_shown_)
+        append_ray_lines(inspection->result, projection, session.scene_size() * 0.6f, scale, state.selected_ray, marks);
+    if (marks == marks_) return;
+    marks_ = std::move(marks);
+    ++marks_revision_;
+}
+
+void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const VolumeOverlay& overlay) {
+    const unsigned side = place.side();
+    const float scale = ui_scale(), pixels = std::max(ImGui::GetIO().DisplayFramebufferScale.x, 0.1f);
+    const Camera& camera = picture_->job.view.camera;
+    const auto& distance = side_of(place).distance;
+    const bool moved = !same(lines.camera, camera), scaled = lines.scale != scale;
+    const bool volumes = lines.volumes_revision != overlay.revision(side) || scaled || (moved && overlay.has_spheres(side));
+    const bool resized = lines.area.width != place.area.width || lines.area.height != place.area.height ||
+                         lines.pixels != pixels;
+    const bool anew = volumes || moved || resized || lines.marks_revision != marks_revision_ ||
+                      lines.distance != distance.get() || lines.hides_behind != overlay.hides_behind();
+    if (!anew) return;
+    const Projection projection(place.area, camera);
+    if (volumes) {
+        lines.volumes.clear();
+        overlay.append_lines(side, projection.eye(), scale, lines.volumes);
+    }
+    lines.volumes_revision = overlay.revision(side);
+    lines.marks_revision = marks_revision_;
+    lines.camera = camera;
+    lines.area = place.area;
+    lines.pixels = pixels;
+    lines.scale = scale;
+    lines.distance = distance.get();
+    lines.hides_behind = overlay.hides_behind();
+    lines.any = !lines.volumes.empty() || !marks_.empty();
+    if (!lines.any) return;
+    const bool known = distance && !distance->pixels.empty();
+    if (known && distances_of_[side] != distance && distances_[side].upload(*distance).empty()) distances_of_[side] = distance;
+    lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, known ? &distances_[side] : nullptr,
+                     overlay.hides_behind() ? 0.0f : kBehind);
+}
+
+void PicturePane::draw_lines(ImDrawList& list, const VolumeOverlay& overlay) {
+    for (const PicturePlace& place : places_) {
+        Lines& lines = lines_[place.side()];
+        update_lines(lines, place, overlay);
+        if (!lines.any || !lines.layer.failure().empty() || lines.layer.drawn() == 0) continue;
+        list.AddCallback(blend_premultiplied, nullptr);
+        add_part(list, lines.layer.texture(), place.area, place.shown, false);
+        list.AddCallback(ImDrawCallback_ResetRenderState, nullptr);
+    }
+}
+
+void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state) {
+    ImGui::SetNextWindowPos({area.x, area.y});
+    ImGui::SetNextWindowSize({area.width, area.height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::Begin("Viewport", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::PopStyleVar();
+    const float margin = std::round(12 * ui_scale());
+    const Rect room{area.x + margin, area.y + margin, std::max(area.width - 2 * margin, 1.0f),
+                    std::max(area.height - 2 * margin, 1.0f)};
+    const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
+    state.room_width = static_cast<int>(room.width * pixels.x);
+    state.room_height = static_cast<int>(room.height * pixels.y);
+    if (picture_ && textures_[0].name() != 0) {
+        lay_out(room, session, state);
+        ImDrawList& list = *ImGui::GetWindowDrawList();
+        draw_pictures(list);
+        collect_marks(session, state);
+        draw_lines(list, overlay);
+        handles_.clear();
+        if (state.show_lights) handles_ = light_handles(Projection(area_, picture_->job.view.camera), session.wish.lights);
+        ImGui::SetCursorScreenPos({room.x, room.y});
+        ImGui::InvisibleButton(
+            "picture", {room.width, room.height},
+            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+        ImGui::SetItemAllowOverlap();
+        const bool wipe = places_.size() == 2 && !side_by_side();
+        mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe}, session, state);
+        if (wipe) draw_wipe(list);
+        draw_handles(list, session);
+        draw_pixel_marks(list, session, state);
+        draw_cards(list, session, overlay);
+        session.want_distance(overlay.level().has_value() || !marks_.empty() || state.show_lights);
+    }
+    ImGui::End();
+}
+
+}  // namespace clarity
