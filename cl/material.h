@@ -80,6 +80,13 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
     return out;
 }
 
+/* What a surface sends back of the light that it gets: diffuse, cosines included, and the light of its highlights. */
+RT_INLINE rt_vec rt_reflected_light(const rt_shade *m, rt_vec diffuse, rt_vec shine)
+{
+    const vfloat share = rt_max(rt_vfloat(1.0f) - m->reflect - m->refract, rt_vfloat(0.0f));
+    return rt_add(rt_scale(share, rt_mul(m->color, diffuse)), rt_mul(m->specular, shine));
+}
+
 /* x^y for x in [0,1], y >= 1, as exp2(y log2 x) by polynomials: 1e-3 relative at y = 100. Plain arithmetic, so that all lane
  * counts and devices agree, where a library's pow would differ. */
 RT_INLINE vfloat rt_power(vfloat x, vfloat y)

@@ -7,6 +7,9 @@
 typedef struct rt_queue {
     float field[9][RT_QUEUE_ROOM]; /* origin, direction, weight */
     int pixel[RT_QUEUE_ROOM];      /* within the packet */
+#ifdef RT_INSPECT
+    int record[RT_QUEUE_ROOM];
+#endif
 } rt_queue;
 
 /* The lanes in bits move to the front. */

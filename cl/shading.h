@@ -7,6 +7,9 @@
 
 typedef struct rt_tally {
     uint shadow, secondary, dropped, overflow;
+#ifdef RT_INSPECT
+    rt_recorder recorder;
+#endif
 } rt_tally;
 
 /* Where a ray met a surface, seen from its side. */
@@ -79,15 +82,22 @@ RT_INLINE rt_vec rt_direct_light(const rt_ctx *ctx, const constant rt_frame *fra
 #ifdef RT_DEBUG
             tally->overflow += blocked.overflow;
 #endif
+#ifdef RT_INSPECT
+            tally->recorder.steps = blocked.steps;
+            tally->recorder.leaf_tests = blocked.leaf_tests;
+#endif
         }
         const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
         const vfloat highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
         const rt_vec color = rt_spread(light->color);
         diffuse = rt_along(rt_select(lit, cosine, zero), color, diffuse);
         shine = rt_along(rt_select(lit, highlight, zero), color, shine);
+#ifdef RT_INSPECT
+        rt_record_shadow(&tally->recorder, i, frame->shadows != 0u, lit_bits, rt_bits(lit), above, towards, distance,
+                         rt_reflected_light(m, rt_scale(cosine, color), rt_scale(highlight, color)));
+#endif
     }
-    const vfloat share = rt_max(one - m->reflect - m->refract, zero);
-    return rt_add(rt_add(m->emission, rt_scale(share, rt_mul(m->color, diffuse))), rt_mul(m->specular, shine));
+    return rt_add(m->emission, rt_reflected_light(m, diffuse, shine));
 }
 
 /* Shares of light that go on as mirrored and as refracted rays. */

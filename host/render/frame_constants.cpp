@@ -50,8 +50,8 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     frame.packet_h = layout.packet_h;
     frame.block_w = layout.block_w;
     while ((1u << frame.block_w_log2) < layout.block_w) ++frame.block_w_log2;
-    frame.blocks_x = (layout.packet_w + layout.block_w - 1) / layout.block_w;
-    frame.blocks_y = (layout.packet_h + layout.block_h - 1) / layout.block_h;
+    frame.blocks_x = layout.blocks_x();
+    frame.blocks_y = layout.blocks() / layout.blocks_x();
     frame.depth = static_cast<rt_u32>(settings.depth);
     frame.light_count = static_cast<rt_u32>(view.lights.size());
     frame.plane_count = static_cast<rt_u32>(accel.scene.planes.size());

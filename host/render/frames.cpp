@@ -3,14 +3,14 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/error.hpp"
-#include "device/kernel_files.hpp"
-#include "device/program.hpp"
-#include "render/device_scene.hpp"
+#include "render/film.hpp"
 #include "render/frame_constants.hpp"
+#include "render/guarded.hpp"
 #include "render/launch.hpp"
+#include "render/ray_queries.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
+#include "render/view_buffers.hpp"
 
 namespace clarity {
 namespace {
@@ -20,54 +20,23 @@ unsigned channels_of(const std::string& aov) {
     return aov == "normal" || aov == "uv" ? 3 : 1;
 }
 
-// Kernels look materials and textures up by number.
-void check_materials(const Scene& scene, const std::vector<rt_material>& materials) {
-    if (materials.empty()) return;
-    if (materials.size() != scene.materials.size())
-        throw Error(Exit::failed, "the view brings " + std::to_string(materials.size()) + " materials and the scene has " +
-                                      std::to_string(scene.materials.size()) + ": one for each is needed");
-    for (size_t i = 0; i < materials.size(); ++i)
-        if (materials[i].texture != RT_NONE && materials[i].texture >= scene.textures.size())
-            throw Error(Exit::failed, "material " + std::to_string(i) + " of the view names texture " +
-                                          std::to_string(materials[i].texture) + " and the scene has " +
-                                          std::to_string(scene.textures.size()));
-}
-
-template <class Work>
-auto guarded(const Device& device, const char* doing, Work&& work) {
-    try {
-        return work();
-    } catch (const cl::Error& e) {
-        throw Error(Exit::failed, std::string(doing) + " on " + device.info().name + ": " + e.what() +
-                                      " failed with OpenCL error " + std::to_string(e.err()) +
-                                      (e.err() == CL_MEM_OBJECT_ALLOCATION_FAILURE ? " (out of memory)" : ""));
-    }
-}
-
 }  // namespace
 
 struct Frames::Impl {
+    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), queries(d) {}
+
     std::shared_ptr<Device> device;
-    cl::Program film_program;
-    cl::Kernel map_tones, sum_counters;
-    cl::Buffer film, display, counters, sums, frame, lights, materials;
-    size_t film_bytes = 0, display_bytes = 0, counters_bytes = 0, lights_bytes = 0, materials_bytes = 0;
-    unsigned width = 0, height = 0, samples = 0;
+    FilmKernels film_kernels;
+    RayQueries queries;
+    ViewBuffers view;
+    GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, counters{CL_MEM_READ_WRITE}, distances{CL_MEM_READ_WRITE};
+    unsigned width = 0, height = 0;
     std::string aov;
+    Layout layout;                                // of the picture in the film
     std::shared_ptr<const TraceProgram> program;  // whose pace and kernel these are:
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
     Launcher launcher;
-    std::unique_ptr<ProgramCache> ray_programs;
-
-    cl::Buffer& fit(cl::Buffer& buffer, size_t& has, size_t wants, cl_mem_flags flags) {
-        if (has < wants || has == 0) {
-            buffer = cl::Buffer();
-            buffer = cl::Buffer(device->context(), flags, std::max<size_t>(wants, 256));
-            has = wants;
-        }
-        return buffer;
-    }
 
     // Waits for all that is queued.
     void read(const cl::Buffer& buffer, void* out, size_t bytes) {
@@ -75,18 +44,7 @@ struct Frames::Impl {
     }
 };
 
-Frames::Frames(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>()) {
-    impl_->device = device;
-    const BuildResult built = build_program(*device, kernel_text("film.cl"), "-cl-std=CL1.2", "film");
-    guarded(*device, "preparing the film", [&] {
-        impl_->film_program = built.program;
-        impl_->map_tones = cl::Kernel(built.program, "map_tones");
-        impl_->sum_counters = cl::Kernel(built.program, "sum_counters");
-        impl_->frame = cl::Buffer(device->context(), CL_MEM_READ_ONLY, sizeof(rt_frame));
-        impl_->sums = cl::Buffer(device->context(), CL_MEM_READ_WRITE, 16);
-    });
-    impl_->ray_programs = std::make_unique<ProgramCache>(device);
-}
+Frames::Frames(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>(device)) {}
 Frames::~Frames() = default;
 
 FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
@@ -94,9 +52,9 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
     Impl& im = *impl_;
     return guarded(*im.device, "tracing", [&] {
         const TraceProgram& program = *prepared.program;
-        const bool color = program.kind == KernelKind::color;
         const unsigned width = static_cast<unsigned>(settings.width), height = static_cast<unsigned>(settings.height);
         cl::CommandQueue& queue = im.device->queue();
+        const cl::Context& context = im.device->context();
         if (im.program != prepared.program || im.bound != prepared.on_device || width != im.width || height != im.height)
             im.launcher.forget();
         if (im.program != prepared.program) im.kernel = program.kernel();
@@ -107,30 +65,20 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         im.height = height;
 
         const size_t pixels = size_t(width) * height;
-        const Layout layout = make_layout(prepared.settings, im.device->info().cpu);
+        const Layout layout = im.layout = make_layout(prepared.settings, im.device->info().cpu);
         const unsigned groups = layout.groups_x(width) * layout.groups_y(height);
         const unsigned packets = groups * layout.group_packets();
-        im.fit(im.film, im.film_bytes, pixels * channels_of(im.aov) * sizeof(float), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR);
-        if (color) im.fit(im.counters, im.counters_bytes, size_t(packets) * 16, CL_MEM_READ_WRITE);
-        im.fit(im.lights, im.lights_bytes, view.lights.size() * sizeof(rt_light), CL_MEM_READ_ONLY);
-        const rt_frame frame = make_frame(view, settings, layout, *prepared.accel, sample);
-        queue.enqueueWriteBuffer(im.frame, CL_TRUE, 0, sizeof frame, &frame);
-        if (!view.lights.empty())
-            queue.enqueueWriteBuffer(im.lights, CL_TRUE, 0, view.lights.size() * sizeof(rt_light), view.lights.data());
-
-        check_materials(*prepared.scene, view.materials);
-        if (!view.materials.empty()) {
-            const size_t bytes = view.materials.size() * sizeof(rt_material);
-            im.fit(im.materials, im.materials_bytes, bytes, CL_MEM_READ_ONLY);
-            queue.enqueueWriteBuffer(im.materials, CL_TRUE, 0, bytes, view.materials.data());
-        }
+        im.view.write(queue, *prepared.scene, make_frame(view, settings, layout, *prepared.accel, sample), view);
 
         cl_uint at = 0;
-        im.kernel.setArg(at++, im.frame);
+        im.kernel.setArg(at++, im.view.frame());
         const cl_uint first_group = at++;
-        im.kernel.setArg(at++, im.film);
-        if (color) im.kernel.setArg(at++, im.counters);
-        prepared.on_device->bind(im.kernel, at, im.lights, view.materials.empty() ? nullptr : &im.materials);
+        im.kernel.setArg(at++, im.film.fit(context, FilmKernels::room(pixels) * channels_of(im.aov) * sizeof(float)));
+        if (program.has_generations()) {
+            im.kernel.setArg(at++, im.counters.fit(context, size_t(packets) * 16));
+            im.kernel.setArg(at++, im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float)));
+        }
+        im.view.bind(*prepared.on_device, im.kernel, at);
         const LaunchTimes times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), [&] {
             if (progress.cancelled()) throw Cancelled();
         });
@@ -139,20 +87,15 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         stats.device_ms = times.device_ms;
         stats.wall_ms = times.wall_ms;
         stats.primary = pixels;
-        stats.samples = im.samples = sample + 1;
+        stats.samples = sample + 1;
         stats.kernels.push_back({"trace", times.device_ms});
-        if (color && count_rays) {
-            cl_uint sums[4] = {};
-            queue.enqueueWriteBuffer(im.sums, CL_TRUE, 0, sizeof sums, sums);
-            im.sum_counters.setArg(0, im.counters);
-            im.sum_counters.setArg(1, packets);
-            im.sum_counters.setArg(2, im.sums);
-            queue.enqueueNDRangeKernel(im.sum_counters, cl::NullRange, cl::NDRange(1024), cl::NDRange(64));
-            im.read(im.sums, sums, sizeof sums);
-            stats.shadow = sums[0];
-            stats.secondary = sums[1];
-            stats.dropped = sums[2];
-            stats.overflowed = sums[3];
+        if (program.has_generations() && count_rays) {
+            stats.kernels.emplace_back();
+            const RayCounts counts = im.film_kernels.sum(im.counters.get(), packets, stats.kernels.back());
+            stats.shadow = counts.shadow;
+            stats.secondary = counts.secondary;
+            stats.dropped = counts.dropped;
+            stats.overflowed = counts.overflowed;
         }
         return stats;
     });
@@ -168,7 +111,7 @@ FloatImage Frames::read_values() {
         image.channels = im.aov == "color" ? 3 : stored;
         const size_t pixels = size_t(im.width) * im.height;
         std::vector<float> film(pixels * stored);
-        im.read(im.film, film.data(), film.size() * sizeof(float));
+        im.read(im.film.get(), film.data(), film.size() * sizeof(float));
         if (im.aov == "color") {
             image.pixels.resize(pixels * 3);
             for (size_t i = 0; i < pixels; ++i)
@@ -187,7 +130,37 @@ FloatImage Frames::read_values() {
 }
 
 FloatImage Frames::read_distance() {
-    return impl_->aov == "t" ? read_values() : FloatImage();
+    Impl& im = *impl_;
+    if (im.aov == "t") return read_values();
+    if (!im.program || !im.program->has_generations()) return {};
+    return guarded(*im.device, "reading distances", [&] {
+        const Layout& layout = im.layout;
+        const unsigned groups_x = layout.groups_x(im.width), groups = groups_x * layout.groups_y(im.height);
+        std::vector<float> stored(size_t(groups) * layout.group_packets() * layout.rays());
+        im.read(im.distances.get(), stored.data(), stored.size() * sizeof(float));
+        FloatImage image;
+        image.width = im.width;
+        image.height = im.height;
+        image.channels = 1;
+        image.pixels.resize(size_t(im.width) * im.height);
+        // As rt_packet_origin() and rt_block_pixels() say which pixel a ray is of.
+        const float* block = stored.data();
+        for (unsigned group = 0; group < groups; ++group)
+            for (unsigned packet = 0; packet < layout.group_packets(); ++packet)
+                for (unsigned b = 0; b < layout.blocks(); ++b, block += layout.lanes) {
+                    const unsigned in_x = b % layout.blocks_x() * layout.block_w, in_y = b / layout.blocks_x() * layout.block_h;
+                    const unsigned left = (group % groups_x * layout.group_w + packet % layout.group_w) * layout.packet_w,
+                                   top = (group / groups_x * layout.group_h + packet / layout.group_w) * layout.packet_h;
+                    const unsigned right = std::min(left + layout.packet_w, im.width),
+                                   bottom = std::min(top + layout.packet_h, im.height), x = left + in_x;
+                    if (x >= right) continue;
+                    const size_t width = std::min(layout.block_w, right - x);
+                    for (unsigned row = 0; row < layout.block_h && top + in_y + row < bottom; ++row)
+                        std::copy_n(block + row * layout.block_w, width,
+                                    &image.pixels[size_t(top + in_y + row) * im.width + x]);
+                }
+        return image;
+    });
 }
 
 ByteImage Frames::read_display(const Settings& settings) {
@@ -199,7 +172,7 @@ ByteImage Frames::read_display(const Settings& settings) {
     return image;
 }
 
-FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, FrameStats*) {
+FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats) {
     Impl& im = *impl_;
     if (im.aov != "color") {
         const FloatImage values = read_values();
@@ -208,59 +181,14 @@ FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, Fr
         return scale;
     }
     guarded(*im.device, "reading the picture", [&] {
-        const size_t pixels = size_t(im.width) * im.height;
-        im.fit(im.display, im.display_bytes, pixels * 4, CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR);
-        im.map_tones.setArg(0, im.film);
-        im.map_tones.setArg(1, im.display);
-        im.map_tones.setArg(2, static_cast<cl_uint>(pixels));
-        im.map_tones.setArg(3, static_cast<float>(settings.exposure));
-        im.map_tones.setArg(4, static_cast<cl_uint>(settings.tone == "reinhard" ? 1 : settings.tone == "aces" ? 2 : 0));
-        im.device->queue().enqueueNDRangeKernel(im.map_tones, cl::NullRange, cl::NDRange((pixels + 63) / 64 * 64),
-                                                cl::NDRange(64));
-        im.read(im.display, rgba, pixels * 4);
+        im.film_kernels.show(im.film.get(), size_t(im.width) * im.height, settings, rgba, stats ? &stats->kernels : nullptr);
     });
     return {};
 }
 
 std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
                                        double* device_ms) {
-    Impl& im = *impl_;
-    return guarded(*im.device, "tracing rays", [&] {
-        std::vector<rt_hit> hits(rays.size());
-        if (rays.empty()) return hits;
-        const Layout layout = make_layout(prepared.settings, im.device->info().cpu);
-        bool fresh = false;
-        const KernelSource source =
-            assemble_kernel(prepared.settings, layout, KernelKind::rays, features_of(*prepared.scene, prepared.accel->scene),
-                            *prepared.accel->plugin, prepared.accel->defines);
-        auto program = im.ray_programs->get(source, KernelKind::rays,
-                                            std::string("ray queries with accel ") + prepared.accel->plugin->id, &fresh);
-        cl::CommandQueue& queue = im.device->queue();
-        cl::Context& context = im.device->context();
-        const rt_frame frame = make_frame(View(), prepared.settings, layout, *prepared.accel, 0);
-        queue.enqueueWriteBuffer(im.frame, CL_TRUE, 0, sizeof frame, &frame);
-        im.fit(im.lights, im.lights_bytes, 1, CL_MEM_READ_ONLY);
-        cl::Buffer in(context, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, rays.size() * sizeof(rt_ray),
-                      const_cast<rt_ray*>(rays.data()));
-        cl::Buffer out(context, CL_MEM_WRITE_ONLY, rays.size() * sizeof(rt_hit));
-        cl::Kernel kernel = program->kernel();
-        cl_uint at = 0;
-        kernel.setArg(at++, im.frame);
-        const cl_uint first_group = at++;
-        kernel.setArg(at++, static_cast<cl_uint>(rays.size()));
-        kernel.setArg(at++, static_cast<cl_uint>(query.any_hit));
-        kernel.setArg(at++, in);
-        kernel.setArg(at++, out);
-        prepared.on_device->bind(kernel, at, im.lights);
-        const size_t per_group = size_t(layout.group_packets()) * layout.lanes;
-        Launcher launcher;
-        const LaunchTimes times =
-            launcher.run(queue, kernel, first_group, static_cast<unsigned>((rays.size() + per_group - 1) / per_group),
-                         layout.local_size(), [] {});
-        if (device_ms) *device_ms = times.device_ms;
-        im.read(out, hits.data(), hits.size() * sizeof(rt_hit));
-        return hits;
-    });
+    return impl_->queries.trace(prepared, rays, query, device_ms);
 }
 
 }  // namespace clarity

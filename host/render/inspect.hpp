@@ -15,17 +15,17 @@ struct RayRecord {
         dropped,    // its packet's ray slots were full
         too_light,  // below min_weight
         too_deep,   // beyond the last generation
-        unasked     // a light's share while shadows are off: nothing was traced
+        unasked     // a light's share while shadows are off: no ray was traced
     };
     Kind kind = Kind::camera;
     Fate fate = Fate::traced;
-    int parent = -1;                           // index in RayTree::rays; -1: the camera's
-    unsigned generation = 1;                   // 1: the camera's; a shadow ray has that of the ray that it belongs to
+    int parent = -1;                             // index in RayTree::rays; -1: the camera's
+    unsigned generation = 1;                     // 1: the camera's; a shadow ray has that of the ray that it belongs to
     std::array<float, 3> origin{}, direction{};  // world; the direction has unit length
-    float t = 0;                               // to what it hit, +inf: nothing. Not traced: 0. Shadow: to the light, +inf: a sun
-    std::array<float, 3> weight{};             // share of what it sees that reaches the pixel
-    std::array<float, 3> light{};              // linear RGB that it adds to the pixel; a surface's own and ambient light stand at
-                                               // the ray that hit it, a light's at its shadow ray
+    float t = 0;                    // to what it hit, +inf: nothing. Not traced: 0. Shadow: to the light, +inf: a sun
+    std::array<float, 3> weight{};  // share of what it sees that reaches the pixel
+    std::array<float, 3> light{};   // linear RGB that it adds to the pixel; a surface's own and ambient light stand at
+                                    // the ray that hit it, a light's at its shadow ray
     int prim = -1, instance = -1, material = -1;  // of what it hit; not of shadow rays
     int light_index = -1;                         // of shadow rays
     bool occluded = false;
@@ -33,8 +33,8 @@ struct RayRecord {
 };
 
 struct RayTree {
-    std::vector<RayRecord> rays;  // parents before children; the first is the camera ray
-    bool truncated = false;       // there were more than the room for them
+    std::vector<RayRecord> rays;   // parents before children; the first is the camera ray
+    bool truncated = false;        // there were more than the room for them
     std::array<float, 3> color{};  // linear RGB of the pixel: the sum of all rays' light
 };
 

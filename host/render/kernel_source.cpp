@@ -152,26 +152,38 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     KernelSource source;
     std::string kernel_file;
     switch (kind) {
+        case KernelKind::generations:
+            out << "#define RT_SHOW_GENERATIONS\n";
+            [[fallthrough]];
         case KernelKind::color:
-            define_int(out, "RT_RAY_SLOTS", settings.ray_slots);
             kernel_file = "tracers/" + settings.tracer + ".cl";
             source.entry = "trace_" + settings.tracer;
             break;
         case KernelKind::aov: {
             static const std::map<std::string, unsigned> numbers = {{"t", 1},  {"prim", 2},  {"instance", 3},   {"normal", 4},
                                                                     {"uv", 5}, {"steps", 6}, {"leaf_tests", 7}, {"lanes", 8}};
-            define_int(out, "RT_AOV", numbers.at(settings.aov));
-            if (numbers.at(settings.aov) >= numbers.at("steps")) out << "#define RT_COUNT_STEPS\n";
+            const unsigned number = numbers.at(settings.aov);
+            define_int(out, "RT_AOV", number);
+            if (number >= numbers.at("steps")) out << "#define RT_COUNT_STEPS\n";
             kernel_file = "tracers/aov.cl";
             source.entry = "trace_aov";
             break;
         }
-        case KernelKind::rays:
+        case KernelKind::counted_rays:
             out << "#define RT_COUNT_STEPS\n";
+            [[fallthrough]];
+        case KernelKind::rays:
             kernel_file = "tracers/rays.cl";
             source.entry = "trace_rays";
             break;
+        case KernelKind::inspect:
+            out << "#define RT_INSPECT\n#define RT_COUNT_STEPS\n";
+            kernel_file = "tracers/inspect.cl";
+            source.entry = "trace_inspect";
+            break;
     }
+    const bool shades = kind == KernelKind::color || kind == KernelKind::generations || kind == KernelKind::inspect;
+    if (shades) define_int(out, "RT_RAY_SLOTS", settings.ray_slots);
     for (const auto& [name, value] : defines) define(out, name, value);
 
     const std::string folder = std::string("plugins/accel/") + accel.id + "/";
@@ -187,8 +199,8 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "vec.h");
     include(out, "surface.h");
     include(out, "camera.h");
-    if (kind == KernelKind::color)
-        for (const char* name : {"material.h", "shading.h", "ray_queue.h"}) include(out, name);
+    if (shades)
+        for (const char* name : {"material.h", "ray_queue.h", "inspect.h", "shading.h", "generations.h"}) include(out, name);
     include(out, kernel_file);
 
     source.text = out.str();

@@ -15,7 +15,8 @@ struct SceneFeatures {
 };
 SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 
-enum class KernelKind { color, aov, rays };
+// generations: the tracer of color, whose picture is how many generations of rays each pixel has.
+enum class KernelKind { color, generations, aov, rays, counted_rays, inspect };
 
 // How a picture is cut. The first four are compiled in, the rest are numbers of the frame.
 struct Layout {
@@ -27,6 +28,9 @@ struct Layout {
     unsigned block_w = 1, block_h = 1;    // pixels traced side by side, block_w * block_h = lanes
     unsigned groups_x(unsigned width) const { return (width + packet_w * group_w - 1) / (packet_w * group_w); }
     unsigned groups_y(unsigned height) const { return (height + packet_h * group_h - 1) / (packet_h * group_h); }
+    unsigned blocks_x() const { return (packet_w + block_w - 1) / block_w; }
+    unsigned blocks() const { return blocks_x() * ((packet_h + block_h - 1) / block_h); }
+    unsigned rays() const { return blocks() * lanes; }  // camera rays of a packet, those outside it included
     unsigned group_packets() const { return group_w * group_h; }
     unsigned local_size() const { return cpu ? 1 : group_packets(); }
 };

@@ -37,13 +37,17 @@ void warm_up(Device& device, const TraceProgram& program, const Prepared& prepar
     const unsigned size = layout.local_size();
     cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 4096),
         counters(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * 16),
+        distances(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * layout.rays() * sizeof(float)),
         lights(device.context(), CL_MEM_READ_ONLY, 256);
     cl::Kernel kernel = program.kernel();
     cl_uint at = 0;
     kernel.setArg(at++, frame_buffer);
     kernel.setArg(at++, cl_uint(0));
     kernel.setArg(at++, out);
-    if (program.kind == KernelKind::color) kernel.setArg(at++, counters);
+    if (program.has_generations()) {
+        kernel.setArg(at++, counters);
+        kernel.setArg(at++, distances);
+    }
     prepared.on_device->bind(kernel, at, lights);
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size), cl::NDRange(size));
     queue.finish();
@@ -86,7 +90,10 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         if (progress.cancelled()) throw Cancelled();
         progress.stage("compiling kernels");
         progress.report(-1);
-        const KernelKind kind = next->settings.aov == "color" ? KernelKind::color : KernelKind::aov;
+        const std::string& aov = next->settings.aov;
+        const KernelKind kind = aov == "color"         ? KernelKind::color
+                                : aov == "generations" ? KernelKind::generations
+                                                       : KernelKind::aov;
         const auto start = std::chrono::steady_clock::now();
         const KernelSource source = assemble_kernel(next->settings, make_layout(next->settings, device_->info().cpu), kind,
                                                     features_of(*scene, next->accel->scene), *plugin, next->accel->defines);

@@ -16,6 +16,8 @@ class TraceProgram {
     std::string entry;
     KernelKind kind = KernelKind::color;
     double compile_ms = 0;
+    // Whether it traces more than camera rays, and so takes buffers for counters and distances.
+    bool has_generations() const { return kind == KernelKind::color || kind == KernelKind::generations; }
     // Kernel objects hold arguments, so each user makes its own.
     cl::Kernel kernel() const { return cl::Kernel(program, entry.c_str()); }
 };

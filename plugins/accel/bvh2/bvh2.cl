@@ -6,6 +6,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     vfloat stack_t[BVH2_STACK];
     uint stack_node[BVH2_STACK];
     uint top = 0, at = root;
+    uint inside = rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))); /* lanes in the node, for counting programs */
     for (;;) {
         if (at & BVH2_LEAF) {
             const uint first = BVH2_LEAF_FIRST(at), count = BVH2_LEAF_COUNT(at);
@@ -14,7 +15,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
             if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return;
 #endif
         } else {
-            RT_COUNT_STEP(hit);
+            RT_COUNT_VISIT(hit, inside);
             const global bvh2_node *n = ctx->bvh2_nodes + at;
             vfloat t0, t1;
 #if RT_LANES == 1
@@ -37,21 +38,25 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                 stack_t[top] = swap ? rt_select(in0, t0, RT_INFINITY) : rt_select(in1, t1, RT_INFINITY);
                 if (RT_STACK_OK(top + 1u, BVH2_STACK, hit)) ++top;
                 at = swap ? child1 : child0;
+                inside = swap ? any1 : any0;
                 continue;
             }
             if (any0 != 0u) {
                 at = child0;
+                inside = any0;
                 continue;
             }
             if (any1 != 0u) {
                 at = child1;
+                inside = any1;
                 continue;
             }
         }
         do {
             if (top == 0u) return;
             --top;
-        } while (!rt_any(RT_MASK(stack_t[top] <= hit->t)));
+            inside = rt_bits(RT_MASK(stack_t[top] <= hit->t));
+        } while (inside == 0u);
         at = stack_node[top];
     }
 }

@@ -13,7 +13,6 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     const uint end = ctx->spheres_nodes[root].skip;
     for (uint at = root + 1u; at < end;) {
         const global spheres_node *node = ctx->spheres_nodes + at;
-        RT_COUNT_STEP(hit);
         const vfloat lx = rt_vfloat(node->center[0]) - ray->ox;
         const vfloat ly = rt_vfloat(node->center[1]) - ray->oy;
         const vfloat lz = rt_vfloat(node->center[2]) - ray->oz;
@@ -24,7 +23,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         const vfloat half_chord = radius * inv_d;
         const vfloat in = rt_max(middle - half_chord, ray->t_min), out = rt_min(middle + half_chord, hit->t);
         /* What overflowed into NaN enters. */
-        if (!rt_any(RT_MASK(in <= out) & ~RT_MASK(distance2 > radius * radius))) {
+        const uint inside = rt_bits(RT_MASK(in <= out) & ~RT_MASK(distance2 > radius * radius));
+        RT_COUNT_VISIT(hit, inside);
+        if (inside == 0u) {
             at = node->skip;
             continue;
         }

@@ -1,0 +1,27 @@
+/* inspect.cl -- one packet, traced as ever, with the rays of one of its pixels written down: see inspect.h. */
+
+/* One work-group. records: room for `capacity`. summary: how many there were, which may be more; the pixel's colour in the next
+ * three, as bits of floats. packet: the one to trace, of the group's; pixel: the one to watch, of the packet's. */
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+trace_inspect(const constant rt_frame *frame, const uint group, const uint packet_wanted, const uint pixel,
+              global rt_ray_record *records, const uint capacity, global uint *summary, global float *distances, RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    rt_queue queues[2];
+    float red[RT_MAX_PIXELS], green[RT_MAX_PIXELS], blue[RT_MAX_PIXELS];
+    RT_FOR_PACKETS(packet)
+    {
+        if (packet != packet_wanted) continue;
+        rt_tally tally = {0, 0, 0, 0};
+        tally.recorder.records = records;
+        tally.recorder.count = 0u;
+        tally.recorder.capacity = capacity;
+        tally.recorder.pixel = (int)pixel;
+        tally.recorder.too_deep = 0;
+        rt_trace_generations(&ctx, frame, rt_packet_origin(frame, group, packet), queues, red, green, blue, distances, &tally);
+        summary[0] = tally.recorder.count;
+        summary[1] = as_uint(red[pixel]);
+        summary[2] = as_uint(green[pixel]);
+        summary[3] = as_uint(blue[pixel]);
+    }
+}

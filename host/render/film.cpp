@@ -1,0 +1,62 @@
+#include "render/film.hpp"
+
+#include <map>
+
+#include "device/kernel_files.hpp"
+#include "device/program.hpp"
+#include "render/guarded.hpp"
+
+namespace clarity {
+namespace {
+
+// As film.cl numbers them.
+cl_uint number_of_tone(const std::string& tone) {
+    static const std::map<std::string, cl_uint> numbers = {{"linear", 0}, {"reinhard", 1}, {"aces", 2}, {"agx", 3}};
+    return numbers.at(tone);
+}
+
+}  // namespace
+
+FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(std::move(device)) {
+    const BuildResult built = build_program(*device_, kernel_text("film.cl"), "-cl-std=CL1.2", "film");
+    guarded(*device_, "preparing the film", [&] {
+        program_ = built.program;
+        map_tones_ = cl::Kernel(program_, "map_tones");
+        sum_counters_ = cl::Kernel(program_, "sum_counters");
+    });
+}
+
+RayCounts FilmKernels::sum(const cl::Buffer& counters, unsigned packets, KernelTime& time) {
+    cl::CommandQueue& queue = device_->queue();
+    const cl::Buffer& out = sums_.fit(device_->context(), 16);
+    cl_uint sums[4] = {};
+    cl::Event event;
+    queue.enqueueWriteBuffer(out, CL_TRUE, 0, sizeof sums, sums);
+    sum_counters_.setArg(0, counters);
+    sum_counters_.setArg(1, packets);
+    sum_counters_.setArg(2, out);
+    queue.enqueueNDRangeKernel(sum_counters_, cl::NullRange, cl::NDRange(1024), cl::NDRange(64), nullptr, &event);
+    queue.enqueueReadBuffer(out, CL_TRUE, 0, sizeof sums, sums);
+    time = {"counters", event_ms(event)};
+    return {sums[0], sums[1], sums[2], sums[3]};
+}
+
+void FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba,
+                       std::vector<KernelTime>* times) {
+    cl::CommandQueue& queue = device_->queue();
+    const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
+    const size_t items = (room(pixels) / kPixelsAtOnce + 63) / 64 * 64;
+    cl::Event mapped, read;
+    map_tones_.setArg(0, film);
+    map_tones_.setArg(1, display);
+    map_tones_.setArg(2, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce));
+    map_tones_.setArg(3, static_cast<float>(settings.exposure));
+    map_tones_.setArg(4, number_of_tone(settings.tone));
+    queue.enqueueNDRangeKernel(map_tones_, cl::NullRange, cl::NDRange(items), cl::NDRange(64), nullptr, &mapped);
+    queue.enqueueReadBuffer(display, CL_TRUE, 0, pixels * 4, rgba, nullptr, &read);
+    if (!times) return;
+    times->push_back({"tone map", event_ms(mapped)});
+    times->push_back({"read-back", event_ms(read)});
+}
+
+}  // namespace clarity

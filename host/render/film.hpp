@@ -1,0 +1,34 @@
+// film.hpp -- kernels after tracing: sums over counters, tones for a screen.
+#pragma once
+#include <memory>
+
+#include "render/growing_buffer.hpp"
+#include "render/renderer.hpp"
+
+namespace clarity {
+
+struct RayCounts {
+    uint64_t shadow = 0, secondary = 0, dropped = 0, overflowed = 0;
+};
+
+class FilmKernels {
+ public:
+    // The film is read and the display written by whole vectors of this many pixels, so both have room for them.
+    static constexpr size_t kPixelsAtOnce = 4;
+    static size_t room(size_t pixels) { return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce; }
+
+    // Throws Error(kernel_build_failed).
+    explicit FilmKernels(std::shared_ptr<Device> device);
+    // counters: of so many packets, as trace_iterative leaves them.
+    RayCounts sum(const cl::Buffer& counters, unsigned packets, KernelTime& time);
+    // film: room(pixels) float4, sums of samples. rgba: 4 * pixels bytes. Adds its times.
+    void show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
+
+ private:
+    std::shared_ptr<Device> device_;
+    cl::Program program_;
+    cl::Kernel map_tones_, sum_counters_;
+    GrowingBuffer display_{CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR}, sums_{CL_MEM_READ_WRITE};
+};
+
+}  // namespace clarity
