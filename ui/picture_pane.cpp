@@ -22,9 +22,6 @@ constexpr float kBehind = 0.15f;  // opacity of what lies behind a surface
 bool same(const Camera& a, const Camera& b) {
     return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
 }
-bool same(const Rect& a, const Rect& b) {
-    return a.x == b.x && a.y == b.y && a.width == b.width && a.height == b.height;
-}
 
 // The shown part of a texture that covers `area`, its first row at the top or at the bottom.
 void add_part(ImDrawList& list, unsigned texture, const Rect& area, const Rect& shown, bool top_first) {
