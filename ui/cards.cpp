@@ -149,10 +149,10 @@ void draw_status_line(const Rect& area, const Session& session, const VolumeOver
         status_item(text, colors::kText, "rays of all kinds by the time of the kernels");
         std::snprintf(text, sizeof text, "%d\u00d7%d", s.width, s.height);
         status_item(text, colors::kDim, "pixels of the picture");
-        std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->stats.samples), s.spp);
+        std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->main.stats.samples), s.spp);
         status_item(text, colors::kDim, "samples a pixel so far; they add up while the camera rests");
-        if (picture->stats.dropped > 0)
-            status_item(count_text(static_cast<double>(picture->stats.dropped)) + " rays dropped", colors::kAmber,
+        if (picture->main.stats.dropped > 0)
+            status_item(count_text(static_cast<double>(picture->main.stats.dropped)) + " rays dropped", colors::kAmber,
                         "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab");
         if (overlay.level()) {
             const std::string level =
@@ -160,10 +160,10 @@ void draw_status_line(const Rect& area, const Session& session, const VolumeOver
             const std::string more = overlay.count() >= VolumeOverlay::kLimit ? ", first " : ", ";
             status_item(level + more + std::to_string(overlay.count()) + " volumes", colors::kAmber);
         }
-        const Prepared& prepared = *picture->job.ready->prepared;
+        const Prepared& prepared = *picture->job.ready->main.prepared;
         status_item(prepared.accel->plugin->id, colors::kDim, prepared.accel->plugin->name);
-        status_item(shortened(picture->job.ready->device->info().name, ImGui::GetContentRegionAvail().x), colors::kDim,
-                    picture->job.ready->device->info().name);
+        status_item(shortened(picture->job.ready->main.device->info().name, ImGui::GetContentRegionAvail().x), colors::kDim,
+                    picture->job.ready->main.device->info().name);
     }
     ImGui::End();
     ImGui::PopStyleVar(2);

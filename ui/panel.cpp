@@ -14,7 +14,7 @@ void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiSt
                  ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav);
     if (ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown | ImGuiTabBarFlags_NoTooltip)) {
-        for (int i = 0; i < 6; ++i) {
+        for (int i = 0; i < kTabCount; ++i) {
             const Tab tab = static_cast<Tab>(i);
             const bool bring = state.tab_asked && state.tab == tab;
             if (!ImGui::BeginTabItem(kTabNames[i], nullptr, bring ? ImGuiTabItemFlags_SetSelected : 0)) continue;
@@ -27,6 +27,8 @@ void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiSt
                     break;
                 case Tab::scene:
                     draw_scene_tab(session, state);
+                    break;
+                case Tab::inspect:
                     break;
                 case Tab::statistics:
                     draw_statistics_tab(session);

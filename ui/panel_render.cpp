@@ -29,11 +29,11 @@ void device_row(Session& session) {
     const auto ready = session.ready();
     std::string name = "looking for devices\u2026";
     if (devices && devices->empty()) name = "none found";
-    if (ready) name = ready->device->info().name;
+    if (ready) name = ready->main.device->info().name;
     if (ImGui::BeginCombo("##device", name.c_str())) {
         for (const DeviceInfo& device : devices ? *devices : std::vector<DeviceInfo>()) {
-            const bool chosen = ready && ready->device->info().id() == device.id();
-            if (option(device.id() + "  " + device.name, chosen)) session.wish.device = device.id();
+            const bool chosen = ready && ready->main.device->info().id() == device.id();
+            if (option(device.id() + "  " + device.name, chosen)) session.edited().device = device.id();
             tooltip(device.platform + "\n" + device.version + "\ndriver " + device.driver);
         }
         ImGui::EndCombo();
@@ -42,7 +42,7 @@ void device_row(Session& session) {
 }
 
 void accel_rows(Session& session) {
-    Settings& settings = session.wish.settings;
+    Settings& settings = session.edited().settings;
     const rt_plugin* current = session.plugins().accel(settings.accel);
     row_label("Structure", "how the scene is held for tracing; each is a plugin");
     if (ImGui::BeginCombo("##accel", current ? current->name : settings.accel.c_str())) {
@@ -111,13 +111,13 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, const UiState& st
         section(group.title);
         for (const char* key : group.keys)
             if (const Setting* row = find_setting(key)) {
-                setting_row(*row, session.wish.settings);
-                if (row->key == "size") fit_button(session.wish.settings, state);
+                setting_row(*row, session.edited().settings);
+                if (row->key == "size") fit_button(session.edited().settings, state);
             }
     }
     section("MORE");
     for (const Setting& row : settings_table())
-        if (!in_a_group(row.key)) setting_row(row, session.wish.settings);
+        if (!in_a_group(row.key)) setting_row(row, session.edited().settings);
 }
 
 }  // namespace clarity

@@ -36,7 +36,7 @@ void frame_rows(Session& session) {
     row_text("Median", ms_text(percentile(times, 0.5)));
     row_text("95 %", ms_text(percentile(times, 0.95)), "19 frames of 20 were faster");
     if (const auto picture = session.picture())
-        row_text("Kernels", ms_text(picture->stats.device_ms), "of the last sample, by the device's clock");
+        row_text("Kernels", ms_text(picture->main.stats.device_ms), "of the last sample, by the device's clock");
     row_label("Keep tracing", "trace the same picture again and again, to measure");
     ImGui::Checkbox("##continuous", &session.wish.continuous);
 }
@@ -44,7 +44,7 @@ void frame_rows(Session& session) {
 void ray_rows(Session& session) {
     const auto picture = session.picture();
     if (!picture) return;
-    const FrameStats& stats = picture->stats;
+    const FrameStats& stats = picture->main.stats;
     char rate[48];
     std::snprintf(rate, sizeof rate, "%.1f Mrays/s", session.mrays_per_second());
     row_text("Rate", rate, "rays of all kinds by the time of the kernels");
@@ -67,7 +67,7 @@ void draw_statistics_tab(Session& session) {
     ray_rows(session);
     const auto ready = session.ready();
     if (!ready) return;
-    const Prepared& prepared = *ready->prepared;
+    const Prepared& prepared = *ready->main.prepared;
     section("ACCELERATION STRUCTURE");
     row_text("Structure", prepared.accel->plugin->name);
     row_text("Build", ms_text(prepared.accel->build_ms), "the plugin's builder alone");
@@ -81,7 +81,7 @@ void draw_statistics_tab(Session& session) {
     const std::string cached = prepared.compile_cached ? " (cached)" : "";
     row_text("Compile", prepared.compile_ms > 0 ? ms_text(prepared.compile_ms) + cached : "shared with the last");
     section("DEVICE");
-    const DeviceInfo& device = ready->device->info();
+    const DeviceInfo& device = ready->main.device->info();
     row_text("Name", device.name);
     row_text("Platform", device.platform);
     row_text("Driver", device.driver);
