@@ -83,7 +83,7 @@ void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float sca
     const float width = (shown < 64 ? 1.8f : shown < 1000 ? 1.4f : 1.0f) * scale;
     const uint32_t color = with_opacity(level_color(*side.fetched), strength), faint = with_opacity(color, 0.4f);
     const int segments = std::clamp(static_cast<int>(16000 / shown), 12, 64);
-    const bool circles = shown <= 1500;  // beyond, outlines say as much
+    const bool circles = shown <= 200;  // beyond, outlines say as much
     lines.reserve(lines.size() + side.volumes->boxes.size() * 12 +
                   side.volumes->spheres.size() * static_cast<size_t>(segments) * (circles ? 4 : 1));
     for (const auto& box : side.volumes->boxes) lines.box(box, color, width);

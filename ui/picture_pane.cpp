@@ -4,6 +4,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "ui/camera_control.hpp"
@@ -113,6 +114,7 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     const bool anew = volumes || moved || resized || lines.marks_revision != marks_revision_ ||
                       lines.distance != distance.get() || lines.hides_behind != overlay.hides_behind();
     if (!anew) return;
+    const auto begin = std::chrono::steady_clock::now();
     const Projection projection(place.area, camera);
     if (volumes) {
         lines.volumes.clear();
@@ -132,6 +134,7 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     if (known && distances_of_[side] != distance && distances_[side].upload(*distance).empty()) distances_of_[side] = distance;
     lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, known ? &distances_[side] : nullptr,
                      overlay.hides_behind() ? 0.0f : kBehind);
+    lines_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
 void PicturePane::draw_lines(ImDrawList& list, const VolumeOverlay& overlay) {

@@ -29,6 +29,7 @@ class PicturePane {
     const std::vector<PicturePlace>& places() const { return places_; }
     const std::vector<LightHandle>& handles() const { return handles_; }
     size_t lines_drawn(unsigned side) const { return lines_[side].any ? lines_[side].layer.drawn() : 0; }
+    double lines_ms() const { return lines_ms_; }  // that drawing lines anew took last, waiting for OpenGL left aside
     bool rays_shown() const { return rays_shown_; }
 
  private:
@@ -73,6 +74,7 @@ class PicturePane {
     std::array<Lines, 2> lines_;
     LineList marks_;  // rays and selection, the same on both sides
     uint64_t marks_revision_ = 0;
+    double lines_ms_ = 0;
     Selected selected_;
     bool rays_shown_ = false;
 

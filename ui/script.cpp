@@ -17,6 +17,7 @@
 #include "plugin/parameters.hpp"
 #include "render/image_io.hpp"
 #include "ui/app.hpp"
+#include "ui/picture_script.hpp"
 #include "ui/widgets.hpp"
 
 namespace clarity {
@@ -234,7 +235,7 @@ bool Script::run(App& app, const std::string& line) {
                     nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());
     } else if (command == "quit") {
         app.close();
-    } else {
+    } else if (!run_picture_command(app, command, text)) {
         throw Error(Exit::usage, "no such command");
     }
     return true;

@@ -11,6 +11,7 @@
 //   state              one line of JSON: what is shown, and how the window fares; `state reset` starts its maxima anew
 //   find LABEL         where that row's widget, or that entry of a list, was drawn last: JSON x, y, w, h
 //   scale FACTOR       of the text                             level N|bottom|off         quit
+// And what picture_script.hpp has.
 #pragma once
 #include <deque>
 #include <memory>

@@ -1,0 +1,16 @@
+// picture_script.hpp -- the part of the window's script that is about the picture.
+//   mode wipe|side|difference   how two sides are shown        wipe SHARE        where, of the picture's width
+//   follow 0|1   the inspector follows the mouse               rays 0|1          the inspected rays are drawn
+//   lights 0|1   as handles                                    behind 0|1        volumes behind surfaces are drawn
+//   layout       answers with JSON: where pictures and handles are, how many lines, whether rays are drawn
+#pragma once
+#include <string>
+
+namespace clarity {
+
+class App;
+
+// False: it is no such command. Throws Error(usage).
+bool run_picture_command(App& app, const std::string& command, const std::string& text);
+
+}  // namespace clarity
