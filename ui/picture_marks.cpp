@@ -73,9 +73,8 @@ void PicturePane::draw_caption(ImDrawList& list, const Session& session, size_t 
 void PicturePane::draw_scale(ImDrawList& list, size_t place) {
     const PictureSide& side = side_of(places_[place]);
     if (side.scale.map == FalseColorScale::Map::none) return;
-    CardStack& stack = stack_of(place);
-    const ImVec2 size = color_bar_size(side.scale, std::min(stack.max_width(), 300 * ui_scale()));
-    const auto card = stack.take(place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
+    const ImVec2 size = color_bar_size(side.scale, std::min(card_width(place), 300 * ui_scale()));
+    const auto card = take_card(place, place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
     if (!card) return;
     std::optional<float> value;
     if (const auto hover = mouse_.hover(); hover && side.values && !side.values->pixels.empty())
@@ -92,14 +91,13 @@ void PicturePane::draw_volume_card(ImDrawList& list, size_t place, VolumeOverlay
     if (count == 0) text = overlay.ready() ? "no volumes there" : "walking the tree";
     std::vector<CardText> lines = {{level, color_of(level_color(*overlay.level())), true}, {text, colors::kText, false, true}};
     if (overlay.more(side)) lines.push_back({"the first of more: no more are drawn", colors::kAmber});
-    CardStack& stack = stack_of(place);
     const char* label = overlay.hides_behind() ? "Show those behind" : "Hide those behind";
     const ImVec2 inner = ImGui::CalcTextSize("Show those behind");
     const float pad = card_padding(), row = place == 0 ? std::round(inner.y + 6 * ui_scale()) : 0;
-    ImVec2 size = card_size(lines, stack.max_width());
+    ImVec2 size = card_size(lines, card_width(place));
     if (place == 0) size.x = std::max(size.x, inner.x + 2 * pad + 12 * ui_scale());
     size.y += row;
-    const auto card = stack.take(place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
+    const auto card = take_card(place, place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
     if (!card) return;
     draw_card(list, *card, lines);
     if (place != 0) return;
@@ -113,9 +111,8 @@ void PicturePane::draw_volume_card(ImDrawList& list, size_t place, VolumeOverlay
 void PicturePane::draw_ray_legend(ImDrawList& list) {
     std::vector<CardText> lines;
     for (const RayKind& kind : ray_kinds()) lines.push_back({kind.name, color_of(kind.color), false, !lines.empty()});
-    CardStack& stack = stack_of(0);
-    const ImVec2 size = card_size(lines, std::min(stack.max_width(), 240 * ui_scale()));
-    if (const auto card = stack.take(Corner::bottom_right, size)) draw_card(list, *card, lines);
+    const ImVec2 size = card_size(lines, std::min(card_width(0), 240 * ui_scale()));
+    if (const auto card = take_card(0, Corner::bottom_right, size)) draw_card(list, *card, lines);
 }
 
 void PicturePane::draw_wipe(ImDrawList& list) const {

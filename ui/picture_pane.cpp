@@ -60,7 +60,21 @@ void PicturePane::lay_out(const Rect& room, const Session& session, const UiStat
             head = std::max(head, card_size(caption_lines(caption_of(session, *picture_, side)), std::floor(room.width / 2 - 8)).y);
     places_ = lay_out_pictures(room, aspect, picture_->other.has_value(), state.compare_mode, state.wipe, std::round(head + 6));
     area_ = places_.front().area;
-    for (size_t i = 0; i < places_.size(); ++i) stacks_[i] = CardStack(places_[i].area, std::round(10 * ui_scale()));
+    const float margin = std::round(10 * ui_scale());
+    below_ = {};
+    for (size_t i = 0; i < places_.size(); ++i) {
+        const Rect& area = places_[i].area;
+        const float bottom = area.y + area.height;
+        stacks_[i] = CardStack(area, margin);
+        if (side_by_side()) below_[i] = CardStack({area.x - margin, bottom, area.width + 2 * margin, room.y + room.height - bottom}, margin);
+    }
+}
+
+std::optional<Rect> PicturePane::take_card(size_t place, Corner corner, const ImVec2& size) {
+    if (!side_by_side()) return stacks_[0].take(corner, size);
+    const Corner upper = corner == Corner::bottom_right ? Corner::top_right : Corner::top_left;
+    if (const auto card = below_[place].take(upper, size)) return card;
+    return stacks_[place].take(corner, size);
 }
 
 void PicturePane::draw_pictures(ImDrawList& list) {

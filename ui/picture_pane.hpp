@@ -65,7 +65,9 @@ class PicturePane {
     void draw_wipe(ImDrawList& list) const;
     const PictureSide& side_of(const PicturePlace& place) const;
     bool side_by_side() const { return places_.size() == 2 && places_[0].area.x != places_[1].area.x; }
-    CardStack& stack_of(size_t place) { return stacks_[side_by_side() ? place : 0]; }
+    // Room for a card at a place: its corner, or below it if pictures lie side by side and leave enough there.
+    std::optional<Rect> take_card(size_t place, Corner corner, const ImVec2& size);
+    float card_width(size_t place) const { return stacks_[side_by_side() ? place : 0].max_width(); }
 
     std::shared_ptr<const Picture> picture_;
     std::array<PictureTexture, 2> textures_, distances_;
@@ -81,7 +83,7 @@ class PicturePane {
     Rect area_;
     std::vector<PicturePlace> places_;
     std::vector<LightHandle> handles_;
-    std::array<CardStack, 2> stacks_;
+    std::array<CardStack, 2> stacks_, below_;  // over the pictures, and under those that lie side by side
     PictureMouse mouse_;
 };
 
