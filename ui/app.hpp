@@ -36,6 +36,7 @@ class App {
     const Rect& picture_area() const { return pane_->area(); }
     bool typing() const;
     void close() { window_->close(); }
+    void drop(const std::vector<std::string>& files) { window_->drop(files); }
     // The next frame is written there as PNG.
     void capture(const std::string& path) { capture_path_ = path; }
 

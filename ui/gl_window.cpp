@@ -157,6 +157,12 @@ std::vector<std::string> GlWindow::take_dropped_files() {
     return std::exchange(dropped_, {});
 }
 
+void GlWindow::drop(const std::vector<std::string>& files) {
+    std::vector<const char*> paths;
+    for (const std::string& file : files) paths.push_back(file.c_str());
+    Callbacks::drop(window_, static_cast<int>(paths.size()), paths.data());
+}
+
 double GlWindow::content_scale() const {
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);

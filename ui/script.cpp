@@ -72,6 +72,14 @@ std::string inspection_text(const Session& session) {
     return json.dump();
 }
 
+std::vector<std::string> dropped_files(const std::string& text) {
+    try {
+        return nlohmann::json::parse(text).get<std::vector<std::string>>();
+    } catch (const nlohmann::json::exception&) {
+        throw Error(Exit::usage, "`" + text + "` is no array of paths");
+    }
+}
+
 void choose_tab(UiState& state, const std::string& name) {
     for (int i = 0; i < kTabCount; ++i)
         if (name == kTabNames[i]) return state.show_tab(static_cast<Tab>(i));
@@ -173,6 +181,10 @@ bool Script::run(App& app, const std::string& line) {
         session.edited().device = text;
     } else if (command == "open") {
         session.open({text});
+    } else if (command == "drop") {
+        app.drop(dropped_files(text));
+    } else if (command == "moving_fps") {
+        session.wish.moving_fps = std::strtof(text.c_str(), nullptr);
     } else if (command == "cancel") {
         session.cancel();
     } else if (command == "edit") {
@@ -273,6 +285,9 @@ std::string Script::state_text(App& app) const {
     json["bookmarks"] = app.state().bookmarks.size();
     json["keys_open"] = app.state().keys_open;
     json["browser_open"] = app.state().browser_open;
+    json["panel_visible"] = app.state().panel_visible;
+    json["inspect_hover"] = app.state().inspect_hover;
+    json["show_lights"] = app.state().show_lights;
     json["compare_mode"] = kCompareNames[static_cast<int>(app.state().compare_mode)];
     json["wipe"] = app.state().wipe;
     json["resident_kb"] = resident_kilobytes();

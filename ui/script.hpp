@@ -4,6 +4,7 @@
 // `error COMMAND: why`. Keys and mouse are not among them: tests send real events.
 //   set KEY VALUE      a setting, as on the command line      accel ID[,key=value...]    device CHOICE
 //   open FILE          as the Scene tab does                   tab NAME                   map thesis|viewer
+//   drop ["FILE",...]  as if they were dropped onto the window  moving_fps N              while something moves; 0: all pixels
 //   wait idle [S]      until all is prepared and traced, at most S seconds (60)
 //   wait busy|ready    until something is being prepared; until nothing is (tracing may go on)
 //   focus path         the keyboard into the path field        continuous 0|1             cancel

@@ -335,8 +335,11 @@ void Session::take_outcomes() {
             case Outcome::Kind::failed:
                 report(outcome.message, outcome.details);
                 if (outcome.files_failed && ready_) {
+                    // The worker goes on with the old files by itself: asking again would take the message away.
+                    const bool asked = posted_key_ == prepare_key(wished_request());
                     files_ = ready_->loaded->files;
                     files_revision_ = ready_->loaded->files_revision;
+                    if (asked) posted_key_ = prepare_key(wished_request());
                 }
                 break;
             case Outcome::Kind::cancelled:
