@@ -14,7 +14,7 @@ Rect whole(const Rect& area) {
 }  // namespace
 
 std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool compared, CompareMode mode, float wipe,
-                                           float head) {
+                                           float head, float foot) {
     using What = PicturePlace::What;
     if (!compared || mode != CompareMode::side_by_side) {
         const Rect area = whole(letter_box(room, aspect));
@@ -26,7 +26,9 @@ std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool 
     }
     const float gap = std::min(std::round(room.width * 0.02f), 12.0f), half = std::floor((room.width - gap) / 2);
     const float taken = std::min(head, room.height / 2);
-    const Rect left = whole(letter_box({room.x, room.y + taken, half, room.height - taken}, aspect));
+    Rect left = whole(letter_box({room.x, room.y + taken, half, room.height - taken}, aspect));
+    const float free = room.height - taken - left.height;
+    left.y = room.y + taken + std::floor(std::max(0.0f, free - std::max(foot, 0.0f)) / 2);
     Rect right = left;
     right.x += half + gap;
     return {{What::main, left, left}, {What::other, right, right}};

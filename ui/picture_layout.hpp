@@ -17,8 +17,10 @@ struct PicturePlace {
     unsigned side() const { return what == What::other ? 1 : 0; }
 };
 
-// head: height of the captions, which stand above pictures that lie side by side and over the others.
-std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool compared, CompareMode mode, float wipe, float head);
+// head: height of the captions, which stand above pictures that lie side by side and over the others. foot: what shall be free
+// below those, if it can be without making them smaller.
+std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool compared, CompareMode mode, float wipe, float head,
+                                           float foot);
 
 // The pixel of a picture of width x height at a place of its area; false outside.
 bool pixel_at(const Rect& area, const glm::vec2& place, unsigned width, unsigned height, unsigned& x, unsigned& y);

@@ -45,7 +45,7 @@ void PicturePane::draw_cards(ImDrawList& list, const Session& session, VolumeOve
             const std::vector<CardText> lines = {{"Difference", colors::kText, true},
                                                  {difference_text(*picture_->difference), colors::kText}};
             const ImVec2 size = card_size(lines, stacks_[0].max_width());
-            if (const auto card = stacks_[0].take(Corner::bottom_left, size)) draw_card(list, *card, lines);
+            if (const auto card = take_card(0, Corner::bottom_left, size)) draw_card(list, *card, lines);
         }
     } else {
         for (size_t i = 0; i < places_.size(); ++i) {
@@ -67,7 +67,7 @@ void PicturePane::draw_caption(ImDrawList& list, const Session& session, size_t 
         return;
     }
     const ImVec2 size = card_size(lines, stacks_[0].max_width());
-    if (const auto card = stacks_[0].take(side == 0 ? Corner::top_left : Corner::top_right, size)) draw_card(list, *card, lines);
+    if (const auto card = take_card(0, side == 0 ? Corner::top_left : Corner::top_right, size)) draw_card(list, *card, lines);
 }
 
 void PicturePane::draw_scale(ImDrawList& list, size_t place) {
@@ -172,12 +172,22 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
         if (chosen) list.AddCircle(p, r + 3.5f * scale, ImGui::GetColorU32(colors::kAccent), 0, 2 * scale);
         const std::string name = light.name + (light.on ? "" : " (off)");
         const ImVec2 size = ImGui::CalcTextSize(name.c_str());
-        const float text_x = std::clamp(p.x - size.x / 2, area_.x + 2, std::max(area_.x + 2, area_.x + area_.width - size.x - 2));
-        const bool low = p.y + r + 6 * scale + size.y > area_.y + area_.height;
-        const float text_y = low ? p.y - r - 6 * scale - size.y : p.y + r + 6 * scale;
-        list.AddRectFilled({text_x - 3 * scale, text_y}, {text_x + size.x + 3 * scale, text_y + size.y},
-                           with_opacity(kHalo, opacity), 3 * scale);
-        list.AddText({text_x, text_y}, with_opacity(ImGui::GetColorU32(colors::kText), opacity), name.c_str());
+        // Below, above, right, left: the first place that is free.
+        const float gap = r + 6 * scale, w = size.x + 6 * scale;
+        const Rect places[] = {{p.x - w / 2, p.y + gap, w, size.y},
+                               {p.x - w / 2, p.y - gap - size.y, w, size.y},
+                               {p.x + gap, p.y - size.y / 2, w, size.y},
+                               {p.x - gap - w, p.y - size.y / 2, w, size.y}};
+        for (const Rect& label : places) {
+            const bool inside = label.x >= area_.x && label.x + label.width <= area_.x + area_.width && label.y >= area_.y &&
+                                label.y + label.height <= area_.y + area_.height;
+            if (!inside || covered(label)) continue;
+            list.AddRectFilled({label.x, label.y}, {label.x + label.width, label.y + label.height}, halo, 3 * scale);
+            list.AddText({std::floor(label.x + 3 * scale), std::floor(label.y)},
+                         with_opacity(ImGui::GetColorU32(colors::kText), opacity), name.c_str());
+            cards_.push_back(label);
+            break;
+        }
     }
     list.PopClipRect();
 }

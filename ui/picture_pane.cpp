@@ -58,23 +58,42 @@ void PicturePane::lay_out(const Rect& room, const Session& session, const UiStat
     if (picture_->other && state.compare_mode == CompareMode::side_by_side)
         for (unsigned side = 0; side < 2; ++side)
             head = std::max(head, card_size(caption_lines(caption_of(session, *picture_, side)), std::floor(room.width / 2 - 8)).y);
-    places_ = lay_out_pictures(room, aspect, picture_->other.has_value(), state.compare_mode, state.wipe, std::round(head + 6));
+    places_ = lay_out_pictures(room, aspect, picture_->other.has_value(), state.compare_mode, state.wipe, std::round(head + 6),
+                               foot_);
     area_ = places_.front().area;
-    const float margin = std::round(10 * ui_scale());
+    const float margin = std::round(10 * ui_scale()), least = 190 * ui_scale();
     below_ = {};
+    cards_.clear();
+    foot_ = 0;
     for (size_t i = 0; i < places_.size(); ++i) {
         const Rect& area = places_[i].area;
         const float bottom = area.y + area.height;
-        stacks_[i] = CardStack(area, margin);
-        if (side_by_side()) below_[i] = CardStack({area.x - margin, bottom, area.width + 2 * margin, room.y + room.height - bottom}, margin);
+        stacks_[i] = CardStack(area, margin, least);
+        if (side_by_side())
+            below_[i] = CardStack({area.x - margin, bottom, area.width + 2 * margin, room.y + room.height - bottom + margin},
+                                  margin, least);
     }
 }
 
 std::optional<Rect> PicturePane::take_card(size_t place, Corner corner, const ImVec2& size) {
-    if (!side_by_side()) return stacks_[0].take(corner, size);
-    const Corner upper = corner == Corner::bottom_right ? Corner::top_right : Corner::top_left;
-    if (const auto card = below_[place].take(upper, size)) return card;
-    return stacks_[place].take(corner, size);
+    std::optional<Rect> card;
+    const bool low = corner == Corner::bottom_left || corner == Corner::bottom_right;
+    if (side_by_side() && low) {
+        card = below_[place].take(corner == Corner::bottom_right ? Corner::top_right : Corner::top_left, size);
+        const float wanted = card ? card->y + card->height - places_[place].area.y - places_[place].area.height : foot_ + size.y;
+        foot_ = std::max(foot_, wanted + 10 * ui_scale());
+    }
+    if (!card) card = stacks_[side_by_side() ? place : 0].take(corner, size);
+    if (card) cards_.push_back(*card);
+    return card;
+}
+
+// By a card that lies over a picture, or by another label.
+bool PicturePane::covered(const Rect& label) const {
+    return std::any_of(cards_.begin(), cards_.end(), [&](const Rect& card) {
+        return label.x < card.x + card.width && card.x < label.x + label.width && label.y < card.y + card.height &&
+               card.y < label.y + label.height;
+    });
 }
 
 void PicturePane::draw_pictures(ImDrawList& list) {
@@ -193,9 +212,13 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         const bool wipe = places_.size() == 2 && !side_by_side();
         mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe}, session, state);
         if (wipe) draw_wipe(list);
-        draw_handles(list, session);
         draw_pixel_marks(list, session, state);
+        list.ChannelsSplit(2);  // cards lie over handles, whose names keep clear of them
+        list.ChannelsSetCurrent(1);
         draw_cards(list, session, overlay);
+        list.ChannelsSetCurrent(0);
+        draw_handles(list, session);
+        list.ChannelsMerge();
         session.want_distance(overlay.level().has_value() || !marks_.empty() || state.show_lights);
     }
     ImGui::End();

@@ -67,6 +67,7 @@ class PicturePane {
     bool side_by_side() const { return places_.size() == 2 && places_[0].area.x != places_[1].area.x; }
     // Room for a card at a place: its corner, or below it if pictures lie side by side and leave enough there.
     std::optional<Rect> take_card(size_t place, Corner corner, const ImVec2& size);
+    bool covered(const Rect& label) const;
     float card_width(size_t place) const { return stacks_[side_by_side() ? place : 0].max_width(); }
 
     std::shared_ptr<const Picture> picture_;
@@ -84,6 +85,8 @@ class PicturePane {
     std::vector<PicturePlace> places_;
     std::vector<LightHandle> handles_;
     std::array<CardStack, 2> stacks_, below_;  // over the pictures, and under those that lie side by side
+    std::vector<Rect> cards_;                  // taken this frame
+    float foot_ = 0;                           // room that cards wanted below pictures, last frame
     PictureMouse mouse_;
 };
 
