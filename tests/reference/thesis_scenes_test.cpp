@@ -16,6 +16,9 @@ namespace {
 
 constexpr int kTolerance = 2;       // of 255, in the worst channel
 constexpr double kExcepted = .001;  // of the pixels: edges, where both are right
+// An endless board of squares in mirrors of mirrors has edges in most pixels: what a ray's start is moved off the surface, in
+// single precision, takes one in 700 to the other side of one.
+constexpr double kExceptedEndless = .002;
 
 struct Difference {
     size_t pixels = 0, beyond = 0;
@@ -63,8 +66,9 @@ class ThesisScenes : public testing::TestWithParam<const char*> {
         const Difference d = compare(a, b);
         if (std::getenv("CLARITY_TEST_VERBOSE"))
             std::printf("%s, %d steps: %zu of %zu pixels beyond, worst %d\n", GetParam(), depth, d.beyond, d.pixels, d.worst);
-        EXPECT_LE(d.share(), kExcepted) << d.beyond << " of " << d.pixels << " pixels, worst " << d.worst;
-        if (d.share() <= kExcepted) return;
+        const double excepted = scene_->planes.empty() ? kExcepted : kExceptedEndless;
+        EXPECT_LE(d.share(), excepted) << d.beyond << " of " << d.pixels << " pixels, worst " << d.worst;
+        if (d.share() <= excepted) return;
         std::string name = std::string("reference_") + GetParam() + "_" + std::to_string(depth);
         std::replace(name.begin(), name.end(), '/', '_');
         write_image(name + "_ours.png", {}, a);
