@@ -6,43 +6,21 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "reference/difference.hpp"
 #include "reference/whitted.hpp"
 #include "support/scenes.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
+using reference::compare;
+using reference::Difference;
 
 namespace {
 
-constexpr int kTolerance = 2;       // of 255, in the worst channel
 constexpr double kExcepted = .001;  // of the pixels: edges, where both are right
 // An endless board of squares in mirrors of mirrors has edges in most pixels: what a ray's start is moved off the surface, in
 // single precision, takes one in 700 to the other side of one.
 constexpr double kExceptedEndless = .002;
-
-struct Difference {
-    size_t pixels = 0, beyond = 0;
-    int worst = 0;
-    ByteImage picture;  // eight times the difference
-    double share() const { return double(beyond) / double(pixels); }
-};
-
-Difference compare(const ByteImage& a, const ByteImage& b) {
-    Difference d;
-    d.pixels = size_t(a.width) * a.height;
-    d.picture = a;
-    for (size_t i = 0; i < d.pixels; ++i) {
-        int most = 0;
-        for (size_t c = 4 * i; c < 4 * i + 3; ++c) {
-            const int off = std::abs(int(a.pixels[c]) - int(b.pixels[c]));
-            most = std::max(most, off);
-            d.picture.pixels[c] = static_cast<uint8_t>(std::min(255, 8 * off));
-        }
-        d.beyond += most > kTolerance;
-        d.worst = std::max(d.worst, most);
-    }
-    return d;
-}
 
 class ThesisScenes : public testing::TestWithParam<const char*> {
  protected:
