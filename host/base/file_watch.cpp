@@ -138,8 +138,8 @@ void FileWatch::settle() {
         const int ready = poll(waits, 2, kQuiet_ms);
         if (waits[0].revents) return;
         std::vector<State> now = look_at_all();
-        const bool same = std::equal(now.begin(), now.end(), before.begin(),
-                                     [](const State& a, const State& b) { return a.same_file(b); });
+        const bool same =
+            std::equal(now.begin(), now.end(), before.begin(), [](const State& a, const State& b) { return a.same_file(b); });
         if (ready == 0 && same) return;
         before = std::move(now);
         drain();

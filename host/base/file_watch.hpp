@@ -1,8 +1,9 @@
 // file_watch.hpp -- notices when files change: once per save, however an editor saves.
 //
-// inotify on the files' folders wakes a thread; what counts is content, so a save that changes nothing is no change, and neither
-// is a file that was away for a moment. Twice a second file times are compared too: that finds what inotify is not told (network
-// and shared folders, symbolic links, a folder that was removed and made again), and is all there is where inotify has no room.
+// inotify on the files' folders wakes a thread; what counts is content, so a save that changes nothing is no change, and
+// neither is a file that was away for a moment. Twice a second file times are compared too: that finds what inotify is not told
+// (network and shared folders, symbolic links, a folder that was removed and made again), and is all there is where inotify has
+// no room.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -16,8 +17,8 @@ namespace clarity {
 
 class FileWatch {
  public:
-    // files: paths that need not exist yet; compared from now on. changed: called from the watch's own thread after each change;
-    // it must not destroy the watch.
+    // files: paths that need not exist yet; compared from now on. changed: called from the watch's own thread after each
+    // change; it must not destroy the watch.
     FileWatch(std::vector<std::string> files, std::function<void()> changed);
     ~FileWatch();
     FileWatch(const FileWatch&) = delete;

@@ -115,6 +115,9 @@ void add_render(CLI::App& app, RenderOptions& render) {
         ->type_name("N");
     single(app.add_option("--stats", render.stats_file, "Write a JSON of times, rays and sizes; - is stdout"))
         ->type_name("FILE");
+    app.add_flag(
+        "--watch", render.watch,
+        "Render again whenever a kernel or a scene file named here is saved; Ctrl-C ends, with the last try's exit code");
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {

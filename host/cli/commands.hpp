@@ -35,6 +35,7 @@ struct RenderOptions {
     double time_s = 0;       // of the scene
     unsigned repeat = 1;     // frames of each picture, for timing
     std::string stats_file;  // "-": stdout
+    bool watch = false;      // again after each save of a kernel or scene file
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);

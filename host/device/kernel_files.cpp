@@ -137,10 +137,9 @@ std::string kernel_text(const std::string& name) {
         return remember("cl/" + name, where.kernels / name, std::move(text));
     }
     if (embedded) return remember("cl/" + name, {}, embedded);
-    throw Error(Exit::kernel_build_failed,
-                "no kernel source `" + name + "` in this program" +
-                    (where.kernels.empty() ? std::string() : " or in " + where.kernels.string()) +
-                    ": build the program again");
+    throw Error(Exit::kernel_build_failed, "no kernel source `" + name + "` in this program" +
+                                               (where.kernels.empty() ? std::string() : " or in " + where.kernels.string()) +
+                                               ": build the program again");
 }
 
 std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {

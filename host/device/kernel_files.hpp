@@ -1,7 +1,8 @@
 // kernel_files.hpp -- where the text of kernels comes from.
 //
 // The first place that has a file of that name:
-//   1. CLARITY_KERNEL_PATH, a folder laid out as cl/, with plugins/accel/<id>/ beside it; alone, 2 and 3 are then not looked at.
+//   1. CLARITY_KERNEL_PATH, a folder laid out as cl/, with plugins/accel/<id>/ beside it; alone, 2 and 3 are then not looked
+//   at.
 //      "embedded" names no folder but the text inside the program.
 //   2. the checkout, if the program stands in a build folder inside it (<checkout>/build/bin, <checkout>/build/release/bin), so
 //      that an edit counts without a build

@@ -22,8 +22,9 @@ unsigned number(const std::string& digits) {
 }
 
 bool read_diagnostic(const std::string& line, Diagnostic& found) {
-    static const std::regex placed("^(?:(fatal error|error|warning|note): )?([^:]+):([0-9]+):(?:([0-9]+):)? ?"
-                                   "(?:(fatal error|error|warning|note): )?(.*)$"),
+    static const std::regex placed(
+        "^(?:(fatal error|error|warning|note): )?([^:]+):([0-9]+):(?:([0-9]+):)? ?"
+        "(?:(fatal error|error|warning|note): )?(.*)$"),
         bare("^(fatal error|error|warning|note): (.*)$");
     std::smatch part;
     if (line.size() > 2000) return false;  // std::regex recurses
@@ -56,7 +57,8 @@ CompilerLog read_compiler_log(const std::string& log) {
         if (read_diagnostic(line, found)) {
             const bool error = found.severity.find("error") != std::string::npos;
             if (error && result.errors++ == 0) result.first = {found.file, found.line, found.column, found.message};
-            line = (found.file.empty() ? "" : place(found.file, found.line, found.column)) + found.severity + ": " + found.message;
+            line =
+                (found.file.empty() ? "" : place(found.file, found.line, found.column)) + found.severity + ": " + found.message;
         } else if (fallback.empty()) {
             fallback = line;
         }

@@ -20,7 +20,8 @@ struct BuildResult {
 BuildResult build_program(Device& device, const std::string& source, const std::string& options, const std::string& what);
 
 // A compiler's log as a person reads it. Compilers that came from clang (PoCL, Intel, AMD, NVIDIA) write "cl/a.cl:3:9: error:
-// text", PoCL "error: cl/a.cl:3:9: text"; all is brought to the first form, with paths for names, without the lines that only count.
+// text", PoCL "error: cl/a.cl:3:9: text"; all is brought to the first form, with paths for names, without the lines that only
+// count.
 struct CompilerLog {
     std::string text;
     SourceLocation first;  // of the first error; of no file if the log names none
