@@ -48,24 +48,6 @@ std::vector<Piece> flow(const std::vector<CardText>& lines, float room, ImVec2& 
 
 }  // namespace
 
-CardStack::CardStack(const Rect& area, float margin, float least) : area_(area), margin_(margin) {
-    const float half = std::floor((area.width - 3 * margin) / 2);
-    one_column_ = half < least;
-    max_width_ = std::max(0.0f, one_column_ ? area.width - 2 * margin : half);
-}
-
-std::optional<Rect> CardStack::take(Corner corner, const ImVec2& size) {
-    const bool right = corner == Corner::top_right || corner == Corner::bottom_right;
-    const bool low = corner == Corner::bottom_left || corner == Corner::bottom_right;
-    const int column = right && !one_column_;
-    float& taken = low ? below_[column] : above_[column];
-    if (size.x > max_width_ + 0.5f || above_[column] + below_[column] + size.y + 2 * margin_ > area_.height) return std::nullopt;
-    const float x = right ? area_.x + area_.width - margin_ - size.x : area_.x + margin_;
-    const float y = low ? area_.y + area_.height - margin_ - taken - size.y : area_.y + margin_ + taken;
-    taken += size.y + std::round(margin_ * 0.75f);
-    return Rect{std::floor(x), std::floor(y), size.x, size.y};
-}
-
 float card_padding() {
     return std::round(7 * ui_scale());
 }

@@ -1,4 +1,4 @@
-// picture_cards.hpp -- small cards of text in the corners of a picture, stacked so that none covers another.
+// picture_cards.hpp -- small cards over a picture: lines of text, bars of colours.
 #pragma once
 #include <imgui.h>
 
@@ -7,29 +7,10 @@
 #include <vector>
 
 #include "render/false_colors.hpp"
+#include "ui/card_stack.hpp"
 #include "ui/viewport.hpp"
 
 namespace clarity {
-
-enum class Corner { top_left, top_right, bottom_left, bottom_right };
-
-// Hands out the room of one picture's corners: columns at its left and right, filled from above and from below. Where two columns
-// would be narrower than `least`, there is one.
-class CardStack {
- public:
-    CardStack() = default;
-    CardStack(const Rect& area, float margin, float least = 0);
-    // Of a card at most.
-    float max_width() const { return max_width_; }
-    // nullopt: no room is left there.
-    std::optional<Rect> take(Corner corner, const ImVec2& size);
-
- private:
-    Rect area_;
-    float margin_ = 0, max_width_ = 0;
-    bool one_column_ = false;
-    float above_[2] = {}, below_[2] = {};  // taken so far, of the left and the right column
-};
 
 struct CardText {
     std::string text;

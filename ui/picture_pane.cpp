@@ -79,11 +79,11 @@ std::optional<Rect> PicturePane::take_card(size_t place, Corner corner, const Im
     std::optional<Rect> card;
     const bool low = corner == Corner::bottom_left || corner == Corner::bottom_right;
     if (side_by_side() && low) {
-        card = below_[place].take(corner == Corner::bottom_right ? Corner::top_right : Corner::top_left, size);
+        card = below_[place].take(corner == Corner::bottom_right ? Corner::top_right : Corner::top_left, size.x, size.y);
         const float wanted = card ? card->y + card->height - places_[place].area.y - places_[place].area.height : foot_ + size.y;
         foot_ = std::max(foot_, wanted + 10 * ui_scale());
     }
-    if (!card) card = stacks_[side_by_side() ? place : 0].take(corner, size);
+    if (!card) card = stacks_[side_by_side() ? place : 0].take(corner, size.x, size.y);
     if (card) cards_.push_back(*card);
     return card;
 }

@@ -16,18 +16,28 @@ enum class Exit {
     interrupted = 130
 };
 
+// A place in a text file, and what is wrong there.
+struct SourceLocation {
+    std::string file;               // a path, if the text was read from disk; empty: no place is known
+    unsigned line = 0, column = 0;  // from 1; column 0: not known
+    std::string message;            // "use of undeclared identifier 'x'"
+};
+
 // A failure that a person reads: what was tried, on which file or device, why it failed and what to do.
 class Error : public std::runtime_error {
  public:
-    Error(Exit code, const std::string& message, std::string details = {})
-        : std::runtime_error(message), code_(code), details_(std::move(details)) {}
+    Error(Exit code, const std::string& message, std::string details = {}, SourceLocation location = {})
+        : std::runtime_error(message), code_(code), details_(std::move(details)), location_(std::move(location)) {}
     Exit code() const { return code_; }
     // More than a line: a compiler's log, say. May be empty.
     const std::string& details() const { return details_; }
+    // Where an author has to look; the first place of several.
+    const SourceLocation& location() const { return location_; }
 
  private:
     Exit code_;
     std::string details_;
+    SourceLocation location_;
 };
 
 // Thrown where work stopped because Progress said so.

@@ -3,6 +3,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/statistics.hpp"
@@ -16,14 +17,17 @@ enum class RowStatus {
     skipped   // not measured, on purpose
 };
 
-// What the tracer did, by the counting program; of the active rays.
+// What the tracer did, by the counting program. Rays are the active ones; a packet is the rays traced side by side, one by one
+// lane.
 struct Analysis {
     bool present = false;
-    double nodes_per_ray = 0, leaf_tests_per_ray = 0;
-    double lanes_alive = 0;    // 0..1, of the lanes at each node visit, those whose ray is in the node; 1 lane: 1
-    double warp_alive = 0;     // 0..1, one lane only: mean over 32 neighbours of steps / most steps
-    double bytes_per_ray = 0;  // nodes and leaves fetched, each once a packet
-    double bytes_shared = 0;   // 0..1, one lane only 0: what the lanes together would have fetched alone, less what was
+    double nodes_per_ray = 0;       // that its packet visits, mean over rays: what a ray sits through
+    double own_nodes_per_ray = 0;   // of these, those that the ray itself is in
+    double leaf_tests_per_ray = 0;  // primitives that its packet tests
+    double lanes_alive = 0;         // 0..1: of all lanes at all node visits, those whose ray is in the node
+    double warp_alive = 0;          // 0..1, one lane only: of 32 neighbours, mean of nodes visited by the most
+    double bytes_per_ray = 0;       // nodes and leaves fetched, each once a packet
+    double bytes_shared = 0;        // 0..1: of the nodes that the rays would fetch one by one, what fetching together saves
     unsigned node_bytes = 0;
 };
 
@@ -68,6 +72,9 @@ struct BenchRecord {
     double sah_cost = 0;  // 0: the structure does not say
 
     Analysis analysis;
+    std::vector<std::pair<std::string, double>> kernels_ms;  // of one frame: trace, tone map, read-back
+
+    size_t run = 0;  // 0: BenchReport::run, else joined[run - 1]
 
     uint64_t rays() const { return rays_primary + rays_shadow + rays_secondary; }
 };
@@ -88,8 +95,10 @@ struct BenchRun {
 
 struct BenchReport {
     BenchRun run;
+    std::vector<BenchRun> joined;      // earlier runs, read from files
     std::vector<BenchRecord> records;  // in the order measured
-    std::vector<std::string> notes;    // what was left out and why, for a person
+    const BenchRun& run_of(const BenchRecord& record) const { return record.run == 0 ? run : joined.at(record.run - 1); }
+    std::vector<std::string> notes;  // what was left out and why, for a person
     bool interrupted = false;
 };
 

@@ -19,6 +19,7 @@ struct Parsed {
     SceneOptions scene;
     TraceOptions trace;
     RenderOptions render;
+    BenchCommand bench;
     std::string key_map;
     bool json = false;
 };
@@ -77,6 +78,19 @@ std::string option_name(std::string key) {
     return "--" + key;
 }
 
+void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>>& settings, std::vector<std::string>& sets) {
+    for (const Setting& setting : settings_table()) {
+        const auto set = [&settings, key = setting.key](const std::string& value) { settings.emplace_back(key, value); };
+        single(app.add_option_function<std::string>(option_name(setting.key), set, setting_help(setting)))
+            ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
+            ->group("Settings");
+    }
+    app.add_option("--set", sets, "The same, as key=value with the setting's key (ray_slots=16); may be repeated")
+        ->type_name("key=value")
+        ->allow_extra_args(false)
+        ->group("Settings");
+}
+
 void add_trace(CLI::App& app, TraceOptions& trace) {
     single(app.add_option("--device", trace.device, "P:D as `clarity devices` lists them, cpu, gpu or part of a name"))
         ->type_name("D");
@@ -86,22 +100,13 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
     single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or where it stands and looks"))
         ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
     single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");
-    for (const Setting& setting : settings_table()) {
-        const auto set = [&trace, key = setting.key](const std::string& value) { trace.settings.emplace_back(key, value); };
-        single(app.add_option_function<std::string>(option_name(setting.key), set, setting_help(setting)))
-            ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
-            ->group("Settings");
-    }
     single(app.add_option("--preset", trace.preset, "Settings and view saved from the window; options beside it win"))
         ->type_name("FILE");
-    app.add_option("--set", trace.sets,
-                   "The same, as key=value with the setting's key (ray_slots=16), or a change of the view: "
-                   "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, "
-                   "light.N=off|point,x,y,z,r,g,b|directional,..., material.N.color=r,g,b (emission, specular, reflect, "
-                   "refract, ior, shininess), hide=3,5-9 (instances); may be repeated")
-        ->type_name("key=value")
-        ->allow_extra_args(false)
-        ->group("Settings");
+    add_settings(app, trace.settings, trace.sets);
+    app.get_option("--set")->description(
+        "The same, as key=value with the setting's key (ray_slots=16), or a change of the view: "
+        "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, light.N=off|point,x,y,z,r,g,b|directional,..., "
+        "material.N.color=r,g,b (emission, specular, reflect, refract, ior, shininess), hide=3,5-9 (instances); may be repeated");
 }
 
 void add_render(CLI::App& app, RenderOptions& render) {
@@ -116,6 +121,47 @@ void add_render(CLI::App& app, RenderOptions& render) {
         ->type_name("N");
     single(app.add_option("--stats", render.stats_file, "Write a JSON of times, rays and sizes; - is stdout"))
         ->type_name("FILE");
+    app.add_flag(
+        "--watch", render.watch,
+        "Render again whenever a kernel or a scene file named here is saved; Ctrl-C ends, with the last try's exit code");
+}
+
+void add_bench(CLI::App& app, BenchCommand& bench) {
+    app.add_option(
+           "what", bench.what,
+           "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, quick (a minute); or "
+           "scene files, with a suite: instead of its own")
+        ->type_name("SUITE|SCENE");
+    single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
+        ->type_name("D[,D...]");
+    app.add_option("--accel", bench.accels, "A structure to compare; may be repeated; without it every one found")
+        ->type_name("ID[,key=value...]")
+        ->allow_extra_args(false);
+    single(app.add_option("--json", bench.json_file, "Write the records here, a list"))->type_name("FILE");
+    single(app.add_option("--csv", bench.csv_file, "Write them as CSV too"))->type_name("FILE");
+    single(app.add_option("--report", bench.report_folder, "Write a page with charts, index.html, into this folder"))
+        ->type_name("DIR");
+    app.add_option("--join", bench.join_files, "Add the records of an earlier run (its --json); may be repeated")
+        ->type_name("FILE")
+        ->allow_extra_args(false);
+    app.add_flag("--list", bench.list, "Only list what would be measured");
+    app.add_flag("--no-peers", bench.no_peers, "Leave other people's ray tracers out");
+    single(app.add_option("--time-limit", bench.time_limit_s, "For everything; without it what the suites are made for"))
+        ->type_name("SECONDS")
+        ->check(CLI::Range(1.0, 1e6));
+    single(app.add_option("--max-spread", bench.max_spread,
+                          "Refuse rows whose middle half of repetitions spreads over more than this share of the median"))
+        ->type_name("SHARE")
+        ->check(CLI::Range(0.0, 10.0))
+        ->capture_default_str();
+    single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suite scale"))
+        ->type_name("N")
+        ->capture_default_str();
+    app.add_option("--search-path", bench.import.search_paths,
+                   "A folder besides the scene's own that it may read files from; may be repeated")
+        ->type_name("DIR")
+        ->allow_extra_args(false);
+    add_settings(app, bench.settings, bench.sets);
 }
 
 std::string version_text() {
@@ -156,6 +202,7 @@ CommandLine parse_command_line(int argc, char** argv) {
 
     CLI::App* view = app.add_subcommand("view", "Open the window on a scene");
     CLI::App* render = app.add_subcommand("render", "Render a scene to a picture file");
+    CLI::App* bench = app.add_subcommand("bench", "Measure: structures, settings, devices and peers on suites or scenes");
     CLI::App* info = app.add_subcommand("info", "Tell what the importer understood of a file");
     CLI::App* devices = app.add_subcommand("devices", "List OpenCL devices, best first");
     CLI::App* plugins = app.add_subcommand("plugins", "List every plugin seen, loaded or not, and why not");
@@ -184,6 +231,16 @@ CommandLine parse_command_line(int argc, char** argv) {
         };
     });
 
+    add_bench(*bench, p.bench);
+    bench->callback([&] {
+        for (int i = 0; i < argc; ++i) parsed->bench.text += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "clarity");
+        line.command = [parsed](const PluginRegistry& registry) {
+            BenchCommand command = parsed->bench;
+            command.quiet = parsed->common.quiet;
+            return run_bench_command(registry, command);
+        };
+    });
+
     add_scene(*info, p.scene)->required();
     info->add_flag("--json", p.json, "As JSON");
     info->callback([&] {
@@ -203,7 +260,7 @@ CommandLine parse_command_line(int argc, char** argv) {
         line.refused_plugin_is_fatal = false;
         line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
     });
-    for (CLI::App* sub : {view, render, info, devices, plugins}) {
+    for (CLI::App* sub : {view, render, bench, info, devices, plugins}) {
         add_common(*sub, p.common);
         sub->get_formatter()->column_width(34);
         sub->footer(kExitCodes);

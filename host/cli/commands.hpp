@@ -42,6 +42,7 @@ struct RenderOptions {
     double time_s = 0;       // of the scene
     unsigned repeat = 1;     // frames of each picture, for timing
     std::string stats_file;  // "-": stdout
+    bool watch = false;      // again after each save of a kernel or scene file
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);
@@ -52,6 +53,22 @@ struct ViewCommand {
     std::string key_map;
 };
 int run_view(const PluginRegistry& plugins, const ViewCommand& options);
+
+struct BenchCommand {
+    std::vector<std::string> what;    // suites and scene files
+    std::string device;               // comma list, or "all"; "": the best
+    std::vector<std::string> accels;  // ID[,key=value...] each; empty: every one found
+    std::vector<std::string> sets;
+    std::vector<std::pair<std::string, std::string>> settings;
+    std::string json_file, csv_file, report_folder;
+    std::vector<std::string> join_files;  // that --json wrote in earlier runs
+    bool list = false, no_peers = false, quiet = false;
+    double time_limit_s = 0, max_spread = 0.1;
+    uint64_t max_triangles = 10'000'000;
+    ImportOptions import;
+    std::string text;  // of the command line
+};
+int run_bench_command(const PluginRegistry& plugins, const BenchCommand& options);
 
 int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool json, bool quiet);
 

@@ -2,11 +2,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
+#include <mutex>
 
 #include "base/error.hpp"
+#include "base/file_watch.hpp"
 #include "base/log.hpp"
 #include "base/output_file.hpp"
 #include "cli/commands.hpp"
@@ -14,6 +18,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/render_stats.hpp"
+#include "device/kernel_watch.hpp"
 #include "render/renderer.hpp"
 
 namespace clarity {
@@ -57,6 +62,21 @@ void check_options(const RenderOptions& options, const Settings& settings, const
     make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
 }
 
+// Cancels one round of --watch, without a word, once a file was saved that makes it useless.
+class UntilSaved : public Progress {
+ public:
+    UntilSaved(Progress& whole, std::function<bool()> saved) : whole_(whole), saved_(std::move(saved)) {}
+    void stage(const std::string& name) override { whole_.stage(name); }
+    bool report(float fraction) override {
+        if (!whole_.report(fraction) || (saved_ && saved_())) cancel();
+        return !cancelled();
+    }
+
+ private:
+    Progress& whole_;
+    const std::function<bool()> saved_;
+};
+
 class RenderJob {
  public:
     RenderJob(const PluginRegistry& plugins, const RenderOptions& options)
@@ -74,38 +94,110 @@ class RenderJob {
         check_options(options_, settings_, range_);
         check_scene_files(options_.scene.files);
         const CancelOnSignal cancel(bar_);
-        auto device = std::make_shared<Device>(choose_device(words_.device));
-        stats_.device = device->info();
-        log(LogLevel::debug, "device " + device->info().id() + " " + device->info().name);
-        import();
-        prepare(device);
-        Frames frames(device);
-        for (int number = range_.first;; number += range_.step) {
-            const bool whole = render(frames, number);
-            if (!whole) return static_cast<int>(Exit::interrupted);
-            if (number > range_.last - range_.step) break;
-        }
-        report();
-        return static_cast<int>(Exit::done);
+        device_ = std::make_shared<Device>(choose_device(words_.device));
+        stats_.device = device_->info();
+        log(LogLevel::debug, "device " + device_->info().id() + " " + device_->info().name);
+        if (options_.watch) return watch();
+        return static_cast<int>(round(bar_));
     }
 
  private:
-    void import() {
-        const auto begin = Clock::now();
-        scene_ = std::make_shared<const Scene>(import_scene(plugins_, options_.scene.files, options_.scene.import, bar_));
-        stats_.import_ms = ms_since(begin);
-        for (const std::string& warning : scene_->warnings) log(LogLevel::warning, warning);
-        const float aspect = float(settings_.width) / float(settings_.height);
-        EditedView edited;
-        edited.view = make_view(*scene_, aspect, options_.trace.camera, options_.trace.light);
-        for (const Word& word : words_.edits) apply_edit(*scene_, edited, word.key, word.value);
-        view_ = visible_view(edited);
-        if (!edited.hidden.empty()) scene_ = std::make_shared<const Scene>(without_instances(*scene_, edited.hidden));
+    // Import, build and compile as far as they are not done, then all pictures.
+    Exit round(Progress& progress) {
+        if (!scene_) import(progress);
+        prepare(progress);
+        Frames frames(device_);
+        for (int number = range_.first;; number += range_.step) {
+            const bool whole = render(frames, number, progress);
+            if (!whole) return Exit::interrupted;
+            if (number > range_.last - range_.step) break;
+        }
+        report();
+        return Exit::done;
     }
 
-    void prepare(const std::shared_ptr<Device>& device) {
-        preparer_ = std::make_unique<Preparer>(plugins_, device);
-        stats_.prepared = preparer_->prepare(scene_, settings_, bar_);
+    // Rounds, one after each save, until a signal comes. The code is that of the last one.
+    int watch() {
+        std::mutex mutex;
+        std::condition_variable wake;
+        const auto changed = [&] {
+            const std::lock_guard<std::mutex> lock(mutex);
+            wake.notify_all();
+        };
+        const KernelWatch kernels(plugins_.accels(), changed);
+        const FileWatch scenes(options_.scene.files, changed);
+        if (kernels.files().empty())
+            log(LogLevel::warning,
+                "--watch: the kernels are inside the program; CLARITY_KERNEL_PATH names a folder of kernels to edit");
+        for (;;) {
+            const uint64_t kernels_seen = kernels.revision(), scenes_seen = scenes.revision();
+            const auto saved = [&] { return kernels.revision() != kernels_seen || scenes.revision() != scenes_seen; };
+            const Exit code = guarded_round(saved);
+            bar_.clear();
+            if (interrupted()) return static_cast<int>(Exit::interrupted);
+            if (!saved()) log(LogLevel::info, "waiting for a change of a kernel or a scene file; Ctrl-C ends");
+            {
+                // Signals wake nobody, so they are looked for.
+                std::unique_lock<std::mutex> lock(mutex);
+                while (!saved() && !interrupted()) wake.wait_for(lock, std::chrono::milliseconds(100));
+            }
+            if (interrupted()) return static_cast<int>(code);
+            const FileWatch& from = scenes.revision() != scenes_seen ? scenes : kernels;
+            for (const std::string& path : from.last_changed()) log(LogLevel::info, "changed: " + path);
+            if (scenes.revision() != scenes_seen) scene_.reset();
+        }
+    }
+
+    // Whatever fails is said, and waits for the next save.
+    Exit guarded_round(const std::function<bool()>& saved) {
+        superseded_ = saved;
+        UntilSaved progress(bar_, saved);
+        const auto fail = [&](Exit code, const std::string& message, const std::string& details) {
+            bar_.clear();
+            log(LogLevel::error, message);
+            if (!details.empty()) log(LogLevel::info, details);
+            return code;
+        };
+        try {
+            if (preparer_ && preparer_->worn()) renew_device();
+            stats_.frame_ms.clear();
+            stats_.wall_ms.clear();
+            return round(progress);
+        } catch (const Cancelled&) {
+            return Exit::interrupted;
+        } catch (const Error& e) {
+            return fail(e.code(), e.what(), e.details());
+        } catch (const std::exception& e) {
+            return fail(Exit::failed, std::string("unexpected failure: ") + e.what(), {});
+        }
+    }
+
+    void renew_device() {
+        stats_.prepared.reset();
+        device_ = std::make_shared<Device>(device_->info());
+        auto next = std::make_unique<Preparer>(plugins_, device_);
+        next->take_structure(*preparer_);
+        preparer_ = std::move(next);
+    }
+
+    void import(Progress& progress) {
+        const auto begin = Clock::now();
+        auto scene =
+            std::make_shared<const Scene>(import_scene(plugins_, options_.scene.files, options_.scene.import, progress));
+        stats_.import_ms = ms_since(begin);
+        for (const std::string& warning : scene->warnings) log(LogLevel::warning, warning);
+        const float aspect = float(settings_.width) / float(settings_.height);
+        EditedView edited;
+        edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);
+        for (const Word& word : words_.edits) apply_edit(*scene, edited, word.key, word.value);
+        view_ = visible_view(edited);
+        if (!edited.hidden.empty()) scene = std::make_shared<const Scene>(without_instances(*scene, edited.hidden));
+        scene_ = std::move(scene);
+    }
+
+    void prepare(Progress& progress) {
+        if (!preparer_) preparer_ = std::make_unique<Preparer>(plugins_, device_);
+        stats_.prepared = preparer_->prepare(scene_, settings_, progress);
         const Prepared& prepared = *stats_.prepared;
         char line[160];
         std::snprintf(line, sizeof line, "import %.0f ms, build %.0f ms, upload %.0f ms, compile %.0f ms%s", stats_.import_ms,
@@ -115,7 +207,7 @@ class RenderJob {
     }
 
     // One picture; with --repeat the same one again and again. False if interrupted: then what was accumulated is written.
-    bool render(Frames& frames, int number) {
+    bool render(Frames& frames, int number, Progress& progress) {
         bar_.stage("rendering " + std::filesystem::path(frame_path(options_.output, number)).filename().string());
         // Counting rays costs a little, and the first frame warms caches: timed frames come after it.
         const bool warm_up = options_.repeat > 1;
@@ -123,11 +215,12 @@ class RenderJob {
         unsigned samples = 0;
         for (unsigned pass = 0; pass < passes; ++pass) {
             const bool count = pass == 0, timed = !(warm_up && pass == 0);
-            samples = trace_pass(frames, count, timed, double(pass) / passes, 1.0 / passes);
+            samples = trace_pass(frames, count, timed, double(pass) / passes, 1.0 / passes, progress);
             if (samples < unsigned(settings_.spp)) break;
         }
         const bool whole = samples == unsigned(settings_.spp);
         bar_.clear();
+        if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
         if (samples > 0) write(frames, number);
         if (!whole)
             log(LogLevel::warning,
@@ -138,13 +231,13 @@ class RenderJob {
     }
 
     // All samples of one frame. Returns how many are complete.
-    unsigned trace_pass(Frames& frames, bool count, bool timed, double from, double share) {
+    unsigned trace_pass(Frames& frames, bool count, bool timed, double from, double share, Progress& progress) {
         if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
         double device_ms = 0, wall_ms = 0;
         for (int sample = 0; sample < settings_.spp; ++sample) {
             // A short sample is one launch and asks nobody.
-            if (!bar_.report(float(from + share * sample / settings_.spp))) return unsigned(sample);
-            PartOf part(bar_, from + share * sample / settings_.spp, share / settings_.spp);
+            if (!progress.report(float(from + share * sample / settings_.spp))) return unsigned(sample);
+            PartOf part(progress, from + share * sample / settings_.spp, share / settings_.spp);
             FrameStats frame;
             try {
                 frame = frames.trace(*stats_.prepared, settings_, view_, unsigned(sample), count, part);
@@ -204,6 +297,8 @@ class RenderJob {
     const FrameRange range_;
     const PluginRegistry& plugins_;
     ProgressBar bar_;
+    std::shared_ptr<Device> device_;
+    std::function<bool()> superseded_;  // with --watch: whether a save made this round useless
     std::shared_ptr<const Scene> scene_;
     View view_;
     std::unique_ptr<Preparer> preparer_;

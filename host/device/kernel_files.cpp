@@ -1,14 +1,21 @@
 #include "device/kernel_files.hpp"
 
+#include <dlfcn.h>
+
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
+#include <iterator>
+#include <map>
+#include <mutex>
 
 #include "base/error.hpp"
 
 namespace clarity {
 namespace {
+
+namespace fs = std::filesystem;
 
 struct Embedded {
     const char *name, *text;
@@ -17,36 +24,163 @@ const Embedded kEmbedded[] = {
 #include "kernels.inc"
 };
 
-bool read_file(const std::filesystem::path& path, std::string& text) {
+bool read_file(const fs::path& path, std::string& text) {
+    std::error_code ignored;
+    if (!fs::is_regular_file(path, ignored)) return false;
     std::ifstream in(path, std::ios::binary);
-    if (!in) return false;
-    std::ostringstream all;
-    all << in.rdbuf();
-    text = all.str();
-    return true;
+    text.assign(std::istreambuf_iterator<char>(in), {});
+    return !in.bad();
 }
 
-const char* override_folder() {
-    const char* folder = std::getenv("CLARITY_KERNEL_PATH");
-    return folder && *folder ? folder : nullptr;
+// <checkout>/cl, or empty. A build folder has a CMakeCache.txt; an installed program has none beside it.
+fs::path checkout_kernels() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const fs::path build = program.parent_path().parent_path();
+    if (error || !fs::exists(build / "CMakeCache.txt", error)) return {};
+    fs::path folder = build;
+    for (int up = 0; up < 2; ++up) {
+        folder = folder.parent_path();
+        if (fs::exists(folder / "cl" / "CONTRACT.md", error)) return folder / "cl";
+    }
+    return {};
+}
+
+struct Places {
+    fs::path kernels;  // a folder laid out as cl/; empty: embedded text
+    bool beside_libraries = true;
+    fs::path plugin(const std::string& id) const { return kernels.parent_path() / "plugins" / "accel" / id; }
+};
+
+Places places() {
+    static const fs::path checkout = checkout_kernels();
+    const char* named = std::getenv("CLARITY_KERNEL_PATH");
+    if (!named || !*named) return {checkout, true};
+    if (std::string(named) == "embedded") return {{}, false};
+    // "cl" and "cl/" must have the same parent.
+    fs::path folder = fs::absolute(named).lexically_normal();
+    if (!folder.has_filename()) folder = folder.parent_path();
+    return {folder, false};
+}
+
+fs::path library_folder(const rt_plugin& plugin) {
+    Dl_info info{};
+    if (dladdr(&plugin, &info) == 0 || !info.dli_fname) return {};
+    return fs::absolute(info.dli_fname).lexically_normal().parent_path();
+}
+
+// In the order of precedence.
+std::vector<fs::path> plugin_places(const rt_plugin& plugin, const char* name) {
+    std::vector<fs::path> all;
+    const Places where = places();
+    if (!where.kernels.empty()) all.push_back(where.plugin(plugin.id) / name);
+    if (where.beside_libraries)
+        if (const fs::path folder = library_folder(plugin); !folder.empty()) all.push_back(folder / name);
+    return all;
+}
+
+std::string shown_plugin_name(const rt_plugin& plugin, const char* name) {
+    return std::string("plugins/accel/") + plugin.id + "/" + name;
+}
+
+// Texts as they were read last, by the name that the compiler is told.
+struct Texts {
+    struct Last {
+        std::string path;  // "": embedded
+        size_t hash;
+    };
+    std::mutex mutex;
+    std::map<std::string, Last> last;
+    uint64_t revision = 0;
+};
+Texts& texts() {
+    static Texts* const all = new Texts;  // threads that outlive main may still compile
+    return *all;
+}
+
+std::string remember(const std::string& shown_name, const fs::path& path, std::string text) {
+    Texts& all = texts();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    const Texts::Last now{path.string(), std::hash<std::string>()(text)};
+    const auto [entry, first] = all.last.insert({shown_name, now});
+    if (!first && entry->second.hash != now.hash) ++all.revision;
+    entry->second = now;
+    return text;
+}
+
+void require_same(const fs::path& path, const std::string& text, const std::string& compiled, const std::string& rebuild) {
+    if (text == compiled) return;
+    const auto differ = std::mismatch(text.begin(), text.end(), compiled.begin(), compiled.end()).first;
+    const auto line = static_cast<unsigned>(1 + std::count(text.begin(), differ, '\n'));
+    const std::string why = "differs from what " + rebuild;
+    throw Error(Exit::kernel_build_failed, path.string() + ":" + std::to_string(line) + ": " + why, {},
+                {path.string(), line, 0, why});
+}
+
+const char* embedded_text(const std::string& name) {
+    for (const Embedded& file : kEmbedded)
+        if (name == file.name) return file.text;
+    return nullptr;
 }
 
 }  // namespace
 
 std::string kernel_text(const std::string& name) {
+    const Places where = places();
+    const char* embedded = embedded_text(name);
     std::string text;
-    if (const char* folder = override_folder(); folder && read_file(std::filesystem::path(folder) / name, text)) return text;
-    for (const Embedded& file : kEmbedded)
-        if (name == file.name) return file.text;
-    throw Error(Exit::kernel_build_failed, "no kernel source `" + name + "` in this program or in CLARITY_KERNEL_PATH");
+    if (!where.kernels.empty() && read_file(where.kernels / name, text)) {
+        if (name == "rt_types.h" && embedded)
+            require_same(where.kernels / name, text, embedded,
+                         "this program was compiled with, so its structs may: build the program again, or set "
+                         "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
+        return remember("cl/" + name, where.kernels / name, std::move(text));
+    }
+    if (embedded) return remember("cl/" + name, {}, embedded);
+    throw Error(Exit::kernel_build_failed, "no kernel source `" + name + "` in this program" +
+                                               (where.kernels.empty() ? std::string() : " or in " + where.kernels.string()) +
+                                               ": build the program again");
 }
 
-std::string plugin_kernel_text(const std::string& id, const char* name, const char* embedded) {
+std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
+    const std::string shown = file.name ? shown_plugin_name(accel, file.name) : "";
     std::string text;
-    const char* folder = override_folder();
-    if (folder && name && read_file(std::filesystem::path(folder).parent_path() / "plugins" / "accel" / id / name, text))
-        return text;
-    return embedded ? embedded : "";
+    if (file.name)
+        for (const fs::path& path : plugin_places(accel, file.name)) {
+            if (!read_file(path, text)) continue;
+            if (&file == &accel.accel->types && file.text)
+                require_same(path, text, file.text,
+                             std::string("plugin ") + accel.id +
+                                 " was compiled with, so its structs may: build the plugin again and restart, or set "
+                                 "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
+            return remember(shown, path, std::move(text));
+        }
+    return remember(shown, {}, file.text ? file.text : "");
+}
+
+std::string kernel_path(const std::string& shown_name) {
+    Texts& all = texts();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    const auto found = all.last.find(shown_name);
+    return found == all.last.end() ? std::string() : found->second.path;
+}
+
+uint64_t kernel_text_revision() {
+    Texts& all = texts();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    return all.revision;
+}
+
+std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& accels) {
+    std::vector<std::string> all;
+    const fs::path kernels = places().kernels;
+    if (!kernels.empty())
+        for (const Embedded& file : kEmbedded) all.push_back((kernels / file.name).string());
+    for (const rt_plugin* plugin : accels)
+        for (const rt_cl_file* file : {&plugin->accel->types, &plugin->accel->traverse})
+            if (file->name)
+                for (const fs::path& path : plugin_places(*plugin, file->name)) all.push_back(path.string());
+    return all;
 }
 
 }  // namespace clarity

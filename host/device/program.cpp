@@ -1,25 +1,73 @@
 #include "device/program.hpp"
 
 #include <chrono>
+#include <regex>
 #include <sstream>
 
-#include "base/error.hpp"
+#include "device/kernel_files.hpp"
 
 namespace clarity {
 namespace {
 
-// The first line that a person should see of a compiler's log.
-std::string first_error(const std::string& log) {
-    std::istringstream lines(log);
-    std::string line, fallback;
-    while (std::getline(lines, line)) {
-        if (line.find("error") != std::string::npos) return line;
-        if (fallback.empty() && !line.empty()) fallback = line;
+const char* const kCompilerIsSilent = "the compiler gave no reason";
+
+// Errors before warnings, both with their place, whichever way round the compiler says it.
+struct Diagnostic {
+    std::string severity, file, message;
+    unsigned line = 0, column = 0;
+};
+
+unsigned number(const std::string& digits) {
+    return digits.size() > 9 ? 0 : static_cast<unsigned>(std::stoul("0" + digits));
+}
+
+bool read_diagnostic(const std::string& line, Diagnostic& found) {
+    static const std::regex placed(
+        "^(?:(fatal error|error|warning|note): )?([^:]+):([0-9]+):(?:([0-9]+):)? ?"
+        "(?:(fatal error|error|warning|note): )?(.*)$"),
+        bare("^(fatal error|error|warning|note): (.*)$");
+    std::smatch part;
+    if (line.size() > 2000) return false;  // std::regex recurses
+    if (std::regex_match(line, part, placed) && (part[1].matched || part[5].matched)) {
+        const std::string path = kernel_path(part[2]);
+        found = {part[1].matched ? part[1] : part[5], path.empty() ? part[2].str() : path, part[6], number(part[3]),
+                 number(part[4])};
+        return true;
     }
-    return fallback.empty() ? "the compiler gave no reason" : fallback;
+    if (!std::regex_match(line, part, bare)) return false;
+    found = {part[1], "", part[2], 0, 0};
+    return true;
+}
+
+std::string place(const std::string& file, unsigned line, unsigned column) {
+    return file + ":" + std::to_string(line) + ":" + (column ? std::to_string(column) + ":" : "") + " ";
 }
 
 }  // namespace
+
+CompilerLog read_compiler_log(const std::string& log) {
+    static const std::regex counts("^[0-9]+ (error|warning)s?( and [0-9]+ errors?)? generated\\.$");
+    CompilerLog result;
+    std::istringstream lines(log);
+    std::string line, fallback;
+    while (std::getline(lines, line)) {
+        if (!line.empty() && line.back() == '\r') line.pop_back();
+        Diagnostic found;
+        if (line.size() < 100 && std::regex_match(line, counts)) continue;
+        if (read_diagnostic(line, found)) {
+            const bool error = found.severity.find("error") != std::string::npos;
+            if (error && result.errors++ == 0) result.first = {found.file, found.line, found.column, found.message};
+            line =
+                (found.file.empty() ? "" : place(found.file, found.line, found.column)) + found.severity + ": " + found.message;
+        } else if (fallback.empty()) {
+            fallback = line;
+        }
+        result.text += line + "\n";
+    }
+    while (!result.text.empty() && result.text.back() == '\n') result.text.pop_back();
+    if (result.first.message.empty()) result.first.message = fallback.empty() ? kCompilerIsSilent : fallback;
+    return result;
+}
 
 BuildResult build_program(Device& device, const std::string& source, const std::string& options, const std::string& what) {
     const auto start = std::chrono::steady_clock::now();
@@ -30,17 +78,20 @@ BuildResult build_program(Device& device, const std::string& source, const std::
         result.program.build(cl_device, options.c_str());
         result.log = result.program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(cl_device);
     } catch (const cl::Error& e) {
-        std::string log;
+        std::string raw;
         if (result.program()) {
             try {
-                log = result.program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(cl_device);
+                raw = result.program.getBuildInfo<CL_PROGRAM_BUILD_LOG>(cl_device);
             } catch (const cl::Error&) {
             }
         }
-        throw Error(Exit::kernel_build_failed,
-                    what + ": the kernels do not compile on " + device.info().name + ": " +
-                        (log.empty() ? "OpenCL error " + std::to_string(e.err()) : first_error(log)),
-                    log);
+        const CompilerLog log = read_compiler_log(raw.c_str());  // some drivers count the final 0 in
+        const SourceLocation& first = log.first;
+        std::string message = first.file.empty() ? "" : place(first.file, first.line, first.column);
+        message += log.text.empty() ? "OpenCL error " + std::to_string(e.err()) : first.message;
+        message += " (compiling " + what + " for " + device.info().name;
+        if (log.errors > 1) message += "; " + std::to_string(log.errors - 1) + " more errors";
+        throw Error(Exit::kernel_build_failed, message + ")", log.text, first);
     }
     result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     return result;

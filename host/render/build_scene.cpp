@@ -130,6 +130,12 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
     }
 }
 
+bool mirrors(const Affine& m) {
+    const double x = double(m[5]) * m[10] - double(m[6]) * m[9], y = double(m[6]) * m[8] - double(m[4]) * m[10],
+                 z = double(m[4]) * m[9] - double(m[5]) * m[8];
+    return m[0] * x + m[1] * y + m[2] * z < 0;
+}
+
 // The box of a mesh's group, placed.
 rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, rt_u32 index) {
     rt_prim box = empty_prim(0, 0), prim = empty_prim(RT_REF_INSTANCE | index, index);
@@ -150,7 +156,8 @@ rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world
 
 BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     BuildScene out;
-    // A mesh that is placed once is flattened: a tree of its own would only lengthen the way of each ray.
+    // A mesh that is placed once is flattened: a tree of its own would only lengthen the way of each ray. One that is mirrored
+    // is not, since its triangles would turn their outsides in.
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
     std::vector<Affine> inverse(scene.instances.size());
@@ -162,7 +169,8 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         const Instance& instance = scene.instances[i];
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
         if (!instance.visible) continue;
-        flat[i] = uses[instance.mesh] == 1 || !invert(instance.world_from_object, inverse[i]) || count == 0;
+        const bool singular = !invert(instance.world_from_object, inverse[i]);
+        flat[i] = (uses[instance.mesh] == 1 && !mirrors(instance.world_from_object)) || singular || count == 0;
         if (flat[i]) {
             world_prims += count;
             refs += count;
@@ -207,6 +215,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             // Only its numbers are kept free.
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
+            if (!identity) out.flattened.push_back(static_cast<rt_u32>(i));
             add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material, next_prim, next_ref,
                           static_cast<rt_u32>(i), at, out);
             next_ref += mesh.triangle_count;

@@ -1,5 +1,7 @@
 #include "render/device_scene.hpp"
 
+#include <cmath>
+
 #include "base/error.hpp"
 
 namespace clarity {
@@ -37,6 +39,30 @@ cl::Buffer upload(Device& device, const char* what, const std::vector<T>& data, 
     return upload(device, what, data.data(), data.size() * sizeof(T), total);
 }
 
+// Normals of vertices in the space where their triangles stand: those of flattened meshes go by the inverse transpose, as those
+// of instances do in the kernels, but for a factor that keeps their lengths near what they were, however large the scale.
+std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build) {
+    std::vector<float> normals = scene.normals;
+    for (const uint32_t i : build.flattened) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        Affine inverse;
+        if (!invert(instance.world_from_object, inverse)) continue;
+        const Affine& m = inverse;
+        const double volume = m[0] * (double(m[5]) * m[10] - double(m[6]) * m[9]) +
+                              m[1] * (double(m[6]) * m[8] - double(m[4]) * m[10]) +
+                              m[2] * (double(m[4]) * m[9] - double(m[5]) * m[8]);
+        const double factor = 1 / std::cbrt(std::fabs(volume));
+        for (size_t v = mesh.first_vertex; v < size_t(mesh.first_vertex) + mesh.vertex_count; ++v) {
+            float* const n = &normals[3 * v];
+            double turned[3];
+            for (int k = 0; k < 3; ++k) turned[k] = double(m[k]) * n[0] + double(m[4 + k]) * n[1] + double(m[8 + k]) * n[2];
+            for (int k = 0; k < 3; ++k) n[k] = static_cast<float>(factor * turned[k]);
+        }
+    }
+    return normals;
+}
+
 }  // namespace
 
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel)
@@ -57,7 +83,9 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     materials_at_ = before_lights_.size();
     add(upload(device, "materials", materials_, bytes_));
     add(upload(device, "triangles", attributes_, bytes_));
-    add(upload(device, "normals", scene_->normals, bytes_));
+    const bool moved = !scene_->normals.empty() && !build.flattened.empty();
+    if (moved) normals_ = normals_as_placed(*scene_, build);
+    add(upload(device, "normals", moved ? normals_ : scene_->normals, bytes_));
     add(upload(device, "texture coordinates", scene_->uvs, bytes_));
     add(upload(device, "texture table", scene_->textures, bytes_));
     add(upload(device, "textures", scene_->texels, bytes_));

@@ -26,6 +26,7 @@ class DeviceScene {
     std::shared_ptr<const AccelData> accel_;
     std::vector<rt_material> materials_;
     std::vector<rt_triangle> attributes_;
+    std::vector<float> normals_;  // in place of the scene's, where meshes were moved
     std::vector<cl::Buffer> before_lights_, slots_;
     size_t materials_at_ = 0;  // in before_lights_
     uint64_t bytes_ = 0;

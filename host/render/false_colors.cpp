@@ -8,6 +8,7 @@ namespace clarity {
 namespace {
 
 using Rgb = std::array<uint8_t, 3>;
+using Table = std::array<std::array<uint8_t, 4>, 257>;  // the last: nothing was hit
 using Rgb3 = std::array<double, 3>;
 
 uint8_t byte_of(double x) {
@@ -31,8 +32,8 @@ double srgb_from_linear(double x) {
 // Dark blue, violet, red, orange, pale yellow: lightness rises in even steps, so equal differences of value look equally far
 // apart, with or without colour vision (Kovesi 2015, Good Colour Maps: How to Design Them); the hue only helps to name them.
 // The chroma is most of what sRGB has for that lightness and hue.
-std::array<Rgb, 256> make_heat() {
-    std::array<Rgb, 256> map;
+Table make_heat() {
+    Table map;
     constexpr double kDegree = 3.14159265358979 / 180;
     for (int i = 0; i < 256; ++i) {
         const double x = i / 255.0, lightness = 0.18 + 0.78 * x, hue = (275 + 190 * std::pow(x, 0.9)) * kDegree;
@@ -50,14 +51,19 @@ std::array<Rgb, 256> make_heat() {
 }
 
 // Near is bright, and what is hit is never quite black.
-std::array<Rgb, 256> make_gray() {
-    std::array<Rgb, 256> map;
+Table make_gray() {
+    Table map;
     for (int i = 0; i < 256; ++i) map[i].fill(byte_of(1 - 0.9 * i / 255.0));
     return map;
 }
 
-const std::array<Rgb, 256>& entries(FalseColorScale::Map map) {
-    static const std::array<Rgb, 256> heat = make_heat(), gray = make_gray();
+const Table& entries(FalseColorScale::Map map) {
+    static const auto opaque = [](Table m) {
+        m[256] = {};
+        for (auto& entry : m) entry[3] = 255;
+        return m;
+    };
+    static const Table heat = opaque(make_heat()), gray = opaque(make_gray());
     return map == FalseColorScale::Map::gray ? gray : heat;
 }
 
@@ -96,7 +102,8 @@ void paint(const FloatImage& values, uint8_t* rgba, Color&& color) {
 
 std::array<uint8_t, 3> color_at(const FalseColorScale& scale, float position) {
     // Written so that NaN, too, has a colour.
-    return entries(scale.map)[position > 0 ? static_cast<size_t>(std::min(position, 1.0f) * 255 + 0.5f) : 0];
+    const auto& entry = entries(scale.map)[position > 0 ? static_cast<size_t>(std::min(position, 1.0f) * 255 + 0.5f) : 0];
+    return {entry[0], entry[1], entry[2]};
 }
 
 FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float most) {
@@ -114,10 +121,10 @@ FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float
         scale = {Map::heat, 1, 2, true, "Generations", "of rays"};
     if (scale.map == Map::none || (aov == "lanes" && !(most > 0))) return scale;
     float low = INFINITY, high = -INFINITY;
-    for (const float value : values.pixels) {
-        if (!(value < INFINITY)) continue;
-        low = std::min(low, value);
-        high = std::max(high, value);
+    for (const float value : values.pixels) {  // no branch, so that it runs on vectors; NaN and infinity drop out
+        low = value < low ? value : low;
+        const float finite = value < INFINITY ? value : -INFINITY;
+        high = finite > high ? finite : high;
     }
     if (aov == "t" && low <= high) scale.min = low;
     if (most > 0) high = most;
@@ -138,13 +145,14 @@ void false_colors(const FloatImage& values, const std::string& aov, const FalseC
             return Rgb{byte_of(v[0] - std::floor(v[0])), byte_of(v[1] - std::floor(v[1])), 0};
         });
     } else {
-        const std::array<Rgb, 256>& map = entries(scale.map);
-        const float factor = scale.max > scale.min ? 255 / (scale.max - scale.min) : 0;
-        paint(values, rgba, [&](const float* v) {
-            if (!(*v < INFINITY)) return Rgb{};
-            const float at = (*v - scale.min) * factor;
-            return map[at > 0 ? static_cast<size_t>(std::min(at, 255.0f) + 0.5f) : 0];
-        });
+        const Table& map = entries(scale.map);
+        const float factor = scale.max > scale.min ? 255 / (scale.max - scale.min) : 0, min = scale.min;
+        const float* v = values.pixels.data();
+        for (size_t i = 0, pixels = pixel_count(values); i < pixels; ++i, ++v) {
+            const float at = std::min((*v - min) * factor + 0.5f, 255.0f);
+            const int entry = *v < INFINITY ? at > 0 ? static_cast<int>(at) : 0 : 256;
+            std::memcpy(rgba + 4 * i, map[entry].data(), 4);
+        }
     }
 }
 

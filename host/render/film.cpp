@@ -18,7 +18,8 @@ cl_uint number_of_tone(const std::string& tone) {
 }  // namespace
 
 FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(std::move(device)) {
-    const BuildResult built = build_program(*device_, kernel_text("film.cl"), "-cl-std=CL1.2", "film");
+    const BuildResult built =
+        build_program(*device_, "#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film");
     guarded(*device_, "preparing the film", [&] {
         program_ = built.program;
         map_tones_ = cl::Kernel(program_, "map_tones");

@@ -1,6 +1,6 @@
 // frames.cpp -- the film, and tracing into it.
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <cstring>
 
 #include "render/film.hpp"
@@ -20,6 +20,37 @@ unsigned channels_of(const std::string& aov) {
     return aov == "normal" || aov == "uv" ? 3 : 1;
 }
 
+// A packet's distances, block by block, to where its first pixel is.
+void put_packet(const Layout& layout, const float* block, unsigned left, unsigned top, FloatImage& image) {
+    const unsigned right = std::min(left + layout.packet_w, image.width),
+                   bottom = std::min(top + layout.packet_h, image.height);
+    for (unsigned y0 = top; y0 < top + layout.packet_h; y0 += layout.block_h)
+        for (unsigned x0 = left; x0 < left + layout.packet_w; x0 += layout.block_w, block += layout.lanes) {
+            if (x0 >= right) continue;
+            const unsigned width = std::min(layout.block_w, right - x0),
+                           height = y0 < bottom ? std::min(layout.block_h, bottom - y0) : 0;
+            float* to = &image.pixels[size_t(y0) * image.width + x0];
+            for (unsigned row = 0; row < height; ++row, to += image.width) {
+                const float* from = block + row * layout.block_w;
+                if (width == 4)
+                    std::memcpy(to, from, 4 * sizeof(float));  // of a size that the compiler knows
+                else
+                    std::copy_n(from, width, to);
+            }
+        }
+}
+
+// Rays are stored by groups, packets, blocks and lanes, as rt_packet_origin() and rt_block_pixels() number them.
+void put_in_order(const Layout& layout, const float* stored, FloatImage& image) {
+    const unsigned groups_x = layout.groups_x(image.width), groups_y = layout.groups_y(image.height);
+    for (unsigned y = 0; y < groups_y; ++y)
+        for (unsigned x = 0; x < groups_x; ++x)
+            for (unsigned in_y = 0; in_y < layout.group_h; ++in_y)
+                for (unsigned in_x = 0; in_x < layout.group_w; ++in_x, stored += layout.rays())
+                    put_packet(layout, stored, (x * layout.group_w + in_x) * layout.packet_w,
+                               (y * layout.group_h + in_y) * layout.packet_h, image);
+}
+
 }  // namespace
 
 struct Frames::Impl {
@@ -37,6 +68,7 @@ struct Frames::Impl {
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
     Launcher launcher;
+    std::vector<float> scratch;  // kept: fresh pages cost more than what is done with them
 
     // Waits for all that is queued.
     void read(const cl::Buffer& buffer, void* out, size_t bytes) {
@@ -135,30 +167,15 @@ FloatImage Frames::read_distance() {
     if (!im.program || !im.program->has_generations()) return {};
     return guarded(*im.device, "reading distances", [&] {
         const Layout& layout = im.layout;
-        const unsigned groups_x = layout.groups_x(im.width), groups = groups_x * layout.groups_y(im.height);
-        std::vector<float> stored(size_t(groups) * layout.group_packets() * layout.rays());
-        im.read(im.distances.get(), stored.data(), stored.size() * sizeof(float));
+        const unsigned groups = layout.groups_x(im.width) * layout.groups_y(im.height);
+        im.scratch.resize(size_t(groups) * layout.group_packets() * layout.rays());
+        im.read(im.distances.get(), im.scratch.data(), im.scratch.size() * sizeof(float));
         FloatImage image;
         image.width = im.width;
         image.height = im.height;
         image.channels = 1;
         image.pixels.resize(size_t(im.width) * im.height);
-        // As rt_packet_origin() and rt_block_pixels() say which pixel a ray is of.
-        const float* block = stored.data();
-        for (unsigned group = 0; group < groups; ++group)
-            for (unsigned packet = 0; packet < layout.group_packets(); ++packet)
-                for (unsigned b = 0; b < layout.blocks(); ++b, block += layout.lanes) {
-                    const unsigned in_x = b % layout.blocks_x() * layout.block_w, in_y = b / layout.blocks_x() * layout.block_h;
-                    const unsigned left = (group % groups_x * layout.group_w + packet % layout.group_w) * layout.packet_w,
-                                   top = (group / groups_x * layout.group_h + packet / layout.group_w) * layout.packet_h;
-                    const unsigned right = std::min(left + layout.packet_w, im.width),
-                                   bottom = std::min(top + layout.packet_h, im.height), x = left + in_x;
-                    if (x >= right) continue;
-                    const size_t width = std::min(layout.block_w, right - x);
-                    for (unsigned row = 0; row < layout.block_h && top + in_y + row < bottom; ++row)
-                        std::copy_n(block + row * layout.block_w, width,
-                                    &image.pixels[size_t(top + in_y + row) * im.width + x]);
-                }
+        put_in_order(layout, im.scratch.data(), image);
         return image;
     });
 }
@@ -175,9 +192,16 @@ ByteImage Frames::read_display(const Settings& settings) {
 FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats) {
     Impl& im = *impl_;
     if (im.aov != "color") {
+        using Clock = std::chrono::steady_clock;
+        const auto begin = Clock::now();
         const FloatImage values = read_values();
+        const auto read = Clock::now();
         const FalseColorScale scale = scale_of(values, im.aov, static_cast<float>(settings.scale_max));
         false_colors(values, im.aov, scale, rgba);
+        if (stats) {
+            stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(read - begin).count()});
+            stats->kernels.push_back({"false colours", std::chrono::duration<double, std::milli>(Clock::now() - read).count()});
+        }
         return scale;
     }
     guarded(*im.device, "reading the picture", [&] {

@@ -191,9 +191,9 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "rt_types.h");
     include(out, "lanes.h");
     include(out, "rays.h");
-    if (types.text) part(out, folder + types.name, plugin_kernel_text(accel.id, types.name, types.text));
+    if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
     context(out, *accel.accel);
-    const std::string text = plugin_kernel_text(accel.id, traverse.name, traverse.text);
+    const std::string text = plugin_kernel_text(accel, traverse);
     query(out, false, features, folder + traverse.name, text);
     if (kind != KernelKind::aov) query(out, true, features, folder + traverse.name, text);
     include(out, "vec.h");

@@ -59,6 +59,21 @@ Preparer::Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device
     : plugins_(plugins), device_(device), programs_(std::make_unique<ProgramCache>(device)) {}
 Preparer::~Preparer() = default;
 
+bool Preparer::worn() const {
+    constexpr unsigned kPrograms = 16;
+    return device_->info().pocl && programs_->compiled() >= kPrograms;
+}
+
+void Preparer::take_structure(const Preparer& other) {
+    if (&other == this) return;
+    const std::scoped_lock lock(mutex_, other.mutex_);
+    if (!other.last_) return;
+    auto last = std::make_shared<Prepared>();
+    last->scene = other.last_->scene;
+    last->accel = other.last_->accel;
+    last_ = last;
+}
+
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                   Progress& progress) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -82,6 +97,8 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         } else {
             progress.stage(std::string("building ") + plugin->id);
             next->accel = std::make_shared<AccelData>(build_accel(*scene, *plugin, params, progress));
+        }
+        if (!next->on_device) {
             progress.stage("uploading the scene");
             const auto start = std::chrono::steady_clock::now();
             next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel);

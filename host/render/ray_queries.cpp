@@ -2,7 +2,6 @@
 
 #include "render/frame_constants.hpp"
 #include "render/guarded.hpp"
-#include "render/launch.hpp"
 
 namespace clarity {
 
@@ -36,10 +35,13 @@ std::vector<rt_hit> RayQueries::trace(const Prepared& prepared, const std::vecto
         kernel.setArg(at++, out);
         view_.bind(*prepared.on_device, kernel, at);
         const size_t per_group = size_t(layout.group_packets()) * layout.lanes;
-        Launcher launcher;
+        // A pace is that of one program on one scene; with it, what is short is one launch.
+        if (program != last_program_ || prepared.on_device != last_scene_) launcher_.forget();
+        last_program_ = program;
+        last_scene_ = prepared.on_device;
         const LaunchTimes times =
-            launcher.run(queue, kernel, first_group, static_cast<unsigned>((rays.size() + per_group - 1) / per_group),
-                         layout.local_size(), [] {});
+            launcher_.run(queue, kernel, first_group, static_cast<unsigned>((rays.size() + per_group - 1) / per_group),
+                          layout.local_size(), [] {});
         if (device_ms) *device_ms = times.device_ms;
         queue.enqueueReadBuffer(out, CL_TRUE, 0, hits.size() * sizeof(rt_hit), hits.data());
         return hits;

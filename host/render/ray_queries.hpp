@@ -1,5 +1,6 @@
 // ray_queries.hpp -- rays of the caller's own through the traversals that pictures use.
 #pragma once
+#include "render/launch.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 #include "render/view_buffers.hpp"
@@ -15,6 +16,9 @@ class RayQueries {
     std::shared_ptr<Device> device_;
     ProgramCache programs_;  // counting and plain ones
     ViewBuffers view_;
+    Launcher launcher_;
+    std::shared_ptr<const TraceProgram> last_program_;
+    std::shared_ptr<const DeviceScene> last_scene_;
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_WRITE_ONLY};
 };
 

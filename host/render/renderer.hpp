@@ -44,13 +44,18 @@ class Preparer {
     // Throws Error(failed) for a build, Error(kernel_build_failed) with the compiler's log in details(), Cancelled; then what
     // was prepared before stays valid.
     std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress);
+    // Whether its device should be opened anew: PoCL frees what its compiler made only with the context, 0.15 MB a program and
+    // more, and whoever edits kernels makes hundreds. Then a Preparer of a new Device goes on with take_structure().
+    bool worn() const;
+    // The structure built last by another one, for its own device: nothing is built again, only uploaded and compiled.
+    void take_structure(const Preparer& other);
 
  private:
     const PluginRegistry& plugins_;
     std::shared_ptr<Device> device_;
     std::unique_ptr<ProgramCache> programs_;
     std::shared_ptr<const Prepared> last_;
-    std::mutex mutex_;
+    mutable std::mutex mutex_;
 };
 
 // What may change from frame to frame for nothing.

@@ -1,11 +1,17 @@
 #include "render/trace_program.hpp"
 
+#include "device/kernel_files.hpp"
 #include "device/program.hpp"
 
 namespace clarity {
 
 std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, KernelKind kind, const std::string& what,
                                                 bool* fresh) {
+    // Programs of texts that were edited since would only take room: a megabyte each on PoCL.
+    if (const uint64_t revision = kernel_text_revision(); revision != text_revision_) {
+        entries_.clear();
+        text_revision_ = revision;
+    }
     const std::string key = source.options + "\n" + source.text;
     for (auto it = entries_.begin(); it != entries_.end(); ++it)
         if (it->key == key) {
@@ -13,6 +19,7 @@ std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, Kern
             *fresh = false;
             return it->program;
         }
+    ++compiled_;
     const BuildResult built = build_program(*device_, source.text, source.options, what);
     auto program = std::make_shared<TraceProgram>();
     program->program = built.program;

@@ -1,6 +1,7 @@
 // trace_program.hpp -- compiled kernels, kept by what they were compiled from.
 #pragma once
 #include <CL/opencl.hpp>
+#include <atomic>
 #include <list>
 #include <memory>
 #include <string>
@@ -29,6 +30,7 @@ class ProgramCache {
     // fresh: whether it was compiled now.
     std::shared_ptr<TraceProgram> get(const KernelSource& source, KernelKind kind, const std::string& what, bool* fresh);
     std::shared_ptr<Device> device() const { return device_; }
+    unsigned compiled() const { return compiled_; }
 
  private:
     static constexpr size_t kKept = 32;
@@ -38,6 +40,8 @@ class ProgramCache {
     };
     std::shared_ptr<Device> device_;
     std::list<Entry> entries_;  // most recently used first
+    uint64_t text_revision_ = 0;
+    std::atomic<unsigned> compiled_{0};
 };
 
 }  // namespace clarity

@@ -176,10 +176,10 @@ TEST(Inspect, CameraRayMeetsWhatTheAovsSay) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const Case c(scene, make_view(*scene, 4.0f / 3, "0,2.5,11,0,2.2,0,50"), settings_of({"bvh2", 16, 4, 4}, "160x120"));
     const FloatImage t = c.aov("t"), prim = c.aov("prim"), instance = c.aov("instance"), steps = c.aov("steps"),
-                     tests = c.aov("leaf_tests");
+                     tests = c.aov("leaf_tests"), generations = c.aov("generations");
     size_t glass_or_mirror = 0, instanced = 0, nothing = 0;
-    for (unsigned y = 1; y < 120; y += 6)
-        for (unsigned x = 1; x < 160; x += 6) {
+    for (unsigned y = 1; y < 120; y += 4)
+        for (unsigned x = 1; x < 160; x += 4) {
             const RayTree tree = c.tree(x, y);
             const RayRecord& camera = tree.rays.at(0);
             const size_t at = c.index(x, y);
@@ -187,6 +187,10 @@ TEST(Inspect, CameraRayMeetsWhatTheAovsSay) {
             EXPECT_EQ(camera.instance, instance.pixels[at]) << x << "," << y;
             EXPECT_EQ(camera.steps, steps.pixels[at]) << x << "," << y;
             EXPECT_EQ(camera.leaf_tests, tests.pixels[at]) << x << "," << y;
+            unsigned last = 0;
+            for (const RayRecord& ray : tree.rays)
+                if (ray.fate == Fate::traced) last = std::max(last, ray.generation);
+            EXPECT_EQ(last, generations.pixels[at]) << x << "," << y;
             if (std::isinf(t.pixels[at])) {
                 EXPECT_TRUE(std::isinf(camera.t));
                 ++nothing;

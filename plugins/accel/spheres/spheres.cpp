@@ -10,18 +10,27 @@
 namespace spheres {
 namespace {
 
-enum Param { kMaxLeaf, kMaxDepth, kTopLevel };
+enum Param { kMaxLeaf, kMaxDepth, kTopLevel, kLoneSpheres };
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives at which parting stops", 1, 256, 4),
     rt::int_param("max_depth", "Max depth", "levels below a mesh's root at which parting stops, whatever is left", 0, 32, 32),
     rt::bool_param("top_level", "Tree above meshes", "also part the meshes into halves; the thesis tries them one by one",
                    false),
+    rt::bool_param(
+        "lone_spheres", "Lone spheres",
+        "analytic spheres are tried one by one, as in the thesis, where each is its own volume; else they get a tree. "
+        "Without effect under a tree above meshes",
+        false),
 };
+
+// Radius of a leaf that every ray enters: finite, so that the arithmetic of a test stays free of NaN.
+constexpr float kEverywhere = 1e30f;
 
 // The primitives of one mesh within a group.
 struct Run {
     uint32_t first, count;
     Box box;
+    bool lone;
 };
 
 // Where a mesh's tree goes.
@@ -37,6 +46,7 @@ class Plan {
 
     std::vector<rt_u32> roots;
     std::vector<Job> jobs;
+    std::vector<Run> lone;
     std::vector<std::pair<uint32_t, spheres_node>> ready;  // place and node
     uint64_t size = 0;
 
@@ -56,8 +66,24 @@ class Plan {
 
  private:
     void add_run(const Run& run, uint32_t level) {
+        if (run.lone) {
+            add_lone(run, level);
+            return;
+        }
         jobs.push_back({run, static_cast<uint32_t>(size), level});
         size += tree_size(rules_, run.count);
+    }
+
+    // One leaf that every ray enters.
+    void add_lone(const Run& run, uint32_t level) {
+        const uint64_t place = size++;
+        spheres_node node{};
+        node.radius = kEverywhere;
+        node.level = level;
+        node.first = run.first;
+        node.count = run.count;
+        finish(node, place);
+        lone.push_back(run);
     }
 
     void add_halves(Run* runs, size_t count, uint32_t level) {
@@ -90,13 +116,13 @@ class Plan {
     const bool top_level_;
 };
 
-// Copies a group's primitives and finds its meshes.
-std::vector<Run> gather(const rt_build_input& input, const rt_group& group, std::vector<Item>& items) {
+// Copies a group's primitives and finds its meshes. lone: spheres are to be tried one by one.
+std::vector<Run> gather(const rt_build_input& input, const rt_group& group, bool lone, std::vector<Item>& items) {
     std::vector<Run> runs;
     for (rt_u32 i = group.first; i < group.first + group.count; ++i) {
         const rt_prim& prim = input.prims[i];
         if (i == group.first || prim.mesh != input.prims[i - 1].mesh)
-            runs.push_back({static_cast<uint32_t>(items.size()), 0, {}});
+            runs.push_back({static_cast<uint32_t>(items.size()), 0, {}, lone && RT_REF_KIND(prim.ref) == RT_REF_SPHERE});
         items.push_back(make_item(prim));
         ++runs.back().count;
         runs.back().box.add(items.back().box);
@@ -113,13 +139,16 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
 
     std::vector<Item> items;
     items.reserve(count);
-    Plan plan(host, rules, params[kTopLevel] != 0);
-    for (rt_u32 g = 0; g < input->group_count; ++g) plan.add_group(gather(*input, input->groups[g], items));
+    const bool top_level = params[kTopLevel] != 0, lone = params[kLoneSpheres] != 0 && !top_level;
+    Plan plan(host, rules, top_level);
+    for (rt_u32 g = 0; g < input->group_count; ++g) plan.add_group(gather(*input, input->groups[g], lone, items));
     rt::progress(host, 0.1f);
 
     auto* const nodes = rt::alloc<spheres_node>(out, 0, plan.size);
     rt_u32* const leaves = rt::leaves(out, count);
     for (const auto& [place, node] : plan.ready) nodes[place] = node;
+    for (const Run& run : plan.lone)
+        for (uint32_t i = run.first; i < run.first + run.count; ++i) leaves[i] = items[i].ref;
     const Forest forest{host, rules, items.data(), nodes};
     rt::parallel_for(host, static_cast<rt_u32>(plan.jobs.size()), [&](rt_u32 j) {
         const Job& job = plan.jobs[j];
@@ -147,7 +176,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
     const auto* const nodes = static_cast<const spheres_node*>(built->slots[0]);
     const rt_u32 head = built->roots[group];
     for (rt_u32 i = head + 1; i < nodes[head].skip; ++i)
-        if (level == RT_LEVEL_BOTTOM ? nodes[i].count > 0 : nodes[i].level == level)
+        if (nodes[i].radius < kEverywhere && (level == RT_LEVEL_BOTTOM ? nodes[i].count > 0 : nodes[i].level == level))
             sink->sphere(sink->ctx, nodes[i].center, nodes[i].radius);
     return RT_OK;
 }

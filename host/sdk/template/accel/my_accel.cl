@@ -5,8 +5,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     for (uint at = first; at < end; ++at) {
         const global my_accel_block *block = ctx->my_accel_blocks + at;
         vfloat entry;
-        RT_COUNT_STEP(hit);
-        if (!rt_any(rt_enter_box(block->box, ray, hit, &entry))) continue;
+        const uint inside = rt_bits(rt_enter_box(block->box, ray, hit, &entry));
+        RT_COUNT_VISIT(hit, inside);
+        if (inside == 0u) continue;
         for (uint i = 0; i < block->count; ++i) RT_LEAF(ctx, block->first + i, ray, hit);
 #if RT_ANY_HIT
         if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return; /* every lane has found something */

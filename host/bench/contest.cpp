@@ -1,0 +1,359 @@
+#include "bench/contest.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <functional>
+#include <thread>
+
+#include "base/error.hpp"
+#include "bench/analysis.hpp"
+#include "bench/bench.hpp"
+#include "bench/machine.hpp"
+#include "plugin/parameters.hpp"
+
+namespace clarity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Structures that try everything sit out beyond so many primitives, where one picture would take them minutes.
+constexpr uint64_t kTryEverything = 4000;
+// Rays whose answers may differ from those of the first row: silhouettes, seen by other arithmetic.
+constexpr double kMayDiffer = 1e-3;
+
+double ms_since(Clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+}
+
+uint64_t primitive_count(const Scene& scene) {
+    return scene.placed_triangle_count() + scene.spheres.size() + scene.polygons.size() + scene.planes.size();
+}
+
+std::string parameters_text(const rt_plugin& plugin, const ParameterValues& values) {
+    std::string text;
+    for (rt_u32 i = 0; i < plugin.param_count && i < values.size(); ++i)
+        text += (text.empty() ? "" : ",") + parameter_text(plugin, values, i);
+    return text;
+}
+
+void describe(BenchRecord& row, const AccelData& accel) {
+    row.build_ms = accel.build_ms;
+    row.pack_ms = accel.pack_ms;
+    row.accel_bytes = accel.bytes;
+    row.bytes_per_triangle = row.triangles > 0 ? double(accel.bytes) / double(row.triangles) : 0;
+    row.nodes = static_cast<uint64_t>(accel.stat("nodes"));
+    row.sah_cost = accel.stat("sah_cost");
+}
+
+class Contest {
+ public:
+    Contest(Stand& stand, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
+            const MeasureRules& rules, Progress& progress)
+        : stand_(stand), plugins_(plugins), request_(request), case_(c), rules_(rules), progress_(progress) {}
+
+    std::vector<BenchRecord> run() {
+        for (const Variant& variant : case_.variants)
+            for (size_t device = 0; device < stand_.device_count(); ++device) {
+                if (variant.cpu_only && !stand_.device(device).cpu) continue;
+                if (case_.measure == "build" && device > 0) break;  // builders run on the host
+                add_ours(variant, device);
+            }
+        if (!case_.peer_qualities.empty() && stand_.peer_threads() > 0 && peers_cannot(*stand_.scene()).empty()) add_peers();
+        if (case_.timing == Timing::timed) measure();
+        for (Entry& entry : entries_) guarded(entry, entry.finish);
+        std::vector<BenchRecord> rows;
+        for (Entry& entry : entries_) {
+            derive(entry.row);
+            rows.push_back(std::move(entry.row));
+        }
+        return rows;
+    }
+
+ private:
+    struct Entry {
+        BenchRecord row;
+        std::function<Take()> once;
+        std::function<void(BenchRecord&)> finish;  // what is counted rather than timed
+    };
+
+    static void guarded(Entry& entry, const std::function<void(BenchRecord&)>& work) {
+        if (entry.row.status != RowStatus::ok || !work) return;
+        try {
+            work(entry.row);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& e) {
+            // A setting that this device or structure cannot have is no fault of anybody's.
+            entry.row.status = e.code() == Exit::usage ? RowStatus::skipped : RowStatus::failed;
+            entry.row.why = e.what();
+        }
+    }
+
+    BenchRecord make_row() const {
+        BenchRecord row;
+        row.suite = case_.suite;
+        row.case_name = case_.name;
+        row.scene = case_.name.substr(0, case_.name.rfind('/'));
+        row.measure = case_.measure;
+        row.triangles = stand_.scene()->placed_triangle_count();
+        row.primitives = primitive_count(*stand_.scene());
+        return row;
+    }
+
+    void on_host(BenchRecord& row, unsigned threads) const {
+        row.device = host_cpu_name();
+        row.device_id = "host";
+        row.threads = threads;
+    }
+
+    void add_ours(const Variant& variant, size_t device) {
+        entries_.push_back({make_row(), {}, {}});
+        Entry& entry = entries_.back();
+        const Settings settings = variant_settings(plugins_, request_, variant);
+        const rt_plugin& plugin = *plugins_.accel(settings.accel);
+        BenchRecord& row = entry.row;
+        row.variant = variant.label;
+        row.accel = settings.accel;
+        row.accel_params = parameters_text(plugin, settings.accel_params);
+        if (case_.measure == "build") {
+            on_host(row, std::thread::hardware_concurrency());
+            add_build(entry, plugin, settings);
+            return;
+        }
+        const DeviceInfo& info = stand_.device(device);
+        row.device = info.name;
+        row.device_id = info.id();
+        row.driver = info.platform + ", " + info.driver;
+        row.threads = info.compute_units;
+        row.tracer = settings.tracer;
+        row.depth = settings.depth;
+        row.ray_slots = settings.ray_slots;
+        row.width = settings.width;
+        row.height = settings.height;
+        if (settings.accel == "linear" && row.primitives > kTryEverything) {
+            row.status = RowStatus::skipped;
+            row.why = "tests every primitive: " + std::to_string(row.primitives) + " would take it minutes";
+            return;
+        }
+        guarded(entry, [&](BenchRecord&) {
+            const Stand::Held held = stand_.prepare(device, settings, progress_);
+            const Prepared& prepared = *held.prepared;
+            row.packet_w = prepared.settings.packet_w;
+            row.packet_h = prepared.settings.packet_h;
+            row.lanes = prepared.settings.lanes;
+            row.compile_ms = prepared.compile_ms;
+            describe(row, *prepared.accel);
+            if (case_.measure == "frame")
+                add_frame(entry, settings, held);
+            else if (case_.measure == "dropped")
+                entry.finish = [=](BenchRecord& r) { count_rays(r, settings, held); };
+            else
+                add_rays(entry, held);
+        });
+    }
+
+    void count_rays(BenchRecord& row, const Settings& settings, const Stand::Held& held) {
+        const FrameStats stats = held.frames->trace(*held.prepared, settings, stand_.view(), 0, true, progress_);
+        row.rays_primary = stats.primary;
+        row.rays_shadow = stats.shadow;
+        row.rays_secondary = stats.secondary;
+        row.rays_dropped = stats.dropped;
+    }
+
+    void add_frame(Entry& entry, const Settings& settings, const Stand::Held& held) {
+        const auto pixels = std::make_shared<std::vector<uint8_t>>(4 * size_t(settings.width) * settings.height);
+        const auto last = std::make_shared<FrameStats>();
+        entry.once = [=] {
+            const auto begin = Clock::now();
+            *last = held.frames->trace(*held.prepared, settings, stand_.view(), 0, false, progress_);
+            held.frames->read_display(settings, pixels->data(), last.get());
+            return Take{last->device_ms, ms_since(begin)};
+        };
+        entry.finish = [=](BenchRecord& row) {
+            for (const KernelTime& kernel : last->kernels) row.kernels_ms.emplace_back(kernel.name, kernel.ms);
+            count_rays(row, settings, held);
+        };
+    }
+
+    void add_rays(Entry& entry, const Stand::Held& held) {
+        const RaySet& set = stand_.rays(case_.measure, held);
+        rays_ = &set;
+        entry.once = [=, &set] {
+            Take take;
+            held.frames->trace_rays(*held.prepared, set.rays, RayQuery{set.any_hit, false}, &take.time_ms);
+            return take;
+        };
+        entry.finish = [=, &set](BenchRecord& row) {
+            const auto hits = held.frames->trace_rays(*held.prepared, set.rays, RayQuery{set.any_hit, true});
+            const rt_accel& accel = *held.prepared->accel->plugin->accel;
+            row.analysis = analyze(set.rays, hits, static_cast<unsigned>(held.prepared->settings.lanes),
+                                   accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
+            std::vector<float> distances;
+            for (const rt_hit& hit : hits) distances.push_back(hit.t);
+            compare(row, set, distances);
+        };
+        count_active(entry.row, set);
+    }
+
+    static void count_active(BenchRecord& row, const RaySet& set) {
+        (set.kind == "primary" ? row.rays_primary : set.kind == "shadow" ? row.rays_shadow : row.rays_secondary) = set.active;
+    }
+
+    // Whoever answers otherwise than the first row does not trace the same scene, and a comparison of times would mean nothing.
+    void compare(BenchRecord& row, const RaySet& set, const std::vector<float>& distances) {
+        uint64_t differ = 0;
+        for (size_t i = 0; i < set.rays.size(); ++i) {
+            if (!is_active(set.rays[i])) continue;
+            const float t = distances[i];
+            if (std::isfinite(t)) ++row.hits;
+            if (reference_.empty()) continue;
+            const float other = reference_[i];
+            const bool same =
+                std::isfinite(t) == std::isfinite(other) && (!std::isfinite(t) || std::fabs(t - other) <= 1e-3f * other);
+            if (!same) ++differ;
+        }
+        if (reference_.empty()) reference_ = distances;
+        if (double(differ) <= kMayDiffer * double(set.active)) return;
+        row.status = RowStatus::refused;
+        row.why = "its answers differ from those of the first row for " + std::to_string(differ) + " of " +
+                  std::to_string(set.active) + " rays: one of the two is wrong, `ctest -R conformance` says which";
+    }
+
+    void add_build(Entry& entry, const rt_plugin& plugin, const Settings& settings) {
+        const auto last = std::make_shared<BenchRecord>(entry.row);
+        entry.once = [=, &plugin] {
+            const auto begin = Clock::now();
+            const AccelData built = build_accel(*stand_.scene(), plugin, settings.accel_params, progress_);
+            describe(*last, built);
+            return Take{built.build_ms + built.pack_ms, ms_since(begin)};
+        };
+        entry.finish = [=](BenchRecord& row) {
+            row.build_ms = last->build_ms;
+            row.pack_ms = last->pack_ms;
+            row.accel_bytes = last->accel_bytes;
+            row.bytes_per_triangle = last->bytes_per_triangle;
+            row.nodes = last->nodes;
+            row.sah_cost = last->sah_cost;
+        };
+    }
+
+    void add_peers() {
+        for (const PeerKind& kind : peer_kinds(nullptr)) {
+            const auto& wanted = case_.peer_qualities;
+            if (std::find(wanted.begin(), wanted.end(), kind.quality) == wanted.end()) continue;
+            if (case_.measure == "build")
+                add_peer_build(kind);
+            else
+                add_peer_rays(kind);
+        }
+    }
+
+    Entry& add_peer_entry(const std::string& name) {
+        entries_.push_back({make_row(), {}, {}});
+        BenchRecord& row = entries_.back().row;
+        row.peer = row.variant = name;
+        on_host(row, stand_.peer_threads());
+        return entries_.back();
+    }
+
+    void add_peer_build(const PeerKind& kind) {
+        Entry& entry = add_peer_entry(kind.name + " " + kind.quality);
+        const auto bytes = std::make_shared<uint64_t>(0);
+        const PeerMesh& mesh = stand_.peer_mesh();
+        const unsigned threads = stand_.peer_threads();
+        entry.once = [=, &mesh] {
+            const auto begin = Clock::now();
+            const auto scene = kind.build(mesh, kind.quality, threads);
+            *bytes = scene->bytes();
+            return Take{scene->build_ms(), ms_since(begin)};
+        };
+        entry.finish = [=](BenchRecord& row) {
+            row.build_ms = row.time_ms.median;
+            row.accel_bytes = *bytes;
+            row.bytes_per_triangle = double(*bytes) / double(row.triangles);
+        };
+    }
+
+    void add_peer_rays(const PeerKind& kind) {
+        const std::string prefix = kind.name + " ";
+        PeerScene* scene = nullptr;
+        const RaySet* const set = rays_;
+        std::vector<std::string> modes;
+        try {
+            if (!set) throw Error(Exit::failed, "no structure of ours could trace the rays");
+            scene = &stand_.peer(kind);
+            scene->take_rays(*set);
+            modes = scene->modes();
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const Error& e) {
+            BenchRecord& row = add_peer_entry(prefix + kind.quality).row;
+            row.status = RowStatus::failed;
+            row.why = e.what();
+            return;
+        }
+        for (const std::string& mode : modes) {
+            Entry& entry = add_peer_entry(prefix + mode + " " + kind.quality);
+            const auto hits = std::make_shared<std::vector<PeerHit>>(set->rays.size());
+            entry.once = [=] {
+                Take take;
+                take.time_ms = scene->trace_ms(mode, *hits);
+                return take;
+            };
+            entry.finish = [=](BenchRecord& row) {
+                row.build_ms = scene->build_ms();
+                row.accel_bytes = scene->bytes();
+                std::vector<float> distances;
+                for (const PeerHit& hit : *hits) distances.push_back(hit.t);
+                compare(row, *set, distances);
+            };
+            count_active(entry.row, *set);
+        }
+    }
+
+    void measure() {
+        std::vector<Contender> contenders;
+        std::vector<Entry*> who;
+        for (Entry& entry : entries_) {
+            if (entry.row.status != RowStatus::ok || !entry.once) continue;
+            contenders.push_back({entry.row.variant, entry.once});
+            who.push_back(&entry);
+        }
+        const std::vector<Measured> measured = measure_in_turns(contenders, rules_, progress_);
+        for (size_t i = 0; i < who.size(); ++i) {
+            BenchRecord& row = who[i]->row;
+            row.status = measured[i].status;
+            row.why = measured[i].why;
+            row.time_ms = measured[i].time_ms;
+            row.wall_ms = measured[i].wall_ms;
+        }
+    }
+
+    static void derive(BenchRecord& row) {
+        if (row.status != RowStatus::ok) return;
+        const double ms = row.time_ms.median;
+        if (row.measure == "frame" && row.wall_ms.median > 0) row.fps = 1000 / row.wall_ms.median;
+        if (row.measure == "build") row.mtris_per_s = ms > 0 ? double(row.triangles) / ms / 1000 : 0;
+        if (row.measure != "build" && ms > 0) row.mrays_per_s = double(row.rays()) / ms / 1000;
+    }
+
+    Stand& stand_;
+    const PluginRegistry& plugins_;
+    const BenchRequest& request_;
+    const BenchCase& case_;
+    const MeasureRules& rules_;
+    Progress& progress_;
+    std::vector<Entry> entries_;
+    const RaySet* rays_ = nullptr;  // of this case
+    std::vector<float> reference_;  // distances of the first row that was compared
+};
+
+}  // namespace
+
+std::vector<BenchRecord> run_case(Stand& stand, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
+                                  const MeasureRules& rules, Progress& progress) {
+    return Contest(stand, plugins, request, c, rules, progress).run();
+}
+
+}  // namespace clarity

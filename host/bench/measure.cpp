@@ -1,0 +1,131 @@
+#include "bench/measure.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "base/error.hpp"
+
+namespace clarity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point begin) {
+    return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+struct Runner {
+    const Contender* contender;
+    Measured result;
+    double once_s = 0;  // wall time of a repetition, as the warm-up had it
+    std::vector<double> time_ms, wall_ms;
+    bool running() const { return result.status == RowStatus::ok; }
+};
+
+// One repetition; a contender that fails is out.
+bool take(Runner& runner, Take& result) {
+    try {
+        result = runner.contender->once();
+        return true;
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& e) {
+        runner.result.status = RowStatus::failed;
+        runner.result.why = e.what();
+        return false;
+    }
+}
+
+// Twice: the first compiles, pages in and wakes threads, the second says what a repetition takes.
+void warm_up(std::vector<Runner>& runners, const MeasureRules& rules, Progress& progress) {
+    for (Runner& runner : runners) {
+        for (int pass = 0; pass < 2 && runner.running(); ++pass) {
+            if (!progress.report(-1)) throw Cancelled();
+            const auto begin = Clock::now();
+            Take ignored;
+            if (!take(runner, ignored)) break;
+            runner.once_s = seconds_since(begin);
+            if (runner.once_s > rules.budget_s) break;
+        }
+        if (!runner.running() || runner.once_s * rules.few_rounds <= rules.budget_s) continue;
+        char why[160];
+        std::snprintf(why, sizeof why, "a repetition takes %.3g s, the case may take %.3g s in all: raise --time-limit",
+                      runner.once_s, rules.budget_s);
+        runner.result.status = RowStatus::skipped;
+        runner.result.why = why;
+    }
+}
+
+bool all_steady(const std::vector<Runner>& runners, double spread) {
+    return std::all_of(runners.begin(), runners.end(), [&](const Runner& runner) {
+        return !runner.running() ||
+               (summarize(runner.time_ms).spread() <= spread && summarize(runner.wall_ms).spread() <= spread);
+    });
+}
+
+// Rounds until all are steady or the budget is used up.
+void take_rounds(std::vector<Runner>& runners, const MeasureRules& rules, double budget_s, Progress& progress) {
+    const auto begin = Clock::now();
+    for (Runner& runner : runners) {
+        runner.time_ms.clear();
+        runner.wall_ms.clear();
+    }
+    for (unsigned round = 0; round < rules.max_rounds; ++round) {
+        if (round >= rules.few_rounds) {
+            const double used = seconds_since(begin), next = used / round;
+            if (used + next > budget_s) break;
+            if (round >= rules.min_rounds && all_steady(runners, rules.goal_spread)) break;
+        }
+        for (Runner& runner : runners) {
+            if (!runner.running()) continue;
+            if (!progress.report(float(round) / rules.max_rounds)) throw Cancelled();
+            Take t;
+            if (!take(runner, t)) continue;
+            runner.time_ms.push_back(t.time_ms);
+            runner.wall_ms.push_back(t.wall_ms);
+        }
+    }
+}
+
+void refuse_unsteady(Measured& result, const MeasureRules& rules) {
+    if (result.status != RowStatus::ok || result.spread() <= rules.max_spread) return;
+    char why[200];
+    std::snprintf(
+        why, sizeof why,
+        "the middle half of %u repetitions spreads over %.0f %% of the median, more than %.0f %%, after %u attempts: let the "
+        "machine be quiet, or raise --max-spread or --time-limit",
+        result.time_ms.n, 100 * result.spread(), 100 * rules.max_spread, rules.retries + 1);
+    result.status = RowStatus::refused;
+    result.why = why;
+}
+
+}  // namespace
+
+double Measured::spread() const {
+    return std::max(time_ms.spread(), wall_ms.spread());
+}
+
+std::vector<Measured> measure_in_turns(const std::vector<Contender>& contenders, const MeasureRules& rules,
+                                       Progress& progress) {
+    const auto begin = Clock::now();
+    std::vector<Runner> runners;
+    for (const Contender& contender : contenders) runners.push_back({&contender, {}, 0, {}, {}});
+    warm_up(runners, rules, progress);
+    for (unsigned attempt = 0; attempt <= rules.retries; ++attempt) {
+        // Half of the budget is for the first attempt, warm-up included, the rest for all others.
+        const double share = attempt == 0 ? 0.5 - seconds_since(begin) / rules.budget_s : 0.5 / rules.retries;
+        take_rounds(runners, rules, share * rules.budget_s, progress);
+        if (all_steady(runners, rules.max_spread)) break;
+    }
+    std::vector<Measured> results;
+    for (Runner& runner : runners) {
+        runner.result.time_ms = summarize(runner.time_ms);
+        runner.result.wall_ms = summarize(runner.wall_ms);
+        refuse_unsteady(runner.result, rules);
+        results.push_back(runner.result);
+    }
+    return results;
+}
+
+}  // namespace clarity

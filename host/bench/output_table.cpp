@@ -1,0 +1,210 @@
+// output_table.cpp -- records as tables that one reads at a glance: what was compared side by side stands side by side.
+#include <algorithm>
+#include <cstdio>
+#include <map>
+
+#include "bench/output.hpp"
+#include "bench/text_table.hpp"
+
+namespace clarity {
+namespace {
+
+std::string who(const BenchRecord& r) {
+    return r.peer.empty() ? r.variant : r.peer;
+}
+
+std::string percent(double share) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%.1f", 100 * share);
+    return text;
+}
+
+bool shown(const BenchRecord& r) {
+    return r.status == RowStatus::ok && r.time_ms.n > 0;
+}
+
+// Records put together by a key, in the order in which keys first came.
+class Groups {
+ public:
+    std::vector<const BenchRecord*>& of(const std::string& key) {
+        const auto [place, fresh] = index_.try_emplace(key, groups_.size());
+        if (fresh) groups_.emplace_back();
+        return groups_[place->second];
+    }
+    const std::vector<std::vector<const BenchRecord*>>& all() const { return groups_; }
+
+ private:
+    std::map<std::string, size_t> index_;
+    std::vector<std::vector<const BenchRecord*>> groups_;
+};
+
+const BenchRecord* find(const std::vector<const BenchRecord*>& group, const std::string& measure) {
+    for (const BenchRecord* r : group)
+        if (r->measure == measure) return r;
+    return nullptr;
+}
+
+// Devices get a column of their own only where there are several.
+bool one_device(const BenchReport& report) {
+    std::string first;
+    for (const BenchRecord& r : report.records) {
+        if (!r.peer.empty() || r.measure == "build") continue;
+        if (first.empty()) first = r.device;
+        if (r.device != first) return false;
+    }
+    return true;
+}
+
+std::string device_cell(const BenchReport& report, const BenchRecord& r) {
+    return one_device(report) ? std::string() : r.device;
+}
+
+// Frames per second by steps: the thesis's charts.
+std::string steps_table(const BenchReport& report, const std::string& suite) {
+    Groups groups;
+    std::map<std::string, double> then;  // frames per second by scene, device and depth
+    const auto key = [](const BenchRecord& r) { return r.scene + "\n" + r.device_id + r.device; };
+    for (const BenchRecord& r : report.records) {
+        if (r.suite != suite || r.measure != "frame" || !shown(r)) continue;
+        groups.of(key(r) + "\n" + who(r)).push_back(&r);
+        if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = r.fps;
+    }
+    TextTable table(
+        {"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel ms", "all in", "spread %", "Mrays/s", "x then"},
+        3);
+    for (const auto& group : groups.all()) {
+        const BenchRecord& last = *group.back();
+        std::vector<std::string> fps(5);
+        for (const BenchRecord* r : group)
+            if (r->depth >= 1 && r->depth <= 4) fps[r->depth] = short_number(r->fps);
+        const auto naive = then.find(key(last) + "\n" + std::to_string(last.depth));
+        const bool compared = naive != then.end() && last.variant != "then" && naive->second > 0;
+        table.add({last.scene, who(last), device_cell(report, last), fps[1], fps[2], fps[3], fps[4],
+                   short_number(last.time_ms.median), short_number(last.wall_ms.median),
+                   percent(std::max(last.time_ms.spread(), last.wall_ms.spread())), short_number(last.mrays_per_s),
+                   compared ? short_number(last.fps / naive->second) : ""});
+    }
+    return table.empty()
+               ? std::string()
+               : suite +
+                     ": frames per second, from the call to the pixels on the host; the right-hand columns are of the last "
+                     "step\n" +
+                     table.text(26) + "\n";
+}
+
+// Packet sizes down, lanes across.
+std::string packets_table(const BenchReport& report) {
+    Groups groups;
+    std::vector<int> lanes;
+    for (const BenchRecord& r : report.records) {
+        if (r.suite != "packets" || !shown(r)) continue;
+        groups.of(r.scene + "\n" + r.device + "\n" + std::to_string(r.packet_w * 1000 + r.packet_h)).push_back(&r);
+        if (std::find(lanes.begin(), lanes.end(), r.lanes) == lanes.end()) lanes.push_back(r.lanes);
+    }
+    std::sort(lanes.begin(), lanes.end());
+    std::vector<std::string> head = {"scene", "device", "packet"};
+    for (const int l : lanes) head.push_back("fps, " + std::to_string(l) + (l == 1 ? " lane" : " lanes"));
+    TextTable table(head, 3);
+    for (const auto& group : groups.all()) {
+        const BenchRecord& first = *group.front();
+        std::vector<std::string> row = {first.scene, device_cell(report, first),
+                                        std::to_string(first.packet_w) + "x" + std::to_string(first.packet_h)};
+        for (const int l : lanes) {
+            const auto at = std::find_if(group.begin(), group.end(), [&](const BenchRecord* r) { return r->lanes == l; });
+            row.push_back(at == group.end() ? "" : short_number((*at)->fps));
+        }
+        table.add(row);
+    }
+    return table.empty() ? std::string() : "packets: frames per second at 4 steps\n" + table.text() + "\n";
+}
+
+// One row a scene and structure or peer: what it costs and what it gives.
+std::string accel_table(const BenchReport& report, const std::string& suite) {
+    Groups groups;
+    for (const BenchRecord& r : report.records) {
+        if (r.suite != suite || !shown(r) || r.measure == "dropped" || (suite == "quick" && r.measure == "frame")) continue;
+        // A peer is built in a quality and traced in several ways: rows of builds stand by themselves.
+        groups.of(r.scene + "\n" + (r.measure == "build" || !r.peer.empty() ? "" : r.device) + "\n" + who(r)).push_back(&r);
+    }
+    // Builds go with the rows of ours that have the same structure.
+    TextTable table({"scene", "structure", "device", "triangles", "build ms", "Mtri/s", "B/tri", "SAH", "primary", "shadow",
+                     "reflect", "diffuse", "frame ms", "worst +-%"},
+                    3);
+    std::map<std::string, const BenchRecord*> builds;
+    for (const auto& group : groups.all())
+        if (const BenchRecord* build = find(group, "build")) builds[build->scene + "\n" + who(*build)] = build;
+    for (const auto& group : groups.all()) {
+        const BenchRecord& first = *group.front();
+        const bool only_build = group.size() == 1 && first.measure == "build";
+        if (only_build && first.peer.empty()) {
+            bool traced = false;
+            for (const auto& other : groups.all())
+                traced |= &other != &group && other.front()->scene == first.scene && who(*other.front()) == who(first);
+            if (traced) continue;
+        }
+        const auto built = builds.find(first.scene + "\n" + who(first));
+        const BenchRecord* build = built == builds.end() ? nullptr : built->second;
+        double spread = 0;
+        for (const BenchRecord* r : group) spread = std::max(spread, r->time_ms.spread());
+        const auto rays = [&](const char* measure) {
+            const BenchRecord* r = find(group, measure);
+            return r ? short_number(r->mrays_per_s) : std::string();
+        };
+        const BenchRecord* frame = find(group, "frame");
+        table.add({first.scene, who(first), only_build || !first.peer.empty() ? "" : device_cell(report, first),
+                   std::to_string(first.triangles), build ? short_number(build->time_ms.median) : "",
+                   build ? short_number(build->mtris_per_s) : "", build ? short_number(build->bytes_per_triangle) : "",
+                   build ? short_number(build->sah_cost) : "", rays("primary"), rays("shadow"), rays("reflection"),
+                   rays("diffuse"), frame ? short_number(frame->time_ms.median) : "", percent(spread)});
+    }
+    return table.empty() ? std::string() : suite + ": Mrays/s by kind of ray, medians\n" + table.text(24) + "\n";
+}
+
+std::string analysis_table(const BenchReport& report) {
+    TextTable table(
+        {"scene", "rays", "structure", "nodes/ray", "own", "leaf tests", "lanes alive %", "warp %", "bytes/ray", "shared %"},
+        3);
+    for (const BenchRecord& r : report.records) {
+        const Analysis& a = r.analysis;
+        if (!a.present || r.status != RowStatus::ok) continue;
+        table.add({r.scene, r.measure, who(r), short_number(a.nodes_per_ray), short_number(a.own_nodes_per_ray),
+                   short_number(a.leaf_tests_per_ray), percent(a.lanes_alive), a.warp_alive > 0 ? percent(a.warp_alive) : "",
+                   short_number(a.bytes_per_ray), percent(a.bytes_shared)});
+    }
+    return table.empty()
+               ? std::string()
+               : "what the packets did (counted, not timed; docs/bench.md defines each figure)\n" + table.text(26) + "\n";
+}
+
+std::string dropped_table(const BenchReport& report) {
+    TextTable table({"scene", "ray slots a pixel", "secondary rays", "dropped", "of them %"}, 1);
+    for (const BenchRecord& r : report.records) {
+        if (r.measure != "dropped" || r.status != RowStatus::ok) continue;
+        const double all = double(r.rays_secondary + r.rays_dropped);
+        table.add({r.scene, std::to_string(r.ray_slots), std::to_string(r.rays_secondary), std::to_string(r.rays_dropped),
+                   all > 0 ? percent(double(r.rays_dropped) / all) : ""});
+    }
+    return table.empty() ? std::string() : "rays dropped because a pixel's array was full, 4 steps\n" + table.text() + "\n";
+}
+
+std::string left_out(const BenchReport& report) {
+    std::string text;
+    for (const BenchRecord& r : report.records) {
+        if (r.status == RowStatus::ok) continue;
+        const char* word = r.status == RowStatus::refused ? "REFUSED" : r.status == RowStatus::failed ? "FAILED" : "skipped";
+        text += std::string(word) + "  " + r.suite + " " + r.case_name + ", " + who(r) +
+                (r.peer.empty() ? " on " + r.device : "") + ": " + r.why + "\n";
+    }
+    for (const std::string& note : report.notes) text += "left out  " + note + "\n";
+    return text;
+}
+
+}  // namespace
+
+std::string bench_table(const BenchReport& report) {
+    return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
+           accel_table(report, "accel") + accel_table(report, "scale") + analysis_table(report) + dropped_table(report) +
+           left_out(report);
+}
+
+}  // namespace clarity

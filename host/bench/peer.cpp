@@ -1,0 +1,45 @@
+#include "bench/peer.hpp"
+
+#ifdef CLARITY_HAVE_EMBREE
+#include "bench/embree_peer.hpp"
+#endif
+
+namespace clarity {
+
+PeerMesh make_peer_mesh(const Scene& scene) {
+    PeerMesh mesh;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& from = scene.meshes[instance.mesh];
+        const bool placed = instance.world_from_object != kIdentity;
+        const rt_u32 first = mesh.vertex_count();
+        for (rt_u32 v = from.first_vertex; v < from.first_vertex + from.vertex_count; ++v) {
+            const float* p = &scene.positions[3 * size_t(v)];
+            const std::array<float, 3> q =
+                placed ? transform_point(instance.world_from_object, p) : std::array<float, 3>{p[0], p[1], p[2]};
+            mesh.positions.insert(mesh.positions.end(), q.begin(), q.end());
+        }
+        for (size_t i = 0; i < 3 * size_t(from.triangle_count); ++i)
+            mesh.triangles.push_back(scene.triangles[3 * size_t(from.first_triangle) + i] - from.first_vertex + first);
+    }
+    mesh.positions.push_back(0);
+    return mesh;
+}
+
+std::string peers_cannot(const Scene& scene) {
+    if (!scene.spheres.empty() || !scene.planes.empty() || !scene.polygons.empty())
+        return "peers trace triangles only, and the scene has spheres, planes or polygons";
+    if (scene.placed_triangle_count() == 0) return "the scene has no triangles";
+    return {};
+}
+
+std::vector<PeerKind> peer_kinds(std::string* why) {
+#ifdef CLARITY_HAVE_EMBREE
+    (void)why;
+    return {{"embree", "low", build_embree}, {"embree", "medium", build_embree}, {"embree", "high", build_embree}};
+#else
+    if (why) *why = "this program was built without Embree (libembree-dev): no peers";
+    return {};
+#endif
+}
+
+}  // namespace clarity

@@ -1,0 +1,52 @@
+// peer.hpp -- other people's ray tracers, on the same triangles and rays.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bench/ray_sets.hpp"
+
+namespace clarity {
+
+// World-space triangles of a scene, indexed.
+struct PeerMesh {
+    std::vector<float> positions;   // 3 per vertex, and one float of padding, which Embree reads
+    std::vector<rt_u32> triangles;  // 3 per triangle, in the order of rt_hit.prim
+    rt_u32 vertex_count() const { return static_cast<rt_u32>(positions.size() / 3); }
+    rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
+};
+PeerMesh make_peer_mesh(const Scene& scene);
+// Why peers cannot trace this scene (it holds more than triangles); empty if they can.
+std::string peers_cannot(const Scene& scene);
+
+struct PeerHit {
+    float t;  // +inf: nothing; any hit: 0 where occluded
+    rt_i32 prim;
+};
+
+// One structure of a peer over one mesh.
+class PeerScene {
+ public:
+    virtual ~PeerScene() = default;
+    virtual double build_ms() const = 0;
+    // All that it holds besides the mesh; after the build.
+    virtual uint64_t bytes() const = 0;
+    // Ways to trace it: "single", "packet8", ...
+    virtual const std::vector<std::string>& modes() const = 0;
+    // Brings rays into the form that it likes best; not timed.
+    virtual void take_rays(const RaySet& rays) = 0;
+    // Traces them; wall time. hits: one a ray or more; of inactive rays undefined.
+    virtual double trace_ms(const std::string& mode, std::vector<PeerHit>& hits) = 0;
+};
+
+// A kind of structure that a peer builds.
+struct PeerKind {
+    std::string name;     // "embree"
+    std::string quality;  // "low", "medium", "high"
+    // The mesh must outlive it. Throws Error(failed).
+    std::unique_ptr<PeerScene> (*build)(const PeerMesh& mesh, const std::string& quality, unsigned threads);
+};
+// Those that this program was built with; none: `why` says so.
+std::vector<PeerKind> peer_kinds(std::string* why);
+
+}  // namespace clarity

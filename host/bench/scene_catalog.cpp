@@ -1,0 +1,157 @@
+#include "bench/scene_catalog.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "bench/gunzip.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+std::string environment(const char* name) {
+    const char* value = std::getenv(name);
+    return value ? value : "";
+}
+
+std::string beside_program() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    return error ? std::string() : (program.parent_path().parent_path() / "share/clarity/scenes").string();
+}
+
+// "scenes/models/a.ply.gz + scenes/models/b.ply.gz (gunzip; faces of part 2 after part 1)" -> the files.
+std::vector<std::string> files_of(std::string text, const std::string& folder) {
+    text = text.substr(0, text.find(" ("));
+    std::vector<std::string> files;
+    for (size_t at = 0; at < text.size();) {
+        const size_t end = std::min(text.find(" + ", at), text.size());
+        files.push_back(folder + "/" + text.substr(at, end - at));
+        at = end + 3;
+    }
+    return files;
+}
+
+std::string numbers_text(const Json& list) {
+    std::string text;
+    char number[32];
+    for (const Json& value : list) {
+        std::snprintf(number, sizeof number, "%s%.9g", text.empty() ? "" : ",", value.get<double>());
+        text += number;
+    }
+    return text;
+}
+
+std::string existing(const BenchScene& scene) {
+    for (const std::string& file : scene.files)
+        if (!fs::exists(file)) return file + " is not there";
+    return {};
+}
+
+}  // namespace
+
+SceneCatalog::SceneCatalog() : SceneCatalog(environment("CLARITY_SCENES"), environment("CLARITY_SHARED")) {
+    if (project_.empty()) project_ = beside_program();
+}
+
+SceneCatalog::SceneCatalog(std::string project_folder, std::string shared_folder)
+    : project_(std::move(project_folder)), shared_(std::move(shared_folder)) {}
+
+BenchScene SceneCatalog::project(const std::string& name) const {
+    BenchScene scene;
+    scene.name = fs::path(name).filename().string();
+    std::error_code error;
+    for (const char* extension : {".scene", ".obj", ".ply"}) {
+        // Files that the scene loads are judged by where it really lies.
+        const fs::path real = fs::canonical(fs::path(project_) / (name + extension), error);
+        if (error) continue;
+        scene.files = {real.string()};
+        return scene;
+    }
+    scene.missing = name + " was not found in " + (project_.empty() ? "any folder" : project_) +
+                    ": set CLARITY_SCENES to the folder scenes/ of a checkout";
+    return scene;
+}
+
+std::vector<BenchScene> SceneCatalog::thesis() const {
+    std::vector<BenchScene> scenes;
+    for (const char* name : {"thesis/1_two_triangles", "thesis/2_two_spheres", "thesis/3_triangle_two_spheres",
+                             "thesis/4_35_triangles", "thesis/5_36_spheres", "thesis/6_2406_triangles"})
+        scenes.push_back(project(name));
+    return scenes;
+}
+
+std::vector<BenchScene> SceneCatalog::shared() const {
+    BenchScene none;
+    none.name = "shared models";
+    if (shared_.empty()) {
+        none.missing = "CLARITY_SHARED is not set: larger models (bunny, dragon ...) are left out";
+        return {none};
+    }
+    const std::string path = shared_ + "/bench/cameras.json";
+    std::vector<BenchScene> scenes;
+    try {
+        std::ifstream file(path);
+        if (!file) throw std::runtime_error("cannot be opened");
+        const Json json = Json::parse(file);
+        for (const auto& [name, entry] : json.at("scenes").items()) {
+            BenchScene scene;
+            scene.name = name;
+            scene.files = files_of(entry.at("file").get<std::string>(), shared_);
+            scene.camera = numbers_text(entry.at("position")) + "," + numbers_text(entry.at("look_at")) + "," +
+                           numbers_text(Json::array({entry.at("vfov_deg")}));
+            scene.light = numbers_text(entry.at("light"));
+            if (const std::string what = existing(scene); !what.empty()) scene.missing = what + ": named by " + path;
+            scenes.push_back(scene);
+        }
+    } catch (const std::exception& e) {
+        none.missing = path + ": " + e.what() + "; CLARITY_SHARED should name a folder with bench/cameras.json";
+        return {none};
+    }
+    // Small ones first: a run that is broken off has more to show.
+    const auto bytes = [](const BenchScene& scene) {
+        uint64_t sum = 0;
+        std::error_code error;
+        for (const std::string& file : scene.files) sum += fs::file_size(file, error);
+        return sum;
+    };
+    std::stable_sort(scenes.begin(), scenes.end(),
+                     [&](const BenchScene& a, const BenchScene& b) { return bytes(a) < bytes(b); });
+    return scenes;
+}
+
+BenchScene scene_of_file(const std::string& path) {
+    BenchScene scene;
+    fs::path name = fs::path(path).filename();
+    if (name.extension() == ".gz") name = name.stem();
+    scene.name = name.stem().string();
+    scene.files = {path};
+    return scene;
+}
+
+LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, float aspect, const ImportOptions& options,
+                       Progress& progress) {
+    std::vector<TemporaryFile> unpacked;
+    std::vector<std::string> files;
+    for (const std::string& file : scene.files) {
+        const bool packed = fs::path(file).extension() == ".gz";
+        if (packed) unpacked.push_back(gunzip(file));
+        files.push_back(packed ? unpacked.back().path() : file);
+    }
+    LoadedScene loaded;
+    const auto begin = std::chrono::steady_clock::now();
+    loaded.scene = std::make_shared<const Scene>(import_scene(plugins, files, options, progress));
+    loaded.import_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    loaded.view = make_view(*loaded.scene, aspect, scene.camera, scene.light);
+    return loaded;
+}
+
+}  // namespace clarity

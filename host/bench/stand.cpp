@@ -1,0 +1,112 @@
+#include "bench/stand.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/error.hpp"
+#include "bench/machine.hpp"
+#include "bench/subdivide.hpp"
+
+namespace clarity {
+namespace {
+
+// What a triangle takes on the host while three structures, a peer and their inputs are held and one more is built, roughly.
+constexpr uint64_t kBytesPerTriangle = 900;
+
+// All that asks for another structure or program.
+std::string key_of(size_t device, const Settings& settings) {
+    std::string key = std::to_string(device) + " " + settings.accel;
+    for (const double value : settings.accel_params) key += "," + std::to_string(value);
+    for (const Setting& setting : settings_table())
+        if (setting.effect != Effect::frame) key += " " + setting.get(settings);
+    return key;
+}
+
+void check_memory(uint64_t triangles) {
+    const uint64_t free = free_memory_bytes();
+    if (free == 0 || triangles * kBytesPerTriangle <= free) return;
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%.1f M triangles would take about %.1f GB of memory, %.1f GB are free: take a smaller --max-triangles",
+                  1e-6 * double(triangles), 1e-9 * double(triangles * kBytesPerTriangle), 1e-9 * double(free));
+    throw Error(Exit::failed, text);
+}
+
+}  // namespace
+
+struct Stand::Place {
+    std::shared_ptr<Device> device;
+    Preparer preparer;
+    Place(const PluginRegistry& plugins, const DeviceInfo& info)
+        : device(std::make_shared<Device>(info)), preparer(plugins, device) {}
+};
+
+Stand::Stand(const PluginRegistry& plugins, const std::vector<DeviceInfo>& devices, const ImportOptions& import)
+    : plugins_(plugins), import_(import) {
+    for (const DeviceInfo& info : devices) places_.push_back(std::make_unique<Place>(plugins, info));
+}
+Stand::~Stand() = default;
+
+const DeviceInfo& Stand::device(size_t i) const {
+    return places_[i]->device->info();
+}
+
+unsigned Stand::peer_threads() const {
+    for (const auto& place : places_)
+        if (place->device->info().cpu) return place->device->info().compute_units;
+    return 0;
+}
+
+void Stand::load(const SuiteScene& scene, int width, int height, uint64_t max_triangles, Progress& progress) {
+    peers_.clear();
+    peer_mesh_.reset();
+    rays_.clear();
+    held_.clear();
+    loaded_ = {};
+    width_ = width;
+    height_ = height;
+    loaded_ = load_scene(plugins_, scene.source, float(width) / float(height), import_, progress);
+    if (scene.subdivide == 1) return;
+    const uint64_t triangles = loaded_.scene->placed_triangle_count() * scene.subdivide * scene.subdivide;
+    if (triangles > max_triangles)
+        throw Error(Exit::failed,
+                    std::to_string(triangles) + " triangles are more than --max-triangles " + std::to_string(max_triangles));
+    check_memory(triangles);
+    loaded_.scene = std::make_shared<const Scene>(subdivide(*loaded_.scene, scene.subdivide));
+}
+
+const Stand::Held& Stand::prepare(size_t device, const Settings& settings, Progress& progress) {
+    Held& held = held_[key_of(device, settings)];
+    if (!held.frames) {
+        held.prepared = places_[device]->preparer.prepare(loaded_.scene, settings, progress);
+        held.frames = std::make_shared<Frames>(places_[device]->device);
+    }
+    return held;
+}
+
+const RaySet& Stand::rays(const std::string& kind, const Held& held) {
+    if (rays_.empty()) {
+        rays_.push_back(camera_rays(loaded_.view.camera, width_, height_));
+        const std::vector<rt_hit> hits = held.frames->trace_rays(*held.prepared, rays_[0].rays, RayQuery{});
+        if (!loaded_.view.lights.empty())
+            for (RaySet& set : secondary_rays(*loaded_.scene, loaded_.view.lights[0], rays_[0], hits, width_, height_))
+                rays_.push_back(std::move(set));
+    }
+    const auto found = std::find_if(rays_.begin(), rays_.end(), [&](const RaySet& set) { return set.kind == kind; });
+    if (found == rays_.end()) throw Error(Exit::failed, "no " + kind + " rays: the scene has no light");
+    if (found->active == 0) throw Error(Exit::failed, "no " + kind + " rays: the camera sees nothing of the scene");
+    return *found;
+}
+
+const PeerMesh& Stand::peer_mesh() {
+    if (!peer_mesh_) peer_mesh_ = std::make_unique<PeerMesh>(make_peer_mesh(*loaded_.scene));
+    return *peer_mesh_;
+}
+
+PeerScene& Stand::peer(const PeerKind& kind) {
+    std::unique_ptr<PeerScene>& peer = peers_[kind.name + " " + kind.quality];
+    if (!peer) peer = kind.build(peer_mesh(), kind.quality, peer_threads());
+    return *peer;
+}
+
+}  // namespace clarity

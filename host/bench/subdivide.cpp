@@ -1,0 +1,205 @@
+#include "bench/subdivide.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <tuple>
+
+#include "plugin/host_services.hpp"
+
+namespace clarity {
+namespace {
+
+using Vec = std::array<double, 3>;
+
+Vec operator+(const Vec& a, const Vec& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+Vec operator-(const Vec& a, const Vec& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+Vec operator*(double s, const Vec& a) {
+    return {s * a[0], s * a[1], s * a[2]};
+}
+double dot(const Vec& a, const Vec& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Vec cross(const Vec& a, const Vec& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Vec unit(const Vec& a) {
+    const double length = std::sqrt(dot(a, a));
+    return length > 0 ? (1 / length) * a : Vec{0, 0, 0};
+}
+
+// World-space corners, points at the same place being one vertex: seams of texture coordinates must not tear open.
+struct Mesh1 {
+    std::vector<Vec> points, normals;
+    std::vector<std::array<rt_u32, 3>> triangles;
+    std::vector<rt_u32> materials;
+};
+
+Mesh1 flatten(const Scene& scene) {
+    Mesh1 mesh;
+    std::map<std::array<float, 3>, rt_u32> known;
+    for (const Instance& instance : scene.instances) {
+        const Mesh& from = scene.meshes[instance.mesh];
+        for (rt_u32 i = from.first_triangle; i < from.first_triangle + from.triangle_count; ++i) {
+            std::array<rt_u32, 3> corners{};
+            for (int c = 0; c < 3; ++c) {
+                const auto p = transform_point(instance.world_from_object,
+                                               &scene.positions[3 * size_t(scene.triangles[3 * size_t(i) + c])]);
+                const auto [place, fresh] = known.try_emplace(p, static_cast<rt_u32>(mesh.points.size()));
+                if (fresh) mesh.points.push_back({p[0], p[1], p[2]});
+                corners[c] = place->second;
+            }
+            mesh.triangles.push_back(corners);
+            mesh.materials.push_back(instance.material != RT_NONE ? instance.material : scene.triangle_materials[i]);
+        }
+    }
+    // Sums of the faces' normals, weighted by area.
+    mesh.normals.assign(mesh.points.size(), Vec{0, 0, 0});
+    for (const auto& t : mesh.triangles) {
+        const Vec normal = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
+        for (const rt_u32 corner : t) mesh.normals[corner] = mesh.normals[corner] + normal;
+    }
+    for (Vec& normal : mesh.normals) normal = unit(normal);
+    return mesh;
+}
+
+// Waves along three directions at angles to all axes, each octave twice as fine and half as high.
+double roughness(const Vec& p, double size, double finest) {
+    double sum = 0;
+    for (double wave = size / 4; wave > 4 * finest; wave /= 2) {
+        const double k = 2 * 3.14159265358979323846 / wave;
+        sum += 0.015 * wave *
+               (std::sin(k * dot(p, {0.62, 0.51, 0.60})) * std::sin(k * dot(p, {-0.55, 0.80, 0.24}) + 1) +
+                std::sin(k * dot(p, {0.33, -0.41, 0.85}) + 2));
+    }
+    return sum;
+}
+
+// Where the new points stand: the old ones, then n - 1 along each edge, then those within the triangles.
+class Refined {
+ public:
+    Refined(const Mesh1& mesh, unsigned n) : mesh_(mesh), n_(n) {
+        for (const auto& t : mesh.triangles)
+            for (int e = 0; e < 3; ++e) {
+                const auto key = std::minmax(t[e], t[(e + 1) % 3]);
+                edges_.try_emplace({key.first, key.second}, static_cast<rt_u32>(edges_.size()));
+            }
+        first_edge_ = mesh.points.size();
+        first_inner_ = first_edge_ + edges_.size() * (n - 1);
+    }
+
+    size_t count() const { return first_inner_ + mesh_.triangles.size() * inner(); }
+
+    // Point i steps from corner a towards b, j towards c, of n.
+    size_t index(size_t triangle, unsigned i, unsigned j) const {
+        const auto& t = mesh_.triangles[triangle];
+        const unsigned k = n_ - i - j;
+        if (k == n_) return t[0];
+        if (i == n_) return t[1];
+        if (j == n_) return t[2];
+        if (j == 0) return on_edge(t[0], t[1], i);
+        if (k == 0) return on_edge(t[1], t[2], j);
+        if (i == 0) return on_edge(t[0], t[2], j);
+        // Rows of j = 1 .. n - 2; the row of j has n - 1 - j points.
+        const size_t row = size_t(j - 1) * (n_ - 1) - size_t(j - 1) * j / 2;
+        return first_inner_ + triangle * inner() + row + (i - 1);
+    }
+
+ private:
+    size_t inner() const { return size_t(n_ - 1) * (n_ - 2) / 2; }
+    // Step s of n from a to b.
+    size_t on_edge(rt_u32 a, rt_u32 b, unsigned s) const {
+        const auto key = std::minmax(a, b);
+        return first_edge_ + size_t(edges_.at({key.first, key.second})) * (n_ - 1) + (a < b ? s : n_ - s) - 1;
+    }
+
+    const Mesh1& mesh_;
+    const unsigned n_;
+    std::map<std::pair<rt_u32, rt_u32>, rt_u32> edges_;
+    size_t first_edge_ = 0, first_inner_ = 0;
+};
+
+// A point of a triangle by its weights: bulged, then roughened. Only weights and corners that matter are used, in the order of
+// the vertices' numbers, so that both triangles of an edge make the same point.
+Vec place(const Mesh1& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
+    std::array<int, 3> order{0, 1, 2};
+    std::sort(order.begin(), order.end(), [&](int a, int b) { return t[a] < t[b]; });
+    Vec flat{}, normal{};
+    for (const int c : order) {
+        if (weights[c] == 0) continue;
+        flat = flat + weights[c] * mesh.points[t[c]];
+        normal = normal + weights[c] * mesh.normals[t[c]];
+    }
+    Vec bulged{};
+    for (const int c : order) {
+        if (weights[c] == 0) continue;
+        const double height = dot(flat - mesh.points[t[c]], mesh.normals[t[c]]);
+        bulged = bulged + weights[c] * (flat - height * mesh.normals[t[c]]);
+    }
+    constexpr double kBulge = 0.75;  // the paper's choice between flat and round
+    const Vec p = (1 - kBulge) * flat + kBulge * bulged;
+    return p + roughness(p, size, finest) * unit(normal);
+}
+
+}  // namespace
+
+Scene subdivide(const Scene& scene, unsigned n) {
+    const Mesh1 mesh = flatten(scene);
+    const Refined refined(mesh, n);
+    Scene out;
+    out.spheres = scene.spheres;
+    out.planes = scene.planes;
+    out.polygons = scene.polygons;
+    out.polygon_corners = scene.polygon_corners;
+    out.materials = scene.materials;
+    for (Material& material : out.materials) material.values.texture = RT_NONE;  // texture coordinates are not kept
+    out.lights = scene.lights;
+    out.cameras = scene.cameras;
+    out.background = scene.background;
+    out.ambient = scene.ambient;
+    const double size = scene.bounds().diagonal();
+    const double finest = size / (std::sqrt(double(mesh.triangles.size())) * n);
+    const size_t per_triangle = size_t(n) * n;
+    out.positions.resize(3 * refined.count());
+    out.triangles.resize(3 * mesh.triangles.size() * per_triangle);
+    out.triangle_materials.resize(mesh.triangles.size() * per_triangle);
+    const auto put = [&](size_t triangle, unsigned i, unsigned j) {
+        const double weights[3] = {double(n - i - j) / n, double(i) / n, double(j) / n};
+        const Vec p = place(mesh, mesh.triangles[triangle], weights, size, finest);
+        for (int k = 0; k < 3; ++k) out.positions[3 * refined.index(triangle, i, j) + k] = static_cast<float>(p[k]);
+    };
+    // Points of edges belong to two triangles: they are written by one thread first, the inner ones by all after.
+    for (size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (unsigned s = 0; s <= n; ++s) {
+            put(t, s, 0);
+            put(t, 0, s);
+            put(t, n - s, s);
+        }
+    parallel_for(static_cast<uint32_t>(mesh.triangles.size()), [&](uint32_t t) {
+        rt_u32* at = &out.triangles[3 * t * per_triangle];
+        const auto corner = [&](unsigned i, unsigned j) { *at++ = static_cast<rt_u32>(refined.index(t, i, j)); };
+        for (unsigned j = 0; j < n; ++j)
+            for (unsigned i = 0; i + j < n; ++i) {
+                if (i > 0 && j > 0) put(t, i, j);
+                corner(i, j), corner(i + 1, j), corner(i, j + 1);
+                if (i + j + 1 < n) corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1);
+            }
+        std::fill_n(out.triangle_materials.begin() + t * per_triangle, per_triangle, mesh.materials[t]);
+    });
+    Mesh whole;
+    whole.name = "subdivided";
+    whole.vertex_count = out.vertex_count();
+    whole.triangle_count = out.triangle_count();
+    out.meshes.push_back(whole);
+    Instance instance;
+    instance.name = whole.name;
+    out.instances.push_back(instance);
+    return out;
+}
+
+}  // namespace clarity

@@ -1,0 +1,59 @@
+// suite.hpp -- what is to be measured, as data: nothing is loaded or traced here.
+#pragma once
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bench/scene_catalog.hpp"
+#include "plugin/registry.hpp"
+
+namespace clarity {
+
+// What the command line asks for.
+struct BenchRequest {
+    std::vector<std::string> suites;                            // thesis | packets | accel | scale | quick
+    std::vector<std::string> files;                             // scenes instead of a suite's own; without a suite: accel
+    std::vector<std::string> accels;                            // ID[,key=value...]; empty: every one found
+    std::vector<std::pair<std::string, std::string>> settings;  // key, value: for all cases, where they do not set it
+    uint64_t max_triangles = 10'000'000;                        // of the suite scale
+    double time_limit_s = 0;                                    // of everything; 0: what the suites want
+    bool peers = true;
+};
+
+struct SuiteScene {
+    BenchScene source;
+    unsigned subdivide = 1;  // each triangle becomes n x n
+};
+
+// One row of a case, on each device.
+struct Variant {
+    std::string label;
+    std::string accel;                                          // ID[,key=value...]
+    std::vector<std::pair<std::string, std::string>> settings;  // over those of the request
+    bool cpu_only = false;                                      // more lanes than one
+};
+
+enum class Timing { timed, counted_only };
+
+struct BenchCase {
+    std::string suite, name;
+    std::string measure;  // frame | primary | shadow | reflection | diffuse | build | dropped
+    size_t scene = 0;     // of Suite::scenes
+    std::vector<Variant> variants;
+    std::vector<std::string> peer_qualities;  // of peers, where they can trace the scene
+    Timing timing = Timing::timed;
+};
+
+struct Suite {
+    std::vector<SuiteScene> scenes;
+    std::vector<BenchCase> cases;    // those of one scene one after the other
+    std::vector<std::string> notes;  // what was left out and why
+    double time_limit_s = 0;
+};
+
+const std::vector<std::string>& suite_names();
+
+// Throws Error(usage) for a suite that there is not.
+Suite make_suite(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins);
+
+}  // namespace clarity

@@ -1,0 +1,25 @@
+// text_table.hpp -- aligned columns for a terminal.
+#pragma once
+#include <string>
+#include <vector>
+
+namespace clarity {
+
+class TextTable {
+ public:
+    // The first `left` columns are text and stand left, the others are numbers and stand right.
+    TextTable(std::vector<std::string> head, size_t left) : left_(left) { rows_.push_back(std::move(head)); }
+    void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
+    bool empty() const { return rows_.size() == 1; }
+    // Cells are cut at `cell` characters in text columns; columns of numbers in which nothing stands are left out.
+    std::string text(size_t cell = 34) const;
+
+ private:
+    const size_t left_;
+    std::vector<std::vector<std::string>> rows_;
+};
+
+// Three significant digits: 0.0123, 1.23, 12.3, 1234; "" for 0.
+std::string short_number(double value);
+
+}  // namespace clarity

@@ -1,0 +1,162 @@
+// clarity bench: measures suites or scenes, and writes what was measured as table, JSON, CSV and a page.
+#include "bench/bench.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/output_file.hpp"
+#include "bench/output.hpp"
+#include "bench/report.hpp"
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress_bar.hpp"
+
+namespace clarity {
+namespace {
+
+bool is_suite(const std::string& word) {
+    const std::vector<std::string>& names = suite_names();
+    return std::find(names.begin(), names.end(), word) != names.end();
+}
+
+BenchRequest make_request(const BenchCommand& command) {
+    BenchRequest request;
+    for (const std::string& word : command.what) {
+        const bool file = !is_suite(word) && (std::filesystem::exists(word) || word.find_first_of("./") != std::string::npos);
+        (file ? request.files : request.suites).push_back(word);
+    }
+    check_scene_files(request.files);
+    request.accels = command.accels;
+    for (const std::string& pair : command.sets) {
+        const size_t equals = pair.find('=');
+        if (equals == std::string::npos || equals == 0)
+            throw Error(Exit::usage, "--set " + pair + ": expected key=value, as in --set shadows=false");
+        request.settings.emplace_back(pair.substr(0, equals), pair.substr(equals + 1));
+    }
+    request.settings.insert(request.settings.end(), command.settings.begin(), command.settings.end());
+    for (const auto& [key, value] : request.settings)
+        if (key == "aov" && value != "color") throw Error(Exit::usage, "--aov " + value + ": frames are timed in colour only");
+    request.max_triangles = command.max_triangles;
+    request.time_limit_s = command.time_limit_s;
+    request.peers = !command.no_peers;
+    return request;
+}
+
+// "cpu,0:1" or "all" -> devices, each once.
+std::vector<DeviceInfo> choose_devices(const std::string& choice) {
+    if (choice == "all") {
+        std::vector<DeviceInfo> all = list_devices();
+        if (all.empty()) choose_device({});  // throws, with what to install
+        return all;
+    }
+    std::vector<DeviceInfo> devices;
+    std::stringstream words(choice);
+    std::string word;
+    do {
+        std::getline(words, word, ',');
+        const DeviceInfo info = choose_device(word);
+        const auto same = [&](const DeviceInfo& other) { return other.id() == info.id(); };
+        if (std::none_of(devices.begin(), devices.end(), same)) devices.push_back(info);
+    } while (words.good());
+    return devices;
+}
+
+void print_list(const Suite& suite) {
+    for (const BenchCase& c : suite.cases) {
+        std::string members;
+        for (const Variant& variant : c.variants) members += (members.empty() ? "" : " | ") + variant.label;
+        for (const std::string& quality : c.peer_qualities) members += " | peers " + quality;
+        std::printf("%-8s %-40s %s%s\n", c.suite.c_str(), c.name.c_str(), members.c_str(),
+                    c.timing == Timing::counted_only ? "  (counted)" : "");
+    }
+    for (const std::string& note : suite.notes) std::printf("left out  %s\n", note.c_str());
+}
+
+// Records of earlier runs, before those of this one.
+void join(BenchReport& report, const std::vector<std::string>& files) {
+    BenchReport all;
+    all.run = report.run;
+    for (const std::string& path : files) {
+        std::ifstream file(path, std::ios::binary);
+        std::stringstream text;
+        if (!(text << file.rdbuf()))
+            throw Error(Exit::usage, "--join " + path + ": cannot be read; name a file that --json wrote");
+        BenchReport other;
+        try {
+            other = read_bench_json(text.str());
+        } catch (const Error& e) {
+            throw Error(Exit::usage, "--join " + path + ": " + e.what());
+        }
+        const size_t first = all.joined.size() + 1;
+        all.joined.push_back(other.run);
+        all.joined.insert(all.joined.end(), other.joined.begin(), other.joined.end());
+        for (BenchRecord& record : other.records) {
+            record.run += first;
+            all.records.push_back(std::move(record));
+        }
+    }
+    for (BenchRecord& record : report.records) all.records.push_back(std::move(record));
+    all.notes = report.notes;
+    all.interrupted = report.interrupted;
+    report = std::move(all);
+}
+
+void write(const BenchCommand& command, const BenchReport& report) {
+    const std::string table = bench_table(report);
+    std::fwrite(table.data(), 1, table.size(), stdout);
+    if (!command.json_file.empty()) write_text_file(command.json_file, bench_json(report));
+    if (!command.csv_file.empty()) write_text_file(command.csv_file, bench_csv(report));
+    if (command.report_folder.empty()) return;
+    write_report(command.report_folder, report);
+    log(LogLevel::info, "report: " + (std::filesystem::path(command.report_folder) / "index.html").string());
+}
+
+}  // namespace
+
+int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command) {
+    const BenchRequest request = make_request(command);
+    if (request.suites.empty() && request.files.empty() && command.join_files.empty())
+        throw Error(Exit::usage, "bench: name a suite (thesis, packets, accel, scale, quick) or a scene file");
+    for (const std::string& file : {command.json_file, command.csv_file})
+        if (!file.empty()) check_writable(file);
+    const Suite suite = make_suite(request, SceneCatalog(), plugins);
+    if (command.list) {
+        print_list(suite);
+        return static_cast<int>(Exit::done);
+    }
+    BenchReport report;
+    join(report, command.join_files);  // what cannot be read is found before anything is measured
+    report = {};
+    if (!suite.cases.empty()) {
+        BenchOptions options;
+        options.devices = choose_devices(command.device);
+        options.rules.max_spread = command.max_spread;
+        options.import = command.import;
+        ProgressBar bar(command.quiet);
+        const CancelOnSignal cancel(bar);
+        report = run_bench(plugins, request, suite, options, bar);
+        bar.clear();
+    } else {
+        report.notes = suite.notes;
+        for (const std::string& note : suite.notes) log(LogLevel::warning, note);
+        if (command.join_files.empty())
+            throw Error(Exit::failed, "nothing to measure: no scene of the suite was found, see above");
+    }
+    report.run.command = command.text;
+    join(report, command.join_files);
+    write(command, report);
+    if (report.interrupted) {
+        log(LogLevel::warning, "interrupted: " + std::to_string(report.records.size()) + " rows are complete and were written");
+        return static_cast<int>(Exit::interrupted);
+    }
+    if (all_ok(report)) return static_cast<int>(Exit::done);
+    log(LogLevel::error, "some rows are refused or failed: the table says which, why and what to do");
+    return static_cast<int>(Exit::failed);
+}
+
+}  // namespace clarity

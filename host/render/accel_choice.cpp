@@ -1,0 +1,28 @@
+#include "render/accel_choice.hpp"
+
+#include "base/error.hpp"
+#include "plugin/parameters.hpp"
+
+namespace clarity {
+namespace {
+
+std::string accel_names(const PluginRegistry& plugins) {
+    std::string names;
+    for (const rt_plugin* plugin : plugins.accels()) names += (names.empty() ? "" : ", ") + std::string(plugin->id);
+    return names.empty() ? "none was found; `clarity plugins` says where and why" : "there are " + names;
+}
+
+}  // namespace
+
+void choose_accel(const PluginRegistry& plugins, const std::string& text, Settings& settings) {
+    const PluginChoice choice = parse_plugin_choice(text);
+    const rt_plugin* plugin = plugins.accel(choice.id);
+    if (!plugin)
+        throw Error(Exit::usage,
+                    "--accel " + text + ": no acceleration structure `" + choice.id + "`; " + accel_names(plugins));
+    settings.accel = choice.id;
+    settings.accel_params = default_parameters(*plugin);
+    for (const auto& [key, value] : choice.settings) set_parameter(*plugin, settings.accel_params, key, value);
+}
+
+}  // namespace clarity

@@ -1,0 +1,13 @@
+// accel_choice.hpp -- "bvh2,max_leaf=4" as settings.
+#pragma once
+#include <string>
+
+#include "plugin/registry.hpp"
+#include "render/settings.hpp"
+
+namespace clarity {
+
+// Sets accel and accel_params. Throws Error(usage) for an unknown structure, listing those there are, or parameter.
+void choose_accel(const PluginRegistry& plugins, const std::string& text, Settings& settings);
+
+}  // namespace clarity

@@ -1,0 +1,35 @@
+// node_bounds.hpp -- the boxes in a finished node.
+#pragma once
+#include <algorithm>
+
+#include "rt_plugin.h"
+// after rt_types.h, whose types it uses:
+#include "bvh8_types.h"
+
+namespace bvh8 {
+
+// do_one(box, child) for every child that there is.
+template <class Body>
+void each_child(const bvh8_node& node, Body&& do_one) {
+    for (int slot = 0; slot < BVH8_WIDTH; ++slot) {
+        if (node.child[slot] == BVH8_NOTHING) continue;
+        float box[6];
+        for (int k = 0; k < 6; ++k) box[k] = node.plane[k][slot];
+        do_one(box, node.child[slot]);
+    }
+}
+
+// Around all children; false: there is none.
+inline bool bounds(const bvh8_node& node, float box[6]) {
+    bool any = false;
+    each_child(node, [&](const float child[6], rt_u32) {
+        for (int a = 0; a < 3; ++a) {
+            box[a] = any ? std::min(box[a], child[a]) : child[a];
+            box[3 + a] = any ? std::max(box[3 + a], child[3 + a]) : child[3 + a];
+        }
+        any = true;
+    });
+    return any;
+}
+
+}  // namespace bvh8

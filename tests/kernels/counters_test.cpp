@@ -1,0 +1,183 @@
+// counters_test.cpp -- what the counting programs count, against trees whose visits are known; and that counting changes
+// nothing.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+
+#include "support/generated.hpp"
+#include "support/scenes.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+Workbench& bench() {
+    return Workbench::get();
+}
+
+struct Counted {
+    std::shared_ptr<Device> device = std::make_shared<Device>(choose_device(""));
+    Preparer preparer{bench().plugins(), device};
+    Frames frames{device};
+    Progress progress;
+    static Counted& get() {
+        static auto* const one = new Counted;  // never destroyed, as the workbench is not
+        return *one;
+    }
+    std::vector<rt_hit> trace(const ScenePtr& scene, const std::string& accel, int lanes, const std::vector<rt_ray>& rays,
+                              RayQuery query, double* ms = nullptr) {
+        Settings settings = make_settings({{"accel", accel}, {"lanes", std::to_string(lanes)}});
+        return frames.trace_rays(*preparer.prepare(scene, settings, progress), rays, query, ms);
+    }
+};
+
+std::vector<rt_hit> counted(const ScenePtr& scene, const std::string& accel, int lanes, const std::vector<rt_ray>& rays,
+                            bool any = false) {
+    return Counted::get().trace(scene, accel, lanes, rays, {any, true});
+}
+
+rt_ray ray_of(const Point& origin, const Point& direction, float t_max = INFINITY) {
+    return {{origin[0], origin[1], origin[2]}, 0, {direction[0], direction[1], direction[2]}, t_max};
+}
+
+std::vector<rt_ray> rays_at(double spread, size_t count) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> at(-1, 1);
+    std::vector<rt_ray> rays;
+    for (size_t i = 0; i < count; ++i) {
+        const float x = float(spread) * at(random), y = float(spread) * at(random);
+        rays.push_back(ray_of({x, y, 5}, {0.1f * x, 0.1f * y, -1}));
+    }
+    return rays;
+}
+
+ScenePtr ball() {
+    static const ScenePtr scene = shared_scene(scene_of(uv_sphere(1, 24, 12)));
+    return scene;
+}
+
+TEST(Counters, ALooseListTestsEverything) {
+    const unsigned triangles = static_cast<unsigned>(ball()->triangle_count());
+    for (const int lanes : {1, 16}) {
+        const std::vector<rt_ray> rays = rays_at(1.5, 64);
+        for (const rt_hit& hit : counted(ball(), "linear", lanes, rays)) {
+            EXPECT_EQ(hit.steps, 1u);
+            EXPECT_EQ(hit.leaf_tests, triangles);
+            EXPECT_EQ(hit.lane_steps, unsigned(lanes));
+        }
+    }
+    // Any hit ends at the first.
+    size_t early = 0;
+    for (const rt_hit& hit : counted(ball(), "linear", 1, rays_at(0.5, 64), true)) {
+        EXPECT_LE(hit.leaf_tests, triangles);
+        early += hit.leaf_tests < triangles;
+    }
+    EXPECT_GT(early, 32u);
+}
+
+// Spheres, polygons and meshes placed several times count as well, planes do not.
+TEST(Counters, EveryKindOfPrimitive) {
+    Scene scene = scene_of(box(0.5));
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances.back().world_from_object[3] = 4;  // 4 to the right
+    Sphere sphere;
+    sphere.center = {0, 3, 0};
+    sphere.radius = 0.5f;
+    scene.spheres.push_back(sphere);
+    scene.planes.push_back({{0, 1, 0}, -9, 0});
+    scene.polygons.push_back({0, 3, 0});
+    scene.polygon_corners = {0, 5, 0, 1, 5, 0, 0, 6, 0};
+    const std::vector<rt_hit> hits = counted(shared_scene(scene), "linear", 1, {ray_of({0, -5, 3}, {0, 0, 1})});
+    EXPECT_EQ(hits[0].steps, 3u) << "the world's list and each instance's";
+    EXPECT_EQ(hits[0].leaf_tests, 2u * 12 + 2);
+}
+
+TEST(Counters, LanesOfANode) {
+    for (const std::string& accel : bench().accels()) {
+        const rt_ray straight = ray_of({0.1f, 0.2f, 5}, {0, 0, -1});
+        const rt_hit alone = counted(ball(), accel, 1, {straight})[0];
+        EXPECT_GT(alone.steps, 0u) << accel;
+        EXPECT_LE(alone.lane_steps, alone.steps) << accel;
+        // Sixteen times the same ray: all are where one is.
+        for (const rt_hit& hit : counted(ball(), accel, 16, std::vector<rt_ray>(16, straight))) {
+            EXPECT_EQ(hit.steps, alone.steps) << accel;
+            EXPECT_EQ(hit.leaf_tests, alone.leaf_tests) << accel;
+            EXPECT_EQ(hit.lane_steps, 16 * alone.lane_steps) << accel;
+        }
+        // One and fifteen that are over before they begin.
+        std::vector<rt_ray> lonely(16, ray_of({0.1f, 0.2f, 5}, {0, 0, -1}, -1));
+        lonely[5] = straight;
+        for (const rt_hit& hit : counted(ball(), accel, 16, lonely)) {
+            EXPECT_EQ(hit.steps, alone.steps) << accel;
+            EXPECT_EQ(hit.lane_steps, alone.lane_steps) << accel;
+        }
+        // A few rays only, of a packet that is not full.
+        EXPECT_EQ(counted(ball(), accel, 16, {straight, straight, straight})[0].lane_steps, 3 * alone.lane_steps) << accel;
+    }
+}
+
+// A packet visits what any of its rays would visit, and each ray is counted where it would go alone, or nearly: what it would
+// skip behind a hit depends on the order, which is the packet's.
+TEST(Counters, PacketsAgainstTheirRaysAlone) {
+    std::vector<rt_ray> rays;
+    for (const rt_ray& at : rays_at(1.2, 100))
+        for (int i = 0; i < 16; ++i)
+            rays.push_back(ray_of({at.origin[0] + 0.01f * (i % 4), at.origin[1] + 0.01f * (i / 4), 5}, {0, 0, -1}));
+    const auto alone = counted(ball(), "bvh2", 1, rays), together = counted(ball(), "bvh2", 16, rays);
+    uint64_t visits_alone = 0, visits_of_packets = 0, lanes = 0;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        EXPECT_EQ(alone[i].lane_steps, alone[i].steps);
+        EXPECT_GE(together[i].steps, alone[i].steps) << i;
+        EXPECT_LE(together[i].lane_steps, 16 * together[i].steps);
+        visits_alone += alone[i].steps;
+        if (i % 16) continue;
+        visits_of_packets += together[i].steps;
+        lanes += together[i].lane_steps;
+    }
+    EXPECT_LT(visits_of_packets, visits_alone / 2) << "packets share nothing";
+    EXPECT_GT(lanes, visits_alone * 95 / 100);
+    EXPECT_LT(lanes, visits_alone * 130 / 100);
+}
+
+TEST(Counters, CountingChangesNothing) {
+    const std::vector<rt_ray> rays = rays_at(1.5, 1000);
+    for (const std::string& accel : bench().accels())
+        for (const bool any : {false, true}) {
+            double ms = -1;
+            const auto plain = Counted::get().trace(ball(), accel, 16, rays, {any, false}, &ms),
+                       with = counted(ball(), accel, 16, rays, any);
+            EXPECT_GE(ms, 0);
+            for (size_t i = 0; i < rays.size(); ++i) {
+                EXPECT_EQ(std::memcmp(&plain[i], &with[i], offsetof(rt_hit, steps)), 0) << accel << ", ray " << i;
+                EXPECT_EQ(plain[i].steps + plain[i].leaf_tests + plain[i].lane_steps, 0u);
+                EXPECT_GT(with[i].steps, 0u);
+            }
+        }
+}
+
+TEST(Counters, AsPictures) {
+    const View view = view_from({0, 0, 5}, {0, 0, 0}, 40);
+    const auto picture = [&](const std::string& aov, const std::string& accel, int lanes) {
+        return bench().values(
+            ball(), make_settings({{"accel", accel}, {"aov", aov}, {"size", "66x50"}, {"lanes", std::to_string(lanes)}}), view);
+    };
+    const FloatImage tests = picture("leaf_tests", "linear", 16);
+    ASSERT_EQ(tests.channels, 1u);
+    for (const float value : tests.pixels) EXPECT_EQ(value, float(ball()->triangle_count()));
+    for (const float value : picture("lanes", "bvh2", 1).pixels) EXPECT_EQ(value, 1);
+    size_t split = 0;
+    const FloatImage lanes = picture("lanes", "bvh2", 16);
+    for (const float value : lanes.pixels) {
+        EXPECT_GT(value, 0);
+        EXPECT_LE(value, 1);
+        split += value < 0.9f;
+    }
+    EXPECT_GT(split, 100u);
+    const FloatImage steps = picture("steps", "bvh2", 16);
+    EXPECT_GT(steps.pixels[25 * 66 + 33], steps.pixels[0]);
+}
+
+}  // namespace

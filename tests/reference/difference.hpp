@@ -1,0 +1,36 @@
+// difference.hpp -- how far two pictures are apart.
+#pragma once
+#include <algorithm>
+#include <cstdlib>
+
+#include "render/image_io.hpp"
+
+namespace clarity::reference {
+
+constexpr int kTolerance = 2;  // of 255, in the worst channel
+
+struct Difference {
+    size_t pixels = 0, beyond = 0;
+    int worst = 0;
+    ByteImage picture;  // eight times the difference
+    double share() const { return double(beyond) / double(pixels); }
+};
+
+inline Difference compare(const ByteImage& a, const ByteImage& b) {
+    Difference d;
+    d.pixels = size_t(a.width) * a.height;
+    d.picture = a;
+    for (size_t i = 0; i < d.pixels; ++i) {
+        int most = 0;
+        for (size_t c = 4 * i; c < 4 * i + 3; ++c) {
+            const int off = std::abs(int(a.pixels[c]) - int(b.pixels[c]));
+            most = std::max(most, off);
+            d.picture.pixels[c] = static_cast<uint8_t>(std::min(255, 8 * off));
+        }
+        d.beyond += most > kTolerance;
+        d.worst = std::max(d.worst, most);
+    }
+    return d;
+}
+
+}  // namespace clarity::reference
