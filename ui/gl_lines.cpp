@@ -10,6 +10,8 @@
 namespace clarity {
 namespace {
 
+constexpr size_t kManyLines = 40000;
+
 const char* const kVertexShader = R"(#version 330 core
 layout(location = 0) in vec2 place;   // pixels from the upper left
 layout(location = 1) in vec3 along;   // 1 / depth, pixels from the middle, half the width
@@ -26,17 +28,14 @@ void main() {
 }
 )";
 
-// A surface that a line lies on shall not hide it, though its distance is that of the pixel's middle: hence a little play, in
-// parts of the distance.
 const char* const kFragmentShader = R"(#version 330 core
-const float play = 0.003;
 noperspective in vec3 line;
 noperspective in vec2 at;
 flat in vec4 tint;
 uniform sampler2D distances;
 uniform vec2 half_size;
 uniform bool tested;
-uniform float behind;
+uniform float behind, play;
 out vec4 result;
 void main() {
     float opacity = tint.a * clamp(line.z + 0.5 - abs(line.y), 0.0, 1.0);
@@ -104,6 +103,7 @@ bool LineLayer::make_program() {
     behind_place_ = glGetUniformLocation(program_, "behind");
     glUseProgram(program_);
     glUniform1i(glGetUniformLocation(program_, "distances"), 0);
+    glUniform1f(glGetUniformLocation(program_, "play"), kDistancePlay);
 
     glGenVertexArrays(1, &vertex_array_);
     glGenBuffers(1, &vertices_);
@@ -154,14 +154,23 @@ void LineLayer::fill_indices(size_t quads) {
 }
 
 void LineLayer::draw(const std::vector<const LineList*>& lists, const Projection& projection, float scale,
-                     const PictureTexture* distance, float behind) {
+                     const LinesBehind& behind) {
     const Rect& area = projection.area();
     const int width = std::max(1, static_cast<int>(area.width * scale + 0.5f)),
               height = std::max(1, static_cast<int>(area.height * scale + 0.5f));
     if (!make_program() || !resize(width, height)) return;
     scratch_.clear();
-    for (const LineList* list : lists) append_quads(*list, projection, scale, scratch_);
-    quads_ = scratch_.size() / 4;
+    size_t wanted = 0;
+    for (const LineList* list : lists) wanted += list->size();
+    const bool thin = wanted > kManyLines;
+    for (const LineList* list : lists)
+        if (thin && list->size() > kManyLines / 2)
+            append_thin(*list, projection, scale, {behind.values}, scratch_);
+    const size_t ends = scratch_.size();
+    for (const LineList* list : lists)
+        if (!(thin && list->size() > kManyLines / 2)) append_quads(*list, projection, scale, scratch_);
+    const size_t quads = (scratch_.size() - ends) / 4;
+    drawn_ = ends / 2 + quads;
 
     glBindFramebuffer(GL_FRAMEBUFFER, frame_buffer_);
     glViewport(0, 0, width, height);
@@ -170,24 +179,27 @@ void LineLayer::draw(const std::vector<const LineList*>& lists, const Projection
     glDisable(GL_CULL_FACE);
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT);
-    if (quads_ > 0) {
+    if (drawn_ > 0) {
         glEnable(GL_BLEND);
         glBlendEquation(GL_FUNC_ADD);
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         glUseProgram(program_);
         glUniform2f(size_place_, static_cast<float>(width), static_cast<float>(height));
         glUniform2f(half_size_place_, projection.half_size().x, projection.half_size().y);
-        const bool tested = distance && distance->name() != 0;
+        const bool tested = behind.distance && behind.distance->name() != 0;
         glUniform1i(tested_place_, tested);
-        glUniform1f(behind_place_, behind);
+        glUniform1f(behind_place_, behind.opacity);
         glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, tested ? distance->name() : 0);
+        glBindTexture(GL_TEXTURE_2D, tested ? behind.distance->name() : 0);
         glBindVertexArray(vertex_array_);
-        fill_indices(quads_);
+        fill_indices(quads);
         glBindBuffer(GL_ARRAY_BUFFER, vertices_);
         glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(scratch_.size() * sizeof(LineVertex)), scratch_.data(),
                      GL_STREAM_DRAW);
-        glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(quads_ * 6), GL_UNSIGNED_INT, nullptr);
+        if (ends > 0) glDrawArrays(GL_LINES, 0, static_cast<GLsizei>(ends));
+        if (quads > 0)
+            glDrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(quads * 6), GL_UNSIGNED_INT, nullptr,
+                                     static_cast<GLint>(ends));
         glBindVertexArray(0);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, 0);

@@ -74,7 +74,7 @@ void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const Prepared
     });
 }
 
-void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float scale, LineList& lines) const {
+void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float scale, unsigned stride, LineList& lines) const {
     const Side& side = sides_[index];
     if (!side.volumes || !side.fetched) return;
     // The more there are, the fainter and the plainer.
@@ -84,13 +84,14 @@ void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float sca
     const uint32_t color = with_opacity(level_color(*side.fetched), strength), faint = with_opacity(color, 0.4f);
     const int segments = std::clamp(static_cast<int>(16000 / shown), 12, 64);
     const bool circles = shown <= 200;  // beyond, outlines say as much
-    lines.reserve(lines.size() + side.volumes->boxes.size() * 12 +
-                  side.volumes->spheres.size() * static_cast<size_t>(segments) * (circles ? 4 : 1));
-    for (const auto& box : side.volumes->boxes) lines.box(box, color, width);
-    for (const auto& sphere : side.volumes->spheres) {
-        const glm::vec3 center(sphere[0], sphere[1], sphere[2]);
-        if (circles) lines.great_circles(center, sphere[3], segments, faint, width);
-        lines.outline(center, sphere[3], eye, segments, color, width);
+    const auto& boxes = side.volumes->boxes;
+    const auto& spheres = side.volumes->spheres;
+    lines.reserve(lines.size() + (boxes.size() * 12 + spheres.size() * static_cast<size_t>(segments) * (circles ? 4 : 1)) / stride);
+    for (size_t i = 0; i < boxes.size(); i += stride) lines.box(boxes[i], color, width);
+    for (size_t i = 0; i < spheres.size(); i += stride) {
+        const glm::vec3 center(spheres[i][0], spheres[i][1], spheres[i][2]);
+        if (circles) lines.great_circles(center, spheres[i][3], segments, faint, width);
+        lines.outline(center, spheres[i][3], eye, segments, color, width);
     }
 }
 

@@ -36,8 +36,8 @@ class VolumeOverlay {
     void update(const std::shared_ptr<const Prepared>& main, const std::shared_ptr<const Prepared>& other = nullptr);
     // Changes whenever the lines of a side would.
     uint64_t revision(unsigned side) const { return sides_[side].revision; }
-    // Appends a side's volumes as lines; `eye` sees spheres' outlines.
-    void append_lines(unsigned side, const glm::vec3& eye, float scale, LineList& lines) const;
+    // Appends every stride-th of a side's volumes as lines; `eye` sees spheres' outlines.
+    void append_lines(unsigned side, const glm::vec3& eye, float scale, unsigned stride, LineList& lines) const;
     bool has_spheres(unsigned side) const { return sides_[side].volumes && !sides_[side].volumes->spheres.empty(); }
 
  private:

@@ -24,6 +24,8 @@ bool same(const Camera& a, const Camera& b) {
     return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
 }
 
+constexpr size_t kMovingVolumes = 4000;  // while the camera moves, every n-th is drawn: a frame of the window has no more time
+
 // The shown part of a texture that covers `area`, its first row at the top or at the bottom.
 void add_part(ImDrawList& list, unsigned texture, const Rect& area, const Rect& shown, bool top_first) {
     if (shown.width <= 0 || shown.height <= 0) return;
@@ -135,13 +137,15 @@ void PicturePane::collect_marks(const Session& session, const UiState& state) {
     ++marks_revision_;
 }
 
-void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const VolumeOverlay& overlay) {
+void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const VolumeOverlay& overlay, bool moving) {
     const unsigned side = place.side();
     const float scale = ui_scale(), pixels = std::max(ImGui::GetIO().DisplayFramebufferScale.x, 0.1f);
     const Camera& camera = picture_->job.view.camera;
     const auto& distance = side_of(place).distance;
     const bool moved = !same(lines.camera, camera), scaled = lines.scale != scale;
-    const bool volumes = lines.volumes_revision != overlay.revision(side) || scaled || (moved && overlay.has_spheres(side));
+    const unsigned stride = moving ? static_cast<unsigned>(overlay.count(side) / kMovingVolumes + 1) : 1;
+    const bool volumes = lines.volumes_revision != overlay.revision(side) || scaled || lines.stride != stride ||
+                         (moved && overlay.has_spheres(side));
     const bool resized = lines.area.width != place.area.width || lines.area.height != place.area.height ||
                          lines.pixels != pixels;
     const bool anew = volumes || moved || resized || lines.marks_revision != marks_revision_ ||
@@ -151,10 +155,11 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     const Projection projection(place.area, camera);
     if (volumes) {
         lines.volumes.clear();
-        overlay.append_lines(side, projection.eye(), scale, lines.volumes);
+        overlay.append_lines(side, projection.eye(), scale, stride, lines.volumes);
     }
     lines.volumes_revision = overlay.revision(side);
     lines.marks_revision = marks_revision_;
+    lines.stride = stride;
     lines.camera = camera;
     lines.area = place.area;
     lines.pixels = pixels;
@@ -165,15 +170,16 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     if (!lines.any) return;
     const bool known = distance && !distance->pixels.empty();
     if (known && distances_of_[side] != distance && distances_[side].upload(*distance).empty()) distances_of_[side] = distance;
-    lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, known ? &distances_[side] : nullptr,
-                     overlay.hides_behind() ? 0.0f : kBehind);
+    LinesBehind behind;
+    if (known) behind = {&distances_[side], distance.get(), overlay.hides_behind() ? 0.0f : kBehind};
+    lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, behind);
     lines_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
 }
 
-void PicturePane::draw_lines(ImDrawList& list, const VolumeOverlay& overlay) {
+void PicturePane::draw_lines(ImDrawList& list, const VolumeOverlay& overlay, bool moving) {
     for (const PicturePlace& place : places_) {
         Lines& lines = lines_[place.side()];
-        update_lines(lines, place, overlay);
+        update_lines(lines, place, overlay, moving);
         if (!lines.any || !lines.layer.failure().empty() || lines.layer.drawn() == 0) continue;
         list.AddCallback(blend_premultiplied, nullptr);
         add_part(list, lines.layer.texture(), place.area, place.shown, false);
@@ -201,7 +207,7 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         ImDrawList& list = *ImGui::GetWindowDrawList();
         draw_pictures(list);
         collect_marks(session, state);
-        draw_lines(list, overlay);
+        draw_lines(list, overlay, session.moving());
         handles_.clear();
         if (state.show_lights) handles_ = light_handles(Projection(area_, picture_->job.view.camera), session.wish.lights);
         ImGui::SetCursorScreenPos({room.x, room.y});

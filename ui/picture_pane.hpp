@@ -42,6 +42,7 @@ class PicturePane {
         Rect area;
         float pixels = 0, scale = 0;
         const FloatImage* distance = nullptr;
+        unsigned stride = 1;
         bool hides_behind = false, any = false;
     };
     struct Selected {
@@ -53,8 +54,8 @@ class PicturePane {
     void lay_out(const Rect& room, const Session& session, const UiState& state);
     void draw_pictures(ImDrawList& list);
     void collect_marks(const Session& session, const UiState& state);
-    void update_lines(Lines& lines, const PicturePlace& place, const VolumeOverlay& overlay);
-    void draw_lines(ImDrawList& list, const VolumeOverlay& overlay);
+    void update_lines(Lines& lines, const PicturePlace& place, const VolumeOverlay& overlay, bool moving);
+    void draw_lines(ImDrawList& list, const VolumeOverlay& overlay, bool moving);
     void draw_cards(ImDrawList& list, const Session& session, VolumeOverlay& overlay);
     void draw_caption(ImDrawList& list, const Session& session, size_t place);
     void draw_scale(ImDrawList& list, size_t place);
