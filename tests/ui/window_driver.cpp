@@ -70,6 +70,11 @@ std::string shared_path(const std::string& relative) {
     return fs::exists(path) ? path.string() : std::string();
 }
 
+std::string program_path() {
+    const char* worker = std::getenv("CLARITY_WORKER");
+    return worker && *worker ? worker : std::string(CLARITY_BUILD_DIR) + "/bin/clarity";
+}
+
 // ---- the screen
 
 VirtualScreen& VirtualScreen::instance() {
@@ -123,9 +128,7 @@ WindowDriver::WindowDriver(const std::vector<std::string>& arguments, std::map<s
     int ends[2];
     if (pipe2(ends, O_CLOEXEC) != 0) ADD_FAILURE() << "no pipe";
     output_ = ends[0];
-    const char* worker = std::getenv("CLARITY_WORKER");
-    const std::string program = worker && *worker ? worker : std::string(CLARITY_BUILD_DIR) + "/bin/clarity";
-    std::vector<std::string> words = {program, "view"};
+    std::vector<std::string> words = {program_path(), "view"};
     words.insert(words.end(), arguments.begin(), arguments.end());
     environment.emplace("DISPLAY", VirtualScreen::instance().display());
     environment.emplace("WAYLAND_DISPLAY", "");
@@ -250,6 +253,16 @@ nlohmann::json WindowDriver::state() {
     return query("state");
 }
 
+bool WindowDriver::reaches(const Condition& condition, double seconds) {
+    const auto begin = Clock::now();
+    while (running()) {
+        if (condition(state())) return true;
+        if (seconds_since(begin) > seconds) return false;
+        read_more(0.02);
+    }
+    return false;
+}
+
 Pixels WindowDriver::picture() {
     const std::string path = folder() + "/picture" + std::to_string(pictures_++) + ".png";
     EXPECT_EQ(command("picture " + path), "");
@@ -261,35 +274,6 @@ Pixels WindowDriver::screenshot() {
     EXPECT_EQ(command("screenshot " + path), "");
     EXPECT_EQ(command("wait ready"), "");  // it is written at the end of that frame
     return read_png(path);
-}
-
-void WindowDriver::xdotool(const std::string& arguments) {
-    const std::string text = "DISPLAY=" + VirtualScreen::instance().display() + " xdotool " + arguments;
-    ASSERT_EQ(std::system(text.c_str()), 0) << text;
-}
-
-void WindowDriver::key(const std::string& name) {
-    xdotool("key --delay 0 " + name);
-}
-void WindowDriver::key_down(const std::string& name) {
-    xdotool("keydown " + name);
-}
-void WindowDriver::key_up(const std::string& name) {
-    xdotool("keyup " + name);
-}
-void WindowDriver::type(const std::string& text) {
-    xdotool("type --delay 20 '" + text + "'");
-}
-// Move, press and release in frames of their own, as a hand does: ImGui 1.86 looks at the mouse once a frame.
-void WindowDriver::click(double x, double y) {
-    xdotool("mousemove " + std::to_string(int(x)) + " " + std::to_string(int(y)) +
-            " sleep 0.1 mousedown 1 sleep 0.1 mouseup 1 sleep 0.1");
-}
-
-void WindowDriver::click_on(const std::string& label, double at) {
-    const nlohmann::json place = query("find " + label);
-    ASSERT_TRUE(place.contains("x")) << label;
-    click(double(place["x"]) + at * double(place["w"]), double(place["y"]) + double(place["h"]) / 2);
 }
 
 std::string WindowDriver::errors() const {

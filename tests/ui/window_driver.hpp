@@ -5,6 +5,7 @@
 
 #include <array>
 #include <chrono>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -50,7 +51,15 @@ class VirtualScreen {
 std::string source_path(const std::string& relative);
 // The larger models; empty if they are not there.
 std::string shared_path(const std::string& relative);
+// The executable under test.
+std::string program_path();
 double seconds_since(std::chrono::steady_clock::time_point begin);
+
+// On the screen, in pixels.
+struct Place {
+    double x = 0, y = 0;
+};
+enum class Button { left = 1, middle = 2, right = 3 };
 
 class WindowDriver {
  public:
@@ -67,14 +76,28 @@ class WindowDriver {
     Pixels screenshot();
     void send(const std::string& line);  // without waiting
 
-    // Real events, by xdotool.
+    // Whether the state comes to be so, within so many seconds.
+    using Condition = std::function<bool(const nlohmann::json& state)>;
+    bool reaches(const Condition& condition, double seconds = 60);
+
+    // Real events, by xdotool. Keys by their X names: "Left", "ctrl+z".
     void key(const std::string& name);
     void key_down(const std::string& name);
     void key_up(const std::string& name);
     void type(const std::string& text);
+    void move(const Place& to);
     void click(double x, double y);
+    void click(const Place& at, Button button = Button::left);
+    void double_click(const Place& at);
+    // Pressed, moved in steps, released.
+    void drag(const Place& from, const Place& to, Button button = Button::left);
+    void wheel(const Place& at, int steps);  // > 0: away from the user
     // The middle of the widget of that row, or of that entry of an open list; `at` from its left, 0..1.
     void click_on(const std::string& label, double at = 0.5);
+    Place place_of(const std::string& label, double at = 0.5);
+    // Of a pixel of the picture; of the second one, while two are shown.
+    Place place_of_pixel(double x, double y, size_t picture = 0);
+    void take_focus();  // of the keyboard, from whatever window has it
 
     // The next line of stdout that begins so; empty after so many seconds.
     std::string line(const std::string& prefix, double seconds);

@@ -1,0 +1,314 @@
+// Every binding of every key map, pressed for real: what its help says happens. A new binding without a case here fails.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+
+#include "ui/key_map.hpp"
+#include "window_fixture.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+using Point = std::array<double, 3>;
+
+Point minus(const Point& a, const Point& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+double dot(const Point& a, const Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+double length(const Point& a) {
+    return std::sqrt(dot(a, a));
+}
+Point unit(const Point& a) {
+    const double l = length(a);
+    return {a[0] / l, a[1] / l, a[2] / l};
+}
+Point cross(const Point& a, const Point& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Point times(const Point& a, double f) {
+    return {a[0] * f, a[1] * f, a[2] * f};
+}
+
+// What xdotool calls the key that the help calls so.
+std::string x_name(const std::string& help_name) {
+    static const std::map<std::string, std::string> named = {{"\u2190", "Left"}, {"\u2192", "Right"}, {"\u2191", "Up"},
+                                                             {"\u2193", "Down"}, {"PgUp", "Prior"},   {"PgDn", "Next"},
+                                                             {"Esc", "Escape"}};
+    if (const auto found = named.find(help_name); found != named.end()) return found->second;
+    if (help_name.rfind("Ctrl+", 0) == 0) return "ctrl+" + x_name(help_name.substr(5));
+    return help_name.size() == 1 ? std::string(1, char(std::tolower(help_name[0]))) : help_name;
+}
+
+class KeyMaps : public WindowTest, public ::testing::WithParamInterface<std::string> {
+ protected:
+    void press(const KeyBinding& binding) { window->key(x_name(binding.name)); }
+    bool reaches(const std::string& key, const nlohmann::json& value) {
+        return window->reaches([&](const nlohmann::json& state) { return state.contains(key) && state[key] == value; }, 20);
+    }
+    void check(const KeyMap& map, const KeyBinding& binding);
+    void check_motion(const KeyMap& map, const KeyBinding& binding);
+    void check_common(const KeyBinding& binding);
+    void check_sides(const KeyBinding& binding);
+    void check_inspector(const KeyBinding& binding);
+    void check_saving(const KeyBinding& binding);
+    void check_undo();
+    void check_views(const KeyBinding& binding);
+
+    std::unique_ptr<WindowDriver> window;
+};
+
+// Held keys: where the eye, the target or the light goes.
+void KeyMaps::check_motion(const KeyMap& map, const KeyBinding& binding) {
+    const auto was = window->state();
+    const Point eye = was["eye"], target = was["target"], light = was["light"];
+    const Point sight = unit(minus(target, eye)), up = {0, 1, 0}, right = unit(cross(sight, up));
+    const Point ahead = unit(cross(up, right)), forward = map.mouse_look ? sight : ahead;
+    struct Case {
+        const char* moves;
+        Point along;
+    };
+    const std::map<Action, Case> cases = {
+        {Action::camera_left, {"eye", times(right, -1)}},   {Action::camera_right, {"eye", right}},
+        {Action::camera_forward, {"eye", forward}},         {Action::camera_back, {"eye", times(forward, -1)}},
+        {Action::camera_up, {"eye", up}},                   {Action::camera_down, {"eye", times(up, -1)}},
+        {Action::pitch_up, {"target", cross(right, sight)}}, {Action::pitch_down, {"target", cross(sight, right)}},
+        {Action::yaw_left, {"target", times(right, -1)}},   {Action::yaw_right, {"target", right}},
+        {Action::light_left, {"light", times(right, -1)}},  {Action::light_right, {"light", right}},
+        {Action::light_forward, {"light", ahead}},          {Action::light_back, {"light", times(ahead, -1)}},
+        {Action::light_up, {"light", up}},                  {Action::light_down, {"light", times(up, -1)}},
+    };
+    ASSERT_TRUE(cases.count(binding.action)) << "no test for what this key does";
+    const Case& c = cases.at(binding.action);
+    press(binding);
+    window->settle();
+    const auto now = window->state();
+    const Point moved = minus(now[c.moves], was[c.moves]);
+    ASSERT_GT(length(moved), 1e-3);
+    EXPECT_GT(dot(unit(moved), c.along), 0.99);
+    const Point eye_moved = minus(now["eye"], eye), target_moved = minus(now["target"], target);
+    if (c.moves == std::string("light")) {
+        EXPECT_EQ(now["eye"], was["eye"]);
+        EXPECT_EQ(now["target"], was["target"]);
+    } else {
+        EXPECT_EQ(now["light"], was["light"]);
+        if (c.moves == std::string("target"))
+            EXPECT_EQ(now["eye"], was["eye"]);
+        else
+            EXPECT_LT(length(minus(eye_moved, target_moved)), 1e-4);  // it looks the same way
+    }
+}
+
+void KeyMaps::check_sides(const KeyBinding& binding) {
+    ASSERT_TRUE(reaches("comparing", false));
+    if (binding.action == Action::toggle_compare) {
+        press(binding);
+        EXPECT_TRUE(reaches("comparing", true));
+        press(binding);
+        EXPECT_TRUE(reaches("comparing", false));
+        return;
+    }
+    ASSERT_EQ(window->command("compare b"), "");
+    ASSERT_EQ(window->command("set depth 2"), "");
+    const auto depths = [&](int main, int other) {
+        return window->reaches(
+            [&](const nlohmann::json& state) {
+                return state["depth"] == main && state.contains("other") && state["other"]["depth"] == other;
+            },
+            20);
+    };
+    const int depth = window->state()["depth"];
+    EXPECT_TRUE(depths(depth, 2));
+    press(binding);
+    EXPECT_TRUE(depths(2, depth));
+    press(binding);
+    EXPECT_TRUE(depths(depth, 2));
+    ASSERT_EQ(window->command("compare off"), "");
+}
+
+void KeyMaps::check_inspector(const KeyBinding& binding) {
+    window->move(window->place_of_pixel(20, 20));
+    press(binding);
+    ASSERT_TRUE(reaches("inspect_hover", true));
+    for (const auto& [x, y] : {std::pair(30, 40), std::pair(60, 50)}) {
+        window->move(window->place_of_pixel(x, y));
+        window->settle();
+        const auto inspection = window->query("inspection");
+        EXPECT_EQ(inspection["x"], x);
+        EXPECT_EQ(inspection["y"], y);
+    }
+    press(binding);
+    ASSERT_TRUE(reaches("inspect_hover", false));
+    window->move(window->place_of_pixel(10, 10));
+    window->settle();
+    EXPECT_EQ(window->query("inspection")["x"], 60);
+}
+
+void KeyMaps::check_saving(const KeyBinding& binding) {
+    const fs::path path = fs::path(window->folder()) / "work/clarity_0001.png";
+    EXPECT_FALSE(fs::exists(path));
+    press(binding);
+    window->settle();
+    ASSERT_TRUE(fs::exists(path)) << window->errors();
+    EXPECT_EQ(difference(window->picture(), read_png(path), 0), 0);
+    fs::remove(path);
+}
+
+void KeyMaps::check_undo() {
+    const int depth = window->state()["depth"];
+    ASSERT_NE(depth, 2);
+    ASSERT_EQ(window->command("set depth 2"), "");
+    ASSERT_TRUE(reaches("depth", 2));
+    window->key("ctrl+z");
+    EXPECT_TRUE(reaches("depth", depth));
+    window->key("ctrl+y");
+    EXPECT_TRUE(reaches("depth", 2));
+    window->key("ctrl+z");
+    EXPECT_TRUE(reaches("depth", depth));
+}
+
+// Bookmarks come after the cameras of the file: main, left, top.
+void KeyMaps::check_views(const KeyBinding& binding) {
+    if (binding.action == Action::add_bookmark) {
+        const int count = window->state()["bookmarks"];
+        press(binding);
+        EXPECT_TRUE(reaches("bookmarks", count + 1));
+        return;
+    }
+    std::vector<Point> eyes;
+    const int count = window->state()["bookmarks"];
+    for (int i = 0; i < 4 + count; ++i) {
+        press(binding);
+        window->settle();
+        eyes.push_back(window->state()["eye"]);
+    }
+    EXPECT_LT(length(minus(eyes[1], {-7, 2.4, 5.5})), 1e-3);
+    EXPECT_LT(length(minus(eyes[2], {0, 12, 0.01})), 1e-3);
+    EXPECT_EQ(eyes.back(), eyes.front());
+}
+
+void KeyMaps::check_common(const KeyBinding& binding) {
+    switch (binding.action) {
+        case Action::print_frame_rate:
+            press(binding);
+            EXPECT_NE(window->line("fps ", 20), "");
+            break;
+        case Action::show_level:
+        case Action::show_bottom_level: {
+            const long level = binding.action == Action::show_level ? binding.argument : 0xffffffffL;
+            press(binding);
+            EXPECT_TRUE(reaches("level", level));
+            press(binding);
+            EXPECT_TRUE(reaches("level", -1));
+            break;
+        }
+        case Action::reset_camera: {
+            const auto was = window->state();
+            window->key(std::string(GetParam()) == "viewer" ? "d" : "Right");
+            window->settle();
+            ASSERT_NE(window->state()["eye"], was["eye"]);
+            press(binding);
+            EXPECT_TRUE(reaches("eye", was["eye"]));
+            break;
+        }
+        case Action::cancel_work:  // of what is being prepared: in robustness_test
+            window->key("F1");
+            ASSERT_TRUE(reaches("keys_open", true));
+            press(binding);
+            EXPECT_TRUE(reaches("keys_open", false));
+            break;
+        case Action::show_help:
+            press(binding);
+            EXPECT_TRUE(reaches("keys_open", true));
+            press(binding);
+            EXPECT_TRUE(reaches("keys_open", false));
+            break;
+        case Action::toggle_panel: {
+            const double width = window->state()["area"][2];
+            press(binding);
+            EXPECT_TRUE(reaches("panel_visible", false));
+            EXPECT_GT(double(window->state()["area"][2]), width + 50);
+            press(binding);
+            EXPECT_TRUE(reaches("panel_visible", true));
+            break;
+        }
+        case Action::undo:
+        case Action::redo:
+            check_undo();
+            break;
+        case Action::open_file:
+            press(binding);
+            EXPECT_TRUE(reaches("browser_open", true));
+            window->key("Escape");
+            EXPECT_TRUE(reaches("browser_open", false));
+            break;
+        case Action::save_picture:
+            check_saving(binding);
+            break;
+        case Action::toggle_compare:
+        case Action::swap_sides:
+            check_sides(binding);
+            break;
+        case Action::toggle_inspector:
+            check_inspector(binding);
+            break;
+        case Action::toggle_lights:
+            EXPECT_TRUE(window->query("layout")["handles"].empty());
+            press(binding);
+            EXPECT_TRUE(reaches("show_lights", true));
+            EXPECT_EQ(window->query("layout")["handles"].size(), 2u);
+            press(binding);
+            EXPECT_TRUE(reaches("show_lights", false));
+            break;
+        case Action::add_bookmark:
+        case Action::next_bookmark:
+            check_views(binding);
+            break;
+        case Action::frame_scene: {
+            const Point eye = window->state()["eye"];
+            press(binding);
+            window->settle();
+            const Point framed = window->state()["eye"];
+            EXPECT_GT(length(minus(framed, eye)), 1e-3);
+            window->wheel(window->place_of_pixel(40, 30), -4);
+            press(binding);
+            window->settle();
+            EXPECT_LT(length(minus(Point(window->state()["eye"]), framed)), 1e-3);  // from wherever it looked so
+            break;
+        }
+        default:
+            ADD_FAILURE() << "no test for what this key does";
+    }
+}
+
+void KeyMaps::check(const KeyMap& map, const KeyBinding& binding) {
+    is_held(binding.action) ? check_motion(map, binding) : check_common(binding);
+}
+
+TEST_P(KeyMaps, EveryKeyDoesWhatItsHelpSays) {
+    window = open_scene(source_path("scenes/primitives.scene"), "96x72");
+    ASSERT_EQ(window->command("map " + GetParam()), "");
+    const KeyMap* map = find_key_map(GetParam());
+    ASSERT_NE(map, nullptr);
+    for (const KeyBinding& binding : map->bindings) {
+        SCOPED_TRACE(std::string(binding.name) + ": " + binding.help);
+        check(*map, binding);
+        EXPECT_EQ(window->state()["message"], "");
+        if (HasFatalFailure()) return;
+        window->key("Home");
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, KeyMaps, ::testing::Values("thesis", "viewer"), [](const auto& info) { return info.param; });
+
+TEST(KeyMapNames, EveryMapIsTested) {
+    EXPECT_EQ(key_maps().size(), 2u) << "name the new one above";
+}
+
+}  // namespace
+}  // namespace clarity

@@ -1,0 +1,107 @@
+// The part of the driver that a user's hands would do: keys and mouse, by xdotool.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+
+#include "window_driver.hpp"
+
+namespace clarity {
+namespace {
+
+std::string at(const Place& place) {
+    return std::to_string(std::lround(place.x)) + " " + std::to_string(std::lround(place.y));
+}
+
+std::string number(Button button) {
+    return std::to_string(static_cast<int>(button));
+}
+
+// Between events: Dear ImGui 1.86 looks at the mouse once a frame, and a busy machine draws few.
+const std::string kPause = " sleep 0.1 ";
+
+}  // namespace
+
+void WindowDriver::xdotool(const std::string& arguments) {
+    const std::string text = "DISPLAY=" + VirtualScreen::instance().display() + " xdotool " + arguments;
+    ASSERT_EQ(std::system(text.c_str()), 0) << text;
+}
+
+void WindowDriver::key(const std::string& name) {
+    xdotool("key --delay 0 " + name);
+}
+void WindowDriver::key_down(const std::string& name) {
+    xdotool("keydown " + name);
+}
+void WindowDriver::key_up(const std::string& name) {
+    xdotool("keyup " + name);
+}
+void WindowDriver::type(const std::string& text) {
+    xdotool("type --delay 20 '" + text + "'");
+}
+
+void WindowDriver::move(const Place& to) {
+    xdotool("mousemove " + at(to) + kPause);
+}
+
+void WindowDriver::click(double x, double y) {
+    click(Place{x, y});
+}
+
+void WindowDriver::click(const Place& place, Button button) {
+    const std::string n = number(button);
+    xdotool("mousemove " + at(place) + kPause + "mousedown " + n + kPause + "mouseup " + n + kPause);
+}
+
+void WindowDriver::double_click(const Place& place) {
+    const std::string press = "mousedown 1 sleep 0.05 mouseup 1 sleep 0.05 ";
+    xdotool("mousemove " + at(place) + kPause + press + press);
+}
+
+void WindowDriver::drag(const Place& from, const Place& to, Button button) {
+    const std::string n = number(button);
+    std::string text = "mousemove " + at(from) + kPause + "mousedown " + n + kPause;
+    constexpr int kSteps = 4;
+    for (int i = 1; i <= kSteps; ++i) {
+        const double share = double(i) / kSteps;
+        text += "mousemove " + at({from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)}) + kPause;
+    }
+    xdotool(text + "mouseup " + n + kPause);
+}
+
+void WindowDriver::wheel(const Place& place, int steps) {
+    std::string text = "mousemove " + at(place) + kPause;
+    for (int i = 0; i < std::abs(steps); ++i) text += (steps > 0 ? "click 4" : "click 5") + kPause;
+    xdotool(text);
+}
+
+void WindowDriver::click_on(const std::string& label, double at) {
+    click(place_of(label, at));
+}
+
+Place WindowDriver::place_of(const std::string& label, double at) {
+    const nlohmann::json place = query("find " + label);
+    if (!place.contains("x")) {
+        ADD_FAILURE() << "`" << label << "` was not drawn";
+        return {};
+    }
+    return {double(place["x"]) + at * double(place["w"]), double(place["y"]) + double(place["h"]) / 2};
+}
+
+Place WindowDriver::place_of_pixel(double x, double y, size_t picture) {
+    const nlohmann::json layout = query("layout");
+    const std::string size = state()["size"];
+    const double width = std::stod(size), height = std::stod(size.substr(size.find('x') + 1));
+    if (layout["places"].size() <= picture) {
+        ADD_FAILURE() << "there is no picture " << picture;
+        return {};
+    }
+    const auto area = layout["places"][picture]["area"];
+    return {double(area[0]) + (x + 0.5) / width * double(area[2]), double(area[1]) + (y + 0.5) / height * double(area[3])};
+}
+
+void WindowDriver::take_focus() {
+    xdotool("search --sync --onlyvisible --pid " + std::to_string(pid_) + " windowfocus --sync");
+}
+
+}  // namespace clarity
