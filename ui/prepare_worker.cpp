@@ -214,13 +214,16 @@ void PrepareWorker::hide(const PrepareRequest& request) {
 }
 
 void PrepareWorker::open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress) {
-    if (shop.device && choice == shop.choice) return;
+    const bool same = shop.device && choice == shop.choice;
+    if (same && !shop.preparer->worn()) return;
     progress.stage("opening the device");
-    DeviceInfo info = choose_device(choice);
+    DeviceInfo info = same ? shop.device->info() : choose_device(choice);
     // One context a device, so that both sides share what the driver keeps.
-    const bool shared = neighbour.device && neighbour.device->info().id() == info.id();
+    const bool shared = neighbour.device && neighbour.device->info().id() == info.id() && !neighbour.preparer->worn();
     auto device = shared ? neighbour.device : std::make_shared<Device>(std::move(info));
-    shop.preparer = std::make_unique<Preparer>(plugins_, device);
+    auto preparer = std::make_unique<Preparer>(plugins_, device);
+    if (same) preparer->take_structure(*shop.preparer);
+    shop.preparer = std::move(preparer);
     shop.device = std::move(device);
     shop.choice = choice;
 }

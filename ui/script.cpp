@@ -281,6 +281,7 @@ std::string Script::state_text(App& app) const {
     json["hidden"] = session.wish.hidden;
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();
+    json["kernel_revision"] = session.kernels().revision();
     json["comparing"] = session.wish.other.has_value();
     json["bookmarks"] = app.state().bookmarks.size();
     json["keys_open"] = app.state().keys_open;

@@ -71,6 +71,7 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_light_(options.light),
       first_edits_(options.edits),
       log_(wake),
+      kernels_(plugins_.accels(), wake),
       worker_(plugins_, options.import, wake),
       frames_(wake),
       inspector_(wake) {
@@ -187,6 +188,10 @@ void Session::post_frame() {
 
 void Session::update(bool gesture) {
     take_outcomes();
+    if (const uint64_t revision = kernels_.revision(); revision != seen_kernels_) {
+        seen_kernels_ = revision;
+        for (const std::string& path : kernels_.last_changed()) log(LogLevel::info, "changed: " + path);
+    }
     if (auto why = frames_.take_failure(); !why.empty()) report(why);
     sequence_.update(*this);
     follow_main();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "device/kernel_watch.hpp"
 #include "render/preset.hpp"
 #include "ui/frame_thread.hpp"
 #include "ui/history.hpp"
@@ -98,6 +99,8 @@ class Session {
     std::vector<float> frame_times(unsigned side = 0) const { return frames_.times(side); }
     // The camera or a light moved a moment ago: pictures may be coarse.
     bool moving() const { return moving_; }
+    // Whose files are watched; a saved change is compiled and swapped in by itself.
+    const KernelWatch& kernels() const { return kernels_; }
     // The window needs the distances of pictures, or no longer does.
     void want_distance(bool wanted) { frames_.want_distance(wanted); }
     // Nothing is being prepared or traced, and the newest picture is here.
@@ -145,6 +148,8 @@ class Session {
     double moved_at_s_ = -1e9;
     uint64_t pick_request_ = 0, picked_request_ = 0;
     LogBuffer log_;
+    KernelWatch kernels_;
+    uint64_t seen_kernels_ = 0;
     PrepareWorker worker_;
     FrameThread frames_;
     InspectThread inspector_;
