@@ -66,7 +66,7 @@ class KeyMaps : public WindowTest, public ::testing::WithParamInterface<std::str
 // Held keys: where the eye, the target or the light goes.
 void KeyMaps::check_motion(const KeyMap& map, const KeyBinding& binding) {
     const auto was = window->state();
-    const Point eye = was["eye"], target = was["target"], light = was["light"];
+    const Point eye = was["eye"], target = was["target"];
     const Point sight = unit(minus(target, eye)), up = {0, 1, 0}, right = unit(cross(sight, up));
     const Point ahead = unit(cross(up, right)), forward = map.mouse_look ? sight : ahead;
     struct Case {
