@@ -1,0 +1,141 @@
+// Two settings of one view, side by side.
+#include <gtest/gtest.h>
+
+#include "window_fixture.hpp"
+
+namespace clarity {
+namespace {
+
+class Compare : public WindowTest {
+ protected:
+    static bool both_there(const nlohmann::json& state) { return state.contains("other") && !state["busy"]; }
+    // Pressing C: the second side begins as a copy, and becomes another structure.
+    std::unique_ptr<WindowDriver> compared() {
+        auto window = open();
+        window->key("c");
+        EXPECT_TRUE(window->reaches(both_there));
+        EXPECT_EQ(window->command("compare b"), "");
+        EXPECT_EQ(window->command("accel spheres"), "");
+        window->settle();
+        return window;
+    }
+    // The share of dark pixels in a part of the window.
+    static double dark(const Pixels& screen, const nlohmann::json& area) {
+        size_t count = 0, all = 0;
+        for (int y = int(area[1]) + int(area[3]) / 5; y < int(area[1]) + int(area[3]) * 4 / 5; ++y)
+            for (int x = int(area[0]) + 10; x < int(area[0]) + int(area[2]) - 10; ++x, ++all) {
+                const unsigned char* p = &screen.rgb[3 * (size_t(y) * size_t(screen.width) + size_t(x))];
+                count += p[0] < 16 && p[1] < 16 && p[2] < 16;
+            }
+        return all > 0 ? double(count) / double(all) : 0;
+    }
+};
+
+TEST_F(Compare, TwoStructuresShowTheSamePicture) {
+    const auto window = compared();
+    const auto state = window->state();
+    EXPECT_EQ(state["accel"], "bvh2");
+    EXPECT_EQ(state["other"]["accel"], "spheres");
+    ASSERT_TRUE(state.contains("difference"));
+    EXPECT_LT(double(state["difference"]["share"]), 1e-3);  // silhouettes may fall either way
+    EXPECT_GT(double(state["fps"]), 0);
+    EXPECT_GT(double(state["other"]["frame_ms"]), 0);
+    // What differs is seen to differ.
+    ASSERT_EQ(window->command("set depth 1"), "");
+    window->settle();
+    EXPECT_GT(double(window->state()["difference"]["share"]), 0.02);
+    EXPECT_EQ(window->state()["message"], "");
+}
+
+TEST_F(Compare, TheHandleIsDraggedByTheMouse) {
+    const auto window = compared();
+    const auto layout = window->query("layout");
+    ASSERT_EQ(layout["places"].size(), 2u);
+    const auto area = layout["places"][0]["area"], right = layout["places"][1]["shown"];
+    const Place handle{double(right[0]), double(area[1]) + double(area[3]) / 3};
+    const auto was = window->state();
+    window->drag(handle, {handle.x - 0.25 * double(area[2]), handle.y});
+    window->settle();
+    const auto now = window->state();
+    EXPECT_NEAR(double(now["wipe"]), double(was["wipe"]) - 0.25, 0.03);
+    EXPECT_EQ(now["eye"], was["eye"]);
+    EXPECT_NEAR(double(window->query("layout")["places"][1]["shown"][0]), handle.x - 0.25 * double(area[2]), 8);
+    // Beside the handle a drag moves the camera, of both.
+    window->drag({handle.x + 60, handle.y}, {handle.x + 120, handle.y});
+    window->settle();
+    EXPECT_NE(window->state()["eye"], was["eye"]);
+    EXPECT_EQ(window->state()["wipe"], now["wipe"]);
+    EXPECT_LT(double(window->state()["difference"]["share"]), 1e-3);
+}
+
+TEST_F(Compare, DifferenceIsDarkWhereNothingDiffers) {
+    const auto window = compared();
+    const auto area = window->query("layout")["places"][0]["area"];
+    EXPECT_LT(dark(window->screenshot(), area), 0.5);
+    ASSERT_EQ(window->command("mode difference"), "");
+    window->settle();
+    const auto places = window->query("layout")["places"];
+    ASSERT_EQ(places.size(), 1u);
+    EXPECT_GT(dark(window->screenshot(), places[0]["area"]), 0.97);
+    ASSERT_EQ(window->command("set depth 1"), "");
+    window->settle();
+    EXPECT_LT(dark(window->screenshot(), places[0]["area"]), 0.97);
+}
+
+TEST_F(Compare, SideBySideBothAreClicked) {
+    const auto window = compared();
+    ASSERT_EQ(window->command("mode side"), "");
+    window->settle();
+    const auto places = window->query("layout")["places"];
+    ASSERT_EQ(places.size(), 2u);
+    EXPECT_LE(double(places[0]["area"][0]) + double(places[0]["area"][2]), double(places[1]["area"][0]));
+    nlohmann::json selected[2];
+    for (size_t side : {0u, 1u}) {
+        window->click(window->place_of_pixel(160, 5, side));  // the sky: nothing
+        window->settle();
+        EXPECT_EQ(window->state()["selected"]["prim"], -1);
+        window->click(window->place_of_pixel(160, 150, side));
+        window->settle();
+        selected[side] = window->state()["selected"];
+        EXPECT_GE(int(selected[side]["prim"]), 0);
+    }
+    EXPECT_EQ(selected[0], selected[1]);
+}
+
+TEST_F(Compare, SidesSwapAndOneIsLeft) {
+    const auto window = compared();
+    const Pixels before = window->picture();
+    window->key("x");
+    window->settle();
+    EXPECT_EQ(window->state()["accel"], "spheres");
+    EXPECT_EQ(window->state()["other"]["accel"], "bvh2");
+    window->key("x");
+    window->settle();
+    window->key("c");
+    window->settle();
+    const auto state = window->state();
+    EXPECT_FALSE(state["comparing"]);
+    EXPECT_FALSE(state.contains("other"));
+    EXPECT_EQ(state["accel"], "bvh2");
+    EXPECT_EQ(window->query("layout")["places"].size(), 1u);
+    EXPECT_EQ(difference(before, window->picture(), 0), 0);
+    EXPECT_EQ(state["message"], "");
+}
+
+// What the second side cannot have is a message; the first goes on.
+TEST_F(Compare, AnImpossibleSecondSideCostsAMessage) {
+    const auto window = compared();
+    const Pixels before = window->picture();
+    ASSERT_EQ(window->command("device 99:99"), "");
+    window->settle();
+    EXPECT_NE(window->state()["message"], "");
+    EXPECT_EQ(difference(before, window->picture(), 0), 0);
+    ASSERT_EQ(window->command("compare off"), "");
+    window->settle();
+    window->key("Left");
+    window->settle();
+    EXPECT_GT(difference(before, window->picture()), 0.01);
+}
+
+}  // namespace
+}  // namespace clarity

@@ -1,0 +1,68 @@
+// Devices switched live. PoCL shows one processor as several where it is asked to; elsewhere there may be one only.
+#include <gtest/gtest.h>
+
+#include "window_fixture.hpp"
+
+namespace clarity {
+namespace {
+
+class Devices : public WindowTest {};
+
+TEST_F(Devices, SwitchLive) {
+    const auto window = open({{"POCL_DEVICES", "pthread basic"}});
+    const auto was = window->state();
+    const std::string first = was["device"], second = first == "0:0" ? "0:1" : "0:0";
+    const Pixels before = window->picture();
+    ASSERT_EQ(window->command("device " + second), "");
+    window->settle();
+    if (window->state()["device"] == first) {
+        EXPECT_NE(window->state()["message"], "");
+        GTEST_SKIP() << "NOT TESTED: no second OpenCL device, " << std::string(window->state()["message"]);
+    }
+    EXPECT_EQ(window->state()["device"], second);
+    EXPECT_EQ(window->state()["message"], "");
+    EXPECT_LT(difference(before, window->picture(), 1), 1e-3);
+    window->key("Left");
+    window->settle();
+    EXPECT_GT(difference(before, window->picture()), 0.01);
+    // Taken back like any other setting.
+    window->key("Home");
+    window->key("ctrl+z");
+    window->settle();
+    EXPECT_EQ(window->state()["device"], first);
+    EXPECT_EQ(difference(before, window->picture(), 0), 0);
+
+    // Both at once, one a side.
+    ASSERT_EQ(window->command("compare b"), "");
+    ASSERT_EQ(window->command("device " + second), "");
+    window->settle();
+    EXPECT_LT(double(window->state()["difference"]["share"]), 1e-3);
+    EXPECT_EQ(window->state()["message"], "");
+}
+
+TEST_F(Devices, OneThatIsGoneCostsAMessage) {
+    const auto window = open();
+    const Pixels before = window->picture();
+    const auto was = window->state();
+    for (const char* choice : {"99:99", "no such device"}) {
+        ASSERT_EQ(window->command(std::string("device ") + choice), "");
+        window->settle();
+        EXPECT_NE(std::string(window->state()["message"]).find(choice), std::string::npos) << window->state()["message"];
+        EXPECT_EQ(window->state()["device"], was["device"]);
+        EXPECT_EQ(difference(before, window->picture(), 0), 0);
+    }
+    window->key("Left");
+    window->settle();
+    EXPECT_GT(difference(before, window->picture()), 0.01);
+    // Other settings still apply, on the device that is there.
+    ASSERT_EQ(window->command("set lanes 4"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["lanes"], 4);
+    ASSERT_EQ(window->command("device " + std::string(was["device"])), "");
+    window->settle();
+    EXPECT_EQ(window->state()["message"], "");
+    EXPECT_FALSE(window->state()["behind"]);
+}
+
+}  // namespace
+}  // namespace clarity

@@ -1,0 +1,110 @@
+// Changes taken back and made again, by keys.
+#include <gtest/gtest.h>
+
+#include "window_fixture.hpp"
+
+namespace clarity {
+namespace {
+
+class Undo : public WindowTest {
+ protected:
+    static int steps(WindowDriver& window) {
+        int count = 0;
+        while (window.state()["undo"] != "" && count < 50) {
+            window.key("ctrl+z");
+            window.settle();
+            ++count;
+        }
+        return count;
+    }
+};
+
+TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
+    const auto window = open();
+    std::vector<std::string> wishes = {wish(*window)};
+    std::vector<Pixels> pictures = {window->picture()};
+    const char* const changes[] = {"set depth 2",           "edit light.0 point,3,6,5,1,.2,.2", "edit light.1 off",
+                                   "edit background .8,.2,.1", "edit material.1.color .1,.9,.1",   "edit hide 0",
+                                   "set tone reinhard",        "accel spheres,max_leaf=8"};
+    for (const char* change : changes) {
+        ASSERT_EQ(window->command(change), "");
+        window->settle();
+        wishes.push_back(wish(*window));
+        pictures.push_back(window->picture());
+        EXPECT_NE(wishes.back(), wishes[wishes.size() - 2]) << change;
+    }
+    // The camera is no part of it: it stays where the keys bring it.
+    const auto eye = window->state()["eye"];
+    for (size_t i = wishes.size() - 1; i-- > 0;) {
+        SCOPED_TRACE(changes[i]);
+        EXPECT_NE(window->state()["undo"], "");
+        window->key("ctrl+z");
+        window->settle();
+        EXPECT_EQ(wish(*window), wishes[i]);
+        EXPECT_EQ(difference(window->picture(), pictures[i], 0), 0);
+    }
+    EXPECT_EQ(window->state()["undo"], "");
+    window->key("ctrl+z");  // nothing left: nothing happens
+    window->settle();
+    EXPECT_EQ(wish(*window), wishes.front());
+    for (size_t i = 1; i < wishes.size(); ++i) {
+        SCOPED_TRACE(changes[i - 1]);
+        window->key("ctrl+y");
+        window->settle();
+        EXPECT_EQ(wish(*window), wishes[i]);
+    }
+    EXPECT_EQ(difference(window->picture(), pictures.back(), 0), 0);
+    EXPECT_EQ(window->state()["redo"], "");
+    EXPECT_EQ(window->state()["eye"], eye);
+    // A change after an undo ends what could be made again.
+    window->key("ctrl+z");
+    ASSERT_EQ(window->command("set depth 3"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["redo"], "");
+    EXPECT_EQ(window->state()["undo"], "Depth");
+}
+
+TEST_F(Undo, ADraggedSliderIsOneStep) {
+    const auto window = open();
+    const std::string before = wish(*window);
+    window->drag(window->place_of("Depth", 0.9), window->place_of("Depth", 0.1));
+    window->settle();
+    EXPECT_LT(int(window->state()["depth"]), 4);
+    EXPECT_EQ(window->state()["undo"], "Depth");
+    EXPECT_EQ(steps(*window), 1);
+    EXPECT_EQ(wish(*window), before);
+}
+
+TEST_F(Undo, AHeldKeyIsOneStep) {
+    const auto window = open();
+    const std::string before = wish(*window);
+    const auto light = window->state()["light"];
+    window->key_down("d");
+    int moves = 0;  // seen to be more than one
+    for (nlohmann::json last = light; moves < 3;) {
+        ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["light"] != last; }));
+        last = window->state()["light"];
+        ++moves;
+    }
+    window->key_up("d");
+    window->settle();
+    EXPECT_EQ(steps(*window), 1);
+    EXPECT_EQ(wish(*window), before);
+}
+
+TEST_F(Undo, AnotherSceneHasItsOwnHistory) {
+    const auto window = open();
+    ASSERT_EQ(window->command("set depth 2"), "");
+    window->settle();
+    ASSERT_EQ(window->state()["undo"], "Depth");
+    ASSERT_EQ(window->command("open " + source_path("scenes/cornell.scene")), "");
+    window->settle();
+    EXPECT_EQ(window->state()["undo"], "");
+    window->key("ctrl+z");
+    window->settle();
+    EXPECT_EQ(window->state()["files"][0], source_path("scenes/cornell.scene"));
+    EXPECT_EQ(window->state()["depth"], 2);
+}
+
+}  // namespace
+}  // namespace clarity

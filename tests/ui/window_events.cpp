@@ -101,7 +101,7 @@ Place WindowDriver::place_of_pixel(double x, double y, size_t picture) {
 }
 
 void WindowDriver::take_focus() {
-    xdotool("search --sync --onlyvisible --pid " + std::to_string(pid_) + " windowfocus --sync");
+    xdotool("search --sync --onlyvisible --all --pid " + std::to_string(pid_) + " --class clarity windowfocus --sync" + kPause);
 }
 
 }  // namespace clarity

@@ -1,0 +1,139 @@
+// Kernels edited while the window runs: nothing is pressed, the watch on the files does it all.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+
+#include "window_fixture.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class KernelEdit : public WindowTest {
+ protected:
+    void SetUp() override {
+        WindowTest::SetUp();
+        fs::copy(source_path("cl"), folder.path() + "/cl", fs::copy_options::recursive);
+        kernel = folder.path() + "/cl/tracers/iterative.cl";
+        good = text_of(kernel);
+    }
+    std::map<std::string, std::string> environment() const { return {{"CLARITY_KERNEL_PATH", folder.path() + "/cl"}}; }
+    // As editors do: the whole file beside it, then renamed.
+    void write(const std::string& text) const {
+        const std::string beside = kernel.string() + "~";
+        std::ofstream(beside, std::ios::binary) << text;
+        fs::rename(beside, kernel);
+    }
+    // An edit that one sees: red and blue change places.
+    std::string swapped() const {
+        const std::string from = " : sample;", to = " : sample.zyxw;";
+        std::string text = good;
+        const size_t at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << "cl/tracers/iterative.cl has changed: edit something else of it here";
+        return at == std::string::npos ? text : text.replace(at, from.size(), to);
+    }
+    static Pixels blue_for_red(Pixels pixels) {
+        for (size_t i = 0; i + 2 < pixels.rgb.size(); i += 3) std::swap(pixels.rgb[i], pixels.rgb[i + 2]);
+        return pixels;
+    }
+    TemporaryFolder folder;
+    fs::path kernel;
+    std::string good;
+};
+
+TEST_F(KernelEdit, IsCompiledAndShownByItself) {
+    const auto window = open(environment());
+    const Pixels before = window->picture();
+    const int revision = window->state()["kernel_revision"];
+    write(swapped());
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["kernel_revision"] > revision; }));
+    window->settle();
+    EXPECT_EQ(difference(blue_for_red(before), window->picture(), 0), 0);
+    EXPECT_GT(difference(before, window->picture()), 0.1);
+    EXPECT_EQ(window->state()["message"], "");
+}
+
+TEST_F(KernelEdit, AMistakeIsNamedAndItsRepairTaken) {
+    const auto window = open(environment());
+    const Pixels before = window->picture();
+    const auto lines = std::count(good.begin(), good.end(), '\n');
+    write(good + "\nthis is no OpenCL C\n");
+    ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state["messages"] == 1; }));
+    window->settle();
+    const std::string message = window->state()["message"];
+    // The author's file and the line of the mistake.
+    EXPECT_NE(message.find("iterative.cl:" + std::to_string(lines + 2)), std::string::npos) << message;
+    EXPECT_TRUE(window->state()["behind"]);
+    EXPECT_EQ(difference(before, window->picture(), 0), 0);
+    // The last good program runs on.
+    window->key("Left");
+    window->settle();
+    EXPECT_GT(difference(before, window->picture()), 0.01);
+    window->key("Home");
+    EXPECT_EQ(window->state()["messages"], 1);
+
+    write(swapped());
+    ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state["message"] == "" && !state["behind"]; }));
+    window->settle();
+    EXPECT_EQ(difference(blue_for_red(before), window->picture(), 0), 0);
+    // Settings that compile anew take the new text too.
+    ASSERT_EQ(window->command("set packet 8x8"), "");
+    window->settle();
+    EXPECT_LT(difference(blue_for_red(before), window->picture(), 1), 1e-3);
+    window->quit();
+    EXPECT_EQ(window->exit_code(), 0);
+}
+
+TEST_F(KernelEdit, ABurstEndsInTheLastText) {
+    const auto window = open(environment());
+    const Pixels before = window->picture();
+    for (int i = 0; i < 6; ++i) {
+        write(good + "\nthis is no OpenCL C, " + std::to_string(i) + "\n");
+        usleep(70000);
+    }
+    const int revision = window->state()["kernel_revision"];
+    write(swapped());
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["kernel_revision"] > revision; }));
+    window->settle();
+    EXPECT_EQ(difference(blue_for_red(before), window->picture(), 0), 0);
+    EXPECT_EQ(window->state()["message"], "");
+    EXPECT_FALSE(window->state()["behind"]);
+}
+
+// The requirement is 200 reloads; CLARITY_LONG_TESTS makes so many.
+TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
+    const char* thorough = std::getenv("CLARITY_LONG_TESTS");
+    const int warm_up = thorough && *thorough ? 30 : 8, reloads = thorough && *thorough ? 200 : 10;
+    const auto window = open_scene(source_path("scenes/cornell.scene"), "64x48", environment());
+    // A small program: what a compiler leaves behind is what is looked for.
+    ASSERT_EQ(window->command("set lanes 1"), "");
+    ASSERT_EQ(window->command("set packet 1x1"), "");
+    window->settle();
+    const auto begin = std::chrono::steady_clock::now();
+    double warm_kb = 0, most_kb = 0;
+    for (int i = 1; i <= warm_up + reloads; ++i) {
+        const int revision = window->state()["kernel_revision"];
+        write(good + "\nconstant int edited = " + std::to_string(i) + ";\n");
+        ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["kernel_revision"] > revision; })) << i;
+        window->settle();
+        ASSERT_FALSE(window->state()["behind"]) << window->state()["message"];
+        const double kb = window->state()["resident_kb"];
+        (i <= warm_up ? warm_kb : most_kb) = std::max(i <= warm_up ? warm_kb : most_kb, kb);
+    }
+    const double last_kb = window->state()["resident_kb"];
+    std::printf("%d reloads: most %.0f MiB in the first %d, %.0f after, %.0f at the end; %.1f s\n", warm_up + reloads,
+                warm_kb / 1024, warm_up, most_kb / 1024, last_kb / 1024, seconds_since(begin));
+    EXPECT_LT(last_kb, 1.05 * warm_kb);
+}
+
+}  // namespace
+}  // namespace clarity
