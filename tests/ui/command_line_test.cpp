@@ -24,7 +24,9 @@ class CommandLine : public WindowTest {
         ASSERT_EQ(run_command_line(line), 0);
         ASSERT_FALSE(bytes_of(rendered).empty());
         EXPECT_TRUE(bytes_of(saved) == bytes_of(rendered)) << "they differ";
-        if (ending == "png") EXPECT_EQ(difference(read_png(rendered), window.picture(), 0), 0);
+        if (ending == "png") {
+            EXPECT_EQ(difference(read_png(rendered), window.picture(), 0), 0);
+        }
         std::remove(saved.c_str());
         std::remove(rendered.c_str());
     }

@@ -109,6 +109,8 @@ class WindowDriver {
 
  private:
     void xdotool(const std::string& arguments);
+    void mouse(const std::string& event);
+    void pass_frame();
     bool read_more(double seconds);
     bool reap(bool wait);
 

@@ -17,9 +17,6 @@ std::string number(Button button) {
     return std::to_string(static_cast<int>(button));
 }
 
-// Between events: Dear ImGui 1.86 looks at the mouse once a frame, and a busy machine draws few.
-const std::string kPause = " sleep 0.1 ";
-
 }  // namespace
 
 void WindowDriver::xdotool(const std::string& arguments) {
@@ -40,8 +37,20 @@ void WindowDriver::type(const std::string& text) {
     xdotool("type --delay 20 '" + text + "'");
 }
 
+// Dear ImGui 1.86 looks at the mouse once a frame, and a busy machine draws few: what one event did is drawn before the next
+// one comes. A line of the script is run in each turn of the window's loop, before its frame: after the third, a whole turn has
+// passed that began after the event.
+void WindowDriver::pass_frame() {
+    for (int i = 0; i < 3; ++i) EXPECT_EQ(command("# next"), "");
+}
+
+void WindowDriver::mouse(const std::string& event) {
+    xdotool(event);
+    pass_frame();
+}
+
 void WindowDriver::move(const Place& to) {
-    xdotool("mousemove " + at(to) + kPause);
+    mouse("mousemove " + at(to));
 }
 
 void WindowDriver::click(double x, double y) {
@@ -49,30 +58,32 @@ void WindowDriver::click(double x, double y) {
 }
 
 void WindowDriver::click(const Place& place, Button button) {
-    const std::string n = number(button);
-    xdotool("mousemove " + at(place) + kPause + "mousedown " + n + kPause + "mouseup " + n + kPause);
+    move(place);
+    mouse("mousedown " + number(button));
+    mouse("mouseup " + number(button));
 }
 
+// In one go: a double click has a time limit.
 void WindowDriver::double_click(const Place& place) {
-    const std::string press = "mousedown 1 sleep 0.05 mouseup 1 sleep 0.05 ";
-    xdotool("mousemove " + at(place) + kPause + press + press);
+    move(place);
+    const std::string press = "mousedown 1 sleep 0.04 mouseup 1 ";
+    mouse(press + "sleep 0.06 " + press);
 }
 
 void WindowDriver::drag(const Place& from, const Place& to, Button button) {
-    const std::string n = number(button);
-    std::string text = "mousemove " + at(from) + kPause + "mousedown " + n + kPause;
+    move(from);
+    mouse("mousedown " + number(button));
     constexpr int kSteps = 4;
     for (int i = 1; i <= kSteps; ++i) {
         const double share = double(i) / kSteps;
-        text += "mousemove " + at({from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)}) + kPause;
+        move({from.x + share * (to.x - from.x), from.y + share * (to.y - from.y)});
     }
-    xdotool(text + "mouseup " + n + kPause);
+    mouse("mouseup " + number(button));
 }
 
 void WindowDriver::wheel(const Place& place, int steps) {
-    std::string text = "mousemove " + at(place) + kPause;
-    for (int i = 0; i < std::abs(steps); ++i) text += (steps > 0 ? "click 4" : "click 5") + kPause;
-    xdotool(text);
+    move(place);
+    for (int i = 0; i < std::abs(steps); ++i) mouse(steps > 0 ? "click 4" : "click 5");
 }
 
 void WindowDriver::click_on(const std::string& label, double at) {
@@ -101,7 +112,8 @@ Place WindowDriver::place_of_pixel(double x, double y, size_t picture) {
 }
 
 void WindowDriver::take_focus() {
-    xdotool("search --sync --onlyvisible --all --pid " + std::to_string(pid_) + " --class clarity windowfocus --sync" + kPause);
+    xdotool("search --sync --onlyvisible --all --pid " + std::to_string(pid_) + " --class clarity windowfocus --sync");
+    pass_frame();
 }
 
 }  // namespace clarity
