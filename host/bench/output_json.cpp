@@ -99,6 +99,12 @@ Summary read_summary(const Json& json) {
     get(json, "min", s.min);
     get(json, "max", s.max);
     get_whole(json, "n", s.n);
+    // Of what was withheld only the spread is known: it is kept.
+    if (json.contains("spread") && !json.contains("median")) {
+        s.median = s.q1 = s.q3 = 1;
+        get(json, "spread", s.q3);
+        s.q3 += 1;
+    }
     return s;
 }
 
