@@ -33,9 +33,9 @@ class BenchCommand : public testing::Test {
         words.insert(words.begin(), "bench");
         return run_program(words, options);
     }
-    // Small pictures, short, and never refused.
+    // Small pictures, never refused; the time limit is for the compiler, where its cache is cold.
     ProgramResult quick(std::vector<std::string> words, RunOptions options = {}) const {
-        for (const char* word : {"--size", "64x48", "--time-limit", "3", "--max-spread", "10"}) words.push_back(word);
+        for (const char* word : {"--size", "64x48", "--time-limit", "90", "--max-spread", "10"}) words.push_back(word);
         return bench(words, options);
     }
     Json records(const std::string& name) const {
@@ -61,8 +61,8 @@ TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
 }
 
 TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
-    const ProgramResult result =
-        quick({file("tiny.scene"), "--json", file("a.json"), "--csv", file("a.csv"), "--report", file("page")});
+    const ProgramResult result = quick({file("tiny.scene"), "--accel", "bvh2", "--accel", "bvh2,max_leaf=1", "--json",
+                                        file("a.json"), "--csv", file("a.csv"), "--report", file("page")});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_NE(result.out.find("bvh2"), std::string::npos) << result.out;
     const Json list = records("a.json");
@@ -91,10 +91,10 @@ TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
                 record["analysis"]["nodes_per_ray"].get<double>() + record["analysis"]["leaf_tests_per_ray"].get<double>(), 0);
         }
     }
-    EXPECT_GE(frames, 3u);  // bvh2, linear, spheres
-    EXPECT_GE(builds, 3u);
-    EXPECT_GE(rays, 12u);
-    EXPECT_GE(dropped, 4u);
+    EXPECT_EQ(frames, 2u);
+    EXPECT_EQ(builds, 2u);
+    EXPECT_EQ(rays, 8u);
+    EXPECT_EQ(dropped, 4u);
     std::ifstream csv(file("a.csv"));
     std::string line;
     size_t lines = 0;
@@ -123,7 +123,7 @@ TEST_F(BenchCommand, PeersTakePartWhereTheSceneIsTriangles) {
 
 TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {
     const ProgramResult result = bench({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--size", "64x48",
-                                        "--time-limit", "3", "--max-spread", "0", "--json", file("a.json")});
+                                        "--time-limit", "60", "--max-spread", "0", "--json", file("a.json")});
     EXPECT_EQ(result.exit_code, 1) << result.out;
     EXPECT_NE(result.out.find("REFUSED"), std::string::npos) << result.out;
     EXPECT_NE(result.out.find("--max-spread"), std::string::npos) << result.out;
@@ -144,8 +144,8 @@ TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
         {file("tiny.scene"), "--size", "64x48", "--max-spread", "10", "--time-limit", "60", "--json", file("a.json")}, options);
     EXPECT_EQ(result.exit_code, 130) << result.err;
     const Json list = records("a.json");
-    EXPECT_GE(list.size(), 3u);
-    EXPECT_LT(list.size(), 20u);
+    EXPECT_GE(list.size(), 2u);
+    EXPECT_LT(list.size(), 14u);
 }
 
 TEST_F(BenchCommand, WhatIsNotUnderstoodIsAUsageError) {
