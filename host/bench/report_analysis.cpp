@@ -78,7 +78,7 @@ std::string charts_of(const BenchReport& report, const Figure& figure, const Ser
     }
     return charts.empty() ? charts
                           : std::string("<h3>") + figure.title + "</h3>\n" + paragraph(figure.meaning) +
-                                "<div class=\"grid\">\n" + charts + "</div>\n";
+                                "<div class=\"grid three\">\n" + charts + "</div>\n";
 }
 
 std::string dropped_of(const BenchReport& report, const SeriesNames& names) {
@@ -110,7 +110,7 @@ std::string dropped_of(const BenchReport& report, const SeriesNames& names) {
                          "makes two rays of one, and an array that is full must refuse some: a pixel then misses light. This "
                          "is the share "
                          "that is refused with 1, 2, 4 and 8 places a pixel; after 4 steps no pixel can need more than 8.") +
-                     "<div class=\"grid\">\n" + charts + "</div>\n";
+                     "<div class=\"grid three\">\n" + charts + "</div>\n";
 }
 
 }  // namespace
