@@ -27,7 +27,8 @@ class Axis {
         for (const BarGroup& group : chart.groups)
             for (const Bar& bar : group.bars) see(bar.value);
         see(chart.reference);
-        log_ = least < INFINITY && high_ / least > 30;
+        log_ = least < INFINITY && high_ / least > 30 && chart.whole == 0;
+        high_ = std::max(high_, chart.whole);
         if (log_) low_ = std::pow(10, std::floor(std::log10(least * .999)));
     }
     bool is_log() const { return log_; }

@@ -22,7 +22,7 @@ nav { margin: .8rem 0; } nav a { margin-right: 1rem; } a { color: var(--c0); }
 figure { margin: 0; background: var(--panel); border-radius: .5rem; padding: .8rem .9rem; break-inside: avoid; }
 figcaption { font-weight: 600; line-height: 1.35; margin-bottom: .4rem; }
 .bars { font-size: .86rem; } .bars .row { display: grid; grid-template-columns: min(var(--label), 45%) 1fr; min-height: 1.5em; }
-.bars .head { margin-top: 0; } .bars .head b { font-weight: 600; padding-top: .25em; }
+.bars .head { margin-top: 0; } .bars .head b { white-space: nowrap; font-weight: 600; padding-top: .25em; }
 .bars .label { white-space: nowrap; overflow: hidden; text-overflow: ellipsis; padding-right: .5em; color: var(--faint); }
 .bars .track { position: relative; display: block; margin-right: 4.5em; border-left: 1px solid var(--rule); }
 .bars .bar { position: absolute; left: 0; top: .22em; height: 1.1em; border-radius: 0 2px 2px 0; }

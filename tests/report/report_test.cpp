@@ -154,12 +154,14 @@ TEST(ReportNumbers, ThreeDigitsAndThousands) {
 
 // A log axis where values are far apart, a linear one where they are not; a bar of a hundredth is not a hundredth long there.
 TEST(ReportCharts, AxisFollowsTheRange) {
-    BarChart chart{"t", "u", {{"", {{"a", 1, 0, "", ""}, {"b", 100, 1, "", ""}}}}, 0, ""};
+    BarChart chart{"t", "u", {{"", {{"a", 1, 0, "", ""}, {"b", 100, 1, "", ""}}}}, 0, "", 0};
     EXPECT_NE(bar_chart(chart).find("logarithmic"), std::string::npos);
     EXPECT_NE(bar_chart(chart).find("width:100.00%"), std::string::npos);
     chart.groups[0].bars[0].value = 50;
     EXPECT_EQ(bar_chart(chart).find("logarithmic"), std::string::npos);
     EXPECT_NE(bar_chart(chart).find("width:50.00%"), std::string::npos);
+    chart.whole = 400;
+    EXPECT_NE(bar_chart(chart).find("width:25.00%"), std::string::npos) << "of a whole that is larger than any bar";
     chart.groups[0].bars.clear();
     EXPECT_EQ(bar_chart(chart), "");
 }
