@@ -163,12 +163,13 @@ TEST(Inspect, EveryPixelsRaysAreThePicturesOnes) {
 }
 
 TEST(Inspect, PacketsThatNoLanesFillAndAnotherStructure) {
-    expect_counted_rays(primitives({"spheres", 4, 3, 5}, "22x17", {{"depth", "4"}}));
+    expect_counted_rays(primitives({"spheres", 4, 3, 5}, "22x17", {{"depth", "4"}, {"portable", "true"}}));
 }
 
 TEST(Inspect, RaysWithoutASlotAreNamed) {
     size_t dropped = 0;
-    expect_counted_rays(primitives({"bvh2", 16, 4, 4}, "28x21", {{"depth", "8"}, {"ray_slots", "1"}}), &dropped);
+    expect_counted_rays(primitives({"bvh2", 16, 4, 4}, "28x21", {{"depth", "8"}, {"ray_slots", "1"}, {"debug", "true"}}),
+                        &dropped);
     EXPECT_GT(dropped, 0u);
 }
 
