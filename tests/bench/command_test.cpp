@@ -103,9 +103,9 @@ TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
     EXPECT_TRUE(fs::exists(file("page/index.html")));
 
     // Joined with itself, without measuring anything.
-    const ProgramResult joined = bench({"--join", file("a.json"), "--join", file("a.json"), "--json", file("b.json")});
+    const ProgramResult joined = bench({"--join", file("a.json"), "--join", file("a.json"), "--json", "-"});
     EXPECT_EQ(joined.exit_code, 0) << joined.err;
-    EXPECT_EQ(records("b.json").size(), 2 * list.size());
+    EXPECT_EQ(Json::parse(joined.out).size(), 2 * list.size());
 }
 
 TEST_F(BenchCommand, PeersTakePartWhereTheSceneIsTriangles) {
@@ -160,6 +160,7 @@ TEST_F(BenchCommand, WhatIsNotUnderstoodIsAUsageError) {
         {{"quick", "--aov", "t"}, "colour only"},
         {{"quick", "--max-spread", "-1"}, "--max-spread"},
         {{"quick", "--json", file("nowhere/a.json")}, "nowhere"},
+        {{"quick", "--report", file("tiny.scene") + "/page"}, "--report"},
         {{"quick", "--join", file("broken.json")}, "record 0"},
         {{"quick", "--join", file("missing.json")}, "cannot be read"},
     };

@@ -7,6 +7,7 @@
 #include "bench/analysis.hpp"
 #include "bench/peer.hpp"
 #include "bench/ray_sets.hpp"
+#include "render/accel_choice.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 
@@ -197,6 +198,25 @@ TEST(SurfaceNormals, FaceTheRayOnEveryKindOfPrimitive) {
     }
     EXPECT_GT(compared, 5000u);
     EXPECT_LE(wrong, compared / 1000);  // silhouettes
+}
+
+// The thesis's way with analytic spheres finds what trees find.
+TEST(NaiveMode, HitsTheSame) {
+    const ScenePtr scene = load_scene(source_file("scenes/spheres21.scene"));
+    const RaySet primary = camera_rays(make_view(*scene, 1).camera, 96, 96);
+    Settings tree, lone;
+    tree.accel = lone.accel = "spheres";
+    choose_accel(Workbench::get().plugins(), "spheres,lone_spheres=true", lone);
+    const auto expected = Workbench::get().rays(scene, tree, primary.rays, false);
+    const auto hits = Workbench::get().rays(scene, lone, primary.rays, false);
+    size_t spheres = 0;
+    for (size_t i = 0; i < hits.size(); ++i) {
+        if (!is_active(primary.rays[i])) continue;
+        EXPECT_EQ(hits[i].prim, expected[i].prim);
+        EXPECT_EQ(hits[i].t, expected[i].t);
+        spheres += hits[i].prim >= 0 && hits[i].prim < 21;
+    }
+    EXPECT_GT(spheres, 500u);
 }
 
 TEST(Analysis, OfTwoPacketsByHand) {
