@@ -9,7 +9,7 @@ build_packages="g++ cmake ninja-build make pkg-config
     libcli11-dev nlohmann-json3-dev libtbb-dev libimgui-dev libglfw3-dev libepoxy-dev
     libgl1-mesa-dri fonts-dejavu-core"
 # Tests compare with Embree, on PoCL, in a window on a virtual display.
-test_packages="pocl-opencl-icd libgtest-dev libbenchmark-dev libembree-dev oclgrind clang-format
+test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format
     xvfb xauth xdotool imagemagick"
 
 say() { printf '%s\n' "$*" >&2; }

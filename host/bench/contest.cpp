@@ -10,7 +10,7 @@
 #include "bench/analysis.hpp"
 #include "bench/bench.hpp"
 #include "bench/machine.hpp"
-#include "plugin/parameters.hpp"
+#include "bench/row.hpp"
 
 namespace clarity {
 namespace {
@@ -24,26 +24,6 @@ constexpr double kMayDiffer = 1e-3;
 
 double ms_since(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
-
-uint64_t primitive_count(const Scene& scene) {
-    return scene.placed_triangle_count() + scene.spheres.size() + scene.polygons.size() + scene.planes.size();
-}
-
-std::string parameters_text(const rt_plugin& plugin, const ParameterValues& values) {
-    std::string text;
-    for (rt_u32 i = 0; i < plugin.param_count && i < values.size(); ++i)
-        text += (text.empty() ? "" : ",") + parameter_text(plugin, values, i);
-    return text;
-}
-
-void describe(BenchRecord& row, const AccelData& accel) {
-    row.build_ms = accel.build_ms;
-    row.pack_ms = accel.pack_ms;
-    row.accel_bytes = accel.bytes;
-    row.bytes_per_triangle = row.triangles > 0 ? double(accel.bytes) / double(row.triangles) : 0;
-    row.nodes = static_cast<uint64_t>(accel.stat("nodes"));
-    row.sah_cost = accel.stat("sah_cost");
 }
 
 class Contest {
@@ -96,15 +76,8 @@ class Contest {
         row.case_name = case_.name;
         row.scene = case_.name.substr(0, case_.name.rfind('/'));
         row.measure = case_.measure;
-        row.triangles = stand_.scene()->placed_triangle_count();
-        row.primitives = primitive_count(*stand_.scene());
+        describe(row, *stand_.scene());
         return row;
-    }
-
-    void on_host(BenchRecord& row, unsigned threads) const {
-        row.device = host_cpu_name();
-        row.device_id = "host";
-        row.threads = threads;
     }
 
     void add_ours(const Variant& variant, size_t device) {
@@ -117,20 +90,12 @@ class Contest {
         row.accel = settings.accel;
         row.accel_params = parameters_text(plugin, settings.accel_params);
         if (case_.measure == "build") {
-            on_host(row, std::thread::hardware_concurrency());
+            describe_host(row, std::thread::hardware_concurrency());
             add_build(entry, plugin, settings);
             return;
         }
-        const DeviceInfo& info = stand_.device(device);
-        row.device = info.name;
-        row.device_id = info.id();
-        row.driver = info.platform + ", " + info.driver;
-        row.threads = info.compute_units;
-        row.tracer = settings.tracer;
-        row.depth = settings.depth;
-        row.ray_slots = settings.ray_slots;
-        row.width = settings.width;
-        row.height = settings.height;
+        describe(row, stand_.device(device));
+        describe(row, settings);
         if (settings.accel == "linear" && row.primitives > kTryEverything) {
             row.status = RowStatus::skipped;
             row.why = "tests every primitive: " + std::to_string(row.primitives) + " would take it minutes";
@@ -139,11 +104,7 @@ class Contest {
         guarded(entry, [&](BenchRecord&) {
             const Stand::Held held = stand_.prepare(device, settings, progress_);
             const Prepared& prepared = *held.prepared;
-            row.packet_w = prepared.settings.packet_w;
-            row.packet_h = prepared.settings.packet_h;
-            row.lanes = prepared.settings.lanes;
-            row.compile_ms = prepared.compile_ms;
-            describe(row, *prepared.accel);
+            describe(row, prepared);
             if (case_.measure == "frame")
                 add_frame(entry, settings, held);
             else if (case_.measure == "dropped")
@@ -253,7 +214,7 @@ class Contest {
         entries_.push_back({make_row(), {}, {}});
         BenchRecord& row = entries_.back().row;
         row.peer = row.variant = name;
-        on_host(row, stand_.peer_threads());
+        describe_host(row, stand_.peer_threads());
         return entries_.back();
     }
 

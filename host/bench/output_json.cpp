@@ -99,6 +99,12 @@ Summary read_summary(const Json& json) {
     get(json, "min", s.min);
     get(json, "max", s.max);
     get_whole(json, "n", s.n);
+    // Of what was withheld only the spread is known: it is kept.
+    if (json.contains("spread") && !json.contains("median")) {
+        s.median = s.q1 = s.q3 = 1;
+        get(json, "spread", s.q3);
+        s.q3 += 1;
+    }
     return s;
 }
 
@@ -144,6 +150,7 @@ BenchRecord read_record(const Json& json) {
     get(json, "device", r.device);
     get(json, "device_id", r.device_id);
     get(json, "driver", r.driver);
+    get_whole(json, "device_clock_mhz", r.device_clock_mhz);
     get_whole(json, "threads", r.threads);
     get(json, "accel", r.accel);
     get(json, "accel_params", r.accel_params);
@@ -206,6 +213,7 @@ Json record_json(const BenchReport& report, const BenchRecord& r) {
     json["device"] = r.device;
     json["device_id"] = r.device_id;
     json["driver"] = text_or_null(r.driver);
+    json["device_clock_mhz"] = r.device_clock_mhz > 0 ? Json(r.device_clock_mhz) : Json();
     json["threads"] = r.threads;
     json["accel"] = text_or_null(r.accel);
     json["accel_params"] = text_or_null(r.accel_params);

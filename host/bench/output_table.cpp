@@ -187,13 +187,22 @@ std::string dropped_table(const BenchReport& report) {
     return table.empty() ? std::string() : "rays dropped because a pixel's array was full, 4 steps\n" + table.text() + "\n";
 }
 
+// Rows of one scene that are missing for the same reason are one line.
 std::string left_out(const BenchReport& report) {
+    Groups groups;
+    for (const BenchRecord& r : report.records)
+        if (r.status != RowStatus::ok)
+            groups
+                .of(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + who(r) + "\n" + r.device +
+                    "\n" + (r.status == RowStatus::skipped ? r.why : r.case_name))
+                .push_back(&r);
     std::string text;
-    for (const BenchRecord& r : report.records) {
-        if (r.status == RowStatus::ok) continue;
+    for (const auto& group : groups.all()) {
+        const BenchRecord& r = *group.front();
         const char* word = r.status == RowStatus::refused ? "REFUSED" : r.status == RowStatus::failed ? "FAILED" : "skipped";
-        text += std::string(word) + "  " + r.suite + " " + r.case_name + ", " + who(r) +
-                (r.peer.empty() ? " on " + r.device : "") + ": " + r.why + "\n";
+        text += std::string(word) + "  " + r.suite + " " + r.case_name;
+        for (size_t i = 1; i < group.size(); ++i) text += ", " + group[i]->case_name.substr(group[i]->case_name.rfind('/') + 1);
+        text += ", " + who(r) + (r.peer.empty() && !one_device(report) ? " on " + r.device : "") + ": " + r.why + "\n";
     }
     for (const std::string& note : report.notes) text += "left out  " + note + "\n";
     return text;

@@ -42,6 +42,7 @@ struct BenchRecord {
 
     // ---- on what
     std::string device, device_id, driver;  // of a peer: the host's processor
+    unsigned device_clock_mhz = 0;          // highest, as the driver says; 0: it does not
     unsigned threads = 0;                   // compute units of the device; threads of a peer
 
     // ---- how; of ours only

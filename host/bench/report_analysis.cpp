@@ -9,6 +9,7 @@ namespace {
 
 struct Figure {
     const char *title, *unit, *meaning;
+    double whole;  // 100 for percents
     std::function<double(const Analysis&)> of;
 };
 
@@ -19,32 +20,32 @@ const std::vector<Figure>& figures() {
          "packet visits what any "
          "of its rays needs, so one that holds together visits little more than each ray alone, and one that has spread visits "
          "much more.",
-         [](const Analysis& a) { return a.nodes_per_ray; }},
+         0, [](const Analysis& a) { return a.nodes_per_ray; }},
         {"Primitives tested", "a ray, mean",
          "Tests of triangles, spheres and polygons in the leaves. Tight volumes keep them near one; bounding spheres, which "
          "are mostly air around a "
          "triangle, let many more through, and with no tree above the meshes every one of them is asked.",
-         [](const Analysis& a) { return a.leaf_tests_per_ray; }},
+         0, [](const Analysis& a) { return a.leaf_tests_per_ray; }},
         {"Lanes alive", "percent of all lanes, per node visited",
          "Branch divergence: the lanes of a work-item go the same way, and those whose ray is not in the node are carried "
          "along. 100 % means that "
          "all rays of a packet want every node it visits. Mirrored rays of curved things spread, and the share falls.",
-         [](const Analysis& a) { return 100 * a.lanes_alive; }},
+         100, [](const Analysis& a) { return 100 * a.lanes_alive; }},
         {"Alive in a warp", "percent, of 32 neighbours",
          "The same on a graphics card, where each ray is a work-item and 32 neighbours run in step: all wait for the one that "
          "visits the most "
          "nodes. This is the mean of their visits over the most.",
-         [](const Analysis& a) { return 100 * a.warp_alive; }},
+         100, [](const Analysis& a) { return 100 * a.warp_alive; }},
         {"Bytes fetched", "a ray, mean",
          "Nodes and primitives as they lie in memory, each counted once a packet. Times the rays a second this is what caches "
          "and memory must "
          "deliver.",
-         [](const Analysis& a) { return a.bytes_per_ray; }},
+         0, [](const Analysis& a) { return a.bytes_per_ray; }},
         {"Fetched together", "percent of the node bytes",
          "What packets are for, and what coalesced reads are on a graphics card: had each ray fetched its nodes alone, this "
          "share more would have "
          "been read. 0 % with one lane, where nothing is shared but by the cache.",
-         [](const Analysis& a) { return 100 * a.bytes_shared; }},
+         100, [](const Analysis& a) { return 100 * a.bytes_shared; }},
     };
     return all;
 }
@@ -64,6 +65,7 @@ std::string charts_of(const BenchReport& report, const Figure& figure, const Ser
         BarChart chart;
         chart.title = scene.front()->scene;
         chart.unit = figure.unit;
+        chart.whole = figure.whole;
         bool any = false;
         for (const auto& kind : kinds.all()) {
             chart.groups.push_back({rays_of(*kind.front()), {}});
@@ -78,7 +80,7 @@ std::string charts_of(const BenchReport& report, const Figure& figure, const Ser
     }
     return charts.empty() ? charts
                           : std::string("<h3>") + figure.title + "</h3>\n" + paragraph(figure.meaning) +
-                                "<div class=\"grid\">\n" + charts + "</div>\n";
+                                "<div class=\"grid three\">\n" + charts + "</div>\n";
 }
 
 std::string dropped_of(const BenchReport& report, const SeriesNames& names) {
@@ -110,7 +112,7 @@ std::string dropped_of(const BenchReport& report, const SeriesNames& names) {
                          "makes two rays of one, and an array that is full must refuse some: a pixel then misses light. This "
                          "is the share "
                          "that is refused with 1, 2, 4 and 8 places a pixel; after 4 steps no pixel can need more than 8.") +
-                     "<div class=\"grid\">\n" + charts + "</div>\n";
+                     "<div class=\"grid three\">\n" + charts + "</div>\n";
 }
 
 }  // namespace

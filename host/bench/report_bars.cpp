@@ -27,7 +27,8 @@ class Axis {
         for (const BarGroup& group : chart.groups)
             for (const Bar& bar : group.bars) see(bar.value);
         see(chart.reference);
-        log_ = least < INFINITY && high_ / least > 30;
+        log_ = least < INFINITY && high_ / least > 30 && chart.whole == 0;
+        high_ = std::max(high_, chart.whole);
         if (log_) low_ = std::pow(10, std::floor(std::log10(least * .999)));
     }
     bool is_log() const { return log_; }
@@ -55,6 +56,16 @@ class Axis {
     double low_ = 0, high_ = 0;
 };
 
+// Room for the longest label, within reason.
+std::string label_width(const BarChart& chart) {
+    size_t longest = 0;
+    for (const BarGroup& group : chart.groups)
+        for (const Bar& bar : group.bars) longest = std::max(longest, bar.label.size());
+    char text[32];
+    std::snprintf(text, sizeof text, "%.1fem", std::clamp(.56 * double(longest) + 1, 4.5, 14.0));
+    return text;
+}
+
 }  // namespace
 
 std::string bar_chart(const BarChart& chart) {
@@ -65,7 +76,8 @@ std::string bar_chart(const BarChart& chart) {
     const std::string line =
         chart.reference > 0 ? "<i class=\"ref\" style=\"left:" + css_percent(axis.share(chart.reference)) + "\"></i>" : "";
 
-    std::string out = "<figure class=\"bars\"><figcaption>" + escape_markup(chart.title);
+    std::string out =
+        "<figure class=\"bars\" style=\"--label:" + label_width(chart) + "\"><figcaption>" + escape_markup(chart.title);
     out += " <small>" + escape_markup(chart.unit) + (axis.is_log() ? ", logarithmic" : "") + "</small>";
     if (chart.reference > 0) out += "<br/><small><i class=\"key\"></i> " + escape_markup(chart.reference_text) + "</small>";
     out += "</figcaption>\n";
@@ -87,7 +99,7 @@ std::string bar_chart(const BarChart& chart) {
     }
     out += "<div class=\"row axis\"><span></span><span class=\"track\">";
     for (const double tick : axis.ticks())
-        out += "<span style=\"left:" + css_percent(axis.share(tick)) + "\">" + escape_markup(figure(tick)) + "</span>";
+        out += "<span style=\"left:" + css_percent(axis.share(tick)) + "\">" + escape_markup(tick_figure(tick)) + "</span>";
     return out + "</span></div></figure>\n";
 }
 

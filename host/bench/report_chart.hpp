@@ -27,6 +27,7 @@ struct BarChart {
     std::vector<BarGroup> groups;
     double reference = 0;  // a line across; 0: none
     std::string reference_text;
+    double whole = 0;  // the axis reaches at least this: 100 for percents
 };
 
 // Logarithmic from a factor of 30 on between what is shown. Empty without bars.

@@ -40,14 +40,15 @@ std::string builds_of(const std::vector<const BenchRecord*>& scene) {
     MarkupTable table({"structure", "build ms", "Mtri/s", "bytes/triangle", "nodes", "SAH cost"}, 1);
     for (const BenchRecord* r : scene)
         if (r->measure == "build" && has_figures(*r))
-            table.add({who_is(*r), figure(r->time_ms.median), figure(r->mtris_per_s), figure(r->bytes_per_triangle),
+            table.add({who_is(*r), figure(r->time_ms.median), figure(r->mtris_per_s),
+                       r->bytes_per_triangle > 0 ? figure(r->bytes_per_triangle) : "",
                        r->nodes > 0 ? figure(double(r->nodes)) : "", r->sah_cost > 0 ? figure(r->sah_cost) : ""});
     return table.markup();
 }
 
 // Our best against the best peer on the same rays.
 std::string against_peers(const RecordGroups& scenes, const SeriesNames& names) {
-    MarkupTable table({"scene", "rays", "best of ours", "Mrays/s", "best peer", "Mrays/s", "ours by theirs"}, 3);
+    MarkupTable table({"scene", "rays", "best of ours", "best peer", "ours, Mrays/s", "theirs", "ours by theirs"}, 4);
     for (const auto& scene : scenes.all())
         for (const Measure& measure : kRays) {
             const BenchRecord *ours = nullptr, *theirs = nullptr;
@@ -57,7 +58,7 @@ std::string against_peers(const RecordGroups& scenes, const SeriesNames& names) 
                 if (!best || value_of(*best) < value_of(*r)) best = r;
             }
             if (!ours || !theirs) continue;
-            table.add({ours->scene, measure.title, names.label(*ours), figure(value_of(*ours)), who_is(*theirs),
+            table.add({ours->scene, measure.title, names.label(*ours), who_is(*theirs), figure(value_of(*ours)),
                        figure(value_of(*theirs)), figure(value_of(*ours) / value_of(*theirs))});
         }
     return table.markup();

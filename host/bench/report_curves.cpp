@@ -9,7 +9,8 @@
 namespace clarity {
 namespace {
 
-constexpr double kLeft = 56, kTop = 12, kWidth = 420, kHeight = 240, kTotal = 660, kLineHeight = 15;
+constexpr double kLeft = 56, kTop = 12, kWidth = 420, kHeight = 240, kTotal = 720, kLineHeight = 15;
+constexpr size_t kNameBytes = 26;
 
 std::string number(double value) {
     char text[32];
@@ -51,6 +52,14 @@ std::string marker(int shape, double x, double y) {
     }
 }
 
+// Whole characters of UTF-8, at most kNameBytes of them.
+std::string shortened(const std::string& name) {
+    if (name.size() <= kNameBytes) return name;
+    size_t end = kNameBytes - 1;
+    while (end > 0 && (static_cast<unsigned char>(name[end]) & 0xc0u) == 0x80u) --end;
+    return name.substr(0, end) + "\u2026";
+}
+
 }  // namespace
 
 std::string curve_chart(const CurveChart& chart) {
@@ -88,12 +97,12 @@ std::string curve_chart(const CurveChart& chart) {
     for (int d = static_cast<int>(x.low); d <= static_cast<int>(x.high); d += x.step()) {
         const double px = at_x(std::pow(10, d));
         out += "<path d=\"M" + number(px) + " " + number(kTop) + "V" + number(bottom) + "\"/>" +
-               text_at(px, bottom + 16, "middle", figure(std::pow(10, d)));
+               text_at(px, bottom + 16, "middle", tick_figure(std::pow(10, d)));
     }
     for (int d = static_cast<int>(y.low); d <= static_cast<int>(y.high); d += y.step()) {
         const double py = at_y(std::pow(10, d));
         out += "<path d=\"M" + number(kLeft) + " " + number(py) + "H" + number(kLeft + kWidth) + "\"/>" +
-               text_at(kLeft - 6, py + 4, "end", figure(std::pow(10, d)));
+               text_at(kLeft - 6, py + 4, "end", tick_figure(std::pow(10, d)));
     }
     out += text_at(kLeft + kWidth / 2, bottom + 34, "middle", chart.x_unit) + "</g>\n";
 
@@ -110,7 +119,8 @@ std::string curve_chart(const CurveChart& chart) {
         const double name_x = kLeft + kWidth + 18;
         out += "<path class=\"lead\" d=\"M" + number(end_x) + " " + number(end_y) + "L" + number(name_x - 4) + " " +
                number(name_y) + "\"/>" + marker(curve->color, name_x + 2, name_y) + "</g>" +
-               text_at(name_x + 10, name_y + 4, "start", curve->label + "  " + figure(curve->points.back().second)) + "\n";
+               text_at(name_x + 10, name_y + 4, "start", shortened(curve->label) + "  " + figure(curve->points.back().second)) +
+               "\n";
     }
     return out + "</svg></div></figure>\n";
 }

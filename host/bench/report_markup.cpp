@@ -59,6 +59,14 @@ std::string figure(double value) {
     return text;
 }
 
+std::string tick_figure(double value) {
+    std::string text = figure(value);
+    if (text.find('.') == std::string::npos) return text;
+    text.erase(text.find_last_not_of('0') + 1);
+    if (text.back() == '.') text.pop_back();
+    return text;
+}
+
 std::string percent_figure(double share) {
     return figure(100 * share) + " %";
 }

@@ -11,6 +11,8 @@ std::string escape_markup(const std::string& text);
 
 // Three significant digits with thin spaces between thousands: "0.0123", "1.23", "45 600"; "0" for 0, "" for what is no number.
 std::string figure(double value);
+// The same without zeros at the end: "0.1", "10".
+std::string tick_figure(double value);
 std::string percent_figure(double share);
 
 // <p>TEXT</p>, escaped.

@@ -45,7 +45,8 @@ SeriesNames::SeriesNames(const BenchReport& report) {
     }
     int next = 0;
     for (const BenchRecord& r : report.records) {
-        if (!r.peer.empty()) continue;
+        // Packets and array sizes are told apart by their places in their own charts.
+        if (!r.peer.empty() || r.measure == "dropped" || r.suite == "packets") continue;
         const std::string key = label(r);
         if (colors_.count(key)) continue;
         colors_[key] = next++ % kGrey;

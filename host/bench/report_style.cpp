@@ -15,13 +15,14 @@ h1 { font-size: 1.8rem; line-height: 1.2; margin: .4rem 0; } h2 { margin: 2.6rem
 h3 { margin: 1.6rem 0 .3rem; } p { max-width: 46rem; margin: .4rem 0 .8rem; } small, .faint { color: var(--faint); font-weight: normal; }
 nav { margin: .8rem 0; } nav a { margin-right: 1rem; } a { color: var(--c0); }
 .grid { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 25rem), 1fr)); gap: 1rem; }
+.three { grid-template-columns: repeat(auto-fill, minmax(min(100%, 20rem), 1fr)); }
 .tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(11rem, 1fr)); gap: .8rem; margin: 1rem 0; }
 .tiles div { background: var(--panel); border-radius: .5rem; padding: .7rem .9rem; } .tiles b { display: block; font-size: 1.5rem; line-height: 1.2; }
 .tiles span { font-size: .85rem; color: var(--faint); }
 figure { margin: 0; background: var(--panel); border-radius: .5rem; padding: .8rem .9rem; break-inside: avoid; }
 figcaption { font-weight: 600; line-height: 1.35; margin-bottom: .4rem; }
-.bars { font-size: .86rem; } .bars .row { display: grid; grid-template-columns: 8.5em 1fr; min-height: 1.5em; }
-.bars .head { margin-top: 0; } .bars .head b { font-weight: 600; padding-top: .25em; }
+.bars { font-size: .86rem; } .bars .row { display: grid; grid-template-columns: min(var(--label), 45%) 1fr; min-height: 1.5em; }
+.bars .head { margin-top: 0; } .bars .head b { white-space: nowrap; font-weight: 600; padding-top: .25em; }
 .bars .label { white-space: nowrap; overflow: hidden; text-overflow: ellipsis; padding-right: .5em; color: var(--faint); }
 .bars .track { position: relative; display: block; margin-right: 4.5em; border-left: 1px solid var(--rule); }
 .bars .bar { position: absolute; left: 0; top: .22em; height: 1.1em; border-radius: 0 2px 2px 0; }

@@ -129,12 +129,13 @@ class Planner {
             for (const char* lanes : {"1", "4", "8", "16"})
                 for (const char* packet : {"1x1", "2x2", "4x4", "8x8", "16x16"}) {
                     // A packet narrower than the lanes would leave some of them without a pixel.
+                    // Nor do the ray arrays of 16x16 pixels fit into a GPU's private memory.
                     const int side = std::atoi(packet), count = std::atoi(lanes);
                     if (side * side < count) continue;
                     c.variants.push_back({std::string(packet) + ", lanes " + lanes,
                                           main_accel(),
                                           {{"packet", packet}, {"lanes", lanes}, {"depth", "4"}},
-                                          count > 1});
+                                          count > 1 || side > 8});
                 }
         }
     }

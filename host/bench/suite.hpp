@@ -30,7 +30,7 @@ struct Variant {
     std::string label;
     std::string accel;                                          // ID[,key=value...]
     std::vector<std::pair<std::string, std::string>> settings;  // over those of the request
-    bool cpu_only = false;                                      // more lanes than one
+    bool cpu_only = false;                                      // more lanes than one, or too much private memory
 };
 
 enum class Timing { timed, counted_only };

@@ -106,10 +106,22 @@ void join(BenchReport& report, const std::vector<std::string>& files) {
     report = std::move(all);
 }
 
+// Before an hour is spent on measuring.
+void check_outputs(const BenchCommand& command) {
+    if (!command.json_file.empty() && command.json_file != "-") check_writable(command.json_file);
+    if (!command.csv_file.empty()) check_writable(command.csv_file);
+    if (command.report_folder.empty() || command.list) return;
+    std::error_code error;
+    std::filesystem::create_directories(command.report_folder, error);
+    if (error) throw Error(Exit::usage, "--report " + command.report_folder + ": cannot be made: " + error.message());
+    check_writable((std::filesystem::path(command.report_folder) / "index.html").string());
+}
+
 void write(const BenchCommand& command, const BenchReport& report) {
-    const std::string table = bench_table(report);
-    std::fwrite(table.data(), 1, table.size(), stdout);
-    if (!command.json_file.empty()) write_text_file(command.json_file, bench_json(report));
+    const bool json_out = command.json_file == "-";
+    const std::string text = json_out ? bench_json(report) : bench_table(report);
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    if (!command.json_file.empty() && !json_out) write_text_file(command.json_file, bench_json(report));
     if (!command.csv_file.empty()) write_text_file(command.csv_file, bench_csv(report));
     if (command.report_folder.empty()) return;
     write_report(command.report_folder, report);
@@ -122,8 +134,7 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
     const BenchRequest request = make_request(command);
     if (request.suites.empty() && request.files.empty() && command.join_files.empty())
         throw Error(Exit::usage, "bench: name a suite (thesis, packets, accel, scale, quick) or a scene file");
-    for (const std::string& file : {command.json_file, command.csv_file})
-        if (!file.empty()) check_writable(file);
+    check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);
     if (command.list) {
         print_list(suite);

@@ -137,7 +137,8 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("--accel", bench.accels, "A structure to compare; may be repeated; without it every one found")
         ->type_name("ID[,key=value...]")
         ->allow_extra_args(false);
-    single(app.add_option("--json", bench.json_file, "Write the records here, a list"))->type_name("FILE");
+    single(app.add_option("--json", bench.json_file, "Write the records here, a list; - is stdout, instead of the tables"))
+        ->type_name("FILE");
     single(app.add_option("--csv", bench.csv_file, "Write them as CSV too"))->type_name("FILE");
     single(app.add_option("--report", bench.report_folder, "Write a page with charts, index.html, into this folder"))
         ->type_name("DIR");

@@ -159,7 +159,7 @@ class RenderJob {
             return code;
         };
         try {
-            if (preparer_ && preparer_->worn()) renew_device();
+            if (preparer_ && preparer_->worn()) reopen_device();
             stats_.frame_ms.clear();
             stats_.wall_ms.clear();
             return round(progress);
@@ -172,12 +172,10 @@ class RenderJob {
         }
     }
 
-    void renew_device() {
+    void reopen_device() {
         stats_.prepared.reset();
-        device_ = std::make_shared<Device>(device_->info());
-        auto next = std::make_unique<Preparer>(plugins_, device_);
-        next->take_structure(*preparer_);
-        preparer_ = std::move(next);
+        device_.reset();
+        device_ = preparer_->reopen_device();
     }
 
     void import(Progress& progress) {

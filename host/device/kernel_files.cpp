@@ -127,6 +127,11 @@ const char* embedded_text(const std::string& name) {
 
 std::string kernel_text(const std::string& name) {
     const Places where = places();
+    if (std::error_code error; !where.kernels.empty() && !fs::is_directory(where.kernels, error))
+        throw Error(Exit::kernel_build_failed,
+                    "CLARITY_KERNEL_PATH: " + where.kernels.string() +
+                        " is no folder: name one laid out as cl/ in the sources, or `embedded` for the "
+                        "kernels inside the program");
     const char* embedded = embedded_text(name);
     std::string text;
     if (!where.kernels.empty() && read_file(where.kernels / name, text)) {

@@ -46,14 +46,15 @@ std::string place(const std::string& file, unsigned line, unsigned column) {
 }  // namespace
 
 CompilerLog read_compiler_log(const std::string& log) {
-    static const std::regex counts("^[0-9]+ (error|warning)s?( and [0-9]+ errors?)? generated\\.$");
+    static const std::regex noise(
+        "^[0-9]+ (error|warning)s?( and [0-9]+ errors?)? generated\\.$|^Device .* failed to build the program$");
     CompilerLog result;
     std::istringstream lines(log);
     std::string line, fallback;
     while (std::getline(lines, line)) {
         if (!line.empty() && line.back() == '\r') line.pop_back();
         Diagnostic found;
-        if (line.size() < 100 && std::regex_match(line, counts)) continue;
+        if (line.size() < 200 && std::regex_match(line, noise)) continue;
         if (read_diagnostic(line, found)) {
             const bool error = found.severity.find("error") != std::string::npos;
             if (error && result.errors++ == 0) result.first = {found.file, found.line, found.column, found.message};
@@ -90,7 +91,8 @@ BuildResult build_program(Device& device, const std::string& source, const std::
         std::string message = first.file.empty() ? "" : place(first.file, first.line, first.column);
         message += log.text.empty() ? "OpenCL error " + std::to_string(e.err()) : first.message;
         message += " (compiling " + what + " for " + device.info().name;
-        if (log.errors > 1) message += "; " + std::to_string(log.errors - 1) + " more errors";
+        if (log.errors > 1)
+            message += "; " + std::to_string(log.errors - 1) + (log.errors == 2 ? " more error" : " more errors");
         throw Error(Exit::kernel_build_failed, message + ")", log.text, first);
     }
     result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

@@ -52,7 +52,7 @@ struct Inspector::Impl {
     ProgramCache programs;
     cl::CommandQueue queue;  // of its own: frames go on in the device's
     ViewBuffers view;
-    GrowingBuffer records{CL_MEM_WRITE_ONLY}, summary{CL_MEM_WRITE_ONLY}, distances{CL_MEM_READ_WRITE};
+    GrowingBuffer records{CL_MEM_READ_WRITE}, summary{CL_MEM_WRITE_ONLY}, distances{CL_MEM_READ_WRITE};
 };
 
 Inspector::Inspector(std::shared_ptr<Device> device) {

@@ -7,6 +7,10 @@
 
 #include <chrono>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace clarity {
 namespace {
 
@@ -61,22 +65,33 @@ Preparer::~Preparer() = default;
 
 bool Preparer::worn() const {
     constexpr unsigned kPrograms = 16;
-    return device_->info().pocl && programs_->compiled() >= kPrograms;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return !device_ || (device_->info().pocl && programs_->compiled() >= kPrograms);
 }
 
-void Preparer::take_structure(const Preparer& other) {
-    if (&other == this) return;
-    const std::scoped_lock lock(mutex_, other.mutex_);
-    if (!other.last_) return;
-    auto last = std::make_shared<Prepared>();
-    last->scene = other.last_->scene;
-    last->accel = other.last_->accel;
-    last_ = last;
+std::shared_ptr<Device> Preparer::reopen_device() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (device_) info_ = device_->info();  // else an attempt before this one failed
+    if (last_) {
+        auto kept = std::make_shared<Prepared>();
+        kept->scene = last_->scene;
+        kept->accel = last_->accel;
+        last_ = kept;
+    }
+    programs_.reset();
+    device_.reset();
+#ifdef __GLIBC__
+    malloc_trim(0);  // a compiler leaves tens of megabytes of holes
+#endif
+    device_ = std::make_shared<Device>(info_);
+    programs_ = std::make_unique<ProgramCache>(device_);
+    return device_;
 }
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                   Progress& progress) {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (!device_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose it anew");
     const rt_plugin* plugin = plugins_.accel(settings.accel);
     if (!plugin) {
         std::string known;

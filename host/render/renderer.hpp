@@ -44,15 +44,17 @@ class Preparer {
     // Throws Error(failed) for a build, Error(kernel_build_failed) with the compiler's log in details(), Cancelled; then what
     // was prepared before stays valid.
     std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress);
-    // Whether its device should be opened anew: PoCL frees what its compiler made only with the context, 0.15 MB a program and
-    // more, and whoever edits kernels makes hundreds. Then a Preparer of a new Device goes on with take_structure().
+    // Whether reopen_device() is due: PoCL frees what its compiler made, 0.15 MB a program and more, only with the last context
+    // of a process, and whoever edits kernels compiles hundreds.
     bool worn() const;
-    // The structure built last by another one, for its own device: nothing is built again, only uploaded and compiled.
-    void take_structure(const Preparer& other);
+    // The same device with a context of its own; the structure built last stays. Of use only after every Prepared, Frames and
+    // pointer to the device of before is gone.
+    std::shared_ptr<Device> reopen_device();
 
  private:
     const PluginRegistry& plugins_;
     std::shared_ptr<Device> device_;
+    DeviceInfo info_;  // of the device to open again
     std::unique_ptr<ProgramCache> programs_;
     std::shared_ptr<const Prepared> last_;
     mutable std::mutex mutex_;

@@ -92,3 +92,16 @@ TEST(Bvh2Quality, PartsALineEvenly) {
     EXPECT_EQ(check_bvh2(input, built), "");
     EXPECT_LE(built.stats.at("depth"), 14);  // 2^12 points
 }
+
+TEST(Bvh2Quality, HalvesByCountAreEvenAndCostMore) {
+    for (const uint32_t count : {1000u, 40000u}) {  // one task, and split by levels
+        Input input;
+        input.add_group(bumpy_sphere(count));
+        const Options halves{{{"split", 1}}, 2, {}};
+        const Built even = build(load("bvh2"), input, halves), best = build(load("bvh2"), input);
+        EXPECT_EQ(check_bvh2(input, even), "");
+        EXPECT_EQ(even.stats.at("depth"), std::ceil(std::log2(double(input.prims.size()) / 4)));
+        EXPECT_GT(even.stats.at("sah_cost"), 1.02 * best.stats.at("sah_cost"));
+        EXPECT_NEAR(even.stats.at("sah_cost"), sah_cost(input, even), 1e-3 * even.stats.at("sah_cost"));
+    }
+}

@@ -171,6 +171,35 @@ TEST(Spheres, OneTreeForEachMeshAndNoneAbove) {
     EXPECT_EQ(volumes(spheres(), above, 0, 2).size(), 4u);  // the meshes' roots
 }
 
+TEST(Spheres, LoneOnesAreOneLeafThatAllEnter) {
+    Input input;
+    std::vector<rt_prim> prims = scattered(40, 1, 0, 1);
+    for (rt_u32 i = 0; i < 30; ++i) {
+        prims.push_back(scattered(1, 1, 0, 100 + i)[0]);
+        prims.back().ref = RT_REF_SPHERE | i;
+        prims.back().mesh = 1;
+    }
+    input.add_group(prims);
+    const Built built = build(spheres(), input, {{{"lone_spheres", 1}}, 2, {}});
+    ASSERT_EQ(built.status, RT_OK);
+    const spheres_node* nodes = built.slot<spheres_node>();
+    const rt_u32 head = built.roots[0], first = head + 1, second = nodes[first].skip;
+    EXPECT_EQ(nodes[second].count, 30u);
+    EXPECT_GT(nodes[second].radius, 1e29f);
+    EXPECT_EQ(nodes[second].skip, second + 1);
+    EXPECT_EQ(nodes[head].skip, second + 1);
+    std::set<rt_u32> found;
+    for (rt_u32 i = 0; i < 30; ++i) found.insert(built.leaves[nodes[second].first + i]);
+    EXPECT_EQ(found.size(), 30u);
+    for (const rt_u32 ref : found) EXPECT_EQ(RT_REF_KIND(ref), RT_REF_SPHERE);
+    // Nothing is drawn for what bounds nothing.
+    for (const Volume& volume : volumes(spheres(), built, 0, RT_LEVEL_BOTTOM)) EXPECT_LT(volume.radius, 10);
+    // With a tree above meshes they get a tree as ever.
+    const Built above = build(spheres(), input, {{{"lone_spheres", 1}, {"top_level", 1}}, 2, {}});
+    ASSERT_EQ(above.status, RT_OK);
+    for (uint64_t i = 0; i < above.slot_counts[0]; ++i) EXPECT_LT(above.slot<spheres_node>()[i].radius, 10);
+}
+
 TEST(Spheres, GroupsMayBeEmptyOrMany) {
     Input input;
     input.add_group({});

@@ -13,20 +13,9 @@ using namespace clarity::test;
 
 namespace {
 
-// A device of its own, since what is tested is one Frames from trace() to read_...().
-struct Screen {
-    std::shared_ptr<Device> device = std::make_shared<Device>(choose_device(""));
-    Preparer preparer{Workbench::get().plugins(), device};
-    Frames frames{device};
-    Progress progress;
-    static Screen& get() {
-        static auto* const one = new Screen;  // never destroyed, as the workbench is not
-        return *one;
-    }
-    FrameStats trace(const ScenePtr& scene, const Settings& settings, const View& view, unsigned sample = 0) {
-        return frames.trace(*preparer.prepare(scene, settings, progress), settings, view, sample, true, progress);
-    }
-};
+Workbench& bench() {
+    return Workbench::get();
+}
 
 ScenePtr primitives() {
     return load_scene(source_file("scenes/primitives.scene"));
@@ -37,8 +26,8 @@ std::array<int, 3> shown(const Settings& settings, const std::array<float, 3>& c
     static const ScenePtr empty = shared_scene(scene_of(TriangleMesh()));
     View view = view_from({0, 0, 5}, {0, 0, 0}, 40);
     view.background = color;
-    Screen::get().trace(empty, settings, view);
-    const ByteImage image = Screen::get().frames.read_display(settings);
+    bench().trace(empty, settings, view);
+    const ByteImage image = bench().frames().read_display(settings);
     return {image.pixels[0], image.pixels[1], image.pixels[2]};
 }
 
@@ -94,14 +83,13 @@ TEST(Tones, AgxBleachesBrightColors) {
 }
 
 TEST(Display, IntoMemoryOfTheCaller) {
-    Screen& screen = Screen::get();
     const View view = make_view(*primitives(), 4.0f / 3);
     for (const char* size : {"1x1", "3x1", "5x3", "64x48", "33x31"}) {
         const Settings settings = make_settings({{"size", size}});
-        FrameStats stats = screen.trace(primitives(), settings, view);
-        const ByteImage image = screen.frames.read_display(settings);
+        FrameStats stats = bench().trace(primitives(), settings, view);
+        const ByteImage image = bench().frames().read_display(settings);
         std::vector<uint8_t> memory(image.pixels.size() + 64, 0xAB);
-        const FalseColorScale scale = screen.frames.read_display(settings, memory.data(), &stats);
+        const FalseColorScale scale = bench().frames().read_display(settings, memory.data(), &stats);
         EXPECT_EQ(scale.map, FalseColorScale::Map::none);
         EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), memory.begin())) << size;
         for (size_t i = image.pixels.size(); i < memory.size(); ++i) ASSERT_EQ(memory[i], 0xAB) << size << ": written beyond";
@@ -117,7 +105,6 @@ TEST(Display, IntoMemoryOfTheCaller) {
 
 // The picture's distances are the AOV's, however the picture is cut, and later samples leave them alone.
 TEST(Display, DistancesMatchThePicture) {
-    Screen& screen = Screen::get();
     const ScenePtr scene = primitives();
     const View view = make_view(*scene, 4.0f / 3, "0,2.5,11,0,2.2,0,50");
     for (const auto& [configuration, size] :
@@ -129,12 +116,12 @@ TEST(Display, DistancesMatchThePicture) {
                                                             {{"bvh2", 16, 2, 2}, "29x31"}}) {
         Settings settings = make_settings({{"size", size}, {"aov", "t"}});
         configuration.apply(settings);
-        screen.trace(scene, settings, view);
-        const FloatImage t = screen.frames.read_values();
-        EXPECT_EQ(screen.frames.read_distance().pixels, t.pixels);
+        bench().trace(scene, settings, view);
+        const FloatImage t = bench().frames().read_values();
+        EXPECT_EQ(bench().frames().read_distance().pixels, t.pixels);
         settings.aov = "color";
-        screen.trace(scene, settings, view);
-        const FloatImage distance = screen.frames.read_distance();
+        bench().trace(scene, settings, view);
+        const FloatImage distance = bench().frames().read_distance();
         ASSERT_EQ(distance.pixels.size(), t.pixels.size());
         EXPECT_EQ(distance.channels, 1u);
         size_t nothing = 0;
@@ -149,24 +136,23 @@ TEST(Display, DistancesMatchThePicture) {
             EXPECT_GT(nothing, 1000u);
             EXPECT_LT(nothing, t.pixels.size() / 2);
         }
-        screen.trace(scene, settings, view, 1);
-        EXPECT_EQ(screen.frames.read_distance().pixels, distance.pixels) << "sample 1 moved them";
+        bench().trace(scene, settings, view, 1);
+        EXPECT_EQ(bench().frames().read_distance().pixels, distance.pixels) << "sample 1 moved them";
     }
     Settings settings = make_settings({{"size", "20x20"}, {"aov", "normal"}});
-    screen.trace(scene, settings, view);
-    EXPECT_TRUE(screen.frames.read_distance().pixels.empty());
-    EXPECT_TRUE(Frames(screen.device).read_distance().pixels.empty());
+    bench().trace(scene, settings, view);
+    EXPECT_TRUE(bench().frames().read_distance().pixels.empty());
+    EXPECT_TRUE(Frames(bench().shared_device()).read_distance().pixels.empty());
 }
 
 TEST(View, MaterialsOfItsOwn) {
-    Screen& screen = Screen::get();
     const ScenePtr scene = primitives();
     View view = make_view(*scene, 4.0f / 3);
     EXPECT_TRUE(view.materials.empty());
     const Settings settings = make_settings({{"size", "80x60"}});
     const auto picture = [&](const ScenePtr& of) {
-        screen.trace(of, settings, view);
-        return screen.frames.read_values().pixels;
+        bench().trace(of, settings, view);
+        return bench().frames().read_values().pixels;
     };
     const std::vector<float> before = picture(scene);
     for (const Material& material : scene->materials) view.materials.push_back(material.values);
@@ -177,9 +163,9 @@ TEST(View, MaterialsOfItsOwn) {
         view.materials[i].reflect = 0.5f * view.materials[i].reflect + 0.1f;
         repainted->materials[i].values = view.materials[i];
     }
-    const auto prepared = screen.preparer.prepare(scene, settings, screen.progress);
+    const auto prepared = bench().prepare(scene, settings);
     const std::vector<float> edited = picture(scene);
-    EXPECT_EQ(screen.preparer.prepare(scene, settings, screen.progress)->accel, prepared->accel) << "an edit built anew";
+    EXPECT_EQ(bench().prepare(scene, settings)->accel, prepared->accel) << "an edit built anew";
     EXPECT_NE(edited, before);
     view.materials.clear();
     EXPECT_EQ(edited, picture(repainted)) << "not as if the scene had them";
@@ -195,14 +181,13 @@ TEST(View, MaterialsOfItsOwn) {
 }
 
 TEST(Generations, AreAsDeepAsRaysGo) {
-    Screen& screen = Screen::get();
     const ScenePtr scene = primitives();
     const View view = make_view(*scene, 4.0f / 3);
     const auto picture = [&](int depth) {
         const Settings settings =
             make_settings({{"size", "160x120"}, {"aov", "generations"}, {"depth", std::to_string(depth)}});
-        screen.trace(scene, settings, view);
-        return screen.frames.read_values();
+        bench().trace(scene, settings, view);
+        return bench().frames().read_values();
     };
     for (const float value : picture(1).pixels) EXPECT_EQ(value, 1);
     const FloatImage deep = picture(6), shallow = picture(3);
@@ -284,17 +269,16 @@ TEST(FalseColors, ArePaintedAsTheBarSays) {
 
 // From the device to the screen, with the end of the scale chosen.
 TEST(FalseColors, OfAFrame) {
-    Screen& screen = Screen::get();
     Settings settings = make_settings({{"size", "64x48"}, {"aov", "steps"}});
-    screen.trace(primitives(), settings, make_view(*primitives(), 4.0f / 3));
-    const FloatImage values = screen.frames.read_values();
+    bench().trace(primitives(), settings, make_view(*primitives(), 4.0f / 3));
+    const FloatImage values = bench().frames().read_values();
     std::vector<uint8_t> rgba(64 * 48 * 4);
     FrameStats stats;
-    EXPECT_EQ(screen.frames.read_display(settings, rgba.data(), &stats).max,
+    EXPECT_EQ(bench().frames().read_display(settings, rgba.data(), &stats).max,
               *std::max_element(values.pixels.begin(), values.pixels.end()));
     EXPECT_EQ(stats.kernels.size(), 2u);
     settings.scale_max = 7;
-    EXPECT_EQ(screen.frames.read_display(settings, rgba.data()).max, 7);
+    EXPECT_EQ(bench().frames().read_display(settings, rgba.data()).max, 7);
 }
 
 }  // namespace

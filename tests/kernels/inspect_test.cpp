@@ -23,18 +23,10 @@ Workbench& bench() {
     return Workbench::get();
 }
 
-// One device for all, since no other context can read its buffers; never destroyed, as the workbench is not.
-struct Stand {
-    std::shared_ptr<Device> device = std::make_shared<Device>(choose_device(""));
-    Preparer preparer{bench().plugins(), device};
-    Frames frames{device};
-    Inspector inspector{device};
-    Progress progress;
-    static Stand& get() {
-        static auto* const stand = new Stand;
-        return *stand;
-    }
-};
+Inspector& inspector() {
+    static auto* const one = new Inspector(bench().shared_device());  // never destroyed, as the workbench is not
+    return *one;
+}
 
 struct Case {
     ScenePtr scene;
@@ -45,18 +37,14 @@ struct Case {
     FrameStats stats;
 
     Case(ScenePtr s, View v, Settings chosen) : scene(std::move(s)), view(std::move(v)), settings(std::move(chosen)) {
-        Stand& stand = Stand::get();
-        prepared = stand.preparer.prepare(scene, settings, stand.progress);
-        stats = stand.frames.trace(*prepared, settings, view, 0, true, stand.progress);
-        picture = stand.frames.read_values();
+        prepared = bench().prepare(scene, settings);
+        picture = bench().values(scene, settings, view, &stats);
     }
-    RayTree tree(unsigned x, unsigned y) const { return Stand::get().inspector.trace(*prepared, settings, view, x, y); }
+    RayTree tree(unsigned x, unsigned y) const { return inspector().trace(*prepared, settings, view, x, y); }
     FloatImage aov(const std::string& name) const {
-        Stand& stand = Stand::get();
         Settings other = settings;
         other.aov = name;
-        stand.frames.trace(*stand.preparer.prepare(scene, other, stand.progress), other, view, 0, false, stand.progress);
-        return stand.frames.read_values();
+        return bench().values(scene, other, view);
     }
     size_t index(unsigned x, unsigned y) const { return size_t(y) * settings.width + x; }
 };
@@ -163,12 +151,13 @@ TEST(Inspect, EveryPixelsRaysAreThePicturesOnes) {
 }
 
 TEST(Inspect, PacketsThatNoLanesFillAndAnotherStructure) {
-    expect_counted_rays(primitives({"spheres", 4, 3, 5}, "22x17", {{"depth", "4"}}));
+    expect_counted_rays(primitives({"spheres", 4, 3, 5}, "22x17", {{"depth", "4"}, {"portable", "true"}}));
 }
 
 TEST(Inspect, RaysWithoutASlotAreNamed) {
     size_t dropped = 0;
-    expect_counted_rays(primitives({"bvh2", 16, 4, 4}, "28x21", {{"depth", "8"}, {"ray_slots", "1"}}), &dropped);
+    expect_counted_rays(primitives({"bvh2", 16, 4, 4}, "28x21", {{"depth", "8"}, {"ray_slots", "1"}, {"debug", "true"}}),
+                        &dropped);
     EXPECT_GT(dropped, 0u);
 }
 
@@ -327,11 +316,11 @@ TEST(Inspect, BesideFrames) {
             wrong += c.tree(x, y).color[1] != picture.pixels[3 * c.index(x, y) + 1];
         }
     });
-    Stand& stand = Stand::get();
+    Progress progress;
     int frames = 0;
     for (; frames < 200 || looked < 20; ++frames) {
-        stand.frames.trace(*c.prepared, c.settings, c.view, 0, true, stand.progress);
-        wrong += stand.frames.read_values().pixels != picture.pixels;
+        bench().frames().trace(*c.prepared, c.settings, c.view, 0, true, progress);
+        wrong += bench().frames().read_values().pixels != picture.pixels;
     }
     stop = true;
     worker.join();

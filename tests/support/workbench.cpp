@@ -37,21 +37,30 @@ std::shared_ptr<const Prepared> Workbench::prepare(const ScenePtr& scene, const 
     return preparer_.prepare(scene, settings, progress_);
 }
 
+FrameStats Workbench::trace(const ScenePtr& scene, const Settings& settings, const View& view, unsigned sample) {
+    return frames_.trace(*prepare(scene, settings), settings, view, sample, true, progress_);
+}
+
 FloatImage Workbench::values(const ScenePtr& scene, const Settings& settings, const View& view, FrameStats* stats) {
-    const FrameStats traced = frames_.trace(*prepare(scene, settings), settings, view, 0, true, progress_);
+    const FrameStats traced = trace(scene, settings, view);
     if (stats) *stats = traced;
     return frames_.read_values();
 }
 
 ByteImage Workbench::display(const ScenePtr& scene, const Settings& settings, const View& view, FrameStats* stats) {
-    const FrameStats traced = frames_.trace(*prepare(scene, settings), settings, view, 0, true, progress_);
+    const FrameStats traced = trace(scene, settings, view);
     if (stats) *stats = traced;
     return frames_.read_display(settings);
 }
 
 std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays,
                                     bool any_hit) {
-    return frames_.trace_rays(*prepare(scene, settings), rays, {any_hit, false});
+    return this->rays(scene, settings, rays, RayQuery{any_hit, false});
+}
+
+std::vector<rt_hit> Workbench::rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays,
+                                    RayQuery query) {
+    return frames_.trace_rays(*prepare(scene, settings), rays, query);
 }
 
 Settings make_settings(const std::vector<std::pair<std::string, std::string>>& pairs) {

@@ -18,16 +18,22 @@ class Workbench {
 
     const PluginRegistry& plugins() const { return plugins_; }
     const Device& device() const { return *device_; }
+    // For tests of what becomes of a picture after tracing, and of what works beside the frames.
+    const std::shared_ptr<Device>& shared_device() const { return device_; }
+    Frames& frames() { return frames_; }
     // Ids of every structure found, so that a new one is tested without a change here.
     std::vector<std::string> accels() const;
     // The same without those that try everything, for scenes that would take them minutes.
     std::vector<std::string> fast_accels() const;
 
     std::shared_ptr<const Prepared> prepare(const ScenePtr& scene, const Settings& settings);
-    // One sample. What an AOV is or a colour, as Frames::read_values() gives it.
+    // One sample into frames().
+    FrameStats trace(const ScenePtr& scene, const Settings& settings, const View& view, unsigned sample = 0);
+    // The same, and what an AOV is or a colour, as Frames::read_values() gives it.
     FloatImage values(const ScenePtr& scene, const Settings& settings, const View& view, FrameStats* stats = nullptr);
     ByteImage display(const ScenePtr& scene, const Settings& settings, const View& view, FrameStats* stats = nullptr);
     std::vector<rt_hit> rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays, bool any_hit);
+    std::vector<rt_hit> rays(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays, RayQuery query);
 
  private:
     Workbench();

@@ -124,7 +124,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
     for (uint32_t i = 0; i < level.size(); ++i) {
         const Range& range = level[i].range;
         cuts[i].first_chunk = static_cast<uint32_t>(chunks.size());
-        cuts[i].binned = may_use_heuristic(range);
+        cuts[i].binned = may_use_heuristic(workspace_.rules, range);
         cuts[i].bin_count = bins_for(workspace_.rules, range.count());
         for (uint32_t at = range.begin; at < range.end; at = chunks.back().end)
             chunks.push_back({i, at, std::min(at + kChunkSize, range.end), 0, 0, {}, {}, {}, {}});

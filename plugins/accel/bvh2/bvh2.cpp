@@ -12,7 +12,8 @@
 namespace bvh2 {
 namespace {
 
-enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost };
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kSplit };
+constexpr const char* kSplits[] = {"sah", "median", nullptr};
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most; fewer where the heuristic finds that cheaper", 1,
                   BVH2_LEAF_MAX, 4),
@@ -22,6 +23,8 @@ constexpr rt_param kParams[] = {
                     100, 1),
     rt::float_param("intersection_cost", "Intersection cost", "what a primitive costs a ray, in the unit of the traversal cost",
                     0.01, 100, 1),
+    rt::enum_param("split", "Split", "where nodes are parted: by the surface area heuristic, or into even halves by count",
+                   kSplits, 0),
 };
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
@@ -34,7 +37,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         throw rt::fail(host, why);
     }
     const Rules rules{static_cast<uint32_t>(input->params[kMaxLeaf]), static_cast<uint32_t>(input->params[kBins]),
-                      static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost])};
+                      static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
+                      input->params[kSplit] == 1};
     try {
         Builder(host, *input, rules, count).run(out);
         return RT_OK;

@@ -20,6 +20,7 @@ struct Range {
 struct Rules {
     uint32_t max_leaf, bins;
     float traversal_cost, intersection_cost;
+    bool halves = false;  // by count, without the heuristic: what it gains is measured against this
 };
 
 // No leaf is deeper: from where the rest, halved by count, would just fit, ranges are halved. Scenes that pile primitives into
@@ -32,8 +33,9 @@ inline uint32_t log2_ceil(uint32_t n) {
     return bits;
 }
 
-// Whether the heuristic may choose: with depth to spare, and centroids whose extent is a number.
-inline bool may_use_heuristic(const Range& range) {
+// Whether the heuristic may choose: if it is asked for, with depth to spare, and centroids whose extent is a number.
+inline bool may_use_heuristic(const Rules& rules, const Range& range) {
+    if (rules.halves) return false;
     alignas(16) float extent[4];
     store(extent, range.centroids2.hi - range.centroids2.lo);
     const bool finite = extent[0] < FLT_MAX && extent[1] < FLT_MAX && extent[2] < FLT_MAX;

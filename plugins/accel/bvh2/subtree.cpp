@@ -17,7 +17,7 @@ void set_child(bvh2_node& node, int which, const Box& box, uint32_t child) {
 bool split_range(const Workspace& w, const Range& range, Bins& bins, Range& left, Range& right) {
     const uint32_t count = range.count();
     Record* const from = w.records[range.buffer];
-    if (may_use_heuristic(range)) {
+    if (may_use_heuristic(w.rules, range)) {
         const uint32_t bin_count = bins_for(w.rules, count);
         const Slices slices(range.centroids2, bin_count);
         bins.clear(bin_count);

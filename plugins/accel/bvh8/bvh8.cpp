@@ -19,7 +19,7 @@ constexpr rt_param kParams[] = {
     rt::int_param("bins", "Bins", "slices per axis in which split planes are sought; more: slower to build, slightly better", 2,
                   bvh2::kMaxBins, 32),
     rt::float_param("traversal_cost", "Traversal cost", "what a node costs a ray, in the unit of the intersection cost", 0.01,
-                    100, 1),
+                    100, 3),
     rt::float_param("intersection_cost", "Intersection cost", "what a primitive costs a ray, in the unit of the traversal cost",
                     0.01, 100, 1),
 };

@@ -33,7 +33,8 @@ typedef struct bvh8_node {
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX__)
 #define BVH8_BITS(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
 #else
-RT_INLINE uint bvh8_bits(int8 m) {
+RT_INLINE uint bvh8_bits(int8 m)
+{
     const int8 weighted = m & (int8)(1, 2, 4, 8, 16, 32, 64, 128);
     const int4 four = weighted.lo | weighted.hi;
     const int2 two = four.lo | four.hi;

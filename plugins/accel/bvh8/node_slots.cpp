@@ -9,30 +9,33 @@ namespace bvh8 {
 // Slot s is the corner of the node whose coordinate k is high where bit k of s is set. Of all children and corners left over,
 // the pair goes together whose child lies farthest towards its corner.
 void assign_slots(const Slot children[], uint32_t count, uint32_t slot_of[]) {
-    double fit[BVH8_WIDTH][BVH8_WIDTH];
-    double middle[3] = {0, 0, 0};
+    double center[BVH8_WIDTH][3], middle[3] = {0, 0, 0};  // twice the centres; no float overflows
     for (uint32_t i = 0; i < count; ++i)
-        for (int a = 0; a < 3; ++a) middle[a] += (double{children[i].box[a]} + children[i].box[3 + a]) / count;
+        for (int a = 0; a < 3; ++a) {
+            center[i][a] = double{children[i].box[a]} + children[i].box[3 + a];
+            middle[a] += center[i][a] / count;
+        }
+    double fit[BVH8_WIDTH][BVH8_WIDTH];
+    uint32_t open_children[BVH8_WIDTH], open_slots[BVH8_WIDTH];
     for (uint32_t i = 0; i < count; ++i) {
-        double d[3];
-        for (int a = 0; a < 3; ++a) d[a] = double{children[i].box[a]} + children[i].box[3 + a] - middle[a];
-        for (uint32_t s = 0; s < BVH8_WIDTH; ++s)
-            fit[i][s] = (s & 1 ? d[0] : -d[0]) + (s & 2 ? d[1] : -d[1]) + (s & 4 ? d[2] : -d[2]);
+        const double x = center[i][0] - middle[0], y = center[i][1] - middle[1], z = center[i][2] - middle[2];
+        for (uint32_t s = 0; s < BVH8_WIDTH; ++s) fit[i][s] = (s & 1 ? x : -x) + (s & 2 ? y : -y) + (s & 4 ? z : -z);
+        open_children[i] = i;
     }
-    uint32_t open_children = (1u << count) - 1, open_slots = (1u << BVH8_WIDTH) - 1;
-    while (open_children != 0) {
+    for (uint32_t s = 0; s < BVH8_WIDTH; ++s) open_slots[s] = s;
+    for (uint32_t left = count, slots = BVH8_WIDTH; left > 0;) {
+        uint32_t child = 0, slot = 0;
         double best = -INFINITY;
-        uint32_t best_child = 0, best_slot = 0;
-        for (uint32_t i = 0; i < count; ++i)
-            for (uint32_t s = 0; s < BVH8_WIDTH; ++s)
-                if ((open_children >> i & 1) && (open_slots >> s & 1) && fit[i][s] > best) {
-                    best = fit[i][s];
-                    best_child = i;
-                    best_slot = s;
+        for (uint32_t i = 0; i < left; ++i)
+            for (uint32_t s = 0; s < slots; ++s)
+                if (fit[open_children[i]][open_slots[s]] > best) {
+                    best = fit[open_children[i]][open_slots[s]];
+                    child = i;
+                    slot = s;
                 }
-        slot_of[best_child] = best_slot;
-        open_children &= ~(1u << best_child);
-        open_slots &= ~(1u << best_slot);
+        slot_of[open_children[child]] = open_slots[slot];
+        open_children[child] = open_children[--left];
+        open_slots[slot] = open_slots[--slots];
     }
 }
 

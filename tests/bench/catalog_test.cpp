@@ -1,0 +1,180 @@
+// catalog_test.cpp -- where scenes are found, what is said of those that are not, and which cases suites have.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "base/error.hpp"
+#include "bench/bench.hpp"
+#include "bench/gunzip.hpp"
+#include "support/scenes.hpp"
+
+namespace {
+
+using namespace clarity;
+using namespace clarity::test;
+namespace fs = std::filesystem;
+
+class Catalog : public testing::Test {
+ protected:
+    Catalog() : folder_(fs::temp_directory_path() / ("clarity-catalog-" + std::to_string(getpid()))) {
+        fs::create_directories(folder_ / "bench");
+    }
+    ~Catalog() override { fs::remove_all(folder_); }
+
+    void write(const std::string& name, const std::string& text) const {
+        std::ofstream(folder_ / name, std::ios::binary) << text;
+    }
+    SceneCatalog shared() const { return SceneCatalog(source_file("scenes"), folder_.string()); }
+
+    const fs::path folder_;
+};
+
+const SceneCatalog& project() {
+    static const SceneCatalog catalog(source_file("scenes"), "");
+    return catalog;
+}
+
+Suite suite_of(const std::vector<std::string>& suites, const std::vector<std::string>& files = {},
+               const std::vector<std::string>& accels = {}) {
+    BenchRequest request;
+    request.suites = suites;
+    request.files = files;
+    request.accels = accels;
+    return make_suite(request, project(), Workbench::get().plugins());
+}
+
+TEST_F(Catalog, TheThesisIsThere) {
+    const auto scenes = project().thesis();
+    ASSERT_EQ(scenes.size(), 6u);
+    for (const BenchScene& scene : scenes) {
+        EXPECT_EQ(scene.missing, "") << scene.name;
+        ASSERT_EQ(scene.files.size(), 1u);
+        EXPECT_TRUE(fs::exists(scene.files[0]));
+    }
+}
+
+TEST_F(Catalog, WhatIsMissingSaysWhere) {
+    const BenchScene scene = project().project("thesis/7_nothing");
+    EXPECT_NE(scene.missing.find("thesis/7_nothing"), std::string::npos) << scene.missing;
+    EXPECT_NE(scene.missing.find("CLARITY_SCENES"), std::string::npos) << scene.missing;
+    const auto none = project().shared();
+    ASSERT_EQ(none.size(), 1u);
+    EXPECT_NE(none[0].missing.find("CLARITY_SHARED"), std::string::npos) << none[0].missing;
+}
+
+TEST_F(Catalog, CamerasAndModelsOfTheSharedFolder) {
+    write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    write("bench/cameras.json",
+          "{\"scenes\": {\"pair\": {\"file\": \"one.obj + two.obj (gunzip; then some)\", \"position\": [0, 0.5, 2.75],"
+          "\"look_at\": [0, 0, -1], \"vfov_deg\": 45, \"light\": [1, 2, 3]},"
+          "\"gone\": {\"file\": \"gone.ply.gz\", \"position\": [1, 1, 1], \"look_at\": [0, 0, 0], \"vfov_deg\": 30,"
+          "\"light\": [0, 0, 0]}}}");
+    const auto scenes = shared().shared();
+    ASSERT_EQ(scenes.size(), 2u);
+    const BenchScene& pair = scenes[0].name == "pair" ? scenes[0] : scenes[1];
+    const BenchScene& gone = scenes[0].name == "pair" ? scenes[1] : scenes[0];
+    EXPECT_EQ(pair.files.size(), 2u);
+    EXPECT_EQ(pair.camera, "0,0.5,2.75,0,0,-1,45");
+    EXPECT_EQ(pair.light, "1,2,3");
+    EXPECT_NE(gone.missing.find("gone.ply.gz is not there"), std::string::npos) << gone.missing;
+
+    Progress progress;
+    const LoadedScene loaded = load_scene(Workbench::get().plugins(), pair, 1, ImportOptions{}, progress);
+    EXPECT_EQ(loaded.scene->placed_triangle_count(), 2u);
+    EXPECT_FLOAT_EQ(loaded.view.camera.eye[2], 2.75f);
+    EXPECT_FLOAT_EQ(loaded.view.lights[0].position[1], 2);
+}
+
+TEST_F(Catalog, BrokenCamerasAreOneNote) {
+    for (const char* text : {"", "[]", "{\"scenes\": {\"a\": {}}}", "{\"scenes\": {\"a\": {\"file\": 7}}}", "{\"scenes\":"}) {
+        write("bench/cameras.json", text);
+        const auto scenes = shared().shared();
+        ASSERT_EQ(scenes.size(), 1u) << text;
+        EXPECT_NE(scenes[0].missing.find("cameras.json"), std::string::npos) << scenes[0].missing;
+    }
+}
+
+TEST_F(Catalog, CompressedModelsAreUnpackedAndRemoved) {
+    const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    write("a.obj", plain);
+    if (std::system(("gzip -k '" + (folder_ / "a.obj").string() + "'").c_str()) != 0) GTEST_SKIP() << "SKIPPED: no gzip";
+    std::string unpacked;
+    {
+        const TemporaryFile file = gunzip((folder_ / "a.obj.gz").string());
+        unpacked = file.path();
+        EXPECT_EQ(fs::path(unpacked).extension(), ".obj");
+        std::ifstream in(unpacked);
+        EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), plain);
+    }
+    EXPECT_FALSE(fs::exists(unpacked));
+    write("broken.obj.gz", "no gzip at all");
+    EXPECT_THROW(gunzip((folder_ / "broken.obj.gz").string()), Error);
+    const BenchScene scene = scene_of_file((folder_ / "a.obj.gz").string());
+    EXPECT_EQ(scene.name, "a");
+    Progress progress;
+    EXPECT_EQ(load_scene(Workbench::get().plugins(), scene, 1, ImportOptions{}, progress).scene->triangle_count(), 1u);
+}
+
+TEST(Suites, EachIsListedWithSoundSettings) {
+    for (const std::string& name : suite_names()) {
+        const Suite suite = suite_of({name});
+        EXPECT_FALSE(suite.cases.empty()) << name;
+        EXPECT_GT(suite.time_limit_s, 0) << name;
+        std::set<std::string> names;
+        for (const BenchCase& c : suite.cases) {
+            EXPECT_EQ(c.suite, name);
+            EXPECT_LT(c.scene, suite.scenes.size());
+            EXPECT_TRUE(names.insert(c.name).second) << c.name;
+            ASSERT_FALSE(c.variants.empty()) << c.name;
+            std::set<std::string> labels;
+            for (const Variant& variant : c.variants) {
+                EXPECT_TRUE(labels.insert(variant.label).second) << c.name << " " << variant.label;
+                EXPECT_NO_THROW(variant_settings(Workbench::get().plugins(), BenchRequest{}, variant)) << c.name;
+            }
+        }
+    }
+}
+
+TEST(Suites, TheThesisHasSixTestsOfFourStepsThenAndNow) {
+    std::map<std::string, std::set<int>> steps;
+    for (const BenchCase& c : suite_of({"thesis"}).cases) {
+        if (c.measure != "frame" || c.name.find("spheres21") == 0 || c.name.find("aim") == 0) continue;
+        ASSERT_EQ(c.variants.size(), 2u);
+        const Settings now = variant_settings(Workbench::get().plugins(), {}, c.variants[0]);
+        const Settings then = variant_settings(Workbench::get().plugins(), {}, c.variants[1]);
+        EXPECT_EQ(now.depth, then.depth);
+        EXPECT_EQ(now.width, 1024);
+        EXPECT_EQ(now.height, 768);
+        EXPECT_EQ(then.accel, "spheres");
+        EXPECT_EQ(then.lanes, 1);
+        EXPECT_EQ(then.packet_w, 4);
+        steps[c.name.substr(0, c.name.find('/'))].insert(now.depth);
+    }
+    EXPECT_EQ(steps.size(), 6u);
+    for (const auto& [scene, depths] : steps) EXPECT_EQ(depths, (std::set<int>{1, 2, 3, 4})) << scene;
+}
+
+TEST(Suites, FilesReplaceASuitesScenesAndAccelsAreCompared) {
+    const Suite suite = suite_of({"accel"}, {"a.obj", "b.scene"}, {"bvh2,max_leaf=2", "bvh2,max_leaf=7"});
+    ASSERT_EQ(suite.scenes.size(), 2u);
+    EXPECT_EQ(suite.scenes[1].source.name, "b");
+    for (const BenchCase& c : suite.cases) EXPECT_EQ(c.variants.size(), 2u) << c.name;
+    EXPECT_EQ(suite_of({}, {"a.obj"}).cases.front().suite, "accel");
+    EXPECT_THROW(suite_of({"fastest"}), Error);
+}
+
+TEST(Suites, WhatTheUserSetsHoldsUnlessTheCaseIsAboutIt) {
+    BenchRequest request;
+    request.settings = {{"size", "64x48"}, {"depth", "9"}};
+    const Settings s = variant_settings(Workbench::get().plugins(), request, {"x", "bvh2", {{"depth", "2"}}, false});
+    EXPECT_EQ(s.width, 64);
+    EXPECT_EQ(s.depth, 2);
+    EXPECT_THROW(variant_settings(Workbench::get().plugins(), request, {"x", "bvh2,max_leaf=99", {}, false}), Error);
+    EXPECT_THROW(variant_settings(Workbench::get().plugins(), request, {"x", "none", {}, false}), Error);
+}
+
+}  // namespace

@@ -1,0 +1,187 @@
+// command_test.cpp -- clarity bench as a user runs it. Times are not looked at: --max-spread is as wide as it goes.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+class BenchCommand : public testing::Test {
+ protected:
+    BenchCommand() : folder_(fs::temp_directory_path() / ("clarity-bench-" + std::to_string(getpid()))) {
+        fs::create_directories(folder_);
+        std::ofstream(file("tiny.scene")) << "camera main eye 0 1 4 target 0 0.5 0\n"
+                                             "light point position 3 5 2 color 1 1 1\n"
+                                             "material mirror color .5 .5 .5 reflect .6\n"
+                                             "polygon material mirror vertices -2 0 -2  -2 0 2  2 0 2  2 0 -2\n"
+                                             "load \"tetrahedron.obj\" material mirror\n";
+        std::ofstream(file("tetrahedron.obj"))
+            << "v 0 1 0\nv 1 0 0\nv -1 0 0.8\nv -1 0 -0.8\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    }
+    ~BenchCommand() override { fs::remove_all(folder_); }
+
+    std::string file(const std::string& name) const { return (folder_ / name).string(); }
+    ProgramResult bench(std::vector<std::string> words, RunOptions options = {}) const {
+        words.insert(words.begin(), "bench");
+        return run_program(words, options);
+    }
+    // Small pictures, never refused; the time limit is for the compiler, where its cache is cold.
+    ProgramResult quick(std::vector<std::string> words, RunOptions options = {}) const {
+        for (const char* word : {"--size", "64x48", "--time-limit", "90", "--max-spread", "10"}) words.push_back(word);
+        return bench(words, options);
+    }
+    Json records(const std::string& name) const {
+        std::ifstream in(file(name));
+        return Json::parse(in);
+    }
+
+    const fs::path folder_;
+};
+
+TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
+    RunOptions nothing;
+    nothing.environment["CLARITY_DEVICE"] = "no such device";
+    for (const char* suite : {"thesis", "packets", "accel", "scale", "quick"}) {
+        const ProgramResult result = bench({suite, "--list"}, nothing);
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_NE(result.out.find(suite), std::string::npos) << result.out;
+        EXPECT_LT(result.seconds, 10);
+    }
+    const ProgramResult thesis = bench({"thesis", "--list"});
+    for (const char* name : {"1_two_triangles/1 step ", "6_2406_triangles/4 steps", "now | then"})
+        EXPECT_NE(thesis.out.find(name), std::string::npos) << thesis.out;
+}
+
+TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
+    const ProgramResult result = quick({file("tiny.scene"), "--accel", "bvh2", "--accel", "bvh2,max_leaf=1", "--json",
+                                        file("a.json"), "--csv", file("a.csv"), "--report", file("page")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.out.find("bvh2"), std::string::npos) << result.out;
+    const Json list = records("a.json");
+    ASSERT_TRUE(list.is_array());
+    size_t frames = 0, rays = 0, builds = 0, dropped = 0;
+    for (const Json& record : list) {
+        EXPECT_EQ(record["scene"], "tiny");
+        if (record["status"] == "skipped") continue;
+        ASSERT_EQ(record["status"], "ok") << record.dump();
+        const std::string measure = record["measure"];
+        if (measure == "frame") {
+            ++frames;
+            EXPECT_GT(record["fps"], 0);
+            EXPECT_GE(record["frame_ms"]["n"], 3);
+            EXPECT_EQ(record["rays"]["primary"], 64 * 48);
+            EXPECT_GT(record["rays"]["secondary"], 100);
+            EXPECT_LE(record["frame_ms"]["median"].get<double>(), record["wall_ms"]["median"].get<double>());
+        } else if (measure == "build") {
+            ++builds;
+        } else if (measure == "dropped") {
+            ++dropped;
+        } else {
+            ++rays;
+            EXPECT_GT(record["mrays_per_s"], 0) << record.dump();
+            EXPECT_GT(
+                record["analysis"]["nodes_per_ray"].get<double>() + record["analysis"]["leaf_tests_per_ray"].get<double>(), 0);
+        }
+    }
+    EXPECT_EQ(frames, 2u);
+    EXPECT_EQ(builds, 2u);
+    EXPECT_EQ(rays, 8u);
+    EXPECT_EQ(dropped, 4u);
+    std::ifstream csv(file("a.csv"));
+    std::string line;
+    size_t lines = 0;
+    while (std::getline(csv, line)) ++lines;
+    EXPECT_EQ(lines, 1 + list.size());
+    EXPECT_TRUE(fs::exists(file("page/index.html")));
+
+    // Joined with itself, without measuring anything.
+    const ProgramResult joined = bench({"--join", file("a.json"), "--join", file("a.json"), "--json", "-"});
+    EXPECT_EQ(joined.exit_code, 0) << joined.err;
+    EXPECT_EQ(Json::parse(joined.out).size(), 2 * list.size());
+}
+
+TEST_F(BenchCommand, PeersTakePartWhereTheSceneIsTriangles) {
+    const ProgramResult result = quick({file("tetrahedron.obj"), "--accel", "bvh2", "--json", file("a.json")});
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    size_t peers = 0, ours = 0;
+    for (const Json& record : records("a.json")) (record["peer"].is_null() ? ours : peers) += record["status"] == "ok";
+    EXPECT_GE(ours, 6u);
+    const size_t expected = result.err.find("without Embree") == std::string::npos ? 3 + 4 * 9 : 0;
+    EXPECT_EQ(peers, expected) << result.out;
+    const ProgramResult alone = quick({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--json", file("b.json")});
+    ASSERT_EQ(alone.exit_code, 0) << alone.err;
+    for (const Json& record : records("b.json")) EXPECT_TRUE(record["peer"].is_null());
+}
+
+TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {
+    const ProgramResult result = bench({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--size", "64x48",
+                                        "--time-limit", "60", "--max-spread", "0", "--json", file("a.json")});
+    EXPECT_EQ(result.exit_code, 1) << result.out;
+    EXPECT_NE(result.out.find("REFUSED"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("--max-spread"), std::string::npos) << result.out;
+    bool refused = false;
+    for (const Json& record : records("a.json")) {
+        if (record["status"] != "refused") continue;
+        refused = true;
+        EXPECT_TRUE(record["mrays_per_s"].is_null());
+    }
+    EXPECT_TRUE(refused);
+}
+
+TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
+    RunOptions options;
+    options.signal = SIGINT;
+    options.signal_when = "2/7 accel";
+    const ProgramResult result = bench(
+        {file("tiny.scene"), "--size", "64x48", "--max-spread", "10", "--time-limit", "60", "--json", file("a.json")}, options);
+    EXPECT_EQ(result.exit_code, 130) << result.err;
+    const Json list = records("a.json");
+    EXPECT_GE(list.size(), 2u);
+    EXPECT_LT(list.size(), 14u);
+}
+
+TEST_F(BenchCommand, WhatIsNotUnderstoodIsAUsageError) {
+    std::ofstream(file("broken.json")) << "[{\"status\": 3}]";
+    const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+        {{}, "name a suite"},
+        {{"fastest"}, "no such suite"},
+        {{"quick", "--set", "lanes"}, "key=value"},
+        {{"quick", "--set", "nonsense=1"}, "nonsense"},
+        {{"quick", "--accel", "octree"}, "octree"},
+        {{"quick", "--accel", "bvh2,max_leaf=0"}, "max_leaf"},
+        {{"quick", "--aov", "t"}, "colour only"},
+        {{"quick", "--max-spread", "-1"}, "--max-spread"},
+        {{"quick", "--json", file("nowhere/a.json")}, "nowhere"},
+        {{"quick", "--report", file("tiny.scene") + "/page"}, "--report"},
+        {{"quick", "--join", file("broken.json")}, "record 0"},
+        {{"quick", "--join", file("missing.json")}, "cannot be read"},
+    };
+    for (const auto& [words, expected] : cases) {
+        const ProgramResult result = bench(words);
+        EXPECT_EQ(result.exit_code, 2) << result.err;
+        EXPECT_NE(result.err.find(expected), std::string::npos) << expected << ": " << result.err;
+        EXPECT_EQ(result.out, "");
+    }
+}
+
+TEST_F(BenchCommand, ScenesThatCannotBeReadAreImportErrors) {
+    std::ofstream(file("broken.obj")) << "f 1 2 3\n";
+    for (const std::string& name : {file("missing.obj"), file("broken.obj")}) {
+        const ProgramResult result = quick({name});
+        EXPECT_EQ(result.exit_code, 4) << result.err;
+        EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
+    }
+    RunOptions nothing;
+    nothing.environment["CLARITY_DEVICE"] = "no such device";
+    EXPECT_EQ(quick({file("tiny.scene")}, nothing).exit_code, 3);
+}
+
+}  // namespace

@@ -1,0 +1,135 @@
+// measure_test.cpp -- quartiles, turns, and what is refused.
+#include "bench/measure.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <thread>
+
+#include "base/error.hpp"
+
+namespace {
+
+using namespace clarity;
+
+// Takes no time and says it took what the list says, over and over.
+Contender fake(const std::string& name, std::vector<double> ms, std::string* order = nullptr) {
+    auto at = std::make_shared<size_t>(0);
+    return {name, [=] {
+                if (order) *order += name;
+                const double value = ms[(*at)++ % ms.size()];
+                return Take{value, value + 1};
+            }};
+}
+
+TEST(Statistics, QuartilesByInterpolation) {
+    const Summary s = summarize({4, 1, 3, 2});
+    EXPECT_EQ(s.n, 4u);
+    EXPECT_DOUBLE_EQ(s.median, 2.5);
+    EXPECT_DOUBLE_EQ(s.q1, 1.75);
+    EXPECT_DOUBLE_EQ(s.q3, 3.25);
+    EXPECT_DOUBLE_EQ(s.min, 1);
+    EXPECT_DOUBLE_EQ(s.max, 4);
+    EXPECT_DOUBLE_EQ(s.spread(), 0.6);
+}
+
+TEST(Statistics, OddCountHasItsMiddleAndOutliersDoNotMatter) {
+    const Summary s = summarize({10, 11, 12, 13, 1000});
+    EXPECT_DOUBLE_EQ(s.median, 12);
+    EXPECT_DOUBLE_EQ(s.q1, 11);
+    EXPECT_DOUBLE_EQ(s.q3, 13);
+}
+
+TEST(Statistics, NothingAndOne) {
+    EXPECT_EQ(summarize({}).n, 0u);
+    EXPECT_DOUBLE_EQ(summarize({}).spread(), 0);
+    const Summary one = summarize({7});
+    EXPECT_DOUBLE_EQ(one.median, 7);
+    EXPECT_DOUBLE_EQ(one.spread(), 0);
+}
+
+TEST(Measure, TakesTurns) {
+    std::string order;
+    MeasureRules rules;
+    rules.min_rounds = rules.max_rounds = 5;
+    Progress progress;
+    measure_in_turns({fake("A", {1}, &order), fake("B", {2}, &order), fake("C", {3}, &order)}, rules, progress);
+    EXPECT_EQ(order,
+              "AABBCC"
+              "ABCABCABCABCABC");  // warm-up, then rounds
+}
+
+TEST(Measure, SteadyContendersEndEarly) {
+    MeasureRules rules;
+    Progress progress;
+    const auto measured = measure_in_turns({fake("A", {4}), fake("B", {8})}, rules, progress);
+    ASSERT_EQ(measured.size(), 2u);
+    EXPECT_EQ(measured[0].status, RowStatus::ok);
+    EXPECT_EQ(measured[0].time_ms.n, rules.min_rounds);
+    EXPECT_DOUBLE_EQ(measured[0].time_ms.median, 4);
+    EXPECT_DOUBLE_EQ(measured[0].wall_ms.median, 5);
+    EXPECT_DOUBLE_EQ(measured[1].time_ms.median, 8);
+}
+
+TEST(Measure, TheUnsteadyIsRefusedAndTheSteadyIsNot) {
+    MeasureRules rules;
+    rules.max_rounds = 20;
+    Progress progress;
+    const auto measured = measure_in_turns({fake("steady", {100}), fake("wild", {1, 2, 3, 4})}, rules, progress);
+    EXPECT_EQ(measured[0].status, RowStatus::ok);
+    EXPECT_EQ(measured[1].status, RowStatus::refused);
+    EXPECT_NE(measured[1].why.find("--max-spread"), std::string::npos) << measured[1].why;
+    EXPECT_NE(measured[1].why.find("3 attempts"), std::string::npos) << measured[1].why;
+    EXPECT_GT(measured[1].spread(), rules.max_spread);
+}
+
+TEST(Measure, ADisturbedFirstAttemptIsForgotten) {
+    MeasureRules rules;
+    rules.max_rounds = 20;
+    int taken = 0;
+    const Contender disturbed{"A", [&] {
+                                  const double ms = ++taken <= 22 ? 1 + taken % 5 : 10;
+                                  return Take{ms, ms};
+                              }};
+    Progress progress;
+    const auto measured = measure_in_turns({disturbed}, rules, progress);
+    EXPECT_EQ(measured[0].status, RowStatus::ok);
+    EXPECT_DOUBLE_EQ(measured[0].time_ms.median, 10);
+    EXPECT_DOUBLE_EQ(measured[0].time_ms.min, 10);
+}
+
+TEST(Measure, AFailureIsThatRowsAlone) {
+    const Contender broken{"broken", []() -> Take { throw Error(Exit::failed, "no memory on the device"); }};
+    Progress progress;
+    const auto measured = measure_in_turns({broken, fake("A", {1})}, MeasureRules{}, progress);
+    EXPECT_EQ(measured[0].status, RowStatus::failed);
+    EXPECT_EQ(measured[0].why, "no memory on the device");
+    EXPECT_EQ(measured[1].status, RowStatus::ok);
+}
+
+TEST(Measure, WhatDoesNotFitTheBudgetIsSkipped) {
+    const Contender slow{"slow", [] {
+                             std::this_thread::sleep_for(std::chrono::milliseconds(60));
+                             return Take{60, 60};
+                         }};
+    MeasureRules rules;
+    rules.budget_s = 0.05;
+    Progress progress;
+    const auto measured = measure_in_turns({slow, fake("quick", {1})}, rules, progress);
+    EXPECT_EQ(measured[0].status, RowStatus::skipped);
+    EXPECT_NE(measured[0].why.find("--time-limit"), std::string::npos) << measured[0].why;
+    EXPECT_EQ(measured[1].status, RowStatus::ok);
+}
+
+TEST(Measure, ACancelEndsIt) {
+    Progress progress;
+    int taken = 0;
+    const Contender contender{"A", [&] {
+                                  if (++taken == 4) progress.cancel();
+                                  return Take{1, 1};
+                              }};
+    EXPECT_THROW(measure_in_turns({contender}, MeasureRules{}, progress), Cancelled);
+    EXPECT_EQ(taken, 4);
+}
+
+}  // namespace

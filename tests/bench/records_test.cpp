@@ -1,0 +1,244 @@
+// records_test.cpp -- what was measured survives being written, and what was refused is not told.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "bench/bench.hpp"
+#include "bench/output.hpp"
+
+namespace {
+
+using namespace clarity;
+using Json = nlohmann::json;
+
+BenchRecord frame_record(const std::string& scene, const std::string& variant, double ms) {
+    BenchRecord r;
+    r.suite = "thesis";
+    r.case_name = scene + "/4 steps";
+    r.scene = scene;
+    r.measure = "frame";
+    r.variant = variant;
+    r.device = "a device, \"quoted\"";
+    r.device_id = "0:0";
+    r.driver = "driver 1";
+    r.threads = 2;
+    r.accel = "bvh2";
+    r.accel_params = "max_leaf=4,bins=32";
+    r.tracer = "iterative";
+    r.depth = 4;
+    r.packet_w = 4;
+    r.packet_h = 2;
+    r.lanes = 8;
+    r.ray_slots = 8;
+    r.width = 1024;
+    r.height = 768;
+    r.triangles = 2406;
+    r.primitives = 2407;
+    r.time_ms = {ms, ms * 0.99, ms * 1.01, ms * 0.9, ms * 1.2, 25};
+    r.wall_ms = {ms + 1, ms + 0.9, ms + 1.1, ms, ms + 2, 25};
+    r.fps = 1000 / (ms + 1);
+    r.rays_primary = 786432;
+    r.rays_shadow = 500000;
+    r.rays_secondary = 300000;
+    r.rays_dropped = 17;
+    r.mrays_per_s = double(r.rays()) / ms / 1000;
+    r.build_ms = 1.5;
+    r.pack_ms = 0.25;
+    r.accel_bytes = 123456;
+    r.bytes_per_triangle = 51.3117;
+    r.nodes = 1203;
+    r.sah_cost = 42.5;
+    r.kernels_ms = {{"trace", ms}, {"tone map", 0.5}};
+    return r;
+}
+
+BenchRecord ray_record() {
+    BenchRecord r = frame_record("bunny", "bvh2", 8);
+    r.suite = "accel";
+    r.case_name = "bunny/diffuse";
+    r.measure = "diffuse";
+    r.wall_ms = {};
+    r.fps = 0;
+    r.kernels_ms.clear();
+    r.hits = 400000;
+    r.analysis = {true, 55.5, 33.25, 12, 0.6, 0, 300, 0.9, 64};
+    return r;
+}
+
+BenchReport sample() {
+    BenchReport report;
+    report.run.version = "1.2.3";
+    report.run.date = "2026-11-21T12:00:00Z";
+    report.run.command = "clarity bench thesis";
+    report.run.host_cpu = "a processor";
+    report.run.host_threads = 2;
+    report.run.clock_mhz_before = 2600.5;
+    report.run.load_after = 0.25;
+    report.run.max_spread = 0.1;
+    report.records = {frame_record("one", "now", 10), frame_record("one", "then", 100), ray_record()};
+    BenchRecord peer = ray_record();
+    peer.peer = peer.variant = "embree packet16 high";
+    peer.accel.clear();
+    peer.analysis = {};
+    report.records.push_back(peer);
+    BenchRecord refused = ray_record();
+    refused.status = RowStatus::refused;
+    refused.why = "spreads over 40 %";
+    refused.variant = "unsteady";
+    report.records.push_back(refused);
+    return report;
+}
+
+TEST(Json, IsAListOfRecordsWithTheContractsKeys) {
+    const Json list = Json::parse(bench_json(sample()));
+    ASSERT_TRUE(list.is_array());
+    ASSERT_EQ(list.size(), 5u);
+    for (const char* key :
+         {"case", "peer", "device", "accel", "tracer", "depth", "packet", "lanes", "size", "frame_ms", "build_ms", "compile_ms",
+          "rays", "mrays_per_s", "dropped_rays", "nodes", "accel_bytes", "triangles"})
+        for (const Json& record : list) EXPECT_TRUE(record.contains(key)) << key;
+    EXPECT_EQ(list[0]["case"], "one/4 steps");
+    EXPECT_TRUE(list[0]["peer"].is_null());
+    EXPECT_EQ(list[3]["peer"], "embree packet16 high");
+    EXPECT_EQ(list[0]["packet"], "4x2");
+    EXPECT_EQ(list[0]["frame_ms"]["median"], 10);
+    EXPECT_TRUE(list[2]["frame_ms"].is_null());
+    EXPECT_EQ(list[0]["rays"]["shadow"], 500000);
+    EXPECT_EQ(list[0]["run"]["clock_mhz"]["before"], 2600.5);
+}
+
+TEST(Json, SurvivesBeingReadAndWritten) {
+    const std::string once = bench_json(sample());
+    EXPECT_EQ(bench_json(read_bench_json(once)), once);
+}
+
+TEST(Json, RunsOfJoinedListsAreKeptApart) {
+    BenchReport report = sample();
+    BenchRun other = report.run;
+    other.host_cpu = "another machine";
+    report.joined = {other};
+    report.records[1].run = 1;
+    const BenchReport read = read_bench_json(bench_json(report));
+    ASSERT_EQ(read.joined.size(), 1u);
+    EXPECT_EQ(read.run_of(read.records[0]).host_cpu, "a processor");
+    EXPECT_EQ(read.run_of(read.records[1]).host_cpu, "another machine");
+    EXPECT_EQ(read.run_of(read.records[2]).host_cpu, "a processor");
+}
+
+TEST(Json, WhatIsRefusedHasNoFigures) {
+    const Json refused = Json::parse(bench_json(sample()))[4];
+    EXPECT_EQ(refused["status"], "refused");
+    EXPECT_EQ(refused["why"], "spreads over 40 %");
+    EXPECT_FALSE(refused["time_ms"].contains("median"));
+    EXPECT_TRUE(refused["time_ms"].contains("spread"));
+    for (const char* key : {"fps", "mrays_per_s", "rays", "analysis", "hits"}) EXPECT_TRUE(refused[key].is_null()) << key;
+}
+
+TEST(Json, BadFilesAreRefusedWithTheirRecord) {
+    for (const char* text :
+         {"", "{}", "[1]", "[{\"status\": \"ok\"}, {\"status\": \"splendid\"}]", "[{\"status\": \"ok\", \"lanes\": \"x\"}]",
+          "[{\"status\": \"ok\", \"packet\": \"4\"}]", "[[]]", "null", "[{\"status\":"}) {
+        try {
+            read_bench_json(text);
+            ADD_FAILURE() << text;
+        } catch (const Error& e) {
+            EXPECT_NE(std::string(e.what()).find("record "), std::string::npos) << e.what();
+        }
+    }
+}
+
+// RFC 4180, as strict as it gets.
+std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+    std::vector<std::vector<std::string>> rows(1);
+    std::string field;
+    bool quoted = false;
+    for (size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        if (quoted) {
+            if (c != '"')
+                field += c;
+            else if (i + 1 < text.size() && text[i + 1] == '"')
+                field += text[++i];
+            else
+                quoted = false;
+        } else if (c == '"' && field.empty()) {
+            quoted = true;
+        } else if (c == ',') {
+            rows.back().push_back(std::move(field));
+            field.clear();
+        } else if (c == '\r' && i + 1 < text.size() && text[i + 1] == '\n') {
+            rows.back().push_back(std::move(field));
+            field.clear();
+            rows.emplace_back();
+            ++i;
+        } else {
+            field += c;
+        }
+    }
+    EXPECT_TRUE(rows.back().empty() && field.empty());
+    rows.pop_back();
+    return rows;
+}
+
+TEST(Csv, HasOneValueAColumnAndAgreesWithJson) {
+    const BenchReport report = sample();
+    const auto rows = parse_csv(bench_csv(report));
+    const Json list = Json::parse(bench_json(report));
+    ASSERT_EQ(rows.size(), 1 + report.records.size());
+    for (const auto& row : rows) EXPECT_EQ(row.size(), rows[0].size());
+    const auto cell = [&](size_t record, const std::string& column) {
+        const auto at = std::find(rows[0].begin(), rows[0].end(), column);
+        EXPECT_NE(at, rows[0].end()) << column;
+        return at == rows[0].end() ? std::string() : rows[1 + record][at - rows[0].begin()];
+    };
+    EXPECT_EQ(cell(0, "device"), "a device, \"quoted\"");
+    EXPECT_EQ(cell(0, "case"), "one/4 steps");
+    EXPECT_EQ(std::stod(cell(1, "time_ms.median")), list[1]["time_ms"]["median"].get<double>());
+    EXPECT_EQ(std::stod(cell(2, "analysis.lanes_alive")), 0.6);
+    EXPECT_EQ(cell(0, "analysis.lanes_alive"), "");
+    EXPECT_EQ(cell(0, "kernels_ms"), "trace 10; tone map 0.5");
+    EXPECT_EQ(cell(4, "time_ms.median"), "");
+    EXPECT_EQ(std::stod(cell(0, "run.clock_mhz.before")), 2600.5);
+    for (const std::string& column : rows[0]) EXPECT_EQ(std::count(rows[0].begin(), rows[0].end(), column), 1) << column;
+}
+
+TEST(Table, FitsATerminalAndShowsWhatCounts) {
+    BenchReport report = sample();
+    report.notes = {"something was left out"};
+    report.records.push_back(frame_record("a_scene_with_a_name_that_no_terminal_is_wide_enough_for_in_full", "now", 1e-3));
+    report.records.back().device = "Some Device With A Long Name Of Its Own, As Vendors Like Them";
+    const std::string text = bench_table(report);
+    std::stringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        if (line.find("REFUSED") == std::string::npos) {
+            EXPECT_LE(line.size(), 120u) << line;
+        }
+    EXPECT_NE(text.find("10.0"), std::string::npos) << text;  // x then: 100 + 1 by 10 + 1 is 9.18
+    EXPECT_NE(text.find("9.18"), std::string::npos) << text;
+    EXPECT_NE(text.find("REFUSED  accel bunny/diffuse, unsteady"), std::string::npos) << text;
+    EXPECT_NE(text.find("left out  something"), std::string::npos) << text;
+    EXPECT_NE(text.find("55.5"), std::string::npos) << text;
+}
+
+TEST(Table, OfNothingIsNothing) {
+    EXPECT_EQ(bench_table(BenchReport{}), "");
+    EXPECT_EQ(bench_json(BenchReport{}), "[]\n");
+    EXPECT_TRUE(read_bench_json("[]").records.empty());
+}
+
+TEST(Report, RefusedAndFailedRowsAreNotOkSkippedOnesAre) {
+    BenchReport report;
+    EXPECT_TRUE(all_ok(report));
+    report.records.resize(1);
+    report.records[0].status = RowStatus::skipped;
+    EXPECT_TRUE(all_ok(report));
+    report.records[0].status = RowStatus::refused;
+    EXPECT_FALSE(all_ok(report));
+    report.records[0].status = RowStatus::failed;
+    EXPECT_FALSE(all_ok(report));
+}
+
+}  // namespace
