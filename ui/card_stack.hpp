@@ -8,8 +8,8 @@ namespace clarity {
 
 enum class Corner { top_left, top_right, bottom_left, bottom_right };
 
-// Hands out the room of one picture's corners: columns at its left and right, filled from above and from below. Where two columns
-// would be narrower than `least`, there is one.
+// Hands out the room of one picture's corners: columns at its left and right, filled from above and from below. Where two
+// columns would be narrower than `least`, there is one.
 class CardStack {
  public:
     CardStack() = default;

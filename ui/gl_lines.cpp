@@ -164,8 +164,7 @@ void LineLayer::draw(const std::vector<const LineList*>& lists, const Projection
     for (const LineList* list : lists) wanted += list->size();
     const bool thin = wanted > kManyLines;
     for (const LineList* list : lists)
-        if (thin && list->size() > kManyLines / 2)
-            append_thin(*list, projection, scale, {behind.values}, scratch_);
+        if (thin && list->size() > kManyLines / 2) append_thin(*list, projection, scale, {behind.values}, scratch_);
     const size_t ends = scratch_.size();
     for (const LineList* list : lists)
         if (!(thin && list->size() > kManyLines / 2)) append_quads(*list, projection, scale, scratch_);

@@ -10,8 +10,8 @@
 
 namespace clarity {
 
-// What hides lines: the distances of the picture's camera rays, +inf where they met nothing, as a texture and as numbers. Without
-// them all is in front.
+// What hides lines: the distances of the picture's camera rays, +inf where they met nothing, as a texture and as numbers.
+// Without them all is in front.
 struct LinesBehind {
     const PictureTexture* distance = nullptr;
     const FloatImage* values = nullptr;
@@ -27,8 +27,8 @@ class LineLayer {
     LineLayer& operator=(const LineLayer&) = delete;
 
     // Draws the lists, one after the other, as `projection` sees them. scale: pixels to a unit of the window. Long lists, whose
-    // lines could not be told apart anyway, are drawn thin. Changes the GL state of framebuffer, viewport, program, blending and
-    // vertex array.
+    // lines could not be told apart anyway, are drawn thin. Changes the GL state of framebuffer, viewport, program, blending
+    // and vertex array.
     void draw(const std::vector<const LineList*>& lists, const Projection& projection, float scale, const LinesBehind& behind);
     // Empty, or the shader compiler's words: there will be no lines.
     const std::string& failure() const { return failure_; }

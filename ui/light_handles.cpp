@@ -47,8 +47,7 @@ glm::vec3 sun_direction(const Projection& projection, const glm::vec2& place) {
     const float length = glm::length(offset), angle = std::min(length, 1.0f) * kPi;
     const glm::vec2 away = length > 1e-6f ? offset / length : glm::vec2(0, -1);
     const float sine = std::sin(angle);
-    const glm::vec3 direction =
-        projection.to_world({away.x * sine, -away.y * sine, std::cos(angle)}) - projection.eye();
+    const glm::vec3 direction = projection.to_world({away.x * sine, -away.y * sine, std::cos(angle)}) - projection.eye();
     return glm::normalize(direction);
 }
 

@@ -19,12 +19,12 @@ struct LineVertex {
     uint32_t color;    // as Line has it
 };
 
-// A surface that a line lies on shall not hide it, though its distance is that of the pixel's middle: hence a little play, in parts
-// of the distance.
+// A surface that a line lies on shall not hide it, though its distance is that of the pixel's middle: hence a little play, in
+// parts of the distance.
 inline constexpr float kDistancePlay = 0.003f;
 
-// How thousands of lines are drawn for less: one pixel wide, with two vertices each; short ones that lie behind what the picture
-// shows are left out, as faint as they would be.
+// How thousands of lines are drawn for less: one pixel wide, with two vertices each; short ones that lie behind what the
+// picture shows are left out, as faint as they would be.
 struct ThinLines {
     const FloatImage* distance = nullptr;  // of the picture, as LineLayer has it; nullptr: all are drawn
 };

@@ -86,7 +86,8 @@ void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float sca
     const bool circles = shown <= 200;  // beyond, outlines say as much
     const auto& boxes = side.volumes->boxes;
     const auto& spheres = side.volumes->spheres;
-    lines.reserve(lines.size() + (boxes.size() * 12 + spheres.size() * static_cast<size_t>(segments) * (circles ? 4 : 1)) / stride);
+    lines.reserve(lines.size() +
+                  (boxes.size() * 12 + spheres.size() * static_cast<size_t>(segments) * (circles ? 4 : 1)) / stride);
     for (size_t i = 0; i < boxes.size(); i += stride) lines.box(boxes[i], color, width);
     for (size_t i = 0; i < spheres.size(); i += stride) {
         const glm::vec3 center(spheres[i][0], spheres[i][1], spheres[i][2]);

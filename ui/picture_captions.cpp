@@ -103,7 +103,8 @@ std::string difference_text(const PictureDifference& difference) {
     if (difference.image.pixels.empty()) return "the pictures are of different sizes";
     if (difference.largest <= 0) return "no pixel differs";
     char text[160];
-    std::snprintf(text, sizeof text, "mean %.3g, largest %.0f of 255; %.3g %% of pixels differ by more than 1; shown 8 times as bright",
+    std::snprintf(text, sizeof text,
+                  "mean %.3g, largest %.0f of 255; %.3g %% of pixels differ by more than 1; shown 8 times as bright",
                   difference.mean, difference.largest, difference.share * 100);
     return text;
 }

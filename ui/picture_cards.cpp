@@ -95,7 +95,9 @@ ImVec2 color_bar_size(const FalseColorScale& scale, float max_width) {
 void draw_color_bar(ImDrawList& list, const Rect& card, const FalseColorScale& scale, std::optional<float> value) {
     const float unit = ui_scale(), pad = card_padding(), left = card.x + pad, width = card.width - 2 * pad;
     ImFont* font = fonts().text;
-    const auto text_width = [&](const std::string& text) { return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, text.c_str()).x; };
+    const auto text_width = [&](const std::string& text) {
+        return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, text.c_str()).x;
+    };
     const auto write = [&](float x, float y, const ImVec4& color, const std::string& text) {
         list.AddText(font, font->FontSize, {std::floor(x), std::floor(y)}, ImGui::GetColorU32(color), text.c_str(), nullptr,
                      width + 0.5f);

@@ -1,4 +1,5 @@
-// picture_layout.hpp -- where pictures lie in the room that they have: one, two that are wiped, two side by side. Pure arithmetic.
+// picture_layout.hpp -- where pictures lie in the room that they have: one, two that are wiped, two side by side. Pure
+// arithmetic.
 #pragma once
 #include <glm/vec2.hpp>
 #include <vector>
@@ -19,8 +20,8 @@ struct PicturePlace {
 
 // head: height of the captions, which stand above pictures that lie side by side and over the others. foot: what shall be free
 // below those, if it can be without making them smaller.
-std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool compared, CompareMode mode, float wipe, float head,
-                                           float foot);
+std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool compared, CompareMode mode, float wipe,
+                                           float head, float foot);
 
 // The pixel of a picture of width x height at a place of its area; false outside.
 bool pixel_at(const Rect& area, const glm::vec2& place, unsigned width, unsigned height, unsigned& x, unsigned& y);

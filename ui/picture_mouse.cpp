@@ -12,7 +12,7 @@
 namespace clarity {
 namespace {
 
-constexpr float kClickSlack = 4;     // units that a mouse may move within a click
+constexpr float kClickSlack = 4;      // units that a mouse may move within a click
 constexpr float kFocusNearer = 0.7f;  // what a double click leaves of the distance
 
 glm::vec2 vec(const ImVec2& a) {
@@ -89,7 +89,8 @@ void PictureMouse::drag_camera(const Rect& area, Camera& camera, bool look, cons
     }
 }
 
-void PictureMouse::drag(const Target& target, Session& session, UiState& state, const glm::vec2& mouse, const glm::vec2& moved) {
+void PictureMouse::drag(const Target& target, Session& session, UiState& state, const glm::vec2& mouse,
+                        const glm::vec2& moved) {
     const Rect& area = target.places.front().area;
     switch (grab_) {
         case Grab::camera:

@@ -59,7 +59,8 @@ void PicturePane::lay_out(const Rect& room, const Session& session, const UiStat
     float head = 0;
     if (picture_->other && state.compare_mode == CompareMode::side_by_side)
         for (unsigned side = 0; side < 2; ++side)
-            head = std::max(head, card_size(caption_lines(caption_of(session, *picture_, side)), std::floor(room.width / 2 - 8)).y);
+            head = std::max(head,
+                            card_size(caption_lines(caption_of(session, *picture_, side)), std::floor(room.width / 2 - 8)).y);
     places_ = lay_out_pictures(room, aspect, picture_->other.has_value(), state.compare_mode, state.wipe, std::round(head + 6),
                                foot_);
     area_ = places_.front().area;
@@ -82,7 +83,8 @@ std::optional<Rect> PicturePane::take_card(size_t place, Corner corner, const Im
     const bool low = corner == Corner::bottom_left || corner == Corner::bottom_right;
     if (side_by_side() && low) {
         card = below_[place].take(corner == Corner::bottom_right ? Corner::top_right : Corner::top_left, size.x, size.y);
-        const float wanted = card ? card->y + card->height - places_[place].area.y - places_[place].area.height : foot_ + size.y;
+        const float wanted =
+            card ? card->y + card->height - places_[place].area.y - places_[place].area.height : foot_ + size.y;
         foot_ = std::max(foot_, wanted + 10 * ui_scale());
     }
     if (!card) card = stacks_[side_by_side() ? place : 0].take(corner, size.x, size.y);
@@ -100,7 +102,8 @@ bool PicturePane::covered(const Rect& label) const {
 
 void PicturePane::draw_pictures(ImDrawList& list) {
     for (const PicturePlace& place : places_) {
-        PictureTexture& texture = place.what == What::difference && picture_->difference ? difference_ : textures_[place.side()];
+        PictureTexture& texture =
+            place.what == What::difference && picture_->difference ? difference_ : textures_[place.side()];
         // Enlarged pixels stay sharp.
         texture.set_magnified(place.area.width >= 2 * static_cast<float>(texture.width()));
         add_part(list, texture.name(), place.area, place.shown, true);
@@ -146,8 +149,8 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     const unsigned stride = moving ? static_cast<unsigned>(overlay.count(side) / kMovingVolumes + 1) : 1;
     const bool volumes = lines.volumes_revision != overlay.revision(side) || scaled || lines.stride != stride ||
                          (moved && overlay.has_spheres(side));
-    const bool resized = lines.area.width != place.area.width || lines.area.height != place.area.height ||
-                         lines.pixels != pixels;
+    const bool resized =
+        lines.area.width != place.area.width || lines.area.height != place.area.height || lines.pixels != pixels;
     const bool anew = volumes || moved || resized || lines.marks_revision != marks_revision_ ||
                       lines.distance != distance.get() || lines.hides_behind != overlay.hides_behind();
     if (!anew) return;

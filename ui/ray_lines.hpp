@@ -19,8 +19,8 @@ const std::vector<RayKind>& ray_kinds();
 // Index into ray_kinds().
 size_t kind_of(const RayRecord& ray);
 
-// Rays that were traced, up to what they met, or for `far` where they met nothing; stubs of those that were not followed. Dots at
-// hits. `seen` sizes dots and heads, which look the same from anywhere. selected: index of a ray that stands out; -1: none.
+// Rays that were traced, up to what they met, or for `far` where they met nothing; stubs of those that were not followed. Dots
+// at hits. `seen` sizes dots and heads, which look the same from anywhere. selected: index of a ray that stands out; -1: none.
 void append_ray_lines(const RayTree& tree, const Projection& seen, float far, float scale, int selected, LineList& lines);
 
 }  // namespace clarity

@@ -77,10 +77,10 @@ TEST(LineQuads, ALineThroughTheEyeIsClippedThere) {
 TEST(LineQuads, NothingOfWhatDoesNotShow) {
     const Projection projection(kArea, some_camera());
     LineList lines;
-    lines.line({6, 3, 13}, {7, 3, 14}, ~0u, 1);                                               // behind the eye
-    lines.line({500, 0, -1}, {500, 9, -1}, ~0u, 1);                                           // far at the side
-    lines.line({0, 1, -1}, {0, 1, -1}, ~0u, 1);                                               // a point
-    lines.line({0, 1, -1}, {std::numeric_limits<float>::quiet_NaN(), 1, -1}, ~0u, 1);         // nowhere
+    lines.line({6, 3, 13}, {7, 3, 14}, ~0u, 1);                                        // behind the eye
+    lines.line({500, 0, -1}, {500, 9, -1}, ~0u, 1);                                    // far at the side
+    lines.line({0, 1, -1}, {0, 1, -1}, ~0u, 1);                                        // a point
+    lines.line({0, 1, -1}, {std::numeric_limits<float>::quiet_NaN(), 1, -1}, ~0u, 1);  // nowhere
     std::vector<LineVertex> vertices;
     append_quads(lines, projection, 1, vertices);
     EXPECT_TRUE(vertices.empty());
@@ -234,7 +234,8 @@ TEST(LightHandles, APointLightFollowsTheMouseAcrossTheView) {
 
 TEST(LightHandles, WhatThePictureDoesNotShowIsMarkedAtItsBorder) {
     const Projection projection(kArea, some_camera());
-    const auto handles = light_handles(projection, {light_at({40, 1, -1}, RT_LIGHT_POINT), light_at({3, 2, 20}, RT_LIGHT_POINT)});
+    const auto handles =
+        light_handles(projection, {light_at({40, 1, -1}, RT_LIGHT_POINT), light_at({3, 2, 20}, RT_LIGHT_POINT)});
     for (const LightHandle& handle : handles) {
         EXPECT_EQ(handle.kind, LightHandle::Kind::outside);
         EXPECT_TRUE(kArea.holds(handle.place.x, handle.place.y));
