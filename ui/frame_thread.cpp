@@ -80,6 +80,22 @@ void FrameThread::save(const std::string& path) {
     changed_.notify_all();
 }
 
+void FrameThread::release() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    released_ = true;
+    if (running_) running_->cancel();
+    stopped_.wait(lock, [this] { return !tracing_; });
+    for (Tracer& tracer : tracers_) tracer = {};
+}
+
+void FrameThread::resume() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        released_ = false;
+    }
+    changed_.notify_all();
+}
+
 std::vector<FrameThread::Saved> FrameThread::take_saved() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(saved_, {});
@@ -87,7 +103,7 @@ std::vector<FrameThread::Saved> FrameThread::take_saved() {
 
 // With the lock held: whether there is something to do, which sample, and whether it needs tracing at all.
 bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
-    if (!job_.ready || failed_) return false;
+    if (!job_.ready || failed_ || released_ || !job_.ready->main.device->is_open()) return false;
     const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
     const bool fresh = job_.revision != traced_revision_ || sharpen;
     sample = fresh ? 0 : samples_;
@@ -142,6 +158,7 @@ void FrameThread::run() {
                 failed_ = job_.revision == job.revision;
             }
         }
+        stopped_.notify_all();
         wake_();
     }
 }

@@ -72,6 +72,9 @@ class FrameThread {
     void want_distance(bool wanted);
     // Writes the main picture once all its samples are in. Outcomes: see take_saved().
     void save(const std::string& path);
+    // Ends the frame in hand and lets go of all that is on a device, until resume(): so that devices can be closed.
+    void release();
+    void resume();
     struct Saved {
         std::string path, failure;  // empty failure: it is there
     };
@@ -109,8 +112,8 @@ class FrameThread {
     std::shared_ptr<const Ready> paced_;  // what it is of
 
     mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    bool stop_ = false, tracing_ = false, failed_ = false, distance_ = false;
+    std::condition_variable changed_, stopped_;
+    bool stop_ = false, tracing_ = false, failed_ = false, distance_ = false, released_ = false;
     FrameJob job_;
     uint64_t traced_revision_ = 0, shown_revision_ = 0;
     bool traced_reduced_ = false;  // the films hold fewer pixels than asked for

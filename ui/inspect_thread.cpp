@@ -32,6 +32,22 @@ bool InspectThread::busy() const {
     return running_ || waiting_;
 }
 
+void InspectThread::release() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    released_ = true;
+    stopped_.wait(lock, [this] { return !running_; });
+    inspector_.reset();
+    device_.reset();
+}
+
+void InspectThread::resume() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        released_ = false;
+    }
+    changed_.notify_all();
+}
+
 void InspectThread::run() {
     yield_to_window();
     for (;;) {
@@ -39,7 +55,8 @@ void InspectThread::run() {
         {
             std::unique_lock<std::mutex> lock(mutex_);
             running_ = false;
-            changed_.wait(lock, [this] { return stop_ || waiting_; });
+            stopped_.notify_all();
+            changed_.wait(lock, [this] { return stop_ || (waiting_ && !released_); });
             if (stop_) return;
             request = std::move(*waiting_);
             waiting_.reset();
@@ -65,6 +82,7 @@ void InspectThread::run() {
 
 void InspectThread::follow(const Request& request, Inspection& answer) {
     const ReadySide& side = request.job.ready->main;
+    if (!side.device->is_open()) return;  // its picture is about to be replaced
     if (device_ != side.device) {
         inspector_.reset();
         device_ = side.device;

@@ -28,6 +28,9 @@ class InspectThread {
     uint64_t ask(FrameJob job, unsigned x, unsigned y);
     std::shared_ptr<const Inspection> latest() const;  // nullptr at first
     bool busy() const;
+    // As FrameThread has them.
+    void release();
+    void resume();
 
  private:
     struct Request {
@@ -42,8 +45,8 @@ class InspectThread {
     std::shared_ptr<Device> device_;  // of the thread alone, as is
     std::unique_ptr<Inspector> inspector_;
     mutable std::mutex mutex_;
-    std::condition_variable changed_;
-    bool stop_ = false, running_ = false;
+    std::condition_variable changed_, stopped_;
+    bool stop_ = false, running_ = false, released_ = false;
     uint64_t last_number_ = 0;
     std::unique_ptr<Request> waiting_;
     std::shared_ptr<const Inspection> latest_;

@@ -49,8 +49,10 @@ class PrepareWorker::StageProgress : public Progress {
     Clock::time_point woken_{};
 };
 
-PrepareWorker::PrepareWorker(const PluginRegistry& plugins, ImportOptions import, std::function<void()> wake)
-    : plugins_(plugins), import_(std::move(import)), wake_(std::move(wake)), thread_([this] { run(); }) {}
+PrepareWorker::PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake)
+    : plugins_(plugins), import_(std::move(import)), tracers_(std::move(tracers)), wake_(std::move(wake)), thread_([this] {
+          run();
+      }) {}
 
 PrepareWorker::~PrepareWorker() {
     {
@@ -186,21 +188,47 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     ready->request.files_revision = loaded_->files_revision;
     ready->request.hidden = hidden_;
     ready->loaded = loaded_;
-    ready->main = {main_.device, main_.preparer->prepare(visible_, request.main.settings, progress)};
-    if (request.other && other_.preparer) {
-        ready->request.other->device = other_.choice;
-        // What the second side cannot have must not keep the first from changing.
-        try {
-            ready->other = ReadySide{other_.device, other_.preparer->prepare(visible_, request.other->settings, progress)};
-        } catch (const Cancelled&) {
-            throw;
-        } catch (const Error& error) {
-            whole = false;
-            publish({Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false,
-                     false});
-        }
+    prepare_sides(request, *ready, whole, progress);
+    if (worn()) {
+        // It works; now the same on devices opened anew, from the compiler's cache.
+        renew_devices();
+        prepare_sides(request, *ready, whole, progress);
     }
     publish({Outcome::Kind::ready, ready, "", "", false, whole});
+}
+
+void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress) {
+    ready.main = {main_.device, main_.preparer->prepare(visible_, request.main.settings, progress)};
+    ready.other.reset();
+    if (!request.other || !other_.preparer) return;
+    ready.request.other->device = other_.choice;
+    // What the second side cannot have must not keep the first from changing.
+    try {
+        ready.other = ReadySide{other_.device, other_.preparer->prepare(visible_, request.other->settings, progress)};
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        whole = false;
+        publish(
+            {Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false, false});
+    }
+}
+
+bool PrepareWorker::worn() const {
+    return main_.preparer->worn() || (other_.preparer && other_.preparer->worn());
+}
+
+// Both sides', since PoCL frees only with the last context.
+void PrepareWorker::renew_devices() {
+    tracers_.release();
+    const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
+    const bool shared = other_.device == main_.device;
+    if (other_.preparer) other_.preparer->close_device();
+    main_.device = std::make_shared<Device>(main_.preparer->close_device());
+    main_.preparer->open_device(main_.device);
+    if (!other_.preparer) return;
+    other_.device = shared ? main_.device : std::make_shared<Device>(other_.device->info());
+    other_.preparer->open_device(other_.device);
 }
 
 // The scene that is built: without what is hidden. Kept while neither changes, since a new one is built anew.
@@ -214,16 +242,13 @@ void PrepareWorker::hide(const PrepareRequest& request) {
 }
 
 void PrepareWorker::open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress) {
-    const bool same = shop.device && choice == shop.choice;
-    if (same && !shop.preparer->worn()) return;
+    if (shop.device && choice == shop.choice) return;
     progress.stage("opening the device");
-    DeviceInfo info = same ? shop.device->info() : choose_device(choice);
+    DeviceInfo info = choose_device(choice);
     // One context a device, so that both sides share what the driver keeps.
-    const bool shared = neighbour.device && neighbour.device->info().id() == info.id() && !neighbour.preparer->worn();
+    const bool shared = neighbour.device && neighbour.device->info().id() == info.id();
     auto device = shared ? neighbour.device : std::make_shared<Device>(std::move(info));
-    auto preparer = std::make_unique<Preparer>(plugins_, device);
-    if (same) preparer->take_structure(*shop.preparer);
-    shop.preparer = std::move(preparer);
+    shop.preparer = std::make_unique<Preparer>(plugins_, device);
     shop.device = std::move(device);
     shop.choice = choice;
 }

@@ -69,8 +69,12 @@ struct Activity {
 
 class PrepareWorker {
  public:
+    // Those who trace on the devices that are opened here, in words to and fro.
+    struct Tracers {
+        std::function<void()> release, resume;  // let go of everything on a device; go on
+    };
     // wake: called from the worker whenever there is news.
-    PrepareWorker(const PluginRegistry& plugins, ImportOptions import, std::function<void()> wake);
+    PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake);
     ~PrepareWorker();
 
     // The newest request wins; work that it makes useless is cancelled.
@@ -91,6 +95,9 @@ class PrepareWorker {
         std::string choice;
         std::unique_ptr<Preparer> preparer;
     };
+    void prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress);
+    bool worn() const;
+    void renew_devices();
     void open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress);
     void import_files(const PrepareRequest& request, StageProgress& progress);
     void hide(const PrepareRequest& request);
@@ -100,6 +107,7 @@ class PrepareWorker {
 
     const PluginRegistry& plugins_;
     const ImportOptions import_;
+    const Tracers tracers_;
     const std::function<void()> wake_;
 
     // Of the worker thread alone.

@@ -72,9 +72,18 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_edits_(options.edits),
       log_(wake),
       kernels_(plugins_.accels(), wake),
-      worker_(plugins_, options.import, wake),
       frames_(wake),
-      inspector_(wake) {
+      inspector_(wake),
+      worker_(plugins_, options.import,
+              {[this] {
+                   frames_.release();
+                   inspector_.release();
+               },
+               [this] {
+                   frames_.resume();
+                   inspector_.resume();
+               }},
+              wake) {
     wish.main = {options.device, options.settings};
     if (wish.main.settings.accel_params.empty())
         if (const rt_plugin* accel = plugins_.accel(wish.main.settings.accel))
@@ -139,8 +148,7 @@ void Session::follow_main() {
 }
 
 PrepareRequest Session::wished_request() const {
-    PrepareRequest request{files_, files_revision_,    first_camera_, first_light_, wish.main, wish.other,
-                           {},     0};
+    PrepareRequest request{files_, files_revision_, first_camera_, first_light_, wish.main, wish.other, {}, 0};
     // Numbers of instances mean nothing in another scene.
     if (files_revision_ == viewed_files_revision_) request.hidden = wish.hidden;
     return request;

@@ -150,9 +150,9 @@ class Session {
     LogBuffer log_;
     KernelWatch kernels_;
     uint64_t seen_kernels_ = 0;
-    PrepareWorker worker_;
     FrameThread frames_;
     InspectThread inspector_;
+    PrepareWorker worker_;  // after those that it asks to let go
 };
 
 }  // namespace clarity

@@ -173,9 +173,8 @@ class RenderJob {
     }
 
     void reopen_device() {
-        stats_.prepared.reset();
-        device_.reset();
-        device_ = preparer_->reopen_device();
+        device_ = std::make_shared<Device>(preparer_->close_device());
+        preparer_->open_device(device_);
     }
 
     void import(Progress& progress) {

@@ -15,6 +15,12 @@ Device::Device(DeviceInfo info) : info_(std::move(info)) {
     }
 }
 
+void Device::close() {
+    open_ = false;
+    queue_ = cl::CommandQueue();
+    context_ = cl::Context();
+}
+
 unsigned Device::preferred_lanes() const {
     if (!info_.cpu) return 1;
     if (info_.float_width >= 16) return 16;

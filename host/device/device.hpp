@@ -1,6 +1,7 @@
 // device.hpp -- OpenCL devices: listing, ranking, choosing, and one open device with its queue.
 #pragma once
 #include <CL/opencl.hpp>
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ class Device {
     const DeviceInfo& info() const { return info_; }
     cl::Context& context() { return context_; }
     cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
+    // Gives context and queue back; nothing may use them afterwards. info() stays.
+    void close();
+    bool is_open() const { return open_; }
     // Lanes that suit it: 1 on a GPU, the native float width on a CPU.
     unsigned preferred_lanes() const;
 
@@ -41,6 +45,7 @@ class Device {
     DeviceInfo info_;
     cl::Context context_;
     cl::CommandQueue queue_;
+    std::atomic<bool> open_{true};
 };
 
 }  // namespace clarity

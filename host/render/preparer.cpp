@@ -5,6 +5,7 @@
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #ifdef __GLIBC__
@@ -66,32 +67,35 @@ Preparer::~Preparer() = default;
 bool Preparer::worn() const {
     constexpr unsigned kPrograms = 16;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return !device_ || (device_->info().pocl && programs_->compiled() >= kPrograms);
+    return device_->info().pocl && programs_ && programs_->compiled() >= kPrograms;
 }
 
-std::shared_ptr<Device> Preparer::reopen_device() {
+DeviceInfo Preparer::close_device() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (device_) info_ = device_->info();  // else an attempt before this one failed
-    if (last_) {
-        auto kept = std::make_shared<Prepared>();
-        kept->scene = last_->scene;
-        kept->accel = last_->accel;
-        last_ = kept;
-    }
+    for (const std::weak_ptr<Prepared>& given : prepared_)
+        if (const auto prepared = given.lock()) {
+            prepared->on_device.reset();
+            prepared->program.reset();
+        }
+    prepared_.clear();
     programs_.reset();
-    device_.reset();
+    device_->close();
 #ifdef __GLIBC__
     malloc_trim(0);  // a compiler leaves tens of megabytes of holes
 #endif
-    device_ = std::make_shared<Device>(info_);
+    return device_->info();
+}
+
+void Preparer::open_device(std::shared_ptr<Device> device) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    device_ = std::move(device);
     programs_ = std::make_unique<ProgramCache>(device_);
-    return device_;
 }
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                   Progress& progress) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!device_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose it anew");
+    if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose it anew");
     const rt_plugin* plugin = plugins_.accel(settings.accel);
     if (!plugin) {
         std::string known;
@@ -141,6 +145,9 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
                                       " failed with OpenCL error " + std::to_string(e.err()));
     }
     last_ = next;
+    const auto gone = [](const std::weak_ptr<Prepared>& prepared) { return prepared.expired(); };
+    prepared_.erase(std::remove_if(prepared_.begin(), prepared_.end(), gone), prepared_.end());
+    prepared_.push_back(next);
     return next;
 }
 

@@ -26,6 +26,7 @@ class DeviceScene;   // buffers of one scene in one structure
 class TraceProgram;  // compiled kernels of one specialisation
 class ProgramCache;
 
+// Immutable, but that Preparer::close_device() takes away what is on the device.
 struct Prepared {
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const AccelData> accel;
@@ -44,19 +45,20 @@ class Preparer {
     // Throws Error(failed) for a build, Error(kernel_build_failed) with the compiler's log in details(), Cancelled; then what
     // was prepared before stays valid.
     std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress);
-    // Whether reopen_device() is due: PoCL frees what its compiler made, 0.15 MB a program and more, only with the last context
-    // of a process, and whoever edits kernels compiles hundreds.
+    // Whether the device should be closed and opened anew: PoCL frees what its compiler made, 0.15 MB a program and more, only
+    // with the last context of a process, and whoever edits kernels compiles hundreds.
     bool worn() const;
-    // The same device with a context of its own; the structure built last stays. Of use only after every Prepared, Frames and
-    // pointer to the device of before is gone.
-    std::shared_ptr<Device> reopen_device();
+    // Closes the device and takes from everything prepared so far what is on it, programs and buffers; structures stay. Frames
+    // and Inspectors of the device must be gone. Returns what to open a Device of again.
+    DeviceInfo close_device();
+    void open_device(std::shared_ptr<Device> device);
 
  private:
     const PluginRegistry& plugins_;
     std::shared_ptr<Device> device_;
-    DeviceInfo info_;  // of the device to open again
     std::unique_ptr<ProgramCache> programs_;
     std::shared_ptr<const Prepared> last_;
+    std::vector<std::weak_ptr<Prepared>> prepared_;
     mutable std::mutex mutex_;
 };
 

@@ -65,9 +65,11 @@ class Author {
  private:
     // As `render --watch` does.
     void renew_device() {
-        prepared_.reset();
         frames_.reset();
-        frames_ = std::make_unique<Frames>(preparer_->reopen_device());
+        const auto device = std::make_shared<Device>(preparer_->close_device());
+        EXPECT_FALSE(prepared_->program || prepared_->on_device);
+        preparer_->open_device(device);
+        frames_ = std::make_unique<Frames>(device);
     }
 
     Scratch scratch_;
