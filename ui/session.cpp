@@ -148,7 +148,7 @@ void Session::follow_main() {
 }
 
 PrepareRequest Session::wished_request() const {
-    PrepareRequest request{files_, files_revision_, first_camera_, first_light_, wish.main, wish.other, {}, 0};
+    PrepareRequest request{files_, files_revision_, first_camera_, first_light_, wish.main, wish.other, {}, seen_kernels_};
     // Numbers of instances mean nothing in another scene.
     if (files_revision_ == viewed_files_revision_) request.hidden = wish.hidden;
     return request;

@@ -56,7 +56,7 @@ TEST_F(Presets, AWrongOneChangesNothing) {
     const std::string before = wish(*window);
     const std::string start = R"({"clarity_preset": 1, "settings": {"depth": "2", "tone": "aces"})";
     const std::vector<std::pair<std::string, std::string>> wrong = {
-        {"", "parse"},
+        {"", "preset"},
         {"{ \"clarity_preset\": 1,", "parse"},
         {"[1, 2]", "clarity_preset"},
         {R"({"clarity_preset": 99})", "version"},
