@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <optional>
 #include <thread>
 
 #include "base/error.hpp"
@@ -67,7 +68,7 @@ class Session {
             std::snprintf(stage, sizeof stage, "%zu/%zu ", i + 1, suite_.cases.size());
             progress_.stage(stage + c.suite + " " + c.name);
             if (c.scene != loaded) {
-                if (!load(c.scene, report)) {
+                if (!load(c, report)) {
                     while (i + 1 < suite_.cases.size() && suite_.cases[i + 1].scene == c.scene) ++i;
                     continue;
                 }
@@ -82,23 +83,36 @@ class Session {
                 report.records.push_back(std::move(row));
             }
         }
+        const auto failed = [](const BenchRecord& row) { return row.status == RowStatus::failed; };
+        if (first_error_ && std::all_of(report.records.begin(), report.records.end(), failed)) throw *first_error_;
     }
 
  private:
-    // A scene that is not to be had is no failure of the bench where the suite brought it along, and one where a person asked
-    // for it.
-    bool load(size_t scene, BenchReport& report) {
-        const SuiteScene& source = suite_.scenes[scene];
+    // A scene that is not to be had is a failed row where a person named it, else a note.
+    bool load(const BenchCase& c, BenchReport& report) {
+        const SuiteScene& source = suite_.scenes[c.scene];
         const Settings settings = variant_settings(plugins_, request_, {});
         try {
-            stand_.load(source, settings.width, settings.height, request_.max_triangles, progress_);
+            stand_.load(source, settings.width, settings.height, progress_);
             return true;
         } catch (const Cancelled&) {
             throw;
         } catch (const Error& e) {
-            if (!request_.files.empty() && e.code() != Exit::failed) throw;
-            report.notes.push_back(source.source.name + " is left out: " + e.what());
-            log(LogLevel::warning, report.notes.back());
+            if (request_.files.empty()) {
+                report.notes.push_back(source.source.name + " is left out: " + e.what());
+                log(LogLevel::warning, report.notes.back());
+                return false;
+            }
+            BenchRecord row;
+            row.suite = c.suite;
+            row.case_name = c.name;
+            row.scene = source.source.name;
+            row.measure = c.measure;
+            row.status = RowStatus::failed;
+            row.why = e.what();
+            report.records.push_back(row);
+            log(LogLevel::error, row.why);
+            if (!first_error_) first_error_ = e;
             return false;
         }
     }
@@ -119,6 +133,7 @@ class Session {
     Progress& progress_;
     Stand stand_;
     const Clock::time_point begin_ = Clock::now();
+    std::optional<Error> first_error_;  // of a scene that a person named
 };
 
 }  // namespace

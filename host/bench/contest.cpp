@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <thread>
 
 #include "base/error.hpp"
@@ -124,15 +125,17 @@ class Contest {
 
     void add_frame(Entry& entry, const Settings& settings, const Stand::Held& held) {
         const auto pixels = std::make_shared<std::vector<uint8_t>>(4 * size_t(settings.width) * settings.height);
-        const auto last = std::make_shared<FrameStats>();
+        const auto kernels = std::make_shared<std::map<std::string, std::vector<double>>>();
         entry.once = [=] {
             const auto begin = Clock::now();
-            *last = held.frames->trace(*held.prepared, settings, stand_.view(), 0, false, progress_);
-            held.frames->read_display(settings, pixels->data(), last.get());
-            return Take{last->device_ms, ms_since(begin)};
+            FrameStats stats = held.frames->trace(*held.prepared, settings, stand_.view(), 0, false, progress_);
+            held.frames->read_display(settings, pixels->data(), &stats);
+            const Take take{stats.device_ms, ms_since(begin)};
+            for (const KernelTime& kernel : stats.kernels) (*kernels)[kernel.name].push_back(kernel.ms);
+            return take;
         };
         entry.finish = [=](BenchRecord& row) {
-            for (const KernelTime& kernel : last->kernels) row.kernels_ms.emplace_back(kernel.name, kernel.ms);
+            for (const auto& [name, ms] : *kernels) row.kernels_ms.emplace_back(name, summarize(ms).median);
             count_rays(row, settings, held);
         };
     }

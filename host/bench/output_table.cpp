@@ -118,6 +118,19 @@ std::string packets_table(const BenchReport& report) {
     return table.empty() ? std::string() : "packets: frames per second at 4 steps\n" + table.text() + "\n";
 }
 
+// Scene by scene as they came, and in each ours before peers.
+std::vector<std::vector<const BenchRecord*>> ours_first(std::vector<std::vector<const BenchRecord*>> groups) {
+    std::map<std::string, size_t> place;
+    for (const auto& group : groups) place.emplace(group.front()->scene, place.size());
+    std::stable_sort(groups.begin(), groups.end(), [&](const auto& a, const auto& b) {
+        const auto rank = [&](const auto& group) {
+            return std::make_pair(place.at(group.front()->scene), !group.front()->peer.empty());
+        };
+        return rank(a) < rank(b);
+    });
+    return groups;
+}
+
 // One row a scene and structure or peer: what it costs and what it gives.
 std::string accel_table(const BenchReport& report, const std::string& suite) {
     Groups groups;
@@ -133,13 +146,13 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
     std::map<std::string, const BenchRecord*> builds;
     for (const auto& group : groups.all())
         if (const BenchRecord* build = find(group, "build")) builds[build->scene + "\n" + who(*build)] = build;
-    for (const auto& group : groups.all()) {
+    for (const auto& group : ours_first(groups.all())) {
         const BenchRecord& first = *group.front();
         const bool only_build = group.size() == 1 && first.measure == "build";
         if (only_build && first.peer.empty()) {
             bool traced = false;
             for (const auto& other : groups.all())
-                traced |= &other != &group && other.front()->scene == first.scene && who(*other.front()) == who(first);
+                traced |= other.front() != &first && other.front()->scene == first.scene && who(*other.front()) == who(first);
             if (traced) continue;
         }
         const auto built = builds.find(first.scene + "\n" + who(first));

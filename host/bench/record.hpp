@@ -73,7 +73,7 @@ struct BenchRecord {
     double sah_cost = 0;  // 0: the structure does not say
 
     Analysis analysis;
-    std::vector<std::pair<std::string, double>> kernels_ms;  // of one frame: trace, tone map, read-back
+    std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
 
     size_t run = 0;  // 0: BenchReport::run, else joined[run - 1]
 

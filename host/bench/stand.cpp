@@ -1,6 +1,7 @@
 #include "bench/stand.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "base/error.hpp"
@@ -57,7 +58,7 @@ unsigned Stand::peer_threads() const {
     return 0;
 }
 
-void Stand::load(const SuiteScene& scene, int width, int height, uint64_t max_triangles, Progress& progress) {
+void Stand::load(const SuiteScene& scene, int width, int height, Progress& progress) {
     peers_.clear();
     peer_mesh_.reset();
     rays_.clear();
@@ -66,13 +67,15 @@ void Stand::load(const SuiteScene& scene, int width, int height, uint64_t max_tr
     width_ = width;
     height_ = height;
     loaded_ = load_scene(plugins_, scene.source, float(width) / float(height), import_, progress);
-    if (scene.subdivide == 1) return;
-    const uint64_t triangles = loaded_.scene->placed_triangle_count() * scene.subdivide * scene.subdivide;
-    if (triangles > max_triangles)
+    if (scene.subdivide_to == 0) return;
+    const double base = double(loaded_.scene->placed_triangle_count());
+    const double n = std::round(std::sqrt(double(scene.subdivide_to) / std::max(base, 1.0)));
+    if (base == 0) throw Error(Exit::failed, "there are no triangles to split");
+    if (n < 1)
         throw Error(Exit::failed,
-                    std::to_string(triangles) + " triangles are more than --max-triangles " + std::to_string(max_triangles));
-    check_memory(triangles);
-    loaded_.scene = std::make_shared<const Scene>(subdivide(*loaded_.scene, scene.subdivide));
+                    "its " + std::to_string(uint64_t(base)) + " triangles are more than " + std::to_string(scene.subdivide_to));
+    check_memory(uint64_t(base * n * n));
+    loaded_.scene = std::make_shared<const Scene>(subdivide(*loaded_.scene, unsigned(n)));
 }
 
 const Stand::Held& Stand::prepare(size_t device, const Settings& settings, Progress& progress) {

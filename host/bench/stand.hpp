@@ -22,8 +22,8 @@ class Stand {
     // Threads of peers: as many as the first CPU among the devices has. 0: there is none, and no peers then.
     unsigned peer_threads() const;
 
-    // Lets go of the last scene. Throws as load_scene does, and Error(failed) where it is larger than max_triangles or memory.
-    void load(const SuiteScene& scene, int width, int height, uint64_t max_triangles, Progress& progress);
+    // Lets go of the last scene. Throws as load_scene does, and Error(failed) where it is larger than memory.
+    void load(const SuiteScene& scene, int width, int height, Progress& progress);
     const std::shared_ptr<const Scene>& scene() const { return loaded_.scene; }
     const View& view() const { return loaded_.view; }
 

@@ -16,6 +16,11 @@ Variant then_variant() {
     return {"then", "spheres,lone_spheres=true", {{"lanes", "1"}, {"packet", "4x4"}}, false};
 }
 
+// 30 000 -> "30k", 10 000 000 -> "10M".
+std::string size_name(uint64_t count) {
+    return count >= 1'000'000 ? std::to_string(count / 1'000'000) + "M" : std::to_string(count / 1'000) + "k";
+}
+
 class Planner {
  public:
     Planner(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins)
@@ -41,7 +46,7 @@ class Planner {
     }
 
     // The scenes named by the user, or else a suite's own that are there; the others are noted.
-    std::vector<size_t> chosen_or(const std::vector<BenchScene>& own, unsigned subdivide = 1) {
+    std::vector<size_t> chosen_or(const std::vector<BenchScene>& own, uint64_t subdivide_to = 0) {
         std::vector<BenchScene> sources = own;
         if (!request_.files.empty()) {
             sources.clear();
@@ -54,8 +59,8 @@ class Planner {
                     suite_.notes.push_back(source.missing);
                 continue;
             }
-            suite_.scenes.push_back({source, subdivide});
-            if (subdivide > 1) suite_.scenes.back().source.name += "_x" + std::to_string(subdivide * subdivide);
+            suite_.scenes.push_back({source, subdivide_to});
+            if (subdivide_to > 0) suite_.scenes.back().source.name += "_" + size_name(subdivide_to);
             added.push_back(suite_.scenes.size() - 1);
         }
         return added;
@@ -162,17 +167,20 @@ class Planner {
     void scale() {
         limit(900);
         const std::vector<BenchScene> own = {catalog_.project("models/spot")};
-        // Triangles grow with the square; about three times from size to size.
-        std::vector<unsigned> sizes = {2, 3, 5, 9, 17, 30, 53, 91, 167};
-        if (!request_.files.empty()) sizes.insert(sizes.begin(), 1);
-        for (const unsigned n : sizes)
-            for (const size_t scene : chosen_or(own, n))
+        for (const uint64_t size : {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000}) {
+            if (size > request_.max_triangles) {
+                suite_.notes.push_back(size_name(size) + " triangles and more: beyond --max-triangles " +
+                                       std::to_string(request_.max_triangles));
+                break;
+            }
+            for (const size_t scene : chosen_or(own, size))
                 for (const char* measure : {"build", "primary", "shadow", "diffuse", "frame"}) {
                     BenchCase& c = add_case("scale", scene, measure, measure);
                     for (const Variant& variant : every_accel())
                         if (variant.accel.substr(0, variant.accel.find(',')) != "linear") c.variants.push_back(variant);
                     if (request_.peers && c.measure != "frame") c.peer_qualities = {"medium"};
                 }
+        }
     }
 
     void quick() {

@@ -22,7 +22,7 @@ struct BenchRequest {
 
 struct SuiteScene {
     BenchScene source;
-    unsigned subdivide = 1;  // each triangle becomes n x n
+    uint64_t subdivide_to = 0;  // about so many triangles; 0: as it is
 };
 
 // One row of a case, on each device.

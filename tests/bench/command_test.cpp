@@ -179,6 +179,12 @@ TEST_F(BenchCommand, ScenesThatCannotBeReadAreImportErrors) {
         EXPECT_EQ(result.exit_code, 4) << result.err;
         EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
     }
+    // What others gave is kept.
+    const ProgramResult mixed =
+        quick({file("broken.obj"), file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--json", file("a.json")});
+    EXPECT_EQ(mixed.exit_code, 1) << mixed.err;
+    EXPECT_NE(mixed.out.find("FAILED  accel broken/build"), std::string::npos) << mixed.out;
+    EXPECT_GE(records("a.json").size(), 7u);
     RunOptions nothing;
     nothing.environment["CLARITY_DEVICE"] = "no such device";
     EXPECT_EQ(quick({file("tiny.scene")}, nothing).exit_code, 3);

@@ -1,18 +1,26 @@
-/* bvh8.cl -- one ray against eight boxes, or RT_LANES rays against one box after the other. */
+/* bvh8.cl -- one ray against eight boxes at once (RT_LANES 1), or a packet of rays against one box after the other.
+ *
+ * A single ray takes the nearest child and puts the others off in the order of their distances. Most nodes leave one or two
+ * children, and branching on their number costs less than sorting vectors of eight: a network in registers took a tenth longer,
+ * pushing all by the order of the slots with compressing stores as well. */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     uint top = 0, at = root;
 #if RT_LANES == 1
-    /* Near and far planes by the signs of the direction: rows of a node. */
     const ulong near_x = ray->ix < 0.0f ? 96u : 0u, near_y = ray->iy < 0.0f ? 128u : 32u, near_z = ray->iz < 0.0f ? 160u : 64u;
     const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
-#define BVH8_ROW(offset) (*(const global float8 *)(node + (offset)))
     const float8 ix = (float8)(ray->ix), iy = (float8)(ray->iy), iz = (float8)(ray->iz);
-    const float8 wx = ix * RT_WIDE, wy = iy * RT_WIDE, wz = iz * RT_WIDE;
-    const float8 fx = (float8)(ray->far_x * RT_WIDE), fy = (float8)(ray->far_y * RT_WIDE), fz = (float8)(ray->far_z * RT_WIDE);
-    /* Put off: entry distance in the upper half, child in the lower; entries are not negative, so they sort as they are. */
+    /* The far side is widened here instead of in each node: that rounds twice more, each time by half an ulp of origin /
+     * direction or of the distance, for which the slack of rt_prepare and RT_WIDE have room. */
+    const float8 wide_x = ix * RT_WIDE, wide_y = iy * RT_WIDE, wide_z = iz * RT_WIDE;
+    const float8 exit_x = (float8)(ray->far_x * RT_WIDE), exit_y = (float8)(ray->far_y * RT_WIDE),
+                 exit_z = (float8)(ray->far_z * RT_WIDE);
     ulong stack[BVH8_STACK];
-#define BVH8_KEY(i) ((ulong)as_uint(entry[i]) << 32 | child[i])
+#define BVH8_PUSH(key)                                                                                                           \
+    {                                                                                                                            \
+        stack[top] = key;                                                                                                        \
+        if (RT_STACK_OK(top + 1u, BVH8_STACK, hit)) ++top;                                                                       \
+    }
     for (;;) {
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
@@ -23,12 +31,12 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         } else {
             RT_COUNT_VISIT(hit, 1u);
             const global char *node = (const global char *)(ctx->bvh8_nodes + at);
-            const float8 ax = fma(ix, BVH8_ROW(near_x), (float8)(ray->near_x));
-            const float8 ay = fma(iy, BVH8_ROW(near_y), (float8)(ray->near_y));
-            const float8 az = fma(iz, BVH8_ROW(near_z), (float8)(ray->near_z));
-            const float8 bx = fma(wx, BVH8_ROW(far_x), fx);
-            const float8 by = fma(wy, BVH8_ROW(far_y), fy);
-            const float8 bz = fma(wz, BVH8_ROW(far_z), fz);
+            const float8 ax = fma(ix, BVH8_ROW(node, near_x), (float8)(ray->near_x));
+            const float8 ay = fma(iy, BVH8_ROW(node, near_y), (float8)(ray->near_y));
+            const float8 az = fma(iz, BVH8_ROW(node, near_z), (float8)(ray->near_z));
+            const float8 bx = fma(wide_x, BVH8_ROW(node, far_x), exit_x);
+            const float8 by = fma(wide_y, BVH8_ROW(node, far_y), exit_y);
+            const float8 bz = fma(wide_z, BVH8_ROW(node, far_z), exit_z);
             const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(ray->t_min)));
             const float8 out = rt_min(rt_min(bx, by), rt_min(bz, (float8)(hit->t)));
             uint bits = BVH8_BITS(in <= out);
@@ -40,39 +48,36 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                     at = child[i];
                     continue;
                 }
-                float entry[8];
+                float entry[BVH8_WIDTH];
                 vstore8(in, 0, entry);
-                ulong a = BVH8_KEY(i);
+                ulong key = BVH8_KEY(entry, child, i);
                 i = BVH8_LOWEST(bits);
                 bits &= bits - 1u;
-                ulong b = BVH8_KEY(i);
-                ulong nearest = min(a, b), second = max(a, b);
-                if (bits == 0u) {
-                    stack[top++] = second;
-                    at = (uint)nearest;
-                    continue;
-                }
-                i = BVH8_LOWEST(bits);
-                bits &= bits - 1u;
-                a = BVH8_KEY(i);
-                b = max(a, second);
-                a = min(a, second);
-                second = max(a, nearest);
-                nearest = min(a, nearest);
-                const uint base = top;
-                stack[top++] = b;
-                stack[top++] = second;
-                while (bits != 0u) {
+                ulong other = BVH8_KEY(entry, child, i);
+                ulong nearest = min(key, other), second = max(key, other);
+                if (bits != 0u) {
                     i = BVH8_LOWEST(bits);
                     bits &= bits - 1u;
-                    const ulong key = BVH8_KEY(i);
-                    const ulong later = max(key, nearest);
-                    nearest = min(key, nearest);
-                    uint to = top;
-                    for (; to > base && stack[to - 1u] < later; --to) stack[to] = stack[to - 1u];
-                    stack[to] = later;
-                    ++top;
+                    key = BVH8_KEY(entry, child, i);
+                    other = min(key, second);
+                    const uint base = top;
+                    BVH8_PUSH(max(key, second))
+                    second = max(other, nearest);
+                    nearest = min(other, nearest);
+                    for (; bits != 0u; bits &= bits - 1u) {
+                        /* The farther ones go where they belong: between `base` and the top the farthest is lowest. */
+                        key = BVH8_KEY(entry, child, BVH8_LOWEST(bits));
+                        other = max(key, second);
+                        key = min(key, second);
+                        uint to = top;
+                        for (; to > base && stack[to - 1u] < other; --to) stack[to] = stack[to - 1u];
+                        stack[to] = other;
+                        if (RT_STACK_OK(top + 1u, BVH8_STACK, hit)) ++top;
+                        second = max(key, nearest);
+                        nearest = min(key, nearest);
+                    }
                 }
+                BVH8_PUSH(second)
                 at = (uint)nearest;
                 continue;
             }
@@ -84,6 +89,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         } while (as_float((uint)(next >> 32)) > hit->t);
         at = (uint)next;
     }
+#undef BVH8_PUSH
 #else
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u) | (ray->lo_z == 2u ? 4u : 0u);

@@ -43,5 +43,9 @@ RT_INLINE uint bvh8_bits(int8 m)
 #define BVH8_BITS(m) bvh8_bits(m)
 #endif
 #define BVH8_LOWEST(bits) popcount(~(bits) & ((bits)-1u)) /* index of the lowest bit that is set */
+/* Rows of a node by their distance from its begin in bytes: kept in registers, where an index would be multiplied anew. */
+#define BVH8_ROW(node, bytes) (*(const global float8 *)((node) + (bytes)))
+/* Entry distance in the upper half, child in the lower: distances are not negative, so keys sort as they are. */
+#define BVH8_KEY(entry, child, i) ((ulong)as_uint((entry)[i]) << 32 | (child)[i])
 #endif
 #endif
