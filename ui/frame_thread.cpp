@@ -199,11 +199,6 @@ float FrameThread::moving_scale(const FrameJob& job) const {
 
 PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
                                     const Order& order, const PictureSide* last, Progress& progress) {
-    if (tracer.device != ready.device) {
-        tracer.frames.reset();
-        tracer.device = ready.device;
-        tracer.frames = std::make_unique<Frames>(ready.device);
-    }
     PictureSide side;
     side.settings = settings;
     const auto begin = Clock::now();
@@ -226,6 +221,23 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
             side.distance = std::make_shared<const FloatImage>(tracer.frames->read_distance());
     }
     return side;
+}
+
+// The film has kernels of its own. If edited ones do not compile, the last good ones go on.
+void FrameThread::fit_tracer(Tracer& tracer, const std::shared_ptr<Device>& device, uint64_t kernel_revision) {
+    if (tracer.device != device) {
+        tracer = {};
+        tracer.frames = std::make_unique<Frames>(device);
+        tracer.device = device;
+    } else if (tracer.kernel_revision != kernel_revision) {
+        try {
+            tracer.frames = std::make_unique<Frames>(device);
+        } catch (const Error& error) {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            failure_ = error.what();
+        }
+    }
+    tracer.kernel_revision = kernel_revision;
 }
 
 void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
@@ -256,7 +268,11 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         return settings;
     };
     const bool two = job.other_settings && job.ready->other;
-    if (!two) tracers_[1] = {};
+    fit_tracer(tracers_[0], job.ready->main.device, job.ready->request.kernel_revision);
+    if (two)
+        fit_tracer(tracers_[1], job.ready->other->device, job.ready->request.kernel_revision);
+    else
+        tracers_[1] = {};
     const Order order{sample, retrace, distance};
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
     picture->main = trace_side(tracers_[0], job.ready->main, sized(job.ready->main, job.settings, before[0]), job.view, order,

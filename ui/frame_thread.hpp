@@ -86,6 +86,7 @@ class FrameThread {
     struct Tracer {
         std::shared_ptr<Device> device;
         std::unique_ptr<Frames> frames;
+        uint64_t kernel_revision = 0;  // that the film's kernels are of
     };
     struct Times {
         std::vector<float> ms;
@@ -101,6 +102,7 @@ class FrameThread {
     static PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
                                   const Order& order, const PictureSide* last, Progress& progress);
     bool wants_work(unsigned& sample, bool& retrace) const;
+    void fit_tracer(Tracer& tracer, const std::shared_ptr<Device>& device, uint64_t kernel_revision);
     bool has_saving() const;
     void save_waiting();
     float moving_scale(const FrameJob& job) const;
