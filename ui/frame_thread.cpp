@@ -21,6 +21,18 @@ Settings frame_settings(const Settings& prepared, const Settings& wished) {
     return settings;
 }
 
+namespace {
+
+// Without the times of showing, which read_display() adds anew.
+FrameStats traced_part(FrameStats stats) {
+    const auto shown = std::find_if(stats.kernels.begin(), stats.kernels.end(),
+                                    [](const KernelTime& time) { return time.name != "trace" && time.name != "counters"; });
+    stats.kernels.erase(shown, stats.kernels.end());
+    return stats;
+}
+
+}  // namespace
+
 FrameThread::FrameThread(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
 
 FrameThread::~FrameThread() {
@@ -205,7 +217,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
     if (order.retrace)
         side.stats = tracer.frames->trace(*ready.prepared, settings, view, order.sample, true, progress);
     else if (last)
-        side.stats = last->stats;
+        side.stats = traced_part(last->stats);
     side.image.width = static_cast<unsigned>(settings.width);
     side.image.height = static_cast<unsigned>(settings.height);
     side.image.pixels.resize(size_t(side.image.width) * side.image.height * 4);
