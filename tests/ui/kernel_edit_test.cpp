@@ -118,14 +118,16 @@ TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
     ASSERT_EQ(window->command("set lanes 1"), "");
     ASSERT_EQ(window->command("set packet 1x1"), "");
     window->settle();
+    const Pixels before = window->picture(), blue = blue_for_red(before);
     const auto begin = std::chrono::steady_clock::now();
     double warm_kb = 0, most_kb = 0;
     for (int i = 1; i <= warm_up + reloads; ++i) {
         const int revision = window->state()["kernel_revision"];
-        write(good + "\nconstant int edited = " + std::to_string(i) + ";\n");
+        write((i % 2 == 1 ? swapped() : good) + "\nconstant int edited = " + std::to_string(i) + ";\n");
         ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["kernel_revision"] > revision; })) << i;
         window->settle();
         ASSERT_FALSE(window->state()["behind"]) << window->state()["message"];
+        ASSERT_EQ(difference(window->picture(), i % 2 == 1 ? blue : before, 0), 0) << i;  // it is the new text that runs
         const double kb = window->state()["resident_kb"];
         (i <= warm_up ? warm_kb : most_kb) = std::max(i <= warm_up ? warm_kb : most_kb, kb);
     }

@@ -84,12 +84,12 @@ TEST_F(Loading, ARunningBuildGivesWay) {
     ASSERT_EQ(window->command("open " + model), "");
     ASSERT_TRUE(sees_stage(*window, "build"));
     ASSERT_EQ(window->command("accel spheres"), "");
-    ASSERT_EQ(window->command("accel bvh2,max_leaf=8"), "");
+    ASSERT_EQ(window->command("accel bvh2,max_leaf=2"), "");
     window->settle(300);
     auto now = window->state();
     EXPECT_EQ(now["accel"], "bvh2");
     EXPECT_GT(int(now["triangles"]), 800000);
-    EXPECT_NE(wish(*window).find("max_leaf=8"), std::string::npos);
+    EXPECT_NE(wish(*window).find("max_leaf=2"), std::string::npos);
     EXPECT_EQ(now["message"], "");
     EXPECT_FALSE(now["behind"]);
     const Pixels large = window->picture();
