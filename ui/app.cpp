@@ -47,6 +47,7 @@ App::App(const ViewOptions& options) {
         GlWindow::wake();
     };
     session_ = std::make_unique<Session>(options, wake);
+    memory_.begin(folder_, preferences, state_, session_->wish);
     overlay_ = std::make_unique<VolumeOverlay>(wake);
     script_ = Script::from_environment();
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
@@ -60,6 +61,7 @@ App::~App() {
     preferences.light_speed = state_.light_speed;
     preferences.key_map = state_.key_map->id;
     preferences.panel_visible = state_.panel_visible;
+    memory_.note(preferences, state_, session_->wish);
     save_preferences(folder_, preferences);
     // A compiler that runs cannot be stopped: the window goes before it is waited for.
     window_->hide();
@@ -117,6 +119,7 @@ void App::turn() {
     } catch (const Error& error) {
         session_->report(error.what(), error.details());
     }
+    memory_.follow(*session_, state_);
     const auto ready = session_->ready();
     overlay_->update(ready ? ready->main.prepared : nullptr, ready && ready->other ? ready->other->prepared : nullptr);
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "ui/gl_window.hpp"
+#include "ui/memory.hpp"
 #include "ui/overlay.hpp"
 #include "ui/picture_pane.hpp"
 #include "ui/preferences.hpp"
@@ -65,6 +66,7 @@ class App {
     std::unique_ptr<Script> script_;
     UiState state_;
     UiTimes times_;
+    Memory memory_;
     HeldKeys held_;
     std::shared_ptr<const Picture> uploaded_;
     std::string capture_path_;

@@ -6,6 +6,8 @@
 
 #include "ui/app.hpp"
 #include "ui/cards.hpp"
+#include "ui/file_browser.hpp"
+#include "ui/keys_card.hpp"
 #include "ui/panel.hpp"
 #include "ui/theme.hpp"
 
@@ -15,15 +17,17 @@ void App::draw() {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
     const float scale = ui_scale();
     const float status = std::round(28 * scale);
-    const float panel = state_.panel_visible ? std::round(std::min(372 * scale, size.x * 0.5f)) : 0;
+    const float panel = state_.panel_visible ? std::round(std::min(state_.panel_width * scale, size.x * 0.6f)) : 0;
     const Rect viewport{0, 0, std::max(size.x - panel, 1.0f), std::max(size.y - status, 1.0f)};
     pane_->draw(viewport, *session_, *overlay_, state_);
     draw_empty_hint(viewport, *session_);
     if (state_.panel_visible)
         draw_panel({size.x - panel, 0, panel, viewport.height}, *session_, *overlay_, state_, window_->gl_text());
-    draw_status_line({0, viewport.height, size.x, status}, *session_, *overlay_);
+    draw_status_line({0, viewport.height, size.x, status}, *session_, *overlay_, state_);
     draw_progress_card(viewport, *session_);
     draw_message_card(viewport, *session_, state_);
+    draw_file_browser(viewport, *session_, state_);
+    draw_keys_card(viewport, state_);
 }
 
 void App::upload_picture() {

@@ -3,9 +3,11 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
 
+#include "ui/log_rows.hpp"
 #include "ui/theme.hpp"
 #include "ui/widgets.hpp"
 
@@ -31,26 +33,32 @@ void end_card() {
     ImGui::PopStyleColor();
 }
 
-// The last part of what fits, so that a long path keeps its file's name.
-std::string shortened(const std::string& text, float width) {
-    if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
-    size_t from = 0;
-    while (from < text.size()) {
-        do ++from;
-        while (from < text.size() && (static_cast<unsigned char>(text[from]) & 0xC0) == 0x80);  // whole UTF-8 characters
-        const std::string rest = "\u2026" + text.substr(from);
-        if (ImGui::CalcTextSize(rest.c_str()).x <= width) return rest;
-    }
-    return {};
-}
-
 // Text on the status line, then a gap.
 void status_item(const std::string& text, const ImVec4& color, const std::string& help = {}) {
+    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x) return;  // what comes first matters more
     ImGui::PushStyleColor(ImGuiCol_Text, color);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
     tooltip(help);
     ImGui::SameLine(0, 22 * ui_scale());
+}
+
+constexpr double kNoticeSeconds = 6;
+
+// What was just done: a word of the window's own, or the log's last line. Empty: it is long ago.
+std::string current_notice(Session& session, const UiState& state) {
+    static uint64_t seen = 0;
+    static double at_s = -1e9;
+    const double now = ImGui::GetTime();
+    if (state.notices != seen) {
+        seen = state.notices;
+        at_s = now;
+    }
+    if (now - at_s < kNoticeSeconds) return state.notice;
+    const auto last = session.log_lines().last();
+    const double clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    const bool tells = last && last->level == LogLevel::info && clock_s - last->at_s < kNoticeSeconds;
+    return tells ? last->text.substr(0, last->text.find('\n')) : std::string();
 }
 
 }  // namespace
@@ -67,12 +75,13 @@ void draw_progress_card(const Rect& viewport, Session& session) {
     if (ImGui::GetTime() - busy_since < 0.15) return;
     const float scale = ui_scale(), width = std::min(420 * scale, viewport.width - 32 * scale);
     begin_card("Progress", {viewport.x + viewport.width / 2, viewport.y + viewport.height - 18 * scale}, {0.5f, 1}, width);
-    const float button = 72 * scale;
+    const float cancel = 72 * scale;
     const float inner = ImGui::GetContentRegionAvail().x;
     ImGui::AlignTextToFramePadding();
-    ImGui::TextUnformatted(shortened(activity.stage.empty() ? "working" : activity.stage, inner - button - 12 * scale).c_str());
-    ImGui::SameLine(ImGui::GetCursorPosX() + inner - button);
-    if (ImGui::Button("Cancel", {button, 0})) session.cancel();
+    ImGui::TextUnformatted(
+        cut_front_to(activity.stage.empty() ? "working" : activity.stage, inner - cancel - 12 * scale).c_str());
+    ImGui::SameLine(ImGui::GetCursorPosX() + inner - cancel);
+    if (button("Cancel", "back to the settings of the picture (Esc)", cancel)) session.cancel();
     const ImVec2 bar(-FLT_MIN, 6 * scale);
     if (activity.fraction >= 0) {
         ImGui::ProgressBar(activity.fraction, bar, "");
@@ -87,7 +96,20 @@ void draw_progress_card(const Rect& viewport, Session& session) {
     end_card();
 }
 
+// A compiler's or a builder's failure is read in the log, at its place in the source: the first one opens it.
+void open_log_at_failure(const Session& session, UiState& state) {
+    static bool failing = false;
+    const Message& message = session.message();
+    const bool source = !message.details.empty() || find_source_place(message.text) || message.text.rfind("accel ", 0) == 0;
+    if (!message.text.empty() && source && !failing) {
+        state.show_tab(Tab::log);
+        state.log_jump = true;
+    }
+    failing = !message.text.empty() && source;
+}
+
 void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
+    open_log_at_failure(session, state);
     if (session.message().text.empty()) return;
     const float scale = ui_scale(), width = std::min(620 * scale, viewport.width - 32 * scale);
     begin_card("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
@@ -99,12 +121,17 @@ void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
     list.PopClipRect();
     ImGui::Indent(6 * scale);
     ImGui::PushTextWrapPos(0);
-    ImGui::TextUnformatted(session.message().text.c_str());
+    const std::string& text = session.message().text;
+    constexpr size_t kMost = 700;  // bytes; the rest is in the log
+    ImGui::TextUnformatted(text.size() <= kMost ? text.c_str() : (text.substr(0, kMost) + "\u2026").c_str());
     ImGui::PopTextWrapPos();
     ImGui::Dummy({0, 2 * scale});
-    const bool dismissed = ImGui::Button("Dismiss");
+    const bool dismissed = button("Dismiss");
     ImGui::SameLine();
-    if (ImGui::Button("Show log")) state.show_tab(Tab::log);
+    if (button("Show log", "with all that was said about it")) {
+        state.show_tab(Tab::log);
+        state.log_jump = true;
+    }
     if (session.ready()) {
         ImGui::SameLine(0, 14 * scale);
         ImGui::AlignTextToFramePadding();
@@ -117,7 +144,7 @@ void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
 
 void draw_empty_hint(const Rect& viewport, const Session& session) {
     if (session.picture() || session.activity().busy || !session.message().text.empty()) return;
-    const char* const lines[] = {"No scene yet", "Drop a file here, or open one in the Scene tab"};
+    const char* const lines[] = {"No scene yet", "Drop a file here, or press Open\u2026 at the right"};
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     float y = viewport.y + viewport.height / 2 - ImGui::GetTextLineHeightWithSpacing();
     for (const char* line : lines) {
@@ -128,7 +155,7 @@ void draw_empty_hint(const Rect& viewport, const Session& session) {
     }
 }
 
-void draw_status_line(const Rect& area, const Session& session, const VolumeOverlay& overlay) {
+void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& overlay, const UiState& state) {
     ImGui::SetNextWindowPos({area.x, area.y});
     ImGui::SetNextWindowSize({area.width, area.height});
     ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kPanel);
@@ -141,14 +168,16 @@ void draw_status_line(const Rect& area, const Session& session, const VolumeOver
     if (!picture) {
         status_item(session.activity().busy ? session.activity().stage : "ready", colors::kDim);
     } else {
-        const Settings& s = picture->job.settings;
+        const Settings& s = picture->main.settings;
         char text[96];
         std::snprintf(text, sizeof text, "%.1f fps", session.frames_per_second());
         status_item(text, colors::kText, "frames a second, mean of the last ten");
         std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second());
         status_item(text, colors::kText, "rays of all kinds by the time of the kernels");
         std::snprintf(text, sizeof text, "%d\u00d7%d", s.width, s.height);
-        status_item(text, colors::kDim, "pixels of the picture");
+        status_item(
+            text, colors::kDim,
+            picture->reduced ? "pixels of the picture, fewer than asked for while something moves" : "pixels of the picture");
         std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->main.stats.samples), s.spp);
         status_item(text, colors::kDim, "samples a pixel so far; they add up while the camera rests");
         if (picture->main.stats.dropped > 0)
@@ -160,10 +189,14 @@ void draw_status_line(const Rect& area, const Session& session, const VolumeOver
             const std::string more = overlay.count() >= VolumeOverlay::kLimit ? ", first " : ", ";
             status_item(level + more + std::to_string(overlay.count()) + " volumes", colors::kAmber);
         }
-        const Prepared& prepared = *picture->job.ready->main.prepared;
-        status_item(prepared.accel->plugin->id, colors::kDim, prepared.accel->plugin->name);
-        status_item(shortened(picture->job.ready->main.device->info().name, ImGui::GetContentRegionAvail().x), colors::kDim,
-                    picture->job.ready->main.device->info().name);
+        const ReadySide& side = picture->job.ready->main;
+        if (const std::string notice = current_notice(session, state); !notice.empty()) {
+            status_item(cut_to(notice, ImGui::GetContentRegionAvail().x), colors::kGreen, notice);
+        } else {
+            status_item(side.prepared->accel->plugin->id, colors::kDim, side.prepared->accel->plugin->name);
+            status_item(cut_to(side.device->info().name, ImGui::GetContentRegionAvail().x), colors::kDim,
+                        side.device->info().name);
+        }
     }
     ImGui::End();
     ImGui::PopStyleVar(2);

@@ -9,6 +9,6 @@ namespace clarity {
 void draw_progress_card(const Rect& viewport, Session& session);
 void draw_message_card(const Rect& viewport, Session& session, UiState& state);
 void draw_empty_hint(const Rect& viewport, const Session& session);
-void draw_status_line(const Rect& area, const Session& session, const VolumeOverlay& overlay);
+void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& overlay, const UiState& state);
 
 }  // namespace clarity

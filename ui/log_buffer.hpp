@@ -4,6 +4,7 @@
 #include <deque>
 #include <functional>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ namespace clarity {
 struct LogLine {
     LogLevel level;
     std::string text;  // may hold several lines: a compiler's log, say
+    double at_s = 0;   // by the steady clock
 };
 
 // Listens to the program's log from its making to its end. Thread-safe.
@@ -27,6 +29,7 @@ class LogBuffer {
     // Changes with every line.
     uint64_t revision() const;
     std::vector<LogLine> lines() const;
+    std::optional<LogLine> last() const;
     void clear();
 
  private:

@@ -8,10 +8,17 @@ namespace clarity {
 
 void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state, const std::string& gl_text);
 
-void draw_render_tab(Session& session, VolumeOverlay& overlay, const UiState& state);
+void draw_toolbar(Session& session, VolumeOverlay& overlay, UiState& state);
+void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state);
+void draw_output_rows(Session& session, UiState& state);  // of the Render tab: presets, pictures, sequences
 void draw_scene_tab(Session& session, UiState& state);
+void draw_scene_tree(Session& session, UiState& state);
+void draw_material_rows(Session& session);
+void draw_light_rows(Session& session, UiState& state);
+void draw_bookmark_rows(Session& session, UiState& state);
+void draw_inspect_tab(Session& session, UiState& state);
 void draw_statistics_tab(Session& session);
-void draw_log_tab(Session& session);
+void draw_log_tab(Session& session, UiState& state);
 void draw_plugins_tab(Session& session);
 void draw_help_tab(UiState& state, const std::string& gl_text);
 

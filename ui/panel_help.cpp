@@ -1,8 +1,7 @@
-// The tab of keys, and of how the window itself looks.
+// The tab of first steps and keys, and of how the window itself looks.
 #include <imgui.h>
 
-#include <cstring>
-
+#include "ui/keys_card.hpp"
 #include "ui/panel.hpp"
 #include "ui/theme.hpp"
 #include "ui/widgets.hpp"
@@ -10,53 +9,36 @@
 namespace clarity {
 namespace {
 
-void key_rows(const KeyMap& map) {
-    for (size_t i = 0; i < map.bindings.size();) {
-        std::string keys;
-        size_t next = i;
-        for (; next < map.bindings.size() && std::strcmp(map.bindings[next].help, map.bindings[i].help) == 0; ++next)
-            keys += (keys.empty() ? "" : " ") + std::string(map.bindings[next].name);
-        if (next - i > 4) keys = std::string(map.bindings[i].name) + " \u2013 " + map.bindings[next - 1].name;
-        const float start = ImGui::GetCursorPosX();
-        ImGui::PushStyleColor(ImGuiCol_Text, colors::kAccent);
-        ImGui::TextUnformatted(keys.c_str());
-        ImGui::PopStyleColor();
-        ImGui::SameLine(start + 96 * ui_scale());
-        ImGui::PushTextWrapPos(0);
-        ImGui::TextUnformatted(map.bindings[i].help);
-        ImGui::PopTextWrapPos();
-        i = next;
-    }
+void step(const char* what, const char* how) {
+    ImGui::PushStyleColor(ImGuiCol_Text, colors::kAccent);
+    ImGui::TextUnformatted(what);
+    ImGui::PopStyleColor();
+    ImGui::Indent(12 * ui_scale());
+    wrapped_text(how);
+    ImGui::Unindent(12 * ui_scale());
 }
 
 }  // namespace
 
 void draw_help_tab(UiState& state, const std::string& gl_text) {
+    if (folding_section("FIRST STEPS")) {
+        step("Open a file", "Open\u2026 above the tabs, or drop files onto the window.");
+        step("Change the structure", "Render > Structure; its own parameters stand below it.");
+        step("See the volumes", "Volumes above the tabs; keys 1 to 9 choose the level, 0 the bottom one.");
+        step("Compare two structures", "Compare above the tabs, then choose another Structure: the rows are of B now.");
+        step("See the rays of a pixel", "Inspect above the tabs, then move over the picture.");
+        step("Save the picture", "Save above the tabs, or Render > Save for PNG, EXR and a path of your own.");
+    }
     section("KEYS");
     row_label("Key map",
               "thesis: arrows, I K O P for the camera, W A S D for the light; viewer: W A S D walk, the mouse looks");
     if (ImGui::BeginCombo("##keymap", state.key_map->name)) {
         for (const KeyMap& map : key_maps())
-            if (ImGui::Selectable(map.name, &map == state.key_map)) state.key_map = &map;
+            if (option(map.name, &map == state.key_map)) state.key_map = &map;
         ImGui::EndCombo();
     }
-    ImGui::Dummy({0, 2 * ui_scale()});
-    key_rows(*state.key_map);
-    section("MOUSE ON THE PICTURE");
-    const float column = 96 * ui_scale();
-    const std::pair<const char*, const char*> mouse[] = {
-        {"Left", state.key_map->mouse_look ? "look around" : "orbit about the target"},
-        {"Middle", "shift the view"},
-        {"Wheel", "nearer to the target, farther"},
-    };
-    for (const auto& [button, what] : mouse) {
-        const float start = ImGui::GetCursorPosX();
-        ImGui::PushStyleColor(ImGuiCol_Text, colors::kAccent);
-        ImGui::TextUnformatted(button);
-        ImGui::PopStyleColor();
-        ImGui::SameLine(start + column);
-        ImGui::TextUnformatted(what);
-    }
+    if (button("All keys over the picture", "F1", -FLT_MIN)) state.keys_open = true;
+    draw_key_table(state);
     section("THIS WINDOW");
     row_label("Text size", "on top of what the screen asks for");
     // In force once let go: the slider would grow under the mouse.

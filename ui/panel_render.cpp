@@ -14,25 +14,62 @@ namespace {
 struct Group {
     const char* title;
     std::vector<const char*> keys;
+    bool shared;  // by both sides of a comparison
 };
 const std::vector<Group>& groups() {
     static const std::vector<Group> all = {
-        {"TRACING", {"tracer", "depth", "packet", "lanes", "ray_slots", "shadows", "min_weight"}},
-        {"PICTURE", {"size", "spp", "aov", "exposure", "tone"}},
+        {"TRACING", {"tracer", "depth", "packet", "lanes", "ray_slots", "shadows", "min_weight"}, false},
+        {"PICTURE", {"size", "spp", "aov", "scale_max", "exposure", "tone"}, true},
     };
     return all;
+}
+
+// Which of two sides the rows below are of, and how both are shown.
+void compare_rows(Session& session, UiState& state) {
+    if (!session.wish.other) return;
+    section("COMPARE");
+    row_label("Rows below are of", "a click changes the side that structure, device and tracing below belong to");
+    const float half = share_of_line(2);
+    const std::string names[2] = {"A  " + session.wish.main.settings.accel, "B  " + session.wish.other->settings.accel};
+    for (int side = 0; side < 2; ++side) {
+        if (side == 1) ImGui::SameLine();
+        const std::string shown = cut_to(names[side], half - 2 * ImGui::GetStyle().FramePadding.x);
+        if (toggle_button((shown + "##side" + std::to_string(side)).c_str(), session.editing_other == (side == 1), names[side],
+                          half))
+            session.editing_other = side == 1;
+        note_place(side == 0 ? "side A" : "side B");
+    }
+    row_label("Shown as", "wipe: drag the line between the pictures; difference: eight times as bright as it is");
+    if (ImGui::BeginCombo("##mode", kCompareNames[static_cast<int>(state.compare_mode)])) {
+        for (int i = 0; i < 3; ++i)
+            if (option(kCompareNames[i], static_cast<int>(state.compare_mode) == i)) state.compare_mode = CompareMode(i);
+        ImGui::EndCombo();
+    }
+    row_label("");
+    const float width = share_of_line(2);
+    if (button("Swap", "A becomes B and B becomes A (X)", width)) session.swap_sides();
+    ImGui::SameLine();
+    if (button("End", "back to one picture, that of A (C)", width)) session.compare(false);
+}
+
+const ReadySide* edited_ready(const Session& session) {
+    const auto& ready = session.ready();
+    if (!ready) return nullptr;
+    if (session.editing_other && session.wish.other) return ready->other ? &*ready->other : nullptr;
+    return &ready->main;
 }
 
 void device_row(Session& session) {
     row_label("Device", "what computes the picture; all OpenCL devices of all platforms, best first");
     const auto devices = session.devices();
-    const auto ready = session.ready();
+    const auto keep = session.ready();  // what `ready` points into
+    const ReadySide* ready = edited_ready(session);
     std::string name = "looking for devices\u2026";
     if (devices && devices->empty()) name = "none found";
-    if (ready) name = ready->main.device->info().name;
+    if (ready) name = ready->device->info().name;
     if (ImGui::BeginCombo("##device", name.c_str())) {
         for (const DeviceInfo& device : devices ? *devices : std::vector<DeviceInfo>()) {
-            const bool chosen = ready && ready->main.device->info().id() == device.id();
+            const bool chosen = ready && ready->device->info().id() == device.id();
             if (option(device.id() + "  " + device.name, chosen)) session.edited().device = device.id();
             tooltip(device.platform + "\n" + device.version + "\ndriver " + device.driver);
         }
@@ -45,7 +82,7 @@ void accel_rows(Session& session) {
     Settings& settings = session.edited().settings;
     const rt_plugin* current = session.plugins().accel(settings.accel);
     row_label("Structure", "how the scene is held for tracing; each is a plugin");
-    if (ImGui::BeginCombo("##accel", current ? current->name : settings.accel.c_str())) {
+    if (ImGui::BeginCombo("##accel", current ? current->name : settings.accel.c_str(), ImGuiComboFlags_HeightLarge)) {
         for (const rt_plugin* plugin : session.plugins().accels()) {
             const bool chosen = plugin == current;
             if (option(plugin->name, chosen)) session.set_accel(plugin->id);
@@ -62,30 +99,46 @@ void accel_rows(Session& session) {
 }
 
 // "Level 3" counts from 1, the root, as the keys do.
-void level_row(VolumeOverlay& overlay) {
+void level_rows(VolumeOverlay& overlay) {
     row_label("Show volumes", "bounding volumes of one level, drawn over the picture; keys 1 to 9, and 0 for the bottom level");
     const auto name = [](std::optional<rt_u32> level) {
         if (!level) return std::string("off");
         if (*level == RT_LEVEL_BOTTOM) return std::string("bottom level");
         return "level " + std::to_string(*level + 1) + (*level == 0 ? " (root)" : "");
     };
-    if (!ImGui::BeginCombo("##level", name(overlay.level()).c_str(), ImGuiComboFlags_HeightLarge)) return;
-    std::vector<std::optional<rt_u32>> levels = {std::nullopt};
-    for (rt_u32 level = 0; level < 24; ++level) levels.emplace_back(level);
-    levels.emplace_back(RT_LEVEL_BOTTOM);
-    for (const auto& level : levels)
-        if (option(name(level), level == overlay.level())) overlay.show(level);
-    ImGui::EndCombo();
+    if (ImGui::BeginCombo("##level", name(overlay.level()).c_str(), ImGuiComboFlags_HeightLarge)) {
+        std::vector<std::optional<rt_u32>> levels = {std::nullopt};
+        for (rt_u32 level = 0; level < 24; ++level) levels.emplace_back(level);
+        levels.emplace_back(RT_LEVEL_BOTTOM);
+        for (const auto& level : levels)
+            if (option(name(level), level == overlay.level())) overlay.show(level);
+        ImGui::EndCombo();
+    }
+    if (!overlay.level()) return;
+    row_label("Hide behind", "volumes behind the picture's surfaces are left out; else they are faint");
+    bool hides = overlay.hides_behind();
+    if (ImGui::Checkbox("##behind", &hides)) overlay.hide_behind(hides);
 }
 
-void fit_button(Settings& settings, const UiState& state) {
+void size_rows(Session& session, const UiState& state) {
+    Settings& settings = session.wish.main.settings;
     row_label("");
-    if (ImGui::Button("Fit the window", {-FLT_MIN, 0})) {
+    if (button("Fit the window",
+               "as many pixels as the picture has room for: " + std::to_string(state.room_width) + "x" +
+                   std::to_string(state.room_height),
+               -FLT_MIN)) {
         settings.width = state.room_width;
         settings.height = state.room_height;
     }
-    tooltip("as many pixels as the picture has room for: " + std::to_string(state.room_width) + "x" +
-            std::to_string(state.room_height));
+    row_label("Resolution", "of the size above, each way: below 100 % is faster, above is finer than the screen");
+    float percent = session.wish.resolution_scale * 100;
+    if (slider("##scale", percent, 10, 200, "%.0f %%", true)) session.wish.resolution_scale = percent / 100;
+    row_label("While moving",
+              "frames a second to keep up while the camera or a light moves, with fewer pixels if need be; 0: all "
+              "pixels, always");
+    float fps = session.wish.moving_fps;
+    if (slider("##fps", fps, 0, 120, fps < 0.5f ? "all pixels" : "%.0f frames/s"))
+        session.wish.moving_fps = fps < 0.5f ? 0 : fps;
 }
 
 bool in_a_group(const std::string& key) {
@@ -94,30 +147,36 @@ bool in_a_group(const std::string& key) {
     return false;
 }
 
+void group_rows(const Group& group, Session& session, const UiState& state) {
+    const bool compared = session.wish.other.has_value();
+    if (!folding_section(group.title)) return;
+    if (compared && group.shared) dim_text("of both sides");
+    for (const char* key : group.keys)
+        if (const Setting* row = find_setting(key)) {
+            setting_row(*row, group.shared ? session.wish.main.settings : session.edited().settings);
+            if (row->key == "size") size_rows(session, state);
+        }
+}
+
 }  // namespace
 
-void draw_render_tab(Session& session, VolumeOverlay& overlay, const UiState& state) {
-    if (session.behind() && !session.activity().busy) {
-        ImGui::PushStyleColor(ImGuiCol_Text, colors::kAmber);
-        ImGui::TextWrapped("Not in force: the picture shows the last settings that worked.");
-        ImGui::PopStyleColor();
-    }
+void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
+    if (session.behind() && !session.activity().busy)
+        wrapped_text("Not in force: the picture shows the last settings that worked.", colors::kAmber);
+    compare_rows(session, state);
+    // The two sides' widgets are not the same ones: an edit that is under way stays with its side.
+    ImGui::PushID(session.editing_other ? "b" : "a");
+    section("STRUCTURE");
+    accel_rows(session);
+    level_rows(overlay);
     section("DEVICE");
     device_row(session);
-    section("ACCELERATION STRUCTURE");
-    accel_rows(session);
-    level_row(overlay);
-    for (const Group& group : groups()) {
-        section(group.title);
-        for (const char* key : group.keys)
-            if (const Setting* row = find_setting(key)) {
-                setting_row(*row, session.edited().settings);
-                if (row->key == "size") fit_button(session.edited().settings, state);
-            }
-    }
-    section("MORE");
-    for (const Setting& row : settings_table())
-        if (!in_a_group(row.key)) setting_row(row, session.edited().settings);
+    for (const Group& group : groups()) group_rows(group, session, state);
+    if (folding_section("MORE", false))
+        for (const Setting& row : settings_table())
+            if (!in_a_group(row.key)) setting_row(row, session.edited().settings);
+    ImGui::PopID();
+    draw_output_rows(session, state);
 }
 
 }  // namespace clarity

@@ -1,8 +1,8 @@
-// The tab of what is traced: files, camera, lights, background.
+// The tab of what is traced: files, tree, materials, camera, lights, background.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include <cmath>
+#include <utility>
 
 #include "ui/panel.hpp"
 #include "ui/theme.hpp"
@@ -11,44 +11,46 @@
 namespace clarity {
 namespace {
 
-void open_row(Session& session, UiState& state) {
-    const float button = 64 * ui_scale();
-    ImGui::SetNextItemWidth(-button - ImGui::GetStyle().ItemSpacing.x);
-    if (std::exchange(state.focus_path_asked, false)) ImGui::SetKeyboardFocusHere();
-    const bool entered =
-        ImGui::InputTextWithHint("##path", "path of a model or scene", &state.path, ImGuiInputTextFlags_EnterReturnsTrue);
+void open_rows(Session& session, UiState& state) {
+    const float half = share_of_line(2);
+    if (button("Open\u2026", "a model or a scene (Ctrl+O); several, chosen with Ctrl+click, become one scene", half))
+        state.browse(BrowseFor::scene);
     ImGui::SameLine();
-    const bool pressed = ImGui::Button("Open", {button, 0});
-    if ((entered || pressed) && !state.path.empty()) session.open({state.path});
-    dim_text("or drop files onto the window; several become one scene");
+    ImGui::SetNextItemWidth(half);
+    if (ImGui::BeginCombo("##recent", "Recent files", ImGuiComboFlags_HeightLarge)) {
+        for (const std::string& file : state.recent_files) {
+            ImGui::PushID(file.c_str());
+            if (ImGui::Selectable(file_name(file).c_str())) session.open({file});
+            note_place("recent " + file_name(file));
+            tooltip(file);
+            ImGui::PopID();
+        }
+        if (state.recent_files.empty()) ImGui::TextUnformatted("none yet");
+        ImGui::EndCombo();
+    }
+    note_place("Recent files");
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    if (std::exchange(state.focus_path_asked, false)) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputTextWithHint("##path", "or a path, and Enter; or drop files onto the window", &state.path,
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
+    if (entered && !state.path.empty()) session.open({state.path});
 }
 
-void file_rows(Session& session) {
-    const auto ready = session.ready();
-    if (!ready) {
-        dim_text("no scene yet");
-        return;
-    }
-    const Scene& scene = *ready->loaded->scene;
-    for (const std::string& file : ready->loaded->files) {
-        ImGui::TextUnformatted(file.substr(file.find_last_of('/') + 1).c_str());
-        tooltip(file);
-    }
-    row_text("Triangles", count_text(static_cast<double>(ready->loaded->placed_triangles)),
+void fact_rows(const Ready& ready) {
+    const Scene& scene = *ready.loaded->scene;
+    row_text("Triangles", count_text(static_cast<double>(ready.loaded->placed_triangles)),
              "in the world: those of every instance");
-    row_text("Meshes", std::to_string(scene.meshes.size()) + " in " + std::to_string(scene.instances.size()) + " places");
+    row_text("Meshes", std::to_string(scene.meshes.size()) + " in " + plural(scene.instances.size(), "place"));
     const size_t analytic = scene.spheres.size() + scene.polygons.size() + scene.planes.size();
     if (analytic > 0)
-        row_text("Analytic", std::to_string(scene.spheres.size()) + " spheres, " + std::to_string(scene.polygons.size()) +
-                                 " polygons, " + std::to_string(scene.planes.size()) + " planes");
-    row_text("Materials", std::to_string(scene.materials.size()) + ", " + std::to_string(scene.textures.size()) + " textures");
+        row_text("Analytic", plural(scene.spheres.size(), "sphere") + ", " + plural(scene.polygons.size(), "polygon") + ", " +
+                                 plural(scene.planes.size(), "plane"));
+    row_text("Materials", std::to_string(scene.materials.size()) + ", " + plural(scene.textures.size(), "texture"));
     row_text("Up axis", std::string(1, "XYZ"[scene.up_axis % 3]), "as the file says it; nothing is turned");
     row_text("Unit", scene.unit_scale > 0 ? number_text(scene.unit_scale) + " m" : "not said", "metres per unit of the file");
-    row_text("Diagonal", number_text(ready->loaded->bounds.diagonal()), "of the box around it, in units of the file");
+    row_text("Diagonal", number_text(ready.loaded->bounds.diagonal()), "of the box around it, in units of the file");
     if (!scene.warnings.empty()) {
-        ImGui::PushStyleColor(ImGuiCol_Text, colors::kAmber);
-        ImGui::Text("%zu warnings in the log", scene.warnings.size());
-        ImGui::PopStyleColor();
+        wrapped_text(plural(scene.warnings.size(), "warning") + " in the log", colors::kAmber);
         tooltip(scene.warnings.front());
     }
 }
@@ -69,6 +71,7 @@ void camera_rows(Session& session, UiState& state) {
                 const std::string name = other.name.empty() ? "camera " + std::to_string(i + 1) : other.name;
                 ImGui::PushID(static_cast<int>(i));
                 if (ImGui::Selectable(name.c_str())) camera = other;
+                note_place(name);
                 ImGui::PopID();
             }
             ImGui::EndCombo();
@@ -82,61 +85,38 @@ void camera_rows(Session& session, UiState& state) {
     if (slider("##fov", degrees, 5, 120, "%.1f\u00b0")) camera.fov_y_rad = degrees / 57.29578f;
     row_label("Key speed", "how fast the keys move the camera; 1: a third of the scene a second");
     slider("##speed", state.camera_speed, 0.05f, 10, "%.2f", true);
-    row_label("");
-    if (ImGui::Button("Reset view", {-FLT_MIN, 0})) session.reset_view();
-    tooltip("the scene's own camera and lights again");
-}
-
-void light_rows(Session& session) {
-    auto& lights = session.wish.lights;
-    if (lights.empty()) {
-        dim_text("this scene has no lights");
-        return;
-    }
-    session.selected_light = std::min<unsigned>(session.selected_light, static_cast<unsigned>(lights.size()) - 1);
-    row_label("Light", "the keys move this one");
-    if (ImGui::BeginCombo("##light", lights[session.selected_light].name.c_str())) {
-        for (unsigned i = 0; i < lights.size(); ++i) {
-            ImGui::PushID(static_cast<int>(i));
-            if (ImGui::Selectable((lights[i].name + (lights[i].on ? "" : "  (off)")).c_str(), i == session.selected_light))
-                session.selected_light = i;
-            ImGui::PopID();
-        }
-        ImGui::EndCombo();
-    }
-    WishedLight& light = lights[session.selected_light];
-    row_label("On");
-    ImGui::Checkbox("##on", &light.on);
-    if (light.values.kind == RT_LIGHT_DIRECTIONAL) {
-        if (drag3("Direction", "towards the light", light.values.position, 0.005f)) {
-            float squared = 0;
-            for (const float x : light.values.position) squared += x * x;
-            if (squared > 0)
-                for (float& x : light.values.position) x /= std::sqrt(squared);
-        }
-    } else {
-        drag3("Position", "in units of the file", light.values.position, session.scene_size() * 0.002f);
-    }
-    row_label("Colour", "linear, intensity included");
-    ImGui::ColorEdit3("##colour", light.values.color, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+    const float half = share_of_line(2);
+    if (button("Show all", "all of the scene, or what is selected, comes into view (G)", half)) session.frame_selection();
+    ImGui::SameLine();
+    if (button("Reset view", "the scene's own camera, lights and materials again (Home)", half)) session.reset_view();
 }
 
 }  // namespace
 
 void draw_scene_tab(Session& session, UiState& state) {
     section("FILE");
-    open_row(session, state);
-    file_rows(session);
-    section("CAMERA");
-    camera_rows(session, state);
-    section("LIGHTS");
-    light_rows(session);
-    section("SURROUNDINGS");
-    const ImGuiColorEditFlags flags = ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR;
-    row_label("Background", "what rays see that hit nothing; linear");
-    ImGui::ColorEdit3("##background", session.wish.background.data(), flags);
-    row_label("Ambient", "light that comes from everywhere; linear");
-    ImGui::ColorEdit3("##ambient", session.wish.ambient.data(), flags);
+    open_rows(session, state);
+    const auto ready = session.ready();
+    if (!ready) {
+        dim_text("no scene yet");
+        return;
+    }
+    for (const std::string& file : ready->loaded->files) {
+        ImGui::TextUnformatted(cut_front_to(file_name(file), ImGui::GetContentRegionAvail().x).c_str());
+        tooltip(file);
+    }
+    if (folding_section("WHAT IT HOLDS", false)) fact_rows(*ready);
+    if (folding_section("TREE")) draw_scene_tree(session, state);
+    if (folding_section("MATERIAL")) draw_material_rows(session);
+    if (folding_section("LIGHTS")) draw_light_rows(session, state);
+    if (folding_section("CAMERA")) camera_rows(session, state);
+    if (folding_section("BOOKMARKS")) draw_bookmark_rows(session, state);
+    if (folding_section("SURROUNDINGS")) {
+        row_label("Background", "what rays see that hit nothing; linear");
+        color_field("##background", session.wish.background.data());
+        row_label("Ambient", "light that comes from everywhere; linear");
+        color_field("##ambient", session.wish.ambient.data());
+    }
 }
 
 }  // namespace clarity

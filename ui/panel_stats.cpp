@@ -1,9 +1,12 @@
-// The tab of numbers: frames, rays, structure, times.
+// The tab of numbers: frames, rays, structure, times; of both sides where two are compared.
 #include <imgui.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include "render/device_scene.hpp"
+#include "ui/frame_graph.hpp"
 #include "ui/panel.hpp"
 #include "ui/theme.hpp"
 #include "ui/widgets.hpp"
@@ -11,83 +14,191 @@
 namespace clarity {
 namespace {
 
-std::string ms_text(double ms) {
-    char text[48];
-    std::snprintf(text, sizeof text, ms < 10 ? "%.2f ms" : "%.1f ms", ms);
-    return text;
+const ImVec4& side_color(unsigned side) {
+    return side == 0 ? colors::kAccent : colors::kAmber;
 }
 
-float percentile(std::vector<float> values, double share) {
-    if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
-    std::nth_element(values.begin(), at, values.end());
-    return *at;
+// One value a side: "81.2 ms" or "81.2 ms | 40.1 ms".
+struct Sides {
+    std::string text;
+    void add(const std::string& value) { text += (text.empty() ? "" : "   |   ") + value; }
+};
+
+std::vector<const PictureSide*> picture_sides(const std::shared_ptr<const Picture>& picture) {
+    std::vector<const PictureSide*> sides;
+    if (picture) sides.push_back(&picture->main);
+    if (picture && picture->other) sides.push_back(&*picture->other);
+    return sides;
+}
+
+void graph_legend(const std::vector<FrameSeries>& series) {
+    if (series.size() < 2) return;
+    for (unsigned i = 0; i < series.size(); ++i) {
+        if (i > 0) ImGui::SameLine(0, 14 * ui_scale());
+        ImGui::PushStyleColor(ImGuiCol_Text, side_color(i));
+        ImGui::TextUnformatted(("\u25a0 " + series[i].name).c_str());
+        ImGui::PopStyleColor();
+    }
 }
 
 void frame_rows(Session& session) {
-    const std::vector<float> times = session.frame_times();
-    const float longest = times.empty() ? 1.0f : *std::max_element(times.begin(), times.end());
-    ImGui::PlotLines("##times", times.data(), static_cast<int>(times.size()), 0, nullptr, 0, longest * 1.1f,
-                     {ImGui::GetContentRegionAvail().x, 64 * ui_scale()});
-    tooltip("milliseconds of the last frames, tracing and reading back");
-    char fps[32];
-    std::snprintf(fps, sizeof fps, "%.1f", session.frames_per_second());
-    row_text("Frames/s", fps, "mean of the last ten");
-    row_text("Median", ms_text(percentile(times, 0.5)));
-    row_text("95 %", ms_text(percentile(times, 0.95)), "19 frames of 20 were faster");
-    if (const auto picture = session.picture())
-        row_text("Kernels", ms_text(picture->main.stats.device_ms), "of the last sample, by the device's clock");
+    const auto picture = session.picture();
+    const auto sides = picture_sides(picture);
+    std::vector<FrameSeries> series;
+    Sides rate, median, late, latest, kernels;
+    for (unsigned i = 0; i < sides.size(); ++i) {
+        const std::vector<float> times = session.frame_times(i);
+        char fps[32];
+        std::snprintf(fps, sizeof fps, "%.1f", session.frames_per_second(i));
+        rate.add(fps);
+        median.add(time_text(static_cast<double>(percentile(times, 0.5))));
+        late.add(time_text(static_cast<double>(percentile(times, 0.95))));
+        latest.add(time_text(static_cast<double>(percentile(times, 0.99))));
+        series.push_back({std::string(1, "AB"[i]) + " " + sides[i]->settings.accel, times, ImGui::GetColorU32(side_color(i))});
+    }
+    graph_legend(series);
+    const float target = session.wish.moving_fps > 0 ? 1000 / session.wish.moving_fps : 0;
+    draw_frame_graph(series, target, 110 * ui_scale());
+    tooltip("milliseconds of the last frames, tracing and reading back; dashed: what `While moving` asks for");
+    if (sides.empty()) return;
+    row_text("Frames/s", rate.text, "mean of the last ten");
+    row_text("Half within", median.text, "the median");
+    row_text("95 % within", late.text, "19 frames of 20 were faster");
+    row_text("99 % within", latest.text, "99 frames of 100 were faster");
     row_label("Keep tracing", "trace the same picture again and again, to measure");
     ImGui::Checkbox("##continuous", &session.wish.continuous);
 }
 
-void ray_rows(Session& session) {
-    const auto picture = session.picture();
-    if (!picture) return;
-    const FrameStats& stats = picture->main.stats;
-    char rate[48];
-    std::snprintf(rate, sizeof rate, "%.1f Mrays/s", session.mrays_per_second());
-    row_text("Rate", rate, "rays of all kinds by the time of the kernels");
-    row_text("Primary", count_text(static_cast<double>(stats.primary)));
-    row_text("Shadow", count_text(static_cast<double>(stats.shadow)));
-    row_text("Secondary", count_text(static_cast<double>(stats.secondary)), "mirrored and refracted");
-    if (stats.dropped > 0) ImGui::PushStyleColor(ImGuiCol_Text, colors::kAmber);
-    row_text("Dropped", count_text(static_cast<double>(stats.dropped)),
-             "found no slot in their pixel's arrays: raise `Ray slots`");
-    if (stats.dropped > 0) ImGui::PopStyleColor();
-    if (stats.overflowed > 0) row_text("Stacks full", count_text(static_cast<double>(stats.overflowed)));
+void kernel_bars(const PictureSide& side, unsigned which) {
+    const std::vector<KernelTime>& kernels = side.stats.kernels;
+    double longest = 0, sum = 0;
+    for (const KernelTime& kernel : kernels) {
+        longest = std::max(longest, kernel.ms);
+        sum += kernel.ms;
+    }
+    for (const KernelTime& kernel : kernels) {
+        row_label(kernel.name.c_str(), "by the device's clock");
+        const ImVec2 from = ImGui::GetCursorScreenPos();
+        const float room = ImGui::GetContentRegionAvail().x, height = ImGui::GetFrameHeight();
+        const float share = longest > 0 ? static_cast<float>(kernel.ms / longest) : 0;
+        ImVec4 color = side_color(which);
+        color.w = 0.4f;
+        ImDrawList& list = *ImGui::GetWindowDrawList();
+        list.AddRectFilled({from.x, from.y + 3 * ui_scale()},
+                           {from.x + std::max(2.0f, room * share), from.y + height - 3 * ui_scale()}, ImGui::GetColorU32(color),
+                           3 * ui_scale());
+        char text[64];
+        std::snprintf(text, sizeof text, "%s   %.0f %%", time_text(kernel.ms).c_str(), sum > 0 ? 100 * kernel.ms / sum : 0);
+        ImGui::Indent(0.01f);
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 6 * ui_scale());
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(text);
+        ImGui::Unindent(0.01f);
+    }
 }
 
-}  // namespace
+void kernel_rows(const std::vector<const PictureSide*>& sides) {
+    for (unsigned i = 0; i < sides.size(); ++i) {
+        if (sides.size() > 1) wrapped_text(std::string(1, "AB"[i]) + "  " + sides[i]->settings.accel, side_color(i));
+        kernel_bars(*sides[i], i);
+        row_text("Sum", time_text(sides[i]->stats.device_ms), "kernels of the last sample, by the device's clock");
+    }
+}
 
-void draw_statistics_tab(Session& session) {
-    section("FRAMES");
-    frame_rows(session);
-    section("RAYS OF THE LAST SAMPLE");
-    ray_rows(session);
-    const auto ready = session.ready();
-    if (!ready) return;
-    const Prepared& prepared = *ready->main.prepared;
-    section("ACCELERATION STRUCTURE");
-    row_text("Structure", prepared.accel->plugin->name);
-    row_text("Build", ms_text(prepared.accel->build_ms), "the plugin's builder alone");
-    row_text("Packing", ms_text(prepared.accel->pack_ms), "primitives into leaf order");
-    row_text("Memory", bytes_text(static_cast<double>(prepared.accel->bytes)), "nodes and leaves, on the device");
-    for (const auto& [label, value] : prepared.accel->stats)
-        row_text(label.c_str(), number_text(value), "as the plugin reports it");
-    section("PREPARATION");
-    row_text("Import", ms_text(ready->loaded->import_ms));
-    row_text("Upload", prepared.upload_ms > 0 ? ms_text(prepared.upload_ms) : "shared with the last");
+void ray_rows(const Session& session, const std::vector<const PictureSide*>& sides) {
+    Sides rate, primary, shadow, secondary, dropped, overflowed;
+    bool lost = false, full = false;
+    for (unsigned i = 0; i < sides.size(); ++i) {
+        const FrameStats& stats = sides[i]->stats;
+        char text[48];
+        std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second(i));
+        rate.add(text);
+        primary.add(count_text(static_cast<double>(stats.primary)));
+        shadow.add(count_text(static_cast<double>(stats.shadow)));
+        secondary.add(count_text(static_cast<double>(stats.secondary)));
+        dropped.add(count_text(static_cast<double>(stats.dropped)));
+        overflowed.add(count_text(static_cast<double>(stats.overflowed)));
+        lost |= stats.dropped > 0;
+        full |= stats.overflowed > 0;
+    }
+    row_text("Rate", rate.text, "rays of all kinds by the time of the kernels");
+    row_text("Primary", primary.text);
+    row_text("Shadow", shadow.text);
+    row_text("Secondary", secondary.text, "mirrored and refracted");
+    row_text("Dropped", dropped.text, "found no slot in their pixel's arrays: raise `Ray slots`",
+             lost ? colors::kAmber : colors::kText);
+    if (full) row_text("Stacks full", overflowed.text, "of traversal", colors::kAmber);
+}
+
+void structure_rows(const ReadySide& side, const LoadedScene& loaded) {
+    const AccelData& accel = *side.prepared->accel;
+    row_text("Structure", accel.plugin->name);
+    const auto triangles = static_cast<double>(std::max<uint64_t>(1, accel.leaf_count));
+    char rate[64];
+    std::snprintf(rate, sizeof rate, "%s   %.2f M/s", time_text(accel.build_ms).c_str(),
+                  accel.build_ms > 0 ? triangles / accel.build_ms * 1e-3 : 0);
+    row_text("Build", rate, "the plugin's builder alone, and how many primitives a second");
+    row_text("Packing", time_text(accel.pack_ms), "primitives into leaf order");
+    row_text("Memory", bytes_text(static_cast<double>(accel.bytes)), "nodes and leaves, on the device");
+    row_text("Per primitive", number_text(std::round(static_cast<double>(accel.bytes) / triangles * 10) / 10) + " bytes",
+             count_text(triangles) + " primitives in leaves; " + count_text(static_cast<double>(loaded.placed_triangles)) +
+                 " triangles in the world");
+    for (const auto& [label, value] : accel.stats) row_text(label.c_str(), number_text(value), "as the plugin reports it");
+}
+
+void memory_rows(const ReadySide& side) {
+    const AccelData& accel = *side.prepared->accel;
+    const uint64_t all = side.prepared->on_device->bytes();
+    uint64_t slots = 0;
+    for (size_t i = 0; i < accel.slots.size(); ++i) {
+        const uint64_t bytes = accel.slots[i].memory.bytes();
+        slots += bytes;
+        row_text(("Nodes " + std::to_string(i)).c_str(), bytes_text(static_cast<double>(bytes)), "a buffer of the structure");
+    }
+    row_text("Leaves", bytes_text(static_cast<double>(accel.leaves.bytes())));
+    const uint64_t known = slots + accel.leaves.bytes();
+    row_text("Attributes", bytes_text(static_cast<double>(all > known ? all - known : 0)),
+             "normals, texture coordinates, textures, materials, instances");
+    row_text("Scene in all", bytes_text(static_cast<double>(all)));
+}
+
+void preparation_rows(const LoadedScene& loaded, const Prepared& prepared) {
+    row_text("Import", time_text(loaded.import_ms));
+    row_text("Upload", prepared.upload_ms > 0 ? time_text(prepared.upload_ms) : "shared with the last");
     const std::string cached = prepared.compile_cached ? " (cached)" : "";
-    row_text("Compile", prepared.compile_ms > 0 ? ms_text(prepared.compile_ms) + cached : "shared with the last");
-    section("DEVICE");
-    const DeviceInfo& device = ready->main.device->info();
+    row_text("Compile", prepared.compile_ms > 0 ? time_text(prepared.compile_ms) + cached : "shared with the last");
+}
+
+void device_rows(const ReadySide& side) {
+    const DeviceInfo& device = side.device->info();
     row_text("Name", device.name);
     row_text("Platform", device.platform);
     row_text("Driver", device.driver);
     row_text("Units", std::to_string(device.compute_units) + " at " + std::to_string(device.clock_mhz) + " MHz");
     row_text("Memory", bytes_text(static_cast<double>(device.global_bytes)));
-    row_text("Lanes", std::to_string(prepared.settings.lanes));
+    row_text("Lanes", std::to_string(side.prepared->settings.lanes));
+}
+
+void side_sections(const Ready& ready, const ReadySide& side, const std::string& prefix) {
+    if (folding_section((prefix + "STRUCTURE").c_str())) structure_rows(side, *ready.loaded);
+    if (folding_section((prefix + "MEMORY ON THE DEVICE").c_str())) memory_rows(side);
+    if (folding_section((prefix + "PREPARATION").c_str())) preparation_rows(*ready.loaded, *side.prepared);
+    if (folding_section((prefix + "DEVICE").c_str())) device_rows(side);
+}
+
+}  // namespace
+
+void draw_statistics_tab(Session& session) {
+    const auto picture = session.picture();
+    const auto sides = picture_sides(picture);
+    section("FRAMES");
+    frame_rows(session);
+    if (!sides.empty() && folding_section("TIME BY KERNEL")) kernel_rows(sides);
+    if (!sides.empty() && folding_section("RAYS OF THE LAST SAMPLE")) ray_rows(session, sides);
+    const auto ready = session.ready();
+    if (!ready) return;
+    side_sections(*ready, ready->main, ready->other ? "A: " : "");
+    if (ready->other) side_sections(*ready, *ready->other, "B: ");
 }
 
 }  // namespace clarity

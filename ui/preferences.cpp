@@ -2,13 +2,12 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <nlohmann/json.hpp>
 
 #include "base/log.hpp"
+#include "ui/preferences_json.hpp"
 
 namespace clarity {
 namespace fs = std::filesystem;
@@ -36,42 +35,27 @@ std::string preferences_folder() {
 }
 
 Preferences load_preferences(const std::string& folder) {
-    Preferences p;
+    const Preferences p;
     if (folder.empty()) return p;
     const fs::path path = fs::path(folder) / "window.json";
     std::ifstream in(path);
     if (!in) return p;
     try {
-        const nlohmann::json json = nlohmann::json::parse(in);
-        p.width = std::clamp(json.value("width", p.width), 640, 16384);
-        p.height = std::clamp(json.value("height", p.height), 400, 16384);
-        p.text_scale = std::clamp(json.value("text_scale", p.text_scale), 0.8f, 2.0f);
-        p.camera_speed = std::clamp(json.value("camera_speed", p.camera_speed), 0.05f, 10.0f);
-        p.light_speed = std::clamp(json.value("light_speed", p.light_speed), 0.05f, 10.0f);
-        p.key_map = json.value("key_map", p.key_map);
-        p.panel_visible = json.value("panel_visible", p.panel_visible);
+        return preferences_from(nlohmann::json::parse(in));
     } catch (const nlohmann::json::exception& error) {
         log(LogLevel::warning, path.string() + ": not understood, so the defaults are used: " + error.what());
-        return Preferences{};
+        return p;
     }
-    return p;
 }
 
 void save_preferences(const std::string& folder, const Preferences& p) {
     if (folder.empty()) return;
     const fs::path path = fs::path(folder) / "window.json",
                    temporary = fs::path(folder) / ("window.json." + std::to_string(getpid()));
-    const nlohmann::json json = {{"width", p.width},
-                                 {"height", p.height},
-                                 {"text_scale", p.text_scale},
-                                 {"camera_speed", p.camera_speed},
-                                 {"light_speed", p.light_speed},
-                                 {"key_map", p.key_map},
-                                 {"panel_visible", p.panel_visible}};
     std::error_code error;
     {
         std::ofstream out(temporary);
-        out << json.dump(4) << "\n";
+        out << to_json(p).dump(4, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
         out.close();
         if (!out) error = std::make_error_code(std::errc::io_error);
     }

@@ -242,6 +242,12 @@ bool Script::run(App& app, const std::string& line) {
         std::printf("%s\n", state_text(app).c_str());
     } else if (command == "find") {
         const Rect* place = drawn_place(text);
+        // What is scrolled out of sight comes with one of the next frames.
+        if (!place && waiting_since_ == 0) {
+            waiting_since_ = ImGui::GetTime();
+            frames_left_ = 4;
+        }
+        if (!place && frames_left_-- > 0) return false;
         if (!place) throw Error(Exit::failed, "not drawn");
         std::printf("%s\n",
                     nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());

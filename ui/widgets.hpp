@@ -1,40 +1,51 @@
-// widgets.hpp -- the rows that the panel is made of: label and widget, drawn from data.
+// widgets.hpp -- what the panel is made of: sections, rows of label and widget, buttons.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
-#include "render/settings.hpp"
-#include "rt_plugin.h"
-#include "ui/viewport.hpp"
+#include "ui/formats.hpp"
+#include "ui/places.hpp"
+#include "ui/setting_rows.hpp"
+#include "ui/theme.hpp"
 
 namespace clarity {
 
+class Session;
+
 // Starts a section with its title.
 void section(const char* title);
+// The same, and a click on the title folds it. Returns whether it is open; `open`: at first.
+bool folding_section(const char* title, bool open = true);
 // A label at the left with its help as tooltip; the next item fills the rest of the line.
 void row_label(const char* label, const std::string& help = {});
-// Label and a value that is only read.
-void row_text(const char* label, const std::string& value, const std::string& help = {});
+// Label and a value that is only read. Coloured where it warns.
+void row_text(const char* label, const std::string& value, const std::string& help = {}, const ImVec4& color = colors::kText);
 void tooltip(const std::string& text);  // of the last item
 // An entry of an open list. Returns whether it was chosen anew.
 bool option(const std::string& label, bool chosen);
 // A slider whose value applies while it is dragged.
 bool slider(const char* id, float& value, float min, float max, const char* format, bool logarithmic = false);
-// Several lines of text in the dimmed colour.
+// A colour of linear light, values above 1 allowed.
+bool color_field(const char* id, float* rgb);
+// Text in a colour, on as many lines as it needs.
+void wrapped_text(const std::string& text, const ImVec4& color = colors::kText);
+// The same in the dimmed colour.
 void dim_text(const std::string& text);
 
-// A row of the settings table. Returns whether `settings` changed. What makes the host rebuild or recompile changes when the
-// mouse lets go; the rest while it drags.
-bool setting_row(const Setting& row, Settings& settings);
-// The same for a plugin's parameter.
-bool parameter_row(const rt_param& param, double& value);
+// width: as ImGui takes it, or 0. Its place is noted under the label, up to "##".
+bool button(const char* label, const std::string& help = {}, float width = 0);
+bool toggle_button(const char* label, bool on, const std::string& help = {}, float width = 0);
+// The widths of `count` equal buttons in what is left of the line.
+float share_of_line(int count);
+// Starts the next button on this line if it fits there, else on the next.
+void same_line_if_fits(const char* next_label);
 
-// Where rows and entries were drawn last, by label: for tests that click. nullptr if it never was.
-const Rect* drawn_place(const std::string& label);
+// The beginning of a text that fits, or its end: a path keeps its file's name.
+std::string cut_to(const std::string& text, float width);
+std::string cut_front_to(const std::string& text, float width);
 
-// "1.2 M", "871 k", "12": for counts. "3.4 MiB": for bytes.
-std::string count_text(double count);
-std::string bytes_text(double bytes);
-std::string number_text(double value);
+// Does it; an Error becomes the session's message.
+void attempt(Session& session, const std::function<void()>& what);
 
 }  // namespace clarity

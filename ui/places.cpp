@@ -1,0 +1,47 @@
+#include "ui/places.hpp"
+
+#include <imgui.h>
+
+#include <unordered_map>
+
+namespace clarity {
+namespace {
+
+struct Place {
+    Rect rect;
+    int frame = -1;
+    bool inside = false;  // not scrolled out of sight
+};
+std::unordered_map<std::string, Place>& places() {
+    static std::unordered_map<std::string, Place> all;
+    return all;
+}
+std::string wanted;  // to be scrolled to
+
+}  // namespace
+
+void note_place(const std::string& label, const Rect& rect) {
+    const ImVec2 low = ImGui::GetWindowDrawList()->GetClipRectMin(), high = ImGui::GetWindowDrawList()->GetClipRectMax();
+    const float middle = rect.y + rect.height / 2;
+    const bool inside = middle > low.y && middle < high.y && rect.x < high.x && rect.x + rect.width > low.x;
+    places()[label] = {rect, ImGui::GetFrameCount(), inside};
+    if (wanted != label) return;
+    wanted.clear();
+    if (!inside) ImGui::SetScrollHereY(0.5f);
+}
+
+void note_place(const std::string& label) {
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    note_place(label, {from.x, from.y, to.x - from.x, to.y - from.y});
+}
+
+const Rect* drawn_place(const std::string& label) {
+    const auto found = places().find(label);
+    // A script asks between frames, before the next one is counted.
+    if (found == places().end() || found->second.frame < ImGui::GetFrameCount() - 1) return nullptr;
+    if (found->second.inside) return &found->second.rect;
+    wanted = label;
+    return nullptr;
+}
+
+}  // namespace clarity
