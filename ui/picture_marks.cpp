@@ -8,6 +8,7 @@
 
 #include "ui/picture_captions.hpp"
 #include "ui/picture_pane.hpp"
+#include "ui/places.hpp"
 #include "ui/ray_lines.hpp"
 #include "ui/theme.hpp"
 #include "ui/widgets.hpp"
@@ -104,6 +105,7 @@ void PicturePane::draw_volume_card(ImDrawList& list, size_t place, VolumeOverlay
     ImGui::SetCursorScreenPos({card->x + pad, card->y + card->height - pad - inner.y - 2 * ui_scale()});
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(5 * ui_scale(), 1 * ui_scale()));
     if (ImGui::Button(label)) overlay.hide_behind(!overlay.hides_behind());
+    note_place(label);
     ImGui::PopStyleVar();
     tooltip("What lies behind a surface of the picture is drawn faint, or not at all.");
 }
@@ -154,6 +156,9 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
             const ImVec2 tip(p.x + way.x * 30 * scale, p.y + way.y * 30 * scale);
             list.AddLine(p, tip, halo, 4 * scale);
             list.AddLine(p, tip, color, 2 * scale);
+            cards_.push_back({std::min(p.x, tip.x) - 4 * scale, std::min(p.y, tip.y) - 4 * scale,
+                              std::abs(tip.x - p.x) + 8 * scale,
+                              std::abs(tip.y - p.y) + 8 * scale});  // its name keeps clear of the arrow
             const glm::vec2 side(-way.y, way.x);
             list.AddTriangleFilled({tip.x + way.x * 7 * scale, tip.y + way.y * 7 * scale},
                                    {tip.x + side.x * 5 * scale, tip.y + side.y * 5 * scale},
@@ -201,7 +206,9 @@ void PicturePane::draw_pixel_marks(ImDrawList& list, const Session& session, con
         list.AddRect({p.x - half - 1, p.y - half - 1}, {p.x + half + 1, p.y + half + 1}, kHalo, 0, 0, 3 * ui_scale());
         list.AddRect({p.x - half - 1, p.y - half - 1}, {p.x + half + 1, p.y + half + 1}, color, 0, 0, 1.4f * ui_scale());
     };
-    const auto middle = [](unsigned i, unsigned of) { return (static_cast<float>(i) + 0.5f) / static_cast<float>(std::max(of, 1u)); };
+    const auto middle = [](unsigned i, unsigned of) {
+        return (static_cast<float>(i) + 0.5f) / static_cast<float>(std::max(of, 1u));
+    };
     const auto inspection = session.inspection();
     if (rays_shown_ && inspection && inspection->job.revision == picture_->job.revision) {
         const auto columns = static_cast<unsigned>(inspection->job.settings.width),
