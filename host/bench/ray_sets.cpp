@@ -3,41 +3,22 @@
 #include <algorithm>
 #include <cmath>
 
+#include "bench/vec3.hpp"
 #include "plugin/host_services.hpp"
 
 namespace clarity {
 namespace {
 
-using Vec = std::array<double, 3>;
 constexpr int kTile = 16;        // pixels, in both directions
 constexpr size_t kPacket = 16;   // rays among which an inactive one looks for a direction
 constexpr size_t kChunk = 4096;  // rays of one task
 constexpr double kPi = 3.14159265358979323846;
 
-Vec operator+(const Vec& a, const Vec& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vec operator-(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec operator*(double s, const Vec& a) {
-    return {s * a[0], s * a[1], s * a[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vec normalized(const Vec& a, const Vec& otherwise) {
-    const double length = std::sqrt(dot(a, a));
-    return length > 0 ? (1 / length) * a : otherwise;
-}
-Vec vec(const float* p) {
+Vec3 vec(const float* p) {
     return {p[0], p[1], p[2]};
 }
 
-rt_ray make_ray(const Vec& origin, const Vec& direction, double t_max) {
+rt_ray make_ray(const Vec3& origin, const Vec3& direction, double t_max) {
     rt_ray ray{};
     for (int k = 0; k < 3; ++k) {
         ray.origin[k] = static_cast<float>(origin[k]);
@@ -71,11 +52,11 @@ rt_u32 even_bits(rt_u32 z) {
     return x;
 }
 
-Vec cosine_direction(const Vec& normal, rt_u32 pixel) {
+Vec3 cosine_direction(const Vec3& normal, rt_u32 pixel) {
     const double u1 = lowbias32(2 * pixel + 1) * 0x1p-32, u2 = lowbias32(2 * pixel + 2) * 0x1p-32;
     const double r = std::sqrt(u1), phi = 2 * kPi * u2;
-    const Vec side = std::fabs(normal[0]) > 0.9 ? Vec{0, 1, 0} : Vec{1, 0, 0};
-    const Vec tangent = normalized(cross(side, normal), {1, 0, 0}), bitangent = cross(normal, tangent);
+    const Vec3 side = std::fabs(normal[0]) > 0.9 ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
+    const Vec3 tangent = normalized(cross(side, normal), {1, 0, 0}), bitangent = cross(normal, tangent);
     return normalized(r * std::cos(phi) * tangent + r * std::sin(phi) * bitangent + std::sqrt(1 - u1) * normal, normal);
 }
 
@@ -103,10 +84,10 @@ std::vector<rt_u32> ray_order(int width, int height) {
 }
 
 RaySet camera_rays(const Camera& camera, int width, int height) {
-    const Vec eye = vec(camera.eye.data());
-    const Vec w = normalized(vec(camera.target.data()) - eye, {0, 0, -1});
-    const Vec u = normalized(cross(w, vec(camera.up.data())), std::fabs(w[0]) < 0.9 ? Vec{1, 0, 0} : Vec{0, 0, 1});
-    const Vec v = cross(u, w);
+    const Vec3 eye = vec(camera.eye.data());
+    const Vec3 w = normalized(vec(camera.target.data()) - eye, {0, 0, -1});
+    const Vec3 u = normalized(cross(w, vec(camera.up.data())), std::fabs(w[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 0, 1});
+    const Vec3 v = cross(u, w);
     const double tangent = std::tan(0.5 * camera.fov_y_rad), aspect = double(width) / height;
     RaySet set;
     set.kind = "primary";
@@ -128,14 +109,14 @@ SurfaceNormals::SurfaceNormals(const Scene& scene) : scene_(scene) {
     first_prim_.push_back(at);
 }
 
-Vec SurfaceNormals::at(rt_i32 prim, const Vec& point) const {
-    const Vec otherwise{0, 1, 0};
+Vec3 SurfaceNormals::at(rt_i32 prim, const Vec3& point) const {
+    const Vec3 otherwise{0, 1, 0};
     uint64_t i = static_cast<uint64_t>(prim);
     if (i < first_prim_.back()) {
         const size_t place = std::upper_bound(first_prim_.begin(), first_prim_.end(), i) - first_prim_.begin() - 1;
         const Instance& instance = scene_.instances[place];
         const size_t triangle = scene_.meshes[instance.mesh].first_triangle + (i - first_prim_[place]);
-        Vec corners[3];
+        Vec3 corners[3];
         for (int c = 0; c < 3; ++c) {
             const float* p = &scene_.positions[3 * size_t(scene_.triangles[3 * triangle + c])];
             corners[c] = vec(transform_point(instance.world_from_object, p).data());
@@ -148,7 +129,7 @@ Vec SurfaceNormals::at(rt_i32 prim, const Vec& point) const {
     if (i < scene_.polygons.size()) {
         const Polygon& polygon = scene_.polygons[i];
         const float* corners = &scene_.polygon_corners[3 * size_t(polygon.first_corner)];
-        Vec sum{};
+        Vec3 sum{};
         for (rt_u32 c = 0; c < polygon.corner_count; ++c)
             sum = sum + cross(vec(corners + 3 * c) - vec(corners),
                               vec(corners + 3 * ((c + 1) % polygon.corner_count)) - vec(corners));
@@ -176,11 +157,11 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
         for (size_t i = chunk * kChunk; i < std::min(count, (chunk + 1) * kChunk); ++i) {
             const rt_ray& ray = primary.rays[i];
             if (!is_active(ray) || !std::isfinite(hits[i].t) || hits[i].prim < 0) continue;
-            const Vec direction = vec(ray.direction), point = vec(ray.origin) + double(hits[i].t) * direction;
-            Vec normal = normals.at(hits[i].prim, point);
+            const Vec3 direction = vec(ray.direction), point = vec(ray.origin) + double(hits[i].t) * direction;
+            Vec3 normal = normals.at(hits[i].prim, point);
             if (dot(normal, direction) > 0) normal = -1 * normal;
-            const Vec origin = point + eps * normal;
-            const Vec to_light = light.kind == RT_LIGHT_POINT ? vec(light.position) - origin : vec(light.position);
+            const Vec3 origin = point + eps * normal;
+            const Vec3 to_light = light.kind == RT_LIGHT_POINT ? vec(light.position) - origin : vec(light.position);
             const double distance = light.kind == RT_LIGHT_POINT ? std::sqrt(dot(to_light, to_light)) : INFINITY;
             sets[0].rays[i] = make_ray(origin, normalized(to_light, normal), distance);
             sets[1].rays[i] = make_ray(origin, direction - 2 * dot(direction, normal) * normal, INFINITY);

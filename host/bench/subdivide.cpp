@@ -6,42 +6,21 @@
 #include <map>
 #include <tuple>
 
+#include "bench/vec3.hpp"
 #include "plugin/host_services.hpp"
 
 namespace clarity {
 namespace {
 
-using Vec = std::array<double, 3>;
-
-Vec operator+(const Vec& a, const Vec& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Vec operator-(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-Vec operator*(double s, const Vec& a) {
-    return {s * a[0], s * a[1], s * a[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vec unit(const Vec& a) {
-    const double length = std::sqrt(dot(a, a));
-    return length > 0 ? (1 / length) * a : Vec{0, 0, 0};
-}
-
 // World-space corners, points at the same place being one vertex: seams of texture coordinates must not tear open.
-struct Mesh1 {
-    std::vector<Vec> points, normals;
+struct Flattened {
+    std::vector<Vec3> points, normals;
     std::vector<std::array<rt_u32, 3>> triangles;
     std::vector<rt_u32> materials;
 };
 
-Mesh1 flatten(const Scene& scene) {
-    Mesh1 mesh;
+Flattened flatten(const Scene& scene) {
+    Flattened mesh;
     std::map<std::array<float, 3>, rt_u32> known;
     for (const Instance& instance : scene.instances) {
         const Mesh& from = scene.meshes[instance.mesh];
@@ -59,17 +38,17 @@ Mesh1 flatten(const Scene& scene) {
         }
     }
     // Sums of the faces' normals, weighted by area.
-    mesh.normals.assign(mesh.points.size(), Vec{0, 0, 0});
+    mesh.normals.assign(mesh.points.size(), Vec3{0, 0, 0});
     for (const auto& t : mesh.triangles) {
-        const Vec normal = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
+        const Vec3 normal = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
         for (const rt_u32 corner : t) mesh.normals[corner] = mesh.normals[corner] + normal;
     }
-    for (Vec& normal : mesh.normals) normal = unit(normal);
+    for (Vec3& normal : mesh.normals) normal = normalized(normal, {0, 0, 0});
     return mesh;
 }
 
 // Waves along three directions at angles to all axes, each octave twice as fine and half as high.
-double roughness(const Vec& p, double size, double finest) {
+double roughness(const Vec3& p, double size, double finest) {
     double sum = 0;
     for (double wave = size / 4; wave > 4 * finest; wave /= 2) {
         const double k = 2 * 3.14159265358979323846 / wave;
@@ -83,7 +62,7 @@ double roughness(const Vec& p, double size, double finest) {
 // Where the new points stand: the old ones, then n - 1 along each edge, then those within the triangles.
 class Refined {
  public:
-    Refined(const Mesh1& mesh, unsigned n) : mesh_(mesh), n_(n) {
+    Refined(const Flattened& mesh, unsigned n) : mesh_(mesh), n_(n) {
         for (const auto& t : mesh.triangles)
             for (int e = 0; e < 3; ++e) {
                 const auto key = std::minmax(t[e], t[(e + 1) % 3]);
@@ -118,7 +97,7 @@ class Refined {
         return first_edge_ + size_t(edges_.at({key.first, key.second})) * (n_ - 1) + (a < b ? s : n_ - s) - 1;
     }
 
-    const Mesh1& mesh_;
+    const Flattened& mesh_;
     const unsigned n_;
     std::map<std::pair<rt_u32, rt_u32>, rt_u32> edges_;
     size_t first_edge_ = 0, first_inner_ = 0;
@@ -126,30 +105,30 @@ class Refined {
 
 // A point of a triangle by its weights: bulged, then roughened. Only weights and corners that matter are used, in the order of
 // the vertices' numbers, so that both triangles of an edge make the same point.
-Vec place(const Mesh1& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
+Vec3 place(const Flattened& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
     std::array<int, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](int a, int b) { return t[a] < t[b]; });
-    Vec flat{}, normal{};
+    Vec3 flat{}, normal{};
     for (const int c : order) {
         if (weights[c] == 0) continue;
         flat = flat + weights[c] * mesh.points[t[c]];
         normal = normal + weights[c] * mesh.normals[t[c]];
     }
-    Vec bulged{};
+    Vec3 bulged{};
     for (const int c : order) {
         if (weights[c] == 0) continue;
         const double height = dot(flat - mesh.points[t[c]], mesh.normals[t[c]]);
         bulged = bulged + weights[c] * (flat - height * mesh.normals[t[c]]);
     }
     constexpr double kBulge = 0.75;  // the paper's choice between flat and round
-    const Vec p = (1 - kBulge) * flat + kBulge * bulged;
-    return p + roughness(p, size, finest) * unit(normal);
+    const Vec3 p = (1 - kBulge) * flat + kBulge * bulged;
+    return p + roughness(p, size, finest) * normalized(normal, {0, 0, 0});
 }
 
 }  // namespace
 
 Scene subdivide(const Scene& scene, unsigned n) {
-    const Mesh1 mesh = flatten(scene);
+    const Flattened mesh = flatten(scene);
     const Refined refined(mesh, n);
     Scene out;
     out.spheres = scene.spheres;
@@ -170,7 +149,7 @@ Scene subdivide(const Scene& scene, unsigned n) {
     out.triangle_materials.resize(mesh.triangles.size() * per_triangle);
     const auto put = [&](size_t triangle, unsigned i, unsigned j) {
         const double weights[3] = {double(n - i - j) / n, double(i) / n, double(j) / n};
-        const Vec p = place(mesh, mesh.triangles[triangle], weights, size, finest);
+        const Vec3 p = place(mesh, mesh.triangles[triangle], weights, size, finest);
         for (int k = 0; k < 3; ++k) out.positions[3 * refined.index(triangle, i, j) + k] = static_cast<float>(p[k]);
     };
     // Points of edges belong to two triangles: they are written by one thread first, the inner ones by all after.
