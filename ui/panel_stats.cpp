@@ -89,11 +89,9 @@ void kernel_bars(const PictureSide& side, unsigned which) {
                            3 * ui_scale());
         char text[64];
         std::snprintf(text, sizeof text, "%s   %.0f %%", time_text(kernel.ms).c_str(), sum > 0 ? 100 * kernel.ms / sum : 0);
-        ImGui::Indent(0.01f);
-        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 6 * ui_scale());
-        ImGui::AlignTextToFramePadding();
-        ImGui::TextUnformatted(text);
-        ImGui::Unindent(0.01f);
+        list.AddText({from.x + 8 * ui_scale(), from.y + (height - ImGui::GetTextLineHeight()) / 2},
+                     ImGui::GetColorU32(colors::kText), text);
+        ImGui::Dummy({room, height});
     }
 }
 

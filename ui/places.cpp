@@ -21,6 +21,7 @@ std::string wanted;  // to be scrolled to
 }  // namespace
 
 void note_place(const std::string& label, const Rect& rect) {
+    if (label.empty()) return;
     const ImVec2 low = ImGui::GetWindowDrawList()->GetClipRectMin(), high = ImGui::GetWindowDrawList()->GetClipRectMax();
     const float middle = rect.y + rect.height / 2;
     const bool inside = middle > low.y && middle < high.y && rect.x < high.x && rect.x + rect.width > low.x;
