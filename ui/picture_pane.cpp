@@ -144,7 +144,16 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     const unsigned side = place.side();
     const float scale = ui_scale(), pixels = std::max(ImGui::GetIO().DisplayFramebufferScale.x, 0.1f);
     const Camera& camera = picture_->job.view.camera;
-    const auto& distance = side_of(place).distance;
+    const Scene* scene = picture_->job.ready->loaded->scene.get();
+    auto distance = side_of(place).distance;
+    // Heat maps bring no distances: those of an earlier picture of the same view serve as well.
+    if (distance && !distance->pixels.empty()) {
+        lines.seen = distance;
+        lines.seen_by = camera;
+        lines.seen_scene = scene;
+    } else if (lines.seen && lines.seen_scene == scene && same(lines.seen_by, camera)) {
+        distance = lines.seen;
+    }
     const bool moved = !same(lines.camera, camera), scaled = lines.scale != scale;
     const unsigned stride = moving ? static_cast<unsigned>(overlay.count(side) / kMovingVolumes + 1) : 1;
     const bool volumes = lines.volumes_revision != overlay.revision(side) || scaled || lines.stride != stride ||

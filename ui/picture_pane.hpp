@@ -42,6 +42,9 @@ class PicturePane {
         Rect area;
         float pixels = 0, scale = 0;
         const FloatImage* distance = nullptr;
+        std::shared_ptr<const FloatImage> seen;  // the last distances that were known, and of what
+        Camera seen_by;
+        const Scene* seen_scene = nullptr;
         unsigned stride = 1;
         bool hides_behind = false, any = false;
     };
