@@ -1,5 +1,7 @@
 #include "ui/app.hpp"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <imgui.h>
 
 #include <algorithm>
@@ -156,6 +158,8 @@ void App::take_keys() {
             held_.clear();
         } else if (event.kind == KeyEvent::Kind::release) {
             held_.release(event.key);
+        } else if (event.key == GLFW_KEY_ESCAPE && (state_.browser_open || state_.keys_open)) {
+            close_or_cancel();  // even while its field has the keyboard
         } else if (!event.other_modifier && !typing()) {
             if (const KeyBinding* binding = state_.key_map->find(event.key, event.ctrl)) act(*binding);
         }

@@ -107,7 +107,8 @@ std::string date_text(int64_t seconds) {
 }
 
 void head_row(Session& session, UiState& state) {
-    if (button("\u2191##up", "the folder above (Backspace)")) go_to(state, parent_folder(state.browser_folder));
+    if (button("\u2191##up", "the folder above (Backspace)"))
+        go_to(state, parent_folder(split_typed(browser().text, state.browser_folder).folder));
     note_place("parent folder");
     ImGui::SameLine();
     if (button("Home", home_folder())) go_to(state, home_folder());
@@ -131,9 +132,10 @@ void head_row(Session& session, UiState& state) {
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     ImGui::PushFont(fonts().bold);
-    ImGui::TextUnformatted(cut_front_to(state.browser_folder, ImGui::GetContentRegionAvail().x).c_str());
+    const std::string folder = split_typed(browser().text, state.browser_folder).folder;
+    ImGui::TextUnformatted(cut_front_to(folder, ImGui::GetContentRegionAvail().x).c_str());
     ImGui::PopFont();
-    tooltip(state.browser_folder);
+    tooltip(folder);
 }
 
 // The field has the keyboard whenever nothing else does, so that keys never move the camera meanwhile.
@@ -156,7 +158,6 @@ void field_row(Session& session, UiState& state) {
     if (entered) accept(session, state);
     if (was_empty && b.text.empty() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Backspace)))
         go_to(state, parent_folder(state.browser_folder));
-    if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape))) state.browser_open = false;
 }
 
 void update_rows(const Session& session, const UiState& state) {

@@ -39,8 +39,10 @@ std::string bytes_text(double bytes) {
         std::snprintf(text, sizeof text, "%.2f GiB", bytes / (1024.0 * 1024 * 1024));
     else if (bytes >= 1024.0 * 1024)
         std::snprintf(text, sizeof text, "%.1f MiB", bytes / (1024.0 * 1024));
-    else
+    else if (bytes >= 1024.0)
         std::snprintf(text, sizeof text, "%.1f KiB", bytes / 1024.0);
+    else
+        std::snprintf(text, sizeof text, "%.0f B", bytes);
     return text;
 }
 

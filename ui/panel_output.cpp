@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "ui/file_listing.hpp"
 #include "ui/panel.hpp"
 #include "ui/preset_folder.hpp"
 #include "ui/theme.hpp"
@@ -107,8 +108,10 @@ void picture_rows(Session& session, UiState& state) {
         }
     });
     row_label("Folder", "where pictures go if their name says nothing else");
-    if (button((cut_front_to(state.pictures_folder, ImGui::GetContentRegionAvail().x - 16 * ui_scale()) + "##folder").c_str(),
-               state.pictures_folder + "\nclick to choose another", -FLT_MIN))
+    if (button((cut_front_to(absolute_folder(state.pictures_folder), ImGui::GetContentRegionAvail().x - 16 * ui_scale()) +
+                "##folder")
+                   .c_str(),
+               absolute_folder(state.pictures_folder) + "\nclick to choose another", -FLT_MIN))
         state.browse(BrowseFor::folder_of_pictures);
     note_place("Folder");
     row_label("File", "path of the picture; empty: the next free number in the folder");
