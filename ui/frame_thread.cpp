@@ -31,6 +31,15 @@ FrameStats traced_part(FrameStats stats) {
     return stats;
 }
 
+// Two pictures of amounts can be compared only if a colour means the same in both: the longer scale serves.
+void share_scale(PictureSide& a, PictureSide& b) {
+    const bool amounts = a.scale.map == FalseColorScale::Map::heat && b.scale.map == a.scale.map && a.values && b.values;
+    if (!amounts || a.settings.aov != b.settings.aov || a.scale.max == b.scale.max) return;
+    PictureSide& shorter = a.scale.max < b.scale.max ? a : b;
+    shorter.scale = scale_of(*shorter.values, shorter.settings.aov, std::max(a.scale.max, b.scale.max));
+    false_colors(*shorter.values, shorter.settings.aov, shorter.scale, shorter.image.pixels.data());
+}
+
 }  // namespace
 
 FrameThread::FrameThread(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
@@ -294,6 +303,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         picture->other = trace_side(tracers_[1], *job.ready->other, sized(*job.ready->other, *job.other_settings, before[1]),
                                     job.view, order, before[1], *progress);
         ms += picture->other->frame_ms;
+        share_scale(picture->main, *picture->other);
         picture->difference = compare_pictures(picture->main.image, picture->other->image);
     }
     picture->job.settings = picture->main.settings;

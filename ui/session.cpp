@@ -34,10 +34,10 @@ double now_s() {
 
 constexpr double kMovingSeconds = 0.25;  // after the last change of the view, pictures are sharp again
 
-// Exposure and tone map what is in the film already; every other setting of a frame, but for the count of samples, traces it
+// Exposure, tone map and colour scale show what is in the film already; every other setting of a frame, but for the count of samples, traces it
 // anew.
 bool only_displays(const std::string& key) {
-    return key == "exposure" || key == "tone";
+    return key == "exposure" || key == "tone" || key == "scale_max";
 }
 
 std::string frame_key(const Settings& settings, bool displaying) {
@@ -143,7 +143,7 @@ void Session::follow_main() {
         return;
     }
     Settings& other = wish.other->settings;
-    for (const char* key : {"size", "spp", "aov", "exposure", "tone"})
+    for (const char* key : {"size", "spp", "aov", "scale_max", "exposure", "tone"})
         if (const Setting* row = find_setting(key)) row->set(other, row->get(wish.main.settings));
 }
 
