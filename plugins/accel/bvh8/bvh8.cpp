@@ -57,9 +57,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         rt::stat(out, "node_bytes", bytes);
         rt::stat(out, "bytes_per_primitive", count > 0 ? bytes / static_cast<double>(count) + sizeof(rt_leaf) : 0);
         rt::stat(out, "build_bytes", static_cast<double>(binary_tree_bytes(count)));
-        // A traversal stores whole rows of eight, so that many to spare; in steps of 16, since a new value recompiles the
-        // kernels.
-        rt::define(out, "BVH8_STACK", (wide.stack() + BVH8_WIDTH + 15) / 16 * 16);
+        // One to spare tells a full stack from an overflowing one; in steps of 16, since a new value recompiles the kernels.
+        rt::define(out, "BVH8_STACK", (wide.stack() + 1 + 15) / 16 * 16);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
