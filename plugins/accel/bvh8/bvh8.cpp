@@ -39,8 +39,10 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     }
     const Costs costs{static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
                       static_cast<uint32_t>(input->params[kMaxLeaf])};
-    // Split to the last primitive: which of them are better left together is decided with the costs of wide nodes.
-    const bvh2::Rules rules{1, static_cast<uint32_t>(input->params[kBins]), 1, 1};
+    // Of the seven splits behind a full node each costs its part: the binary tree then ends in about the leaves that the wide
+    // one will have, and less is built that is merged again.
+    const bvh2::Rules rules{costs.max_leaf, static_cast<uint32_t>(input->params[kBins]), costs.node / (BVH8_WIDTH - 1),
+                            costs.primitive};
     try {
         const BinaryTree binary = build_binary_tree(host, *input, out, rules, count, kBinaryShare);
         const Collapse collapse(host, binary, costs);
