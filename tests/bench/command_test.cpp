@@ -140,9 +140,9 @@ TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
     RunOptions options;
     options.signal = SIGINT;
     options.signal_when = "2/7 accel";
-    const ProgramResult result =
-        bench({file("tiny.scene"), "--size", "512x384", "--max-spread", "10", "--time-limit", "60", "--json", file("a.json")},
-              options);
+    const ProgramResult result = bench({file("tiny.scene"), "--accel", "bvh2", "--accel", "bvh2,max_leaf=1", "--size",
+                                        "512x384", "--max-spread", "10", "--time-limit", "60", "--json", file("a.json")},
+                                       options);
     EXPECT_EQ(result.exit_code, 130) << result.err;
     const Json list = records("a.json");
     EXPECT_GE(list.size(), 2u);
