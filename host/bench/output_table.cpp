@@ -200,22 +200,61 @@ std::string dropped_table(const BenchReport& report) {
     return table.empty() ? std::string() : "rays dropped because a pixel's array was full, 4 steps\n" + table.text() + "\n";
 }
 
+bool unsteady(const BenchReport& report, const BenchRecord& r) {
+    const double most = report.run_of(r).max_spread;
+    return r.status == RowStatus::refused && std::max(r.time_ms.spread(), r.wall_ms.spread()) > most;
+}
+
+// Parts, joined by commas, in lines that fit a terminal.
+std::string wrapped(std::string line, const std::vector<std::string>& parts) {
+    std::string text;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        const std::string part = parts[i] + (i + 1 < parts.size() ? "," : "");
+        if (line.size() + part.size() + 1 > 118) {
+            text += line + "\n";
+            line = "        ";
+        }
+        line += " " + part;
+    }
+    return text + line + "\n";
+}
+
+// Who of a case was too unsteady, and by how much.
+std::string refused_rows(const BenchReport& report) {
+    Groups groups;
+    for (const BenchRecord& r : report.records)
+        if (unsteady(report, r)) groups.of(r.suite + "\n" + r.case_name).push_back(&r);
+    std::string text;
+    for (const auto& group : groups.all()) {
+        std::vector<std::string> parts;
+        for (const BenchRecord* r : group)
+            parts.push_back(who(*r) + (device_cell(report, *r).empty() || !r->peer.empty() ? "" : " on " + r->device) + " " +
+                            percent(std::max(r->time_ms.spread(), r->wall_ms.spread())) + " %");
+        text += wrapped("REFUSED  " + group.front()->suite + " " + group.front()->case_name + ":", parts);
+    }
+    if (text.empty()) return text;
+    const BenchRun& run = report.run_of(*groups.all().front().front());
+    return text + "Refused: the middle half of repetitions spreads over so much of the median, more than " +
+           percent(run.max_spread) + " %.\nLet the machine be quiet, or raise --max-spread or --time-limit.\n";
+}
+
 // Rows of one scene that are missing for the same reason are one line.
 std::string left_out(const BenchReport& report) {
     Groups groups;
     for (const BenchRecord& r : report.records)
-        if (r.status != RowStatus::ok)
+        if (r.status != RowStatus::ok && !unsteady(report, r))
             groups
                 .of(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + who(r) + "\n" + r.device +
                     "\n" + (r.status == RowStatus::skipped ? r.why : r.case_name))
                 .push_back(&r);
-    std::string text;
+    std::string text = refused_rows(report);
     for (const auto& group : groups.all()) {
         const BenchRecord& r = *group.front();
         const char* word = r.status == RowStatus::refused ? "REFUSED" : r.status == RowStatus::failed ? "FAILED" : "skipped";
         text += std::string(word) + "  " + r.suite + " " + r.case_name;
         for (size_t i = 1; i < group.size(); ++i) text += ", " + group[i]->case_name.substr(group[i]->case_name.rfind('/') + 1);
-        text += ", " + who(r) + (r.peer.empty() && !one_device(report) ? " on " + r.device : "") + ": " + r.why + "\n";
+        if (!who(r).empty()) text += ", " + who(r);
+        text += (r.peer.empty() && !device_cell(report, r).empty() ? " on " + r.device : "") + ": " + r.why + "\n";
     }
     for (const std::string& note : report.notes) text += "left out  " + note + "\n";
     return text;

@@ -76,8 +76,7 @@ std::string packets_section(const BenchReport& report, const SeriesNames& names)
         paragraph(
             "How many pixels one work-item computes, and how many rays it traces side by side (lanes). The thesis found 4x4 "
             "best on its graphics cards, where every ray of a packet was traced on its own. Here a packet of 4x4 on 16 lanes "
-            "is "
-            "one ray to the traversal: a node is fetched once for all.") +
+            "is one ray to the traversal: a node is fetched once for all.") +
         "<div class=\"grid\">\n";
     for (const auto& scene : scenes.all()) {
         BarChart chart;
@@ -110,10 +109,9 @@ std::string structures_section(const BenchReport& report, const SeriesNames& nam
     std::string out = "<h2 id=\"structures\">Structures and peers</h2>\n" +
                       paragraph(
                           "Every structure on the same rays, made once on the host: camera rays, a ray from every hit to the "
-                          "light, one mirrored "
-                          "at every hit, one scattered at random. Peers (grey) get the same rays and as many threads, turn by "
-                          "turn with ours. "
-                          "Only rays count that exist: pixels that saw nothing have no shadow.");
+                          "light, one mirrored at every hit, one scattered at random. Peers (grey) get the same rays and as "
+                          "many threads, turn by turn with ours. Only rays count that exist: pixels that saw nothing have no "
+                          "shadow.");
     out += against_peers(scenes, names);
     bool first = true;
     for (const auto& scene : scenes.all()) {
@@ -153,11 +151,9 @@ std::string scale_section(const BenchReport& report, const SeriesNames& names) {
     if (charts.empty()) return {};
     return "<h2 id=\"scale\">How cost grows</h2>\n" +
            paragraph(
-               "One model, its triangles cut finer and finer and moved so that the surface really has the detail. A hierarchy "
-               "makes "
-               "ten times the triangles cost a few more nodes a ray, until they no longer fit a cache; trying all of them "
-               "would make a ray "
-               "cost ten times as much.") +
+               "One model, its triangles cut finer and finer and moved so that the surface really has the detail. A "
+               "hierarchy makes ten times the triangles cost a few more nodes a ray, until they no longer fit a cache; "
+               "trying all of them would make a ray cost ten times as much.") +
            "<div class=\"grid\">\n" + charts + "</div>\n";
 }
 

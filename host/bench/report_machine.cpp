@@ -32,8 +32,8 @@ std::string runs_of(const BenchReport& report) {
                    run.governor.empty() ? "not readable" : run.governor, clock,
                    figure(run.load_before) + " to " + figure(run.load_after), figure(run.seconds)});
     };
-    add(report.run, "this");
-    for (size_t i = 0; i < report.joined.size(); ++i) add(report.joined[i], "joined " + std::to_string(i + 1));
+    const std::vector<const BenchRun*> runs = measured_runs(report);
+    for (size_t i = 0; i < runs.size(); ++i) add(*runs[i], std::to_string(i + 1));
     return table.markup();
 }
 
@@ -75,16 +75,19 @@ std::string left_out_section(const BenchReport& report, const SeriesNames& names
 
 std::string machine_section(const BenchReport& report, const SeriesNames& names) {
     std::string out = "<h2 id=\"machine\">Machine and method</h2>\n" + runs_of(report) + devices_of(report, names);
+    double max_spread = 0;
+    const std::vector<const BenchRun*> runs = measured_runs(report);
+    for (const BenchRun* run : runs) max_spread = std::max(max_spread, run->max_spread);
     out += paragraph(
-        "A figure is the median of many takes after a warm-up. What stands in one chart was taken turn by turn - A B A B - so "
-        "that what "
-        "disturbs the machine for a while disturbs all alike. The spread is the width of the middle half by the median; where "
-        "it stays "
-        "above " +
-        percent_figure(report.run.max_spread) +
-        " after measuring anew, the row is refused instead of shown. Kernels are timed by the device's own clock, "
-        "\"all in\" by the host's. Colours and records are the same in all charts; bench.json and bench.csv beside this page "
-        "hold every figure.");
+        "A figure is the median of many takes after a warm-up. What stands in one chart and comes from one run was taken "
+        "turn by turn, A B A B, so that what disturbs the machine for a while disturbs all alike. The spread is the width of "
+        "the middle half by the median; where it stays above " +
+        percent_figure(max_spread) +
+        " after measuring anew, the row is refused instead of shown. Kernels are timed by the device's own clock, \"all in\" "
+        "by the host's. bench.json and bench.csv beside this page hold every figure.");
+    if (runs.size() > 1)
+        out += paragraph("This page joins " + std::to_string(runs.size()) +
+                         " runs: their rows were not taken in turn with each other.");
     const std::string rows = rows_of(report, names);
     if (!rows.empty())
         out += "<details><summary>All " + std::to_string(report.records.size()) + " rows</summary>\n" + rows + "</details>\n";

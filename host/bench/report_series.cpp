@@ -68,6 +68,13 @@ int SeriesNames::color(const BenchRecord& record) const {
     return record.peer.empty() && found != colors_.end() ? found->second : kGrey;
 }
 
+std::vector<const BenchRun*> measured_runs(const BenchReport& report) {
+    std::vector<const BenchRun*> runs;
+    if (!report.run.date.empty()) runs.push_back(&report.run);
+    for (const BenchRun& run : report.joined) runs.push_back(&run);
+    return runs;
+}
+
 std::string who_is(const BenchRecord& record) {
     return record.peer.empty() ? record.variant : record.peer;
 }

@@ -37,6 +37,8 @@ class SeriesNames {
     std::map<std::string, int> colors_;           // by label
 };
 
+// Those that measured something: one that only joins others has no date.
+std::vector<const BenchRun*> measured_runs(const BenchReport& report);
 // The variant, or the peer.
 std::string who_is(const BenchRecord& record);
 // Whether there are figures to be shown.

@@ -149,11 +149,10 @@ std::string thesis_section(const BenchReport& report, const SeriesNames& names) 
     out += tiles_of(rows, names);
     out += paragraph(
         "Frames per second by generations of rays (the thesis's steps), as the thesis draws them. The dashed line is where "
-        "the axis of its chart ends, above all that its two graphics cards and two processors reached in 2008. \"then\" is its "
-        "design "
-        "on this machine: trees of bounding spheres halved by count, one a mesh and none above, one ray at a time in packets "
-        "of 4x4. "
-        "\"now\" is this program as it comes. Both count a frame from the call until its pixels lie in the host's memory.");
+        "the axis of its chart ends, above all that its two graphics cards and two processors reached in 2008. \"then\" is "
+        "its design on this machine: trees of bounding spheres halved by count, one a mesh and none above, one ray at a time "
+        "in packets of 4x4. \"now\" is this program as it comes. Both count a frame from the call until its pixels lie in "
+        "the host's memory.");
     out += "<div class=\"grid\">\n";
     for (const auto& scene : scenes.all()) out += chart_of(scene, names);
     return out + "</div>\n" + table_of(rows, names) + kernels_of(scenes, names);

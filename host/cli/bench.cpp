@@ -39,8 +39,10 @@ BenchRequest make_request(const BenchCommand& command) {
         request.settings.emplace_back(pair.substr(0, equals), pair.substr(equals + 1));
     }
     request.settings.insert(request.settings.end(), command.settings.begin(), command.settings.end());
-    for (const auto& [key, value] : request.settings)
+    for (const auto& [key, value] : request.settings) {
+        if (key == "spp" && value != "1") throw Error(Exit::usage, "--spp " + value + ": frames of one sample are timed");
         if (key == "aov" && value != "color") throw Error(Exit::usage, "--aov " + value + ": frames are timed in colour only");
+    }
     request.max_triangles = command.max_triangles;
     request.time_limit_s = command.time_limit_s;
     request.peers = !command.no_peers;

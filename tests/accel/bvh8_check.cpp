@@ -60,7 +60,7 @@ class Checker {
         expect("children", child_count_ / static_cast<double>(next_));
         expect("sah_cost", weight_ > 0 ? cost_ / weight_ : 0);
         const rt_u32 stack = built_.defines.at("BVH8_STACK");
-        if (stack < stack_ + 8 || stack % 16 != 0 || stack > stack_ + 24) say() << "stack of " << stack << " for " << stack_;
+        if (stack < stack_ + 1 || stack % 16 != 0 || stack > stack_ + 16) say() << "stack of " << stack << " for " << stack_;
         if (depth_ > 64) say() << "depth " << depth_;
         return why_.str();
     }

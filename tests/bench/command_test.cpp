@@ -140,8 +140,9 @@ TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
     RunOptions options;
     options.signal = SIGINT;
     options.signal_when = "2/7 accel";
-    const ProgramResult result = bench(
-        {file("tiny.scene"), "--size", "64x48", "--max-spread", "10", "--time-limit", "60", "--json", file("a.json")}, options);
+    const ProgramResult result = bench({file("tiny.scene"), "--accel", "bvh2", "--accel", "bvh2,max_leaf=1", "--size",
+                                        "512x384", "--max-spread", "10", "--time-limit", "60", "--json", file("a.json")},
+                                       options);
     EXPECT_EQ(result.exit_code, 130) << result.err;
     const Json list = records("a.json");
     EXPECT_GE(list.size(), 2u);
@@ -158,6 +159,7 @@ TEST_F(BenchCommand, WhatIsNotUnderstoodIsAUsageError) {
         {{"quick", "--accel", "octree"}, "octree"},
         {{"quick", "--accel", "bvh2,max_leaf=0"}, "max_leaf"},
         {{"quick", "--aov", "t"}, "colour only"},
+        {{"quick", "--spp", "4"}, "one sample"},
         {{"quick", "--max-spread", "-1"}, "--max-spread"},
         {{"quick", "--json", file("nowhere/a.json")}, "nowhere"},
         {{"quick", "--report", file("tiny.scene") + "/page"}, "--report"},

@@ -223,6 +223,22 @@ TEST(Table, FitsATerminalAndShowsWhatCounts) {
     EXPECT_NE(text.find("55.5"), std::string::npos) << text;
 }
 
+TEST(Table, UnsteadyRowsOfACaseAreTogetherWithTheirSpreads) {
+    BenchReport report = sample();
+    for (int i = 0; i < 12; ++i) {
+        BenchRecord wild = ray_record();
+        wild.status = RowStatus::refused;
+        wild.variant = "wild" + std::to_string(i);
+        wild.time_ms = {10, 9, 12.5, 5, 20, 9};
+        report.records.push_back(wild);
+    }
+    const std::string text = bench_table(report);
+    EXPECT_NE(text.find("REFUSED  accel bunny/diffuse: wild0 35.0 %, wild1 35.0 %"), std::string::npos) << text;
+    EXPECT_NE(text.find("--max-spread"), std::string::npos) << text;
+    std::stringstream lines(text);
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
+}
+
 TEST(Table, OfNothingIsNothing) {
     EXPECT_EQ(bench_table(BenchReport{}), "");
     EXPECT_EQ(bench_json(BenchReport{}), "[]\n");

@@ -80,6 +80,22 @@ TEST(ReportPage, EmptySuites) {
     EXPECT_NE(report_page(nothing).find("interrupted"), std::string::npos);
 }
 
+// One that measures nothing and only joins earlier runs.
+TEST(ReportPage, JoinsRuns) {
+    BenchReport report = sample_report();
+    report.joined = {report.run, report.run};
+    report.joined[1].host_cpu = "another processor";
+    report.run = BenchRun();
+    report.run.command = "clarity bench --join a --join b";
+    for (BenchRecord& r : report.records) r.run = r.device[0] == 'N' ? 2 : 1;
+    const std::string page = report_page(report);
+    EXPECT_EQ(xml_error(page), "");
+    EXPECT_EQ(count_of(page, "another processor"), 2u) << "at the head and in the table of runs";
+    EXPECT_EQ(count_of(page, ", 0 threads"), 0u);
+    EXPECT_NE(page.find("This page joins 2 runs"), std::string::npos);
+    EXPECT_NE(page.find("stays above 10.0 %"), std::string::npos);
+}
+
 TEST(ReportPage, HostileNamesStayText) {
     const std::string hostile[] = {
         "</title><script>alert(1)</script>",

@@ -39,8 +39,10 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     }
     const Costs costs{static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
                       static_cast<uint32_t>(input->params[kMaxLeaf])};
-    // Split to the last primitive: which of them are better left together is decided with the costs of wide nodes.
-    const bvh2::Rules rules{1, static_cast<uint32_t>(input->params[kBins]), 1, 1};
+    // Of the seven splits behind a full node each costs its part: the binary tree then ends in about the leaves that the wide
+    // one will have, and less is built that is merged again.
+    const bvh2::Rules rules{costs.max_leaf, static_cast<uint32_t>(input->params[kBins]), costs.node / (BVH8_WIDTH - 1),
+                            costs.primitive};
     try {
         const BinaryTree binary = build_binary_tree(host, *input, out, rules, count, kBinaryShare);
         const Collapse collapse(host, binary, costs);
@@ -57,9 +59,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         rt::stat(out, "node_bytes", bytes);
         rt::stat(out, "bytes_per_primitive", count > 0 ? bytes / static_cast<double>(count) + sizeof(rt_leaf) : 0);
         rt::stat(out, "build_bytes", static_cast<double>(binary_tree_bytes(count)));
-        // A traversal stores whole rows of eight, so that many to spare; in steps of 16, since a new value recompiles the
-        // kernels.
-        rt::define(out, "BVH8_STACK", (wide.stack() + BVH8_WIDTH + 15) / 16 * 16);
+        // One to spare tells a full stack from an overflowing one; in steps of 16, since a new value recompiles the kernels.
+        rt::define(out, "BVH8_STACK", (wide.stack() + 1 + 15) / 16 * 16);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
