@@ -130,7 +130,11 @@ bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     sample = fresh ? 0 : samples_;
     // What moves is shown once; its samples would be gone with the next step.
     retrace = fresh || (!traced_reduced_ && samples_ < static_cast<unsigned>(job_.settings.spp));
-    if (!retrace && job_.continuous) {
+    // A comparison is worth a few frames more: the first ones of a program are slower.
+    constexpr size_t kFairFrames = 5;
+    const bool comparing = job_.other_settings && job_.ready->other && !traced_reduced_;
+    const bool unfair = comparing && std::min(times_[0].ms.size(), times_[1].ms.size()) < kFairFrames;
+    if (!retrace && (job_.continuous || unfair)) {
         sample = 0;
         retrace = true;
     }

@@ -174,7 +174,8 @@ bool Script::run(App& app, const std::string& line) {
     if (command == "wait") return wait(app, text);
     if (command == "set") {
         const size_t space = text.find(' ');
-        set_setting(session.edited().settings, text.substr(0, space), space == std::string::npos ? "" : text.substr(space + 1));
+        const std::string key = text.substr(0, space);
+        set_setting(session.settings_for(key), key, space == std::string::npos ? "" : text.substr(space + 1));
     } else if (command == "accel") {
         choose_accel(session, text);
     } else if (command == "device") {

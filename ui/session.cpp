@@ -34,10 +34,15 @@ double now_s() {
 
 constexpr double kMovingSeconds = 0.25;  // after the last change of the view, pictures are sharp again
 
-// Exposure, tone map and colour scale show what is in the film already; every other setting of a frame, but for the count of samples, traces it
-// anew.
+// Exposure, tone map and colour scale show what is in the film already; every other setting of a frame, but for the count of
+// samples, traces it anew.
 bool only_displays(const std::string& key) {
     return key == "exposure" || key == "tone" || key == "scale_max";
+}
+
+// What two sides of a comparison have in common: without it pictures could not be compared.
+bool is_shared(const std::string& key) {
+    return key == "size" || key == "spp" || key == "aov" || only_displays(key);
 }
 
 std::string frame_key(const Settings& settings, bool displaying) {
@@ -137,14 +142,18 @@ void Session::cancel() {
     posted_key_ = prepare_key(wished_request());  // it is what we have: nothing to ask for
 }
 
+Settings& Session::settings_for(const std::string& key) {
+    return is_shared(key) ? wish.main.settings : edited().settings;
+}
+
 void Session::follow_main() {
     if (!wish.other) {
         editing_other = false;
         return;
     }
     Settings& other = wish.other->settings;
-    for (const char* key : {"size", "spp", "aov", "scale_max", "exposure", "tone"})
-        if (const Setting* row = find_setting(key)) row->set(other, row->get(wish.main.settings));
+    for (const Setting& row : settings_table())
+        if (is_shared(row.key)) row.set(other, row.get(wish.main.settings));
 }
 
 PrepareRequest Session::wished_request() const {

@@ -53,6 +53,8 @@ class Session {
     void reset_view();
     void adopt_view(const EditedView& edited);
     void set_accel(const std::string& id);  // with its parameters' defaults, of the side that is edited
+    // The settings that a row changes: of the edited side, but what both share is the main one's.
+    Settings& settings_for(const std::string& key);
     Side& edited() { return editing_other && wish.other ? *wish.other : wish.main; }
     // Starts or ends the comparison; the second side begins as a copy of the first.
     void compare(bool on);
