@@ -1,30 +1,74 @@
 #!/bin/sh
-# Makes the window's pictures of the documentation: docs/images/window.sh [PROGRAM]. Needs Xvfb; the screen is larger than the
-# window, so that the pointer in its middle opens no tooltip.
+# Makes the window's pictures of the documentation: docs/images/window.sh [PROGRAM [FOLDER]]. Needs Xvfb. The pointer stands in a
+# corner beyond the window, so that it opens no tooltip.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 program=${1:-$here/../../build/release/bin/clarity}
+out=${2:-$here}
+scene=$here/../../scenes/showpiece.scene
 work=$(mktemp -d)
 trap 'kill "$screen" 2>/dev/null || true; rm -rf "$work"' EXIT
 Xvfb -displayfd 3 -screen 0 2700x1800x24 -nolisten tcp 3>"$work/display" 2>/dev/null &
 screen=$!
 until [ -s "$work/display" ]; do sleep 0.1; done
-cat >"$work/script" <<COMMANDS
+unset WAYLAND_DISPLAY
+
+# shoot WIDTHxHEIGHT TEXT_SCALE PICTURE_SIZE <script: a window of its own, remembering nothing
+shoot() {
+    cat >"$work/script"
+    echo quit >>"$work/script"
+    mkdir -p "$work/config/clarity"
+    printf '{"width": %s, "height": %s, "text_scale": %s}\n' "${1%x*}" "${1#*x}" "$2" >"$work/config/clarity/window.json"
+    DISPLAY=:$(cat "$work/display") XDG_CONFIG_HOME=$work/config CLARITY_UI_SCRIPT=$work/script \
+        "$program" view --size "$3" --spp 16 "$scene" >"$work/answers"
+    ! grep '^error' "$work/answers"
+}
+
+shoot 1280x800 1 856x748 <<COMMANDS
 wait idle 300
-screenshot $here/window.png
+screenshot $out/window.png
 level 3
 wait idle
-screenshot $here/window_volumes.png
+screenshot $out/window_volumes.png
+level off
+inspect 620 490
+tab Inspect
 wait idle
-quit
+wait idle
+screenshot $out/window_rays.png
+tab Scene
+pick 420 420
+lights 1
+wait idle
+wait idle
+screenshot $out/window_scene.png
+lights 0
+tab Stats
+set spp 1
+compare b
+accel bvh8
+set aov steps
+wait idle 100
+screenshot $out/window_heat.png
 COMMANDS
-unset WAYLAND_DISPLAY
-DISPLAY=:$(cat "$work/display") CLARITY_UI_NO_SAVE=1 CLARITY_UI_SCRIPT=$work/script \
-    "$program" view --size 884x748 --spp 16 "$here/../../scenes/showpiece.scene"
+
+shoot 1920x1080 1 1496x1028 <<COMMANDS
+set spp 4
+compare b
+accel spheres
+wait idle 300
+screenshot $out/window_compare.png
+COMMANDS
+
+shoot 1280x800 1.5 640x560 <<COMMANDS
+wait idle 300
+screenshot $out/window_large_text.png
+COMMANDS
+
 # stb writes quickly, not tightly.
 if command -v convert >/dev/null; then
-    for picture in window window_volumes; do
-        convert "$here/$picture.png" -strip -define png:compression-level=9 -define png:compression-filter=5 "$work/tight.png"
-        mv "$work/tight.png" "$here/$picture.png"
+    for picture in "$out"/window*.png; do
+        convert "$picture" -strip -define png:compression-level=9 -define png:compression-filter=5 "$work/tight.png"
+        mv "$work/tight.png" "$picture"
     done
 fi

@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const rt_plugin& accel_of(const PluginRegistry& plugins, const std::string& id, const std::string& name) {
-    if (const rt_plugin* plugin = plugins.accel(id)) return *plugin;
+const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id, const std::string& name) {
+    if (const rt_plugin* plugin = plugins.accel(id)) return plugin;
     throw Error(Exit::usage, name + ": it wants the acceleration structure `" + id + "`, which is not among the plugins");
 }
 
@@ -51,7 +51,7 @@ std::string preset_json(const PluginRegistry& plugins, const Preset& preset) {
     Json json;
     json["clarity_preset"] = 1;
     json["device"] = preset.device;
-    const rt_plugin& accel = accel_of(plugins, preset.settings.accel, "preset");
+    const rt_plugin& accel = *accel_of(plugins, preset.settings.accel, "preset");
     json["accel"] = {{"id", accel.id}};
     for (size_t i = 0; i < preset.settings.accel_params.size(); ++i) {
         const Word word = parameter_word(accel, preset.settings.accel_params, i);
@@ -85,7 +85,7 @@ Preset parse_preset(const PluginRegistry& plugins, const std::string& text, cons
         if (json.contains("accel")) accel = words_of(json["accel"], name, "accel");
         for (const Word& word : accel)
             if (word.key == "id") preset.settings.accel = word.value;
-        const rt_plugin& plugin = accel_of(plugins, preset.settings.accel, name);
+        const rt_plugin& plugin = *accel_of(plugins, preset.settings.accel, name);
         preset.settings.accel_params = default_parameters(plugin);
         for (const Word& word : accel)
             if (word.key != "id") set_parameter(plugin, preset.settings.accel_params, word.key, word.value);
@@ -123,7 +123,7 @@ std::string render_command(const PluginRegistry& plugins, const Preset& preset, 
     for (const std::string& file : files) line += " " + shell_word(file);
     line += " -o " + shell_word(output);
     if (!preset.device.empty()) line += " --device " + shell_word(preset.device);
-    const rt_plugin& accel = accel_of(plugins, preset.settings.accel, "the command line");
+    const rt_plugin& accel = *accel_of(plugins, preset.settings.accel, "the command line");
     std::string structure = accel.id;
     const ParameterValues usual = default_parameters(accel);
     for (size_t i = 0; i < preset.settings.accel_params.size() && i < usual.size(); ++i)
