@@ -117,7 +117,8 @@ std::string structures_section(const BenchReport& report, const SeriesNames& nam
     for (const auto& scene : scenes.all()) {
         const BenchRecord& r = *scene.front();
         out += std::string("<details") + (first ? " open=\"open\"" : "") + "><summary>" +
-               escape_markup(r.scene + ", " + figure(double(r.triangles)) + " triangles") +
+               escape_markup(r.scene + ", " + (r.triangles < 1000 ? std::to_string(r.triangles) : figure(double(r.triangles))) +
+                             " triangles") +
                "</summary>\n<div class=\"grid\">\n";
         first = false;
         for (const Measure& measure : kRays) out += chart_of(scene, measure, names);

@@ -33,7 +33,8 @@ void RecordGroups::add(const std::string& key, const BenchRecord& record) {
 
 SeriesNames::SeriesNames(const BenchReport& report) {
     for (const BenchRecord& r : report.records) {
-        if (!r.peer.empty() || r.device.empty()) continue;  // a peer's device is a processor: the CPU of this report
+        // A peer's device is a processor, and so is what builds: the CPU of this report.
+        if (!r.peer.empty() || r.device.empty() || r.measure == "build") continue;
         if (devices_.count(r.device)) continue;
         const std::string base = short_device(r);
         std::string name = base;
@@ -46,11 +47,14 @@ SeriesNames::SeriesNames(const BenchReport& report) {
     int next = 0;
     for (const BenchRecord& r : report.records) {
         // Packets and array sizes are told apart by their places in their own charts.
-        if (!r.peer.empty() || r.measure == "dropped" || r.suite == "packets") continue;
+        if (!r.peer.empty() || r.measure == "dropped" || r.measure == "build" || r.suite == "packets") continue;
         const std::string key = label(r);
         if (colors_.count(key)) continue;
         colors_[key] = next++ % kGrey;
+        colors_.emplace(who_is(r), colors_[key]);  // of its building, wherever that was
     }
+    for (const BenchRecord& r : report.records)
+        if (r.peer.empty() && r.measure == "build" && colors_.emplace(label(r), next % kGrey).second) ++next;
 }
 
 std::string SeriesNames::device(const BenchRecord& record) const {
@@ -60,7 +64,7 @@ std::string SeriesNames::device(const BenchRecord& record) const {
 
 std::string SeriesNames::label(const BenchRecord& record) const {
     const std::string who = who_is(record);
-    return several_devices() && record.peer.empty() ? who + ", " + device(record) : who;
+    return several_devices() && record.peer.empty() && record.measure != "build" ? who + ", " + device(record) : who;
 }
 
 int SeriesNames::color(const BenchRecord& record) const {

@@ -1,8 +1,10 @@
 #include "render/preset.hpp"
 
+#include <cerrno>
+#include <cstring>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "base/error.hpp"
 #include "base/output_file.hpp"
@@ -111,9 +113,9 @@ void save_preset(const PluginRegistry& plugins, const Preset& preset, const std:
 
 Preset load_preset(const PluginRegistry& plugins, const std::string& path) {
     std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    if (!in || !(text << in.rdbuf())) throw Error(Exit::usage, path + ": cannot be read as a preset");
-    return parse_preset(plugins, text.str(), path);
+    if (!in) throw Error(Exit::usage, path + ": cannot be read: " + std::strerror(errno));
+    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    return parse_preset(plugins, text, path);
 }
 
 std::string render_command(const PluginRegistry& plugins, const Preset& preset, const std::vector<std::string>& files,
