@@ -25,7 +25,9 @@ void note_place(const std::string& label, const Rect& rect) {
     const ImVec2 low = ImGui::GetWindowDrawList()->GetClipRectMin(), high = ImGui::GetWindowDrawList()->GetClipRectMax();
     const float middle = rect.y + rect.height / 2;
     const bool inside = middle > low.y && middle < high.y && rect.x < high.x && rect.x + rect.width > low.x;
-    places()[label] = {rect, ImGui::GetFrameCount(), inside};
+    Place& place = places()[label];
+    // Of two with one name in a frame, the one that is seen.
+    if (inside || !place.inside || place.frame != ImGui::GetFrameCount()) place = {rect, ImGui::GetFrameCount(), inside};
     if (wanted != label) return;
     wanted.clear();
     if (!inside) ImGui::SetScrollHereY(0.5f);

@@ -50,9 +50,9 @@ TEST_F(CommandLine, MakesThePictureBitByBit) {
     // Lights by key and by number, materials, surroundings, what is hidden, settings.
     window->key("a");
     for (const char* change :
-         {"edit light.1 off", "edit light.2 point,1,5,3,.3,.1,.05", "edit material.1.color .123456,.9,.1", "edit material.3.ior 1.7",
-          "edit material.4.emission .2,.1,0", "edit background .1,.2,.3", "edit ambient .05,.06,.07", "edit hide 0-1",
-          "set tone agx", "set exposure 1.234567", "set spp 3", "set depth 3", "set min_weight .02"})
+         {"edit light.1 off", "edit light.2 point,1,5,3,.3,.1,.05", "edit material.1.color .123456,.9,.1",
+          "edit material.3.ior 1.7", "edit material.4.emission .2,.1,0", "edit background .1,.2,.3", "edit ambient .05,.06,.07",
+          "edit hide 0-1", "set tone agx", "set exposure 1.234567", "set spp 3", "set depth 3", "set min_weight .02"})
         ASSERT_EQ(window->command(change), "") << change;
     window->settle();
     expect_same(*window, "png");

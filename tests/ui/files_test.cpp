@@ -119,7 +119,8 @@ TEST_F(Files, ScenesThatLackSomething) {
         window->double_click(window->place_of_pixel(10, 10));
         window->settle();
         EXPECT_TRUE(window->running());
-        for (const char* change : {"edit light.0 off", "edit hide 0", "edit material.0.color 1,0,0", "set aov prim", "set aov color"})
+        for (const char* change :
+             {"edit light.0 off", "edit hide 0", "edit material.0.color 1,0,0", "set aov prim", "set aov color"})
             window->command(change);  // may be refused
         window->settle();
         EXPECT_FALSE(window->state()["comparing"]);

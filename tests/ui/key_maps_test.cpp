@@ -74,14 +74,22 @@ void KeyMaps::check_motion(const KeyMap& map, const KeyBinding& binding) {
         Point along;
     };
     const std::map<Action, Case> cases = {
-        {Action::camera_left, {"eye", times(right, -1)}},   {Action::camera_right, {"eye", right}},
-        {Action::camera_forward, {"eye", forward}},         {Action::camera_back, {"eye", times(forward, -1)}},
-        {Action::camera_up, {"eye", up}},                   {Action::camera_down, {"eye", times(up, -1)}},
-        {Action::pitch_up, {"target", cross(right, sight)}}, {Action::pitch_down, {"target", cross(sight, right)}},
-        {Action::yaw_left, {"target", times(right, -1)}},   {Action::yaw_right, {"target", right}},
-        {Action::light_left, {"light", times(right, -1)}},  {Action::light_right, {"light", right}},
-        {Action::light_forward, {"light", ahead}},          {Action::light_back, {"light", times(ahead, -1)}},
-        {Action::light_up, {"light", up}},                  {Action::light_down, {"light", times(up, -1)}},
+        {Action::camera_left, {"eye", times(right, -1)}},
+        {Action::camera_right, {"eye", right}},
+        {Action::camera_forward, {"eye", forward}},
+        {Action::camera_back, {"eye", times(forward, -1)}},
+        {Action::camera_up, {"eye", up}},
+        {Action::camera_down, {"eye", times(up, -1)}},
+        {Action::pitch_up, {"target", cross(right, sight)}},
+        {Action::pitch_down, {"target", cross(sight, right)}},
+        {Action::yaw_left, {"target", times(right, -1)}},
+        {Action::yaw_right, {"target", right}},
+        {Action::light_left, {"light", times(right, -1)}},
+        {Action::light_right, {"light", right}},
+        {Action::light_forward, {"light", ahead}},
+        {Action::light_back, {"light", times(ahead, -1)}},
+        {Action::light_up, {"light", up}},
+        {Action::light_down, {"light", times(up, -1)}},
     };
     ASSERT_TRUE(cases.count(binding.action)) << "no test for what this key does";
     const Case& c = cases.at(binding.action);

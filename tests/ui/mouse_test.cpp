@@ -120,8 +120,8 @@ TEST_F(Mouse, ARightClickFollowsThePixelsRays) {
     window->settle();
     const auto was = window->state();
     std::vector<int> met;
-    for (const auto& [x, y] : {std::pair(-1.2, 0.3), std::pair(-0.7, -0.4), std::pair(1.0, 0.2), std::pair(0.0, 1.3),
-                               std::pair(1.9, -1.4)}) {
+    for (const auto& [x, y] :
+         {std::pair(-1.2, 0.3), std::pair(-0.7, -0.4), std::pair(1.0, 0.2), std::pair(0.0, 1.3), std::pair(1.9, -1.4)}) {
         SCOPED_TRACE(std::to_string(x) + " " + std::to_string(y));
         const int px = int(std::lround(pixel_of(x, y).x)), py = int(std::lround(pixel_of(x, y).y));
         window->click(window->place_of_pixel(px, py), Button::right);

@@ -19,8 +19,8 @@ TEST_F(Moving, PicturesAreReducedAndSharpenAtRest) {
         window->settle();
     }
     window->key_down("Left");
-    const bool reduced = window->reaches(
-        [](const nlohmann::json& state) { return state["reduced"] && state["size"] != "320x240"; }, 30);
+    const bool reduced =
+        window->reaches([](const nlohmann::json& state) { return state["reduced"] && state["size"] != "320x240"; }, 30);
     window->key_up("Left");
     EXPECT_TRUE(reduced);
     window->settle();

@@ -22,9 +22,10 @@ TEST_F(Presets, BringThePictureBackBitByBit) {
     const Pixels picture = window->picture();
     ASSERT_EQ(window->command("save_preset " + path), "");
 
-    for (const char* change : {"edit light.0 point,-3,2,1,.2,.4,1", "edit light.1 directional,0,1,0,1,1,1",
-                               "edit material.1.color .9,.1,.1", "edit material.3.reflect .1", "edit hide 0,2", "set tone linear",
-                               "set exposure .5", "set spp 1", "set depth 2", "edit background 1,0,0", "set size 160x120"})
+    for (const char* change :
+         {"edit light.0 point,-3,2,1,.2,.4,1", "edit light.1 directional,0,1,0,1,1,1", "edit material.1.color .9,.1,.1",
+          "edit material.3.reflect .1", "edit hide 0,2", "set tone linear", "set exposure .5", "set spp 1", "set depth 2",
+          "edit background 1,0,0", "set size 160x120"})
         ASSERT_EQ(window->command(change), "") << change;
     window->key("Up");
     window->settle();

@@ -23,9 +23,14 @@ TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
     const auto window = open();
     std::vector<std::string> wishes = {wish(*window)};
     std::vector<Pixels> pictures = {window->picture()};
-    const char* const changes[] = {"set depth 2",           "edit light.0 point,3,6,5,1,.2,.2", "edit light.1 off",
-                                   "edit background .8,.2,.1", "edit material.1.color .1,.9,.1",   "edit hide 0",
-                                   "set tone reinhard",        "accel spheres,max_leaf=8"};
+    const char* const changes[] = {"set depth 2",
+                                   "edit light.0 point,3,6,5,1,.2,.2",
+                                   "edit light.1 off",
+                                   "edit background .8,.2,.1",
+                                   "edit material.1.color .1,.9,.1",
+                                   "edit hide 0",
+                                   "set tone reinhard",
+                                   "accel spheres,max_leaf=8"};
     for (const char* change : changes) {
         ASSERT_EQ(window->command(change), "");
         window->settle();

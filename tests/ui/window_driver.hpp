@@ -84,6 +84,7 @@ class WindowDriver {
     void key(const std::string& name);
     void key_down(const std::string& name);
     void key_up(const std::string& name);
+    void tap(const std::string& name);  // over a frame: what a widget is to see, which looks at keys once a frame
     void type(const std::string& text);
     void move(const Place& to);
     void click(double x, double y);

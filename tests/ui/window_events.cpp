@@ -33,6 +33,12 @@ void WindowDriver::key_down(const std::string& name) {
 void WindowDriver::key_up(const std::string& name) {
     xdotool("keyup " + name);
 }
+void WindowDriver::tap(const std::string& name) {
+    key_down(name);
+    pass_frame();
+    key_up(name);
+    pass_frame();
+}
 void WindowDriver::type(const std::string& text) {
     xdotool("type --delay 20 '" + text + "'");
 }
@@ -90,13 +96,20 @@ void WindowDriver::click_on(const std::string& label, double at) {
     click(place_of(label, at));
 }
 
+// A row that a list has scrolled away is brought into view by being asked for.
 Place WindowDriver::place_of(const std::string& label, double at) {
-    const nlohmann::json place = query("find " + label);
-    if (!place.contains("x")) {
-        ADD_FAILURE() << "`" << label << "` was not drawn";
-        return {};
+    std::string error;
+    for (int i = 0; i < 5; ++i) {
+        error = command("find " + label);
+        if (!error.empty()) {
+            pass_frame();
+            continue;
+        }
+        const nlohmann::json place = nlohmann::json::parse(line("{", 1));
+        return {double(place["x"]) + at * double(place["w"]), double(place["y"]) + double(place["h"]) / 2};
     }
-    return {double(place["x"]) + at * double(place["w"]), double(place["y"]) + double(place["h"]) / 2};
+    ADD_FAILURE() << error;
+    return {};
 }
 
 Place WindowDriver::place_of_pixel(double x, double y, size_t picture) {

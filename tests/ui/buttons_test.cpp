@@ -1,0 +1,92 @@
+// What a first-time user clicks: open a file, save the picture, see the volumes, compare two structures, take a step back.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "window_fixture.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Buttons : public WindowTest {
+ protected:
+    static bool reaches(WindowDriver& window, const std::string& key, const nlohmann::json& value) {
+        return window.reaches([&](const nlohmann::json& state) { return state[key] == value; }, 20);
+    }
+};
+
+TEST_F(Buttons, OfTheToolbar) {
+    const auto window = open();
+    window->click_on("Volumes");
+    EXPECT_TRUE(window->reaches([](const nlohmann::json& state) { return state["level"] != -1 && state["volumes"] > 0; }, 20));
+    window->click_on("Volumes");
+    EXPECT_TRUE(reaches(*window, "level", -1));
+    window->click_on("Inspect");
+    EXPECT_TRUE(reaches(*window, "inspect_hover", true));
+    window->click_on("Inspect");
+    EXPECT_TRUE(reaches(*window, "inspect_hover", false));
+    window->click_on("Compare");
+    EXPECT_TRUE(reaches(*window, "comparing", true));
+    window->click_on("Compare");
+    EXPECT_TRUE(reaches(*window, "comparing", false));
+    window->settle();
+    const fs::path saved = fs::path(window->folder()) / "work/clarity_0001.png";
+    window->click_on("Save");
+    window->settle();
+    ASSERT_TRUE(fs::exists(saved)) << window->errors();
+    EXPECT_EQ(difference(window->picture(), read_png(saved), 0), 0);
+    EXPECT_EQ(window->state()["message"], "");
+}
+
+TEST_F(Buttons, StepsBackAndForth) {
+    const auto window = open();
+    const int depth = window->state()["depth"];
+    ASSERT_EQ(window->command("set depth 1"), "");
+    ASSERT_TRUE(reaches(*window, "undo", "Depth"));
+    window->click_on("undo");
+    EXPECT_TRUE(reaches(*window, "depth", depth));
+    window->click_on("redo");
+    EXPECT_TRUE(reaches(*window, "depth", 1));
+}
+
+// By its path, and by a click on its name.
+TEST_F(Buttons, TheBrowserOpensFiles) {
+    const TemporaryFolder folder;
+    for (const char* name : {"first.scene", "second.scene"})
+        std::ofstream(folder.path() + "/" + name) << "sphere center 0 0 0 radius 1\n";
+    const auto window = open();
+    window->click_on("Open\u2026");
+    ASSERT_TRUE(reaches(*window, "browser_open", true));
+    ASSERT_TRUE(reaches(*window, "typing", true));
+    window->type(folder.path() + "/first.scene");
+    window->tap("Return");
+    EXPECT_TRUE(reaches(*window, "files", nlohmann::json::array({folder.path() + "/first.scene"})));
+    EXPECT_TRUE(reaches(*window, "browser_open", false));
+    window->settle();
+    // A part of the name is enough to find it.
+    window->key("ctrl+o");
+    ASSERT_TRUE(reaches(*window, "browser_open", true));
+    ASSERT_TRUE(reaches(*window, "typing", true));
+    window->type(folder.path() + "/seco");
+    window->settle();
+    window->double_click(window->place_of("second.scene"));
+    EXPECT_TRUE(reaches(*window, "files", nlohmann::json::array({folder.path() + "/second.scene"})));
+    EXPECT_EQ(window->state()["message"], "");
+}
+
+// To the clipboard, and from there into a text field.
+TEST_F(Buttons, TheCommandLineIsCopied) {
+    const auto window = open();
+    ASSERT_EQ(window->command("set depth 2"), "");
+    window->settle();
+    window->click_on("Copy command line");
+    ASSERT_EQ(window->command("focus path"), "");
+    ASSERT_TRUE(reaches(*window, "typing", true));
+    window->tap("ctrl+v");
+    EXPECT_TRUE(reaches(*window, "path", command_line(*window, "picture.png")));
+}
+
+}  // namespace
+}  // namespace clarity
