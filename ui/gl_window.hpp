@@ -38,7 +38,7 @@ class GlWindow {
     std::vector<KeyEvent> take_keys();
     std::vector<std::string> take_dropped_files();
     void drop(const std::vector<std::string>& files);  // as if a user did: through the callback
-    double content_scale() const;  // 1 at 96 dpi
+    double content_scale() const;                      // 1 at 96 dpi
     void size(int& width, int& height) const;
 
     void begin_frame();

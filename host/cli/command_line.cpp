@@ -105,8 +105,10 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
     add_settings(app, trace.settings, trace.sets);
     app.get_option("--set")->description(
         "The same, as key=value with the setting's key (ray_slots=16), or a change of the view: "
-        "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, light.N=off|point,x,y,z,r,g,b|directional,..., "
-        "material.N.color=r,g,b (emission, specular, reflect, refract, ior, shininess), hide=3,5-9 (instances); may be repeated");
+        "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, "
+        "light.N=off|point,x,y,z,r,g,b|directional,..., "
+        "material.N.color=r,g,b (emission, specular, reflect, refract, ior, shininess), hide=3,5-9 (instances); may be "
+        "repeated");
 }
 
 void add_render(CLI::App& app, RenderOptions& render) {
