@@ -103,7 +103,8 @@ TEST(KeyMap, ThesisKeysAreTheDefault) {
 TEST(KeyMap, NoKeyHasTwoMeanings) {
     for (const KeyMap& map : key_maps())
         for (size_t i = 0; i < map.bindings.size(); ++i)
-            EXPECT_EQ(map.find(map.bindings[i].key, map.bindings[i].ctrl), &map.bindings[i]) << map.id << " " << map.bindings[i].name;
+            EXPECT_EQ(map.find(map.bindings[i].key, map.bindings[i].ctrl), &map.bindings[i])
+                << map.id << " " << map.bindings[i].name;
 }
 
 TEST(KeyMap, HeldKeysForgetWhatIsReleased) {
