@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numeric>
 
 #include "render/device_scene.hpp"
 #include "ui/frame_graph.hpp"
@@ -69,13 +70,15 @@ void frame_rows(Session& session) {
     ImGui::Checkbox("##continuous", &session.wish.continuous);
 }
 
+double sum_of(const std::vector<KernelTime>& kernels) {
+    return std::accumulate(kernels.begin(), kernels.end(), 0.0, [](double ms, const KernelTime& k) { return ms + k.ms; });
+}
+
 void kernel_bars(const PictureSide& side, unsigned which) {
     const std::vector<KernelTime>& kernels = side.stats.kernels;
-    double longest = 0, sum = 0;
-    for (const KernelTime& kernel : kernels) {
-        longest = std::max(longest, kernel.ms);
-        sum += kernel.ms;
-    }
+    const double sum = sum_of(kernels);
+    double longest = 0;
+    for (const KernelTime& kernel : kernels) longest = std::max(longest, kernel.ms);
     for (const KernelTime& kernel : kernels) {
         row_label(kernel.name.c_str(), "by the device's clock");
         const ImVec2 from = ImGui::GetCursorScreenPos();
@@ -99,7 +102,7 @@ void kernel_rows(const std::vector<const PictureSide*>& sides) {
     for (unsigned i = 0; i < sides.size(); ++i) {
         if (sides.size() > 1) wrapped_text(std::string(1, "AB"[i]) + "  " + sides[i]->settings.accel, side_color(i));
         kernel_bars(*sides[i], i);
-        row_text("Sum", time_text(sides[i]->stats.device_ms), "kernels of the last sample, by the device's clock");
+        row_text("Sum", time_text(sum_of(sides[i]->stats.kernels)), "of what is above");
     }
 }
 
