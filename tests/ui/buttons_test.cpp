@@ -32,7 +32,7 @@ TEST_F(Buttons, OfTheToolbar) {
     window->click_on("Compare");
     EXPECT_TRUE(reaches(*window, "comparing", false));
     window->settle();
-    const fs::path saved = fs::path(window->folder()) / "work/clarity_0001.png";
+    const fs::path saved = fs::path(window->folder()) / "started_in/clarity_0001.png";
     window->click_on("Save");
     window->settle();
     ASSERT_TRUE(fs::exists(saved)) << window->errors();

@@ -138,11 +138,11 @@ TEST_F(Files, WhatCannotBeWrittenCostsAMessage) {
     EXPECT_NE(window->command("save /no/such/folder/a.png").find("/no/such/folder"), std::string::npos);
     EXPECT_NE(window->command("save a.jpeg"), "");
     const auto was = window->state();
-    fs::permissions(window->folder() + "/work", fs::perms::owner_read | fs::perms::owner_exec);
+    fs::permissions(window->folder() + "/started_in", fs::perms::owner_read | fs::perms::owner_exec);
     window->key("ctrl+s");  // root may write there all the same
     window->settle();
-    fs::permissions(window->folder() + "/work", fs::perms::owner_all);
-    EXPECT_TRUE(window->state()["messages"] > was["messages"] || fs::exists(window->folder() + "/work/clarity_0001.png"));
+    fs::permissions(window->folder() + "/started_in", fs::perms::owner_all);
+    EXPECT_TRUE(window->state()["messages"] > was["messages"] || fs::exists(window->folder() + "/started_in/clarity_0001.png"));
     EXPECT_TRUE(window->running());
 }
 

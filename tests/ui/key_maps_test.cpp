@@ -158,7 +158,7 @@ void KeyMaps::check_inspector(const KeyBinding& binding) {
 }
 
 void KeyMaps::check_saving(const KeyBinding& binding) {
-    const fs::path path = fs::path(window->folder()) / "work/clarity_0001.png";
+    const fs::path path = fs::path(window->folder()) / "started_in/clarity_0001.png";
     EXPECT_FALSE(fs::exists(path));
     press(binding);
     window->settle();

@@ -47,7 +47,7 @@ TEST_F(Window, RemembersUnderTheConfigurationFolderOnly) {
         ASSERT_EQ(window->command("map viewer"), "");
         window->quit();
         EXPECT_EQ(window->exit_code(), 0);
-        EXPECT_TRUE(fs::is_empty(window->folder() + "/work"));
+        EXPECT_TRUE(fs::is_empty(window->folder() + "/started_in"));
         EXPECT_TRUE(fs::exists(config.path() + "/clarity/window.json"));
     }
     {

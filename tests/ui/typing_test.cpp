@@ -49,7 +49,7 @@ TEST_F(Typing, MovesNothing) {
     for (const char* key : {"ctrl+z", "ctrl+y", "ctrl+o", "ctrl+s"}) window->key(key);
     window->settle();
     expect_unmoved(before, window->state());
-    EXPECT_TRUE(fs::is_empty(window->folder() + "/work"));
+    EXPECT_TRUE(fs::is_empty(window->folder() + "/started_in"));
 
     // The same keys mean something once the field has been left.
     leave_field(*window);

@@ -134,7 +134,7 @@ WindowDriver::WindowDriver(const std::vector<std::string>& arguments, std::map<s
     environment.emplace("WAYLAND_DISPLAY", "");
     environment.emplace("CLARITY_UI_NO_SAVE", "1");
     environment.emplace("CLARITY_UI_SCRIPT", pipe_path);
-    const std::string error_path = folder() + "/stderr", work = folder() + "/work";
+    const std::string error_path = folder() + "/stderr", work = folder() + "/started_in";
     fs::create_directory(work);
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
