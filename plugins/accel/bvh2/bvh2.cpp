@@ -5,9 +5,10 @@
 // small primitives overlap (there, spatial splits would help).
 #include <cstdio>
 
-#include "builder.hpp"
 #include "levels.hpp"
 #include "rt_plugin.hpp"
+#include "statistics.hpp"
+#include "write_nodes.hpp"
 
 namespace bvh2 {
 namespace {
@@ -40,7 +41,18 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
                       static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
                       input->params[kSplit] == 1};
     try {
-        Builder(host, *input, rules, count).run(out);
+        Builder builder(host, *input, rules, count, 1.0f);
+        const BinaryTree tree = builder.run(out, [](const Task&) {});
+        const Written written = write_nodes(host, tree, out);
+        const Statistics statistics = measure(host, rules, written.nodes, written.count, written.roots, input->groups);
+        rt::stat(out, "nodes", written.count);
+        rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
+        rt::stat(out, "depth", tree.depth);
+        rt::stat(out, "sah_cost", statistics.sah_cost);
+        rt::stat(out, "build_bytes", static_cast<double>(count * Builder::kBytesPerPrimitive));
+        // One place a level, and one to spare that tells a full stack from an overflowing one; in steps of 8, since a new value
+        // recompiles the kernels.
+        rt::define(out, "BVH2_STACK", (tree.depth + 1 + 7) / 8 * 8);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",

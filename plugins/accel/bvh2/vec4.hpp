@@ -75,6 +75,14 @@ inline void to_index(Vec4 a, uint32_t index[3]) {
     index[1] = static_cast<uint32_t>(_mm_extract_epi16(i, 2));
     index[2] = static_cast<uint32_t>(_mm_extract_epi16(i, 4));
 }
+// The lowest three bits of every lane become those of `index`.
+inline Vec4 tag(Vec4 a, uint32_t index) {
+    const __m128i bits = _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(-8));
+    return {_mm_castsi128_ps(_mm_or_si128(bits, _mm_set1_epi32(static_cast<int>(index))))};
+}
+inline void store_tags(uint32_t* p, Vec4 a) {
+    _mm_store_si128(reinterpret_cast<__m128i*>(p), _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(7)));
+}
 // From rows a, b, c: x = (a.x b.x c.x ?) and so on.
 inline void transpose3(Vec4 a, Vec4 b, Vec4 c, Vec4& x, Vec4& y, Vec4& z) {
     const __m128 low = _mm_unpacklo_ps(a.m, b.m), high = _mm_unpackhi_ps(a.m, b.m);
@@ -162,6 +170,20 @@ inline Vec4 xyz(Vec4 a) {
 inline void to_index(Vec4 a, uint32_t index[3]) {
     for (int i = 0; i < 3; ++i) index[i] = static_cast<uint32_t>(a.v[i]);
 }
+inline Vec4 tag(Vec4 a, uint32_t index) {
+    return each_lane([&](int i) {
+        uint32_t bits;
+        std::memcpy(&bits, &a.v[i], sizeof bits);
+        bits = (bits & ~7u) | index;
+        float tagged;
+        std::memcpy(&tagged, &bits, sizeof tagged);
+        return tagged;
+    });
+}
+inline void store_tags(uint32_t* p, Vec4 a) {
+    std::memcpy(p, a.v, sizeof a.v);
+    for (int i = 0; i < 4; ++i) p[i] &= 7;
+}
 inline void transpose3(Vec4 a, Vec4 b, Vec4 c, Vec4& x, Vec4& y, Vec4& z) {
     x = {{a.v[0], b.v[0], c.v[0], 0.0f}};
     y = {{a.v[1], b.v[1], c.v[1], 0.0f}};
@@ -184,18 +206,5 @@ inline Vec4 to_float(Count4 a) {
 }
 
 #endif
-
-// An axis-aligned box; the fourth lanes hold nothing.
-struct Box {
-    Vec4 lo = splat(FLT_MAX), hi = splat(-FLT_MAX);
-    void add(Vec4 p) {
-        lo = min(lo, p);
-        hi = max(hi, p);
-    }
-    void add(const Box& b) {
-        lo = min(lo, b.lo);
-        hi = max(hi, b.hi);
-    }
-};
 
 }  // namespace bvh2

@@ -6,7 +6,6 @@
 
 #include "rt_plugin.hpp"
 #include "wide_levels.hpp"
-#include "wide_statistics.hpp"
 #include "wide_tree.hpp"
 
 namespace bvh8 {
@@ -24,8 +23,7 @@ constexpr rt_param kParams[] = {
                     0.01, 100, 1),
 };
 
-// Positions in leaf order are 28 bits, as refs are.
-constexpr uint64_t kMaxPrimitives = RT_REF_INDEX_MAX;
+constexpr uint64_t kMaxPrimitives = bvh2::Builder::kMaxPrimitives;
 constexpr float kBinaryShare = 0.85f;  // of the time
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
@@ -44,12 +42,14 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     const bvh2::Rules rules{costs.max_leaf, static_cast<uint32_t>(input->params[kBins]), costs.node / (BVH8_WIDTH - 1),
                             costs.primitive};
     try {
-        const BinaryTree binary = build_binary_tree(host, *input, out, rules, count, kBinaryShare);
-        const Collapse collapse(host, binary, costs);
+        bvh2::Builder builder(host, *input, rules, count, kBinaryShare);
+        const Collapse collapse(builder, costs);
+        const bvh2::BinaryTree binary = builder.run(out, [&](const bvh2::Task& task) { collapse.decide_task(task); });
+        collapse.decide_tops(binary);
         rt::progress(host, (1 + kBinaryShare) / 2);
-        WideTree wide(host, collapse);
+        WideTree wide(host, collapse, binary, costs);
         wide.write(out);
-        const Statistics statistics = measure(host, wide, costs, input->groups);
+        const Statistics statistics = wide.statistics(input->groups);
         const double nodes = wide.node_count(), bytes = nodes * sizeof(bvh8_node);
         rt::stat(out, "nodes", nodes);
         rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
@@ -58,13 +58,13 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         rt::stat(out, "sah_cost", statistics.sah_cost);
         rt::stat(out, "node_bytes", bytes);
         rt::stat(out, "bytes_per_primitive", count > 0 ? bytes / static_cast<double>(count) + sizeof(rt_leaf) : 0);
-        rt::stat(out, "build_bytes", static_cast<double>(binary_tree_bytes(count)));
+        rt::stat(out, "build_bytes", static_cast<double>(count * bvh2::Builder::kBytesPerPrimitive));
         // One to spare tells a full stack from an overflowing one; in steps of 16, since a new value recompiles the kernels.
         rt::define(out, "BVH8_STACK", (wide.stack() + 1 + 15) / 16 * 16);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
-                      static_cast<double>(binary_tree_bytes(count)) / (1 << 30), static_cast<unsigned long long>(count));
+                      static_cast<double>(count * bvh2::Builder::kBytesPerPrimitive) / (1 << 30), static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
 }
