@@ -12,6 +12,12 @@ uint32_t task_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 8, 1024, 16384));
 }
 
+float unit_scale(const Bounds& box) {
+    double longest = 0;
+    for (int a = 0; a < 3; ++a) longest = std::max(longest, double{box.hi(a)} - box.lo[a]);
+    return longest > 2.0 / FLT_MAX ? static_cast<float>(2 / longest) : FLT_MAX;
+}
+
 }  // namespace
 
 // Part of a range that one thread takes.
@@ -100,9 +106,7 @@ std::vector<Builder::Pending> Builder::load() {
     }
     for (uint32_t g = 0; g < input_.group_count; ++g) {
         tree_.roots[g].box = groups[g].range.box;
-        alignas(16) float scale[4];
-        store(scale, AreaScale(tree_.roots[g].box).scale);
-        scales_.push_back(scale[0]);
+        scales_.push_back(unit_scale(tree_.roots[g].box));
     }
     report(primitive_count_ / 2);
     return groups;

@@ -18,7 +18,7 @@ constexpr uint32_t kChunkSize = 8192;
 // A range that one thread builds, and its tree.
 struct Task {
     Range range;
-    float scale;  // 1 / the longest side of the group's box, as AreaScale has it
+    float scale;  // half a length times this is that length where the longest side of the group's box is 1
     Subtree tree;
 };
 // A node above the tasks.

@@ -26,8 +26,8 @@ inline void sort_small(const Record* records, uint32_t count, uint32_t order[kSm
     const Vec4 least = splat(-FLT_MAX), most = splat(FLT_MAX);
     Vec4 key[kSmall];
     for (uint32_t i = 0; i < count; ++i)
-        key[i] = tag(bvh2::min(bvh2::max(centroid2(box_of(records[i])), least), most), i);
-    for (uint32_t i = count; i < kSmall; ++i) key[i] = tag(most, i);
+        key[i] = tag_all(bvh2::min(bvh2::max(centroid2(box_of(records[i])), least), most), i);
+    for (uint32_t i = count; i < kSmall; ++i) key[i] = tag_all(most, i);
     put_in_order(key[0], key[1]);
     put_in_order(key[2], key[3]);
     put_in_order(key[0], key[2]);

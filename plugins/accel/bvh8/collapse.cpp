@@ -15,16 +15,20 @@ bool is_leaf(rt_u32 code) {
 // Added to each side, so that lines and points do not cost nothing: too little to matter to what has an area.
 constexpr float kLeast = 1e-12f;
 
+// Halves first: no length overflows.
+float side(float lo, float hi, float scale) {
+    return kLeast + scale * (0.5f * hi - 0.5f * lo);
+}
 // Of the box around both.
 float half_area(const bvh2_node& node, float scale) {
     float e[3];
     for (int a = 0; a < 3; ++a)
-        e[a] = kLeast + scale * (std::max(node.box0[3 + a], node.box1[3 + a]) - std::min(node.box0[a], node.box1[a]));
+        e[a] = side(std::min(node.box0[a], node.box1[a]), std::max(node.box0[3 + a], node.box1[3 + a]), scale);
     return e[0] * e[1] + e[2] * (e[0] + e[1]);
 }
 float half_area(const float box[6], float scale) {
     float e[3];
-    for (int a = 0; a < 3; ++a) e[a] = kLeast + scale * (box[3 + a] - box[a]);
+    for (int a = 0; a < 3; ++a) e[a] = side(box[a], box[3 + a], scale);
     return e[0] * e[1] + e[2] * (e[0] + e[1]);
 }
 

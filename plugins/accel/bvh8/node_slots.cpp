@@ -2,48 +2,54 @@
 
 #include <algorithm>
 #include <cfloat>
-#include <cmath>
 
 namespace bvh8 {
 namespace {
 
+using bvh2::Vec4;
+
+// How well a child suits slots 0..3 and 4..7, tagged with 8 child + slot.
+struct Fit {
+    Vec4 low, high;
+};
+
 // Slot s is the corner of the node whose coordinate k is high where bit k of s is set. Of all children and corners left over,
 // the pair goes together whose child lies farthest towards its corner.
 void assign_slots(const Slot children[], uint32_t count, uint32_t slot_of[]) {
-    constexpr float kSmall = 0.0625f;  // no sum below overflows
-    float center[BVH8_WIDTH][3], middle[3] = {0, 0, 0};
-    for (uint32_t i = 0; i < count; ++i)
-        for (int a = 0; a < 3; ++a) {
-            center[i][a] = kSmall * children[i].box[a] + kSmall * children[i].box[3 + a];
-            middle[a] += center[i][a] / static_cast<float>(count);
-        }
-    float fit[BVH8_WIDTH][BVH8_WIDTH];
-    uint32_t best_slot[BVH8_WIDTH];  // of those that are open
-    const auto find_best = [&](uint32_t child, uint32_t open) {
-        float best = -INFINITY;
-        for (uint32_t s = 0; s < BVH8_WIDTH; ++s)
-            if ((open >> s & 1) && fit[child][s] > best) {
-                best = fit[child][s];
-                best_slot[child] = s;
-            }
-    };
+    const Vec4 small = bvh2::splat(0.0625f);  // no sum below overflows
+    const Vec4 share = bvh2::splat(1.0f / static_cast<float>(count));
+    Vec4 center[BVH8_WIDTH], middle = bvh2::splat(0.0f);
     for (uint32_t i = 0; i < count; ++i) {
-        const float x = center[i][0] - middle[0], y = center[i][1] - middle[1], z = center[i][2] - middle[2];
-        for (uint32_t s = 0; s < BVH8_WIDTH; ++s) fit[i][s] = (s & 1 ? x : -x) + (s & 2 ? y : -y) + (s & 4 ? z : -z);
-        best_slot[i] = (x > 0 ? 1 : 0) | (y > 0 ? 2 : 0) | (z > 0 ? 4 : 0);
+        center[i] = bvh2::load_any(children[i].box) * small + bvh2::load_any(children[i].box + 3) * small;
+        middle = middle + center[i] * share;
     }
-    uint32_t open = (1u << BVH8_WIDTH) - 1, left[BVH8_WIDTH];
-    for (uint32_t i = 0; i < count; ++i) left[i] = i;
-    for (uint32_t n = count; n > 0;) {
-        uint32_t at = 0;
-        for (uint32_t i = 1; i < n; ++i)
-            if (fit[left[i]][best_slot[left[i]]] > fit[left[at]][best_slot[left[at]]]) at = i;
-        const uint32_t slot = best_slot[left[at]];
-        slot_of[left[at]] = slot;
-        open &= ~(1u << slot);
-        left[at] = left[--n];
-        for (uint32_t i = 0; i < n; ++i)
-            if (best_slot[left[i]] == slot) find_best(left[i], open);
+    alignas(16) const float signs_x[4] = {-1, 1, -1, 1}, signs_y[4] = {-1, -1, 1, 1};
+    const Vec4 sign_x = bvh2::load(signs_x), sign_y = bvh2::load(signs_y);
+    Fit fit[BVH8_WIDTH];
+    for (uint32_t i = 0; i < count; ++i) {
+        alignas(16) float at[4];
+        bvh2::store(at, center[i] - middle);
+        const Vec4 xy = sign_x * bvh2::splat(at[0]) + sign_y * bvh2::splat(at[1]), z = bvh2::splat(at[2]);
+        fit[i] = {bvh2::tag_lanes(xy - z, BVH8_WIDTH * i), bvh2::tag_lanes(xy + z, BVH8_WIDTH * i + 4)};
+    }
+    alignas(16) float open[BVH8_WIDTH];  // what no fit exceeds; least for slots that are taken
+    std::fill_n(open, BVH8_WIDTH, FLT_MAX);
+    alignas(16) float best[4];
+    alignas(16) uint32_t tags[4];
+    for (uint32_t left = count; left > 0; --left) {
+        Vec4 low = fit[0].low, high = fit[0].high;
+        for (uint32_t i = 1; i < count; ++i) {
+            low = bvh2::max(low, fit[i].low);
+            high = bvh2::max(high, fit[i].high);
+        }
+        const Vec4 both = bvh2::max(bvh2::min(low, bvh2::load(open)), bvh2::min(high, bvh2::load(open + 4)));
+        bvh2::store(best, both);
+        bvh2::store_tags(tags, both);
+        const uint32_t a = best[0] > best[1] ? 0 : 1, b = best[2] > best[3] ? 2 : 3;
+        const uint32_t tag = tags[best[a] > best[b] ? a : b], slot = tag % BVH8_WIDTH, child = tag / BVH8_WIDTH;
+        slot_of[child] = slot;
+        open[slot] = -FLT_MAX;
+        fit[child] = {bvh2::splat(-FLT_MAX), bvh2::splat(-FLT_MAX)};
     }
 }
 

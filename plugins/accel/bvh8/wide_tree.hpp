@@ -71,7 +71,7 @@ class WideTree {
     const Costs costs_;
     std::vector<Job> jobs_;
     std::vector<Top> tops_;
-    std::vector<std::array<float, 6>> root_boxes_;  // of groups that are one leaf
+    std::vector<std::array<float, 8>> root_boxes_;  // of groups that are one leaf
     bvh8_node* nodes_ = nullptr;
     rt_u32 node_count_ = 0;
     uint32_t depth_ = 1, stack_ = 0;
