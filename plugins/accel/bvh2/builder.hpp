@@ -35,9 +35,9 @@ struct Root {
 struct BinaryTree {
     const bvh2_node* nodes;
     std::vector<Task> tasks;
-    std::vector<Top> tops;   // parents before children
+    std::vector<Top> tops;    // parents before children
     std::vector<Root> roots;  // of groups
-    uint32_t depth = 1;        // nodes from a root to the deepest leaf
+    uint32_t depth = 1;       // nodes from a root to the deepest leaf
 };
 
 class Builder {
@@ -49,7 +49,8 @@ class Builder {
 
     // Progress goes from 0 to `share`. The tree lives as long as this does.
     Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count, float share);
-    // Writes the leaf order. `after` is called for each task when it is done, by the thread that built it, whose caches hold it.
+    // Writes the leaf order. `after` is called for each task when it is done, by the thread that built it, whose caches hold
+    // it.
     BinaryTree run(const rt_build_output* out, const std::function<void(const Task&)>& after);
     const Workspace& workspace() const { return workspace_; }
 

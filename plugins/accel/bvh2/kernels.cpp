@@ -1,9 +1,6 @@
 #include "kernels.hpp"
 
-#include "box8.inl"
-#include "binning.inl"
-#include "small_range.inl"
-#include "subtree.inl"
+#include "kernels.inl"
 
 namespace bvh2 {
 

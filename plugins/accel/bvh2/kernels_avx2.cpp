@@ -13,10 +13,7 @@
 #pragma GCC target("avx2")
 #endif
 
-#include "box8.inl"
-#include "binning.inl"
-#include "small_range.inl"
-#include "subtree.inl"
+#include "kernels.inl"
 
 #ifdef __clang__
 #pragma clang attribute pop

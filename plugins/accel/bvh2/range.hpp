@@ -8,7 +8,8 @@
 
 namespace bvh2 {
 
-// A box with its upper bounds negated, so that growing it is one minimum over eight floats. The fourth lanes hold nothing. 32 B.
+// A box with its upper bounds negated, so that growing it is one minimum over eight floats. The fourth lanes hold nothing. 32
+// B.
 struct alignas(32) Bounds {
     float lo[4] = {FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX}, neg_hi[4] = {FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX};
     void add(const Bounds& b) {

@@ -64,7 +64,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
-                      static_cast<double>(count * bvh2::Builder::kBytesPerPrimitive) / (1 << 30), static_cast<unsigned long long>(count));
+                      static_cast<double>(count * bvh2::Builder::kBytesPerPrimitive) / (1 << 30),
+                      static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
 }

@@ -18,8 +18,8 @@ struct Costs {
 // What stands in a slot of a wide node.
 struct Slot {
     const float* box;  // lo, hi; a seventh number may be read
-    rt_u32 leaf;    // BVH8_NOTHING: it is a node, that of:
-    rt_u32 binary;  // node of the binary tree
+    rt_u32 leaf;       // BVH8_NOTHING: it is a node, that of:
+    rt_u32 binary;     // node of the binary tree
 };
 
 // What was decided about a binary node stands in the node itself, in the places that its layout leaves free:
@@ -54,9 +54,7 @@ class Collapse {
  private:
     bvh2_node* nodes() const { return builder_.workspace().nodes; }
     // In the builder's records, which have done their duty.
-    RootCosts& costs_of(rt_u32 binary) const {
-        return reinterpret_cast<RootCosts*>(builder_.workspace().records[0])[binary];
-    }
+    RootCosts& costs_of(rt_u32 binary) const { return reinterpret_cast<RootCosts*>(builder_.workspace().records[0])[binary]; }
     void decide(rt_u32 binary, float scale, rt_u32 more_bits) const;
     void gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next) const;
 

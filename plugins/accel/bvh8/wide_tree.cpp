@@ -168,9 +168,10 @@ Statistics WideTree::statistics(const rt_group* groups) const {
         const float whole_box[6] = {box.lo[0], box.lo[1], box.lo[2], box.hi(0), box.hi(1), box.hi(2)};
         const double whole = area(whole_box);
         if (!(whole > 0)) continue;  // no ray meets a point or a line
-        cost += groups[g].count *
-                (double{costs_.node} * (whole + of_group[g].node_area) + double{costs_.primitive} * of_group[g].primitive_area) /
-                whole;
+        cost +=
+            groups[g].count *
+            (double{costs_.node} * (whole + of_group[g].node_area) + double{costs_.primitive} * of_group[g].primitive_area) /
+            whole;
         primitives += groups[g].count;
     }
     result.sah_cost = primitives > 0 ? cost / primitives : 0;
