@@ -1,6 +1,7 @@
 #include "builder.hpp"
 
 #include <numeric>
+#include <unordered_map>
 
 #include "rt_plugin.hpp"
 
@@ -66,8 +67,16 @@ void Builder::report(uint64_t work) {
 
 BinaryTree Builder::run(const rt_build_output* out, const std::function<void(const Task&)>& after) {
     workspace_.leaves = rt::leaves(out, primitive_count_);
-    split_top(load());
-    run_tasks(after);
+    const std::vector<Pending> groups = load();
+    if (workspace_.rules.method == Method::morton) {
+        sort(groups);
+        cut_sorted(groups);
+        run_tasks(after);
+        bound_tops();
+    } else {
+        split_top(groups);
+        run_tasks(after);
+    }
     return std::move(tree_);
 }
 
@@ -119,16 +128,19 @@ void Builder::put(const Pending& pending, rt_u32 code) {
         (pending.which == 0 ? nodes_.data()[pending.parent].child0 : nodes_.data()[pending.parent].child1) = code;
 }
 
+void Builder::add_task(const Pending& pending) {
+    tree_.tasks.push_back({pending.range, scales_[pending.group], {}});
+    task_place_.push_back({{}, pending.parent, pending.which, pending.group});
+}
+
 void Builder::split_top(std::vector<Pending> level) {
     while (!level.empty()) {
         std::vector<Pending> large;
         for (const Pending& pending : level) {
-            if (pending.range.count() > task_size_) {
+            if (pending.range.count() > task_size_)
                 large.push_back(pending);
-            } else if (pending.range.count() > 0) {
-                tree_.tasks.push_back({pending.range, scales_[pending.group], {}});
-                task_place_.push_back({{}, pending.parent, pending.which, pending.group});
-            }
+            else if (pending.range.count() > 0)
+                add_task(pending);
         }
         level = split_level(large);
         report(0);
@@ -220,6 +232,69 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
     return next;
 }
 
+// Groups stay apart: the keys of each are sorted for themselves.
+void Builder::sort(const std::vector<Pending>& groups) {
+    keys_ = std::make_unique<Scratch<MortonKey>>(primitive_count_);
+    const Scratch<MortonKey> other(primitive_count_);
+    parallel_for(groups.size(), [&](uint32_t g) {
+        const Range& group = groups[g].range;
+        if (group.count() == 0) return;
+        const uint32_t chunks = (group.count() + kChunkSize - 1) / kChunkSize;
+        const auto each = [&](auto&& do_chunk) {
+            parallel_for(chunks, [&](uint32_t c) {
+                const uint32_t begin = group.begin + c * kChunkSize;
+                do_chunk(begin, std::min(begin + kChunkSize, group.end));
+            });
+        };
+        each([&](uint32_t begin, uint32_t end) { make_keys(workspace_, group, begin, end, keys_->data()); });
+        sort_keys(host_, keys_->data() + group.begin, other.data() + group.begin, group.count());
+        each([&](uint32_t begin, uint32_t end) { gather(workspace_, keys_->data(), begin, end); });
+    });
+    report(primitive_count_ / 2);
+}
+
+void Builder::cut_sorted(const std::vector<Pending>& groups) {
+    std::vector<Pending> open = groups;
+    while (!open.empty()) {
+        Pending at = open.back();
+        open.pop_back();
+        at.range.buffer = 1;
+        if (at.range.count() <= task_size_) {
+            if (at.range.count() > 0) add_task(at);
+            continue;
+        }
+        const uint32_t middle = morton_middle(keys_->data(), at.range.begin, at.range.end);
+        const rt_u32 node = middle - 1;  // see Workspace::nodes
+        put(at, node);
+        tree_.tops.push_back({node, scales_[at.group]});
+        top_place_.push_back({{}, at.parent, at.which, at.group});
+        ++at.range.depth;
+        Pending left = at, right = at;
+        left.range.end = right.range.begin = middle;
+        left.parent = right.parent = node;
+        left.which = 0;
+        right.which = 1;
+        open.push_back(right);
+        open.push_back(left);
+    }
+}
+
+// From the tasks up.
+void Builder::bound_tops() {
+    std::unordered_map<rt_u32, Bounds> boxes;
+    const auto put_box = [&](const Pending& place, const Bounds& box) {
+        if (place.parent == RT_NONE) return;
+        bvh2_node& parent = nodes_.data()[place.parent];
+        set_child(parent, static_cast<int>(place.which), box, place.which == 0 ? parent.child0 : parent.child1);
+        boxes[place.parent].add(box);
+    };
+    for (size_t t = 0; t < tree_.tasks.size(); ++t) put_box(task_place_[t], tree_.tasks[t].range.box);
+    for (size_t i = tree_.tops.size(); i-- > 0;) {
+        const rt_u32 node = tree_.tops[i].node;
+        put_box(top_place_[i], boxes[node]);
+    }
+}
+
 void Builder::run_tasks(const std::function<void(const Task&)>& after) {
     std::vector<Task>& tasks = tree_.tasks;
     // The largest first, so that no thread is left alone with one at the end.
@@ -229,7 +304,8 @@ void Builder::run_tasks(const std::function<void(const Task&)>& after) {
                      [&](uint32_t a, uint32_t b) { return tasks[a].range.count() > tasks[b].range.count(); });
     parallel_for(order.size(), [&](uint32_t i) {
         Task& task = tasks[order[i]];
-        task.tree = kernels_.build_subtree(workspace_, task.range);
+        task.tree =
+            keys_ ? build_sorted(workspace_, keys_->data(), task.range) : kernels_.build_subtree(workspace_, task.range);
         put(task_place_[order[i]], task.tree.root);
         after(task);
         report(task.range.count());

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "kernels.hpp"
+#include "morton.hpp"
 #include "scratch.hpp"
 
 namespace bvh2 {
@@ -66,8 +67,12 @@ class Builder {
     struct Cut;
 
     std::vector<Pending> load();
+    void add_task(const Pending& pending);
     void split_top(std::vector<Pending> level);
     std::vector<Pending> split_level(const std::vector<Pending>& level);
+    void sort(const std::vector<Pending>& groups);
+    void cut_sorted(const std::vector<Pending>& groups);
+    void bound_tops();
     void run_tasks(const std::function<void(const Task&)>& after);
     void put(const Pending& pending, rt_u32 code);
     void report(uint64_t work);
@@ -85,7 +90,9 @@ class Builder {
     Workspace workspace_;
     BinaryTree tree_;
     std::vector<Pending> task_place_;  // of tasks, without their ranges
+    std::vector<Pending> top_place_;   // of tops, likewise; of sorted primitives only
     std::vector<float> scales_;        // of groups
+    std::unique_ptr<Scratch<MortonKey>> keys_;
     std::atomic<uint64_t> work_done_{0};
 };
 

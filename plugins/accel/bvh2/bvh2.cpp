@@ -13,8 +13,9 @@
 namespace bvh2 {
 namespace {
 
-enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kSplit };
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kSplit, kBuilder };
 constexpr const char* kSplits[] = {"sah", "median", nullptr};
+constexpr const char* kBuilders[] = {"sah", "morton", nullptr};
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most; fewer where the heuristic finds that cheaper", 1,
                   BVH2_LEAF_MAX, 4),
@@ -26,6 +27,10 @@ constexpr rt_param kParams[] = {
                     0.01, 100, 1),
     rt::enum_param("split", "Split", "where nodes are parted: by the surface area heuristic, or into even halves by count",
                    kSplits, 0),
+    rt::enum_param("builder", "Builder",
+                   "sah: binned surface area heuristic; morton: along a space-filling curve, several times faster to build, "
+                   "slower to trace",
+                   kBuilders, 0),
 };
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
@@ -37,9 +42,9 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
                       static_cast<unsigned long long>(Builder::kMaxPrimitives), static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
-    const Rules rules{static_cast<uint32_t>(input->params[kMaxLeaf]), static_cast<uint32_t>(input->params[kBins]),
+    const Rules rules{static_cast<uint32_t>(input->params[kMaxLeaf]),    static_cast<uint32_t>(input->params[kBins]),
                       static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
-                      input->params[kSplit] == 1};
+                      static_cast<Method>(input->params[kBuilder]),      input->params[kSplit] == 1};
     try {
         Builder builder(host, *input, rules, count, 1.0f);
         const BinaryTree tree = builder.run(out, [](const Task&) {});

@@ -42,10 +42,15 @@ struct Range {
     uint32_t count() const { return end - begin; }
 };
 
+// How ranges are split: by the surface area heuristic; along a space-filling curve, which is fast; or by the heuristic with
+// primitives split as well where that pays, which is slow and good.
+enum class Method { sah, morton, spatial };
+
 // What a tree costs and where it stops.
 struct Rules {
     uint32_t max_leaf, bins;
     float traversal_cost, intersection_cost;
+    Method method = Method::sah;
     bool halves = false;  // by count, without the heuristic: what it gains is measured against this
 };
 

@@ -11,7 +11,8 @@
 namespace bvh8 {
 namespace {
 
-enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost };
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder };
+constexpr const char* kBuilders[] = {"sah", "morton", nullptr};
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most; fewer where the heuristic finds that cheaper", 1,
                   BVH8_LEAF_MAX, 4),
@@ -21,6 +22,10 @@ constexpr rt_param kParams[] = {
                     100, 3),
     rt::float_param("intersection_cost", "Intersection cost", "what a primitive costs a ray, in the unit of the traversal cost",
                     0.01, 100, 1),
+    rt::enum_param("builder", "Builder",
+                   "sah: binned surface area heuristic; morton: along a space-filling curve, several times faster to build, "
+                   "slower to trace",
+                   kBuilders, 0),
 };
 
 constexpr uint64_t kMaxPrimitives = bvh2::Builder::kMaxPrimitives;
@@ -40,7 +45,7 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     // Of the seven splits behind a full node each costs its part: the binary tree then ends in about the leaves that the wide
     // one will have, and less is built that is merged again.
     const bvh2::Rules rules{costs.max_leaf, static_cast<uint32_t>(input->params[kBins]), costs.node / (BVH8_WIDTH - 1),
-                            costs.primitive};
+                            costs.primitive, static_cast<bvh2::Method>(input->params[kBuilder])};
     try {
         bvh2::Builder builder(host, *input, rules, count, kBinaryShare);
         const Collapse collapse(builder, costs);
