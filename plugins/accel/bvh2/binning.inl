@@ -33,7 +33,7 @@ void merge(const Bins& from, uint32_t bin_count, Bins& to) {
     }
 }
 
-Split find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, uint32_t primitive_count) {
+void find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, uint32_t primitive_count, Split& split) {
     // Sweep from the right: areas of all that lies at or right of each plane.
     Vec4 right_area[kMaxBins];
     Box8 box[3] = {no_box(), no_box(), no_box()};
@@ -60,14 +60,13 @@ Split find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, ui
     alignas(16) float costs[4], planes[4];
     store(costs, best_cost);
     store(planes, best_bin);
-    Split split;
     for (int axis = 0; axis < 3; ++axis)
         if (costs[axis] < split.cost) {
             split.cost = costs[axis];
             split.axis = axis;
             split.bin = static_cast<uint32_t>(planes[axis]);
         }
-    if (split.bin == 0) return split;
+    if (split.bin == 0) return;
     Box8 side[2] = {no_box(), no_box()};
     for (uint32_t b = 0; b < split.bin; ++b) {
         side[0] = min(side[0], load_box(bins.box[b][split.axis]));
@@ -76,7 +75,6 @@ Split find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, ui
     for (uint32_t b = split.bin; b < bin_count; ++b) side[1] = min(side[1], load_box(bins.box[b][split.axis]));
     store_box(split.left, side[0]);
     store_box(split.right, side[1]);
-    return split;
 }
 
 void scatter(const Record* first, const Record* end, const Slices& slices, const Split& split, Record* left, Record* right,

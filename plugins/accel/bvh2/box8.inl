@@ -14,11 +14,12 @@ namespace BVH2_ISA {
 struct Box8 {
     __m256 m;
 };
+// Not the aligned forms, which gain nothing: GCC 12 puts objects that a call returns at multiples of 16 bytes, whatever they ask.
 inline Box8 load_box(const float* p) {
-    return {_mm256_load_ps(p)};
+    return {_mm256_loadu_ps(p)};
 }
 inline void store_box(float* p, Box8 a) {
-    _mm256_store_ps(p, a.m);
+    _mm256_storeu_ps(p, a.m);
 }
 inline Vec4 low(Box8 a) {
     return {_mm256_castps256_ps128(a.m)};
@@ -43,14 +44,14 @@ inline Box8 no_box() {
 }
 // A record's, without the ref.
 inline Box8 box_of(const Record& r) {
-    return {_mm256_and_ps(_mm256_load_ps(r.lo), _mm256_castsi256_ps(_mm256_setr_epi32(-1, -1, -1, 0, -1, -1, -1, -1)))};
+    return {_mm256_and_ps(_mm256_loadu_ps(r.lo), _mm256_castsi256_ps(_mm256_setr_epi32(-1, -1, -1, 0, -1, -1, -1, -1)))};
 }
 // which ? a : b.
 inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
     return {_mm256_blendv_ps(b.m, a.m, _mm256_castsi256_ps(_mm256_set1_epi32(-static_cast<int>(which))))};
 }
 inline void copy(Record* to, const Record& from) {
-    _mm256_store_ps(to->lo, _mm256_load_ps(from.lo));
+    _mm256_storeu_ps(to->lo, _mm256_loadu_ps(from.lo));
 }
 
 #else

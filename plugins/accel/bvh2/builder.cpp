@@ -1,7 +1,6 @@
 #include "builder.hpp"
 
 #include <numeric>
-#include <unordered_map>
 
 #include "rt_plugin.hpp"
 
@@ -39,24 +38,33 @@ struct Builder::Cut {
     Range left, right;
 };
 
+uint64_t Builder::room(const Rules& rules, uint64_t primitive_count) {
+    if (rules.method != Method::spatial) return primitive_count;
+    const double all = static_cast<double>(primitive_count) * (1 + static_cast<double>(rules.duplicates));
+    return std::max(primitive_count, std::min(static_cast<uint64_t>(all), kMaxPrimitives));
+}
+
+uint64_t Builder::bytes(const Rules& rules, uint64_t primitive_count) {
+    const size_t more = rules.method == Method::morton    ? 2 * sizeof(MortonKey)
+                        : rules.method == Method::spatial ? sizeof(rt_u32)
+                                                          : 0;
+    return room(rules, primitive_count) * (2 * sizeof(Record) + sizeof(bvh2_node) + more);
+}
+
 Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count, float share)
     : host_(host),
       input_(input),
       primitive_count_(primitive_count),
+      room_(room(rules, primitive_count)),
       work_total_(2 * primitive_count + 1),
       share_(share),
       task_size_(task_size_for(primitive_count)),
       kernels_(kernels()),
-      records_{Scratch<Record>(primitive_count), Scratch<Record>(primitive_count)},
-      nodes_(primitive_count),
+      records_{Scratch<Record>(room_), Scratch<Record>(room_)},
+      nodes_(room_),
       workspace_{rules, {records_[0].data(), records_[1].data()}, nodes_.data(), nullptr} {
     tree_.nodes = nodes_.data();
     tree_.roots.resize(input.group_count);
-}
-
-template <class Body>
-void Builder::parallel_for(size_t count, Body&& body) const {
-    rt::parallel_for(host_, static_cast<rt_u32>(count), std::forward<Body>(body));
 }
 
 // Throws where the user cancelled.
@@ -66,17 +74,33 @@ void Builder::report(uint64_t work) {
 }
 
 BinaryTree Builder::run(const rt_build_output* out, const std::function<void(const Task&)>& after) {
-    workspace_.leaves = rt::leaves(out, primitive_count_);
+    const bool spatial = workspace_.rules.method == Method::spatial;
+    if (!spatial) workspace_.leaves = rt::leaves(out, primitive_count_);
+    tree_.leaf_count = primitive_count_;
     const std::vector<Pending> groups = load();
-    if (workspace_.rules.method == Method::morton) {
+    if (spatial) {
+        split_space(groups, out);
+        parallel_for(tree_.tasks.size(), [&](uint32_t t) { after(tree_.tasks[t]); });
+    } else if (workspace_.rules.method == Method::morton) {
         sort(groups);
         cut_sorted(groups);
-        run_tasks(after);
+        run_tasks([&](uint32_t t) {
+            Task& task = tree_.tasks[t];
+            task.tree = build_sorted(workspace_, keys_->data(), task.range);
+            put(task_place_[t], task.tree.root);
+            after(task);
+        });
         bound_tops();
     } else {
         split_top(groups);
-        run_tasks(after);
+        run_tasks([&](uint32_t t) {
+            Task& task = tree_.tasks[t];
+            task.tree = kernels_.build_subtree(workspace_, task.range, task.first_node, task.range.begin);
+            put(task_place_[t], task.tree.root);
+            after(task);
+        });
     }
+    for (const Task& task : tree_.tasks) tree_.depth = std::max(tree_.depth, task.tree.depth);
     return std::move(tree_);
 }
 
@@ -85,10 +109,18 @@ std::vector<Builder::Pending> Builder::load() {
     std::vector<Pending> groups;
     std::vector<Chunk> chunks;
     groups.reserve(input_.group_count);
-    uint32_t at = 0;
+    uint64_t before = 0;
     for (uint32_t g = 0; g < input_.group_count; ++g) {
-        Pending pending{{}, RT_NONE, g, g};
-        pending.range.begin = at;
+        Pending pending{{}, RT_NONE, g, g, 0, 0};
+        // Each group has its share of the room.
+        const auto place = [&](uint64_t primitives) {
+            return static_cast<uint32_t>(primitives +
+                                         (room_ - primitive_count_) * primitives / std::max<uint64_t>(primitive_count_, 1));
+        };
+        pending.room_begin = place(before);
+        pending.room_end = place(before + input_.groups[g].count);
+        before += input_.groups[g].count;
+        uint32_t at = pending.range.begin = pending.room_begin;
         pending.range.end = at + input_.groups[g].count;
         for (; at < pending.range.end; at = chunks.back().end)
             chunks.push_back({g, at, std::min(at + kChunkSize, pending.range.end), 0, 0, {}, {}, {}, {}});
@@ -129,8 +161,8 @@ void Builder::put(const Pending& pending, rt_u32 code) {
 }
 
 void Builder::add_task(const Pending& pending) {
-    tree_.tasks.push_back({pending.range, scales_[pending.group], {}});
-    task_place_.push_back({{}, pending.parent, pending.which, pending.group});
+    tree_.tasks.push_back({pending.range, pending.room_begin, scales_[pending.group], {}});
+    task_place_.push_back({{}, pending.parent, pending.which, pending.group, pending.room_begin, pending.room_end});
 }
 
 void Builder::split_top(std::vector<Pending> level) {
@@ -182,7 +214,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
             Bins sum;
             kernels_.clear(sum, cut.bin_count);
             for (uint32_t c = 0; c < cut.chunk_count; ++c) kernels_.merge(bins[c], cut.bin_count, sum);
-            cut.split = kernels_.find_split(sum, cut.bin_count, AreaScale(range.box), range.count());
+            kernels_.find_split(sum, cut.bin_count, AreaScale(range.box), range.count(), cut.split);
             cut.binned = cut.split.cost < INFINITY;
         }
         if (!cut.binned) {
@@ -226,91 +258,23 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
         tree_.tops.push_back({node, scales_[level[i].group]});
         set_child(nodes_.data()[node], 0, cut.left.box, 0);
         set_child(nodes_.data()[node], 1, cut.right.box, 0);
-        next.push_back({cut.left, node, 0, level[i].group});
-        next.push_back({cut.right, node, 1, level[i].group});
+        next.push_back({cut.left, node, 0, level[i].group, cut.left.begin, cut.left.end});
+        next.push_back({cut.right, node, 1, level[i].group, cut.right.begin, cut.right.end});
     }
     return next;
 }
 
-// Groups stay apart: the keys of each are sorted for themselves.
-void Builder::sort(const std::vector<Pending>& groups) {
-    keys_ = std::make_unique<Scratch<MortonKey>>(primitive_count_);
-    const Scratch<MortonKey> other(primitive_count_);
-    parallel_for(groups.size(), [&](uint32_t g) {
-        const Range& group = groups[g].range;
-        if (group.count() == 0) return;
-        const uint32_t chunks = (group.count() + kChunkSize - 1) / kChunkSize;
-        const auto each = [&](auto&& do_chunk) {
-            parallel_for(chunks, [&](uint32_t c) {
-                const uint32_t begin = group.begin + c * kChunkSize;
-                do_chunk(begin, std::min(begin + kChunkSize, group.end));
-            });
-        };
-        each([&](uint32_t begin, uint32_t end) { make_keys(workspace_, group, begin, end, keys_->data()); });
-        sort_keys(host_, keys_->data() + group.begin, other.data() + group.begin, group.count());
-        each([&](uint32_t begin, uint32_t end) { gather(workspace_, keys_->data(), begin, end); });
-    });
-    report(primitive_count_ / 2);
-}
-
-void Builder::cut_sorted(const std::vector<Pending>& groups) {
-    std::vector<Pending> open = groups;
-    while (!open.empty()) {
-        Pending at = open.back();
-        open.pop_back();
-        at.range.buffer = 1;
-        if (at.range.count() <= task_size_) {
-            if (at.range.count() > 0) add_task(at);
-            continue;
-        }
-        const uint32_t middle = morton_middle(keys_->data(), at.range.begin, at.range.end);
-        const rt_u32 node = middle - 1;  // see Workspace::nodes
-        put(at, node);
-        tree_.tops.push_back({node, scales_[at.group]});
-        top_place_.push_back({{}, at.parent, at.which, at.group});
-        ++at.range.depth;
-        Pending left = at, right = at;
-        left.range.end = right.range.begin = middle;
-        left.parent = right.parent = node;
-        left.which = 0;
-        right.which = 1;
-        open.push_back(right);
-        open.push_back(left);
-    }
-}
-
-// From the tasks up.
-void Builder::bound_tops() {
-    std::unordered_map<rt_u32, Bounds> boxes;
-    const auto put_box = [&](const Pending& place, const Bounds& box) {
-        if (place.parent == RT_NONE) return;
-        bvh2_node& parent = nodes_.data()[place.parent];
-        set_child(parent, static_cast<int>(place.which), box, place.which == 0 ? parent.child0 : parent.child1);
-        boxes[place.parent].add(box);
-    };
-    for (size_t t = 0; t < tree_.tasks.size(); ++t) put_box(task_place_[t], tree_.tasks[t].range.box);
-    for (size_t i = tree_.tops.size(); i-- > 0;) {
-        const rt_u32 node = tree_.tops[i].node;
-        put_box(top_place_[i], boxes[node]);
-    }
-}
-
-void Builder::run_tasks(const std::function<void(const Task&)>& after) {
-    std::vector<Task>& tasks = tree_.tasks;
+void Builder::run_tasks(const std::function<void(uint32_t)>& run_task) {
+    const std::vector<Task>& tasks = tree_.tasks;
     // The largest first, so that no thread is left alone with one at the end.
     std::vector<uint32_t> order(tasks.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),
                      [&](uint32_t a, uint32_t b) { return tasks[a].range.count() > tasks[b].range.count(); });
     parallel_for(order.size(), [&](uint32_t i) {
-        Task& task = tasks[order[i]];
-        task.tree =
-            keys_ ? build_sorted(workspace_, keys_->data(), task.range) : kernels_.build_subtree(workspace_, task.range);
-        put(task_place_[order[i]], task.tree.root);
-        after(task);
-        report(task.range.count());
+        run_task(order[i]);
+        report(tasks[order[i]].range.count());
     });
-    for (const Task& task : tasks) tree_.depth = std::max(tree_.depth, task.tree.depth);
 }
 
 }  // namespace bvh2

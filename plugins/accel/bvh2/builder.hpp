@@ -10,15 +10,18 @@
 
 #include "kernels.hpp"
 #include "morton.hpp"
+#include "rt_plugin.hpp"
 #include "scratch.hpp"
+#include "spatial.hpp"
 
 namespace bvh2 {
 
 constexpr uint32_t kChunkSize = 8192;
 
-// A range that one thread builds, and its tree.
+// A range that one thread builds, and its tree, whose nodes begin at first_node.
 struct Task {
     Range range;
+    uint32_t first_node;
     float scale;  // half a length times this is that length where the longest side of the group's box is 1
     Subtree tree;
 };
@@ -38,6 +41,7 @@ struct BinaryTree {
     std::vector<Task> tasks;
     std::vector<Top> tops;    // parents before children
     std::vector<Root> roots;  // of groups
+    uint64_t leaf_count = 0;  // refs in leaf order
     uint32_t depth = 1;       // nodes from a root to the deepest leaf
 };
 
@@ -46,7 +50,7 @@ class Builder {
     // Positions in leaf order are 28 bits, as refs are.
     static constexpr uint64_t kMaxPrimitives = RT_REF_INDEX_MAX;
     // Of memory that is given back at the end, at most.
-    static constexpr uint64_t kBytesPerPrimitive = 2 * sizeof(Record) + sizeof(bvh2_node);
+    static uint64_t bytes(const Rules& rules, uint64_t primitive_count);
 
     // Progress goes from 0 to `share`. The tree lives as long as this does.
     Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count, float share);
@@ -62,6 +66,7 @@ class Builder {
         uint32_t parent;  // node; RT_NONE: it is the root of its group
         uint32_t which;   // child of the parent, or group
         uint32_t group;
+        uint32_t room_begin, room_end;  // see RoomyRange
     };
     struct Chunk;
     struct Cut;
@@ -73,15 +78,20 @@ class Builder {
     void sort(const std::vector<Pending>& groups);
     void cut_sorted(const std::vector<Pending>& groups);
     void bound_tops();
-    void run_tasks(const std::function<void(const Task&)>& after);
+    void split_space(std::vector<Pending> level, const rt_build_output* out);
+    void close_gaps(const std::vector<uint32_t>& counts, const rt_build_output* out);
+    void run_tasks(const std::function<void(uint32_t)>& run_task);
     void put(const Pending& pending, rt_u32 code);
     void report(uint64_t work);
     template <class Body>
-    void parallel_for(size_t count, Body&& body) const;
+    void parallel_for(size_t count, Body&& body) const {
+        rt::parallel_for(host_, static_cast<rt_u32>(count), std::forward<Body>(body));
+    }
+    static uint64_t room(const Rules& rules, uint64_t primitive_count);
 
     const rt_host* const host_;
     const rt_build_input& input_;
-    const uint64_t primitive_count_, work_total_;
+    const uint64_t primitive_count_, room_, work_total_;
     const float share_;
     const uint32_t task_size_;
     const Kernels& kernels_;

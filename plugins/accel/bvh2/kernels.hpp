@@ -18,7 +18,7 @@ struct Workspace {
     // As many as records. Of n primitives come n - 1 nodes at most, so those of a task fit where its range lies, and the node
     // that parts two ranges, in front of the second one.
     bvh2_node* nodes;
-    rt_u32* leaves;  // refs in leaf order
+    rt_u32* leaves;  // refs in leaf order; with spatial splits as many as records, and gaps between tasks
 };
 
 // The tree of one task.
@@ -32,12 +32,13 @@ struct Kernels {
     void (*clear)(Bins& bins, uint32_t bin_count);
     void (*bin)(const Record* first, const Record* end, const Slices& slices, Bins& bins);
     void (*merge)(const Bins& from, uint32_t bin_count, Bins& to);
-    Split (*find_split)(const Bins& bins, uint32_t bin_count, const AreaScale& area, uint32_t primitive_count);
+    // `split` is as it was made. Not returned: see box8.inl.
+    void (*find_split)(const Bins& bins, uint32_t bin_count, const AreaScale& area, uint32_t primitive_count, Split& split);
     // Copies [first, end) to where left and right point, keeping the order, and bounds the centroids of both sides.
     void (*scatter)(const Record* first, const Record* end, const Slices& slices, const Split& split, Record* left,
                     Record* right, Bounds& left_centroids2, Bounds& right_centroids2);
-    // Builds the tree of one range on one thread, without allocating.
-    Subtree (*build_subtree)(const Workspace& workspace, const Range& range);
+    // Builds the tree of one range on one thread, without allocating; nodes and leaves are put from the given places on.
+    Subtree (*build_subtree)(const Workspace& workspace, const Range& range, uint32_t first_node, uint32_t first_leaf);
 };
 
 namespace generic {

@@ -51,7 +51,8 @@ struct Rules {
     uint32_t max_leaf, bins;
     float traversal_cost, intersection_cost;
     Method method = Method::sah;
-    bool halves = false;  // by count, without the heuristic: what it gains is measured against this
+    float duplicates = 0;  // references that spatial splits may add, as a share of the primitives
+    bool halves = false;   // by count, without the heuristic: what it gains is measured against this
 };
 
 // No leaf is deeper: from where the rest, halved by count, would just fit, ranges are halved. Scenes that pile primitives into

@@ -7,7 +7,8 @@ namespace {
 
 class Builder {
  public:
-    Builder(const Workspace& workspace, const Range& range) : w_(workspace), next_(range.begin) {}
+    Builder(const Workspace& workspace, const Range& range, uint32_t first_node, uint32_t first_leaf)
+        : w_(workspace), next_(first_node), leaf_shift_(first_leaf - range.begin) {}
 
     Subtree build(const Range& range) {
         Subtree result;
@@ -45,7 +46,8 @@ class Builder {
             const Slices slices(range.centroids2, bin_count);
             clear(bins_, bin_count);
             bin(from + range.begin, from + range.end, slices, bins_);
-            const Split found = find_split(bins_, bin_count, area, count);
+            Split found;
+            find_split(bins_, bin_count, area, count, found);
             if (leaf_is_better(count, area.half_area(range.box), found.cost)) return false;
             if (found.cost < INFINITY) {
                 Record* const to = w_.records[range.buffer ^ 1];
@@ -125,19 +127,21 @@ class Builder {
         return make_small_leaf(records + range.begin, range.begin, range.count(), range.depth);
     }
     uint32_t make_small_leaf(const Record* records, uint32_t first, uint32_t count, uint32_t depth) {
+        first += leaf_shift_;
         for (uint32_t i = 0; i < count; ++i) w_.leaves[first + i] = records[i].ref();
         depth_ = std::max(depth_, depth);
         return BVH2_MAKE_LEAF(first, count);
     }
 
     const Workspace& w_;
-    uint32_t next_;  // node
+    uint32_t next_;              // node
+    const uint32_t leaf_shift_;  // from the position of a record to that in leaf order
     uint32_t depth_ = 0;
     Bins bins_;
 };
 
-Subtree build_subtree(const Workspace& workspace, const Range& range) {
-    return Builder(workspace, range).build(range);
+Subtree build_subtree(const Workspace& workspace, const Range& range, uint32_t first_node, uint32_t first_leaf) {
+    return Builder(workspace, range, first_node, first_leaf).build(range);
 }
 
 }  // namespace

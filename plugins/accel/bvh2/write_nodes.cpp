@@ -11,7 +11,7 @@ class Writer {
  public:
     explicit Writer(const BinaryTree& tree) : tree_(tree), place_(tree.tasks.size()), top_place_(tree.tops.size()) {
         tasks_by_begin_.reserve(tree.tasks.size());
-        for (uint32_t t = 0; t < tree.tasks.size(); ++t) tasks_by_begin_.push_back({tree.tasks[t].range.begin, t});
+        for (uint32_t t = 0; t < tree.tasks.size(); ++t) tasks_by_begin_.push_back({tree.tasks[t].first_node, t});
         std::sort(tasks_by_begin_.begin(), tasks_by_begin_.end());
         for (uint32_t t = 0; t < tree.tops.size(); ++t) tops_.push_back({tree.tops[t].node, t});
         std::sort(tops_.begin(), tops_.end());
@@ -33,8 +33,8 @@ class Writer {
 
     void write_task(uint32_t t, bvh2_node* to) const {
         const Task& task = tree_.tasks[t];
-        const bvh2_node* const from = tree_.nodes + task.range.begin;
-        const rt_u32 shift = place_[t] - task.range.begin;
+        const bvh2_node* const from = tree_.nodes + task.first_node;
+        const rt_u32 shift = place_[t] - task.first_node;
         for (uint32_t i = 0; i < task.tree.nodes; ++i) {
             bvh2_node node = from[i];
             if (!(node.child0 & BVH2_LEAF)) node.child0 += shift;

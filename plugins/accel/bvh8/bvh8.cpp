@@ -11,8 +11,8 @@
 namespace bvh8 {
 namespace {
 
-enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder };
-constexpr const char* kBuilders[] = {"sah", "morton", nullptr};
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder, kDuplicates };
+constexpr const char* kBuilders[] = {"sah", "morton", "spatial", nullptr};
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most; fewer where the heuristic finds that cheaper", 1,
                   BVH8_LEAF_MAX, 4),
@@ -23,9 +23,11 @@ constexpr rt_param kParams[] = {
     rt::float_param("intersection_cost", "Intersection cost", "what a primitive costs a ray, in the unit of the traversal cost",
                     0.01, 100, 1),
     rt::enum_param("builder", "Builder",
-                   "sah: binned surface area heuristic; morton: along a space-filling curve, several times faster to build, "
-                   "slower to trace",
+                   "sah: binned surface area heuristic; morton: along a space-filling curve, several times faster to build and "
+                   "slower to trace; spatial: heuristic that cuts triangles too, slow to build, for large ones among small",
                    kBuilders, 0),
+    rt::float_param("duplicates", "Duplicates", "what builder=spatial may add to the primitives, as a share of their number", 0,
+                    4, 0.3),
 };
 
 constexpr uint64_t kMaxPrimitives = bvh2::Builder::kMaxPrimitives;
@@ -44,8 +46,9 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
                       static_cast<uint32_t>(input->params[kMaxLeaf])};
     // Of the seven splits behind a full node each costs its part: the binary tree then ends in about the leaves that the wide
     // one will have, and less is built that is merged again.
-    const bvh2::Rules rules{costs.max_leaf, static_cast<uint32_t>(input->params[kBins]), costs.node / (BVH8_WIDTH - 1),
-                            costs.primitive, static_cast<bvh2::Method>(input->params[kBuilder])};
+    const bvh2::Rules rules{
+        costs.max_leaf,  static_cast<uint32_t>(input->params[kBins]),        costs.node / (BVH8_WIDTH - 1),
+        costs.primitive, static_cast<bvh2::Method>(input->params[kBuilder]), static_cast<float>(input->params[kDuplicates])};
     try {
         bvh2::Builder builder(host, *input, rules, count, kBinaryShare);
         const Collapse collapse(builder, costs);
@@ -59,17 +62,20 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         rt::stat(out, "nodes", nodes);
         rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
         rt::stat(out, "depth", wide.depth());
+        rt::stat(out, "references", static_cast<double>(binary.leaf_count));
         rt::stat(out, "children", static_cast<double>(statistics.children) / nodes);
         rt::stat(out, "sah_cost", statistics.sah_cost);
         rt::stat(out, "node_bytes", bytes);
-        rt::stat(out, "bytes_per_primitive", count > 0 ? bytes / static_cast<double>(count) + sizeof(rt_leaf) : 0);
-        rt::stat(out, "build_bytes", static_cast<double>(count * bvh2::Builder::kBytesPerPrimitive));
+        rt::stat(
+            out, "bytes_per_primitive",
+            count > 0 ? (bytes + static_cast<double>(binary.leaf_count * sizeof(rt_leaf))) / static_cast<double>(count) : 0);
+        rt::stat(out, "build_bytes", static_cast<double>(bvh2::Builder::bytes(rules, count)));
         // One to spare tells a full stack from an overflowing one; in steps of 16, since a new value recompiles the kernels.
         rt::define(out, "BVH8_STACK", (wide.stack() + 1 + 15) / 16 * 16);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
-                      static_cast<double>(count * bvh2::Builder::kBytesPerPrimitive) / (1 << 30),
+                      static_cast<double>(bvh2::Builder::bytes(rules, count)) / (1 << 30),
                       static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }

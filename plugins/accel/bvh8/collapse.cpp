@@ -35,7 +35,7 @@ float half_area(const float box[6], float scale) {
 }  // namespace
 
 void Collapse::decide_task(const bvh2::Task& task) const {
-    for (rt_u32 i = task.range.begin + task.tree.nodes; i-- > task.range.begin;) decide(i, task.scale, 0);
+    for (rt_u32 i = task.first_node + task.tree.nodes; i-- > task.first_node;) decide(i, task.scale, 0);
 }
 
 void Collapse::decide_tops(const bvh2::BinaryTree& tree) const {
