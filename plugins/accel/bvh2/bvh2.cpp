@@ -2,7 +2,7 @@
 //
 // Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies". 64 bytes a node, at most one node less than there
 // are primitives; the traversal's stack is BVH2_STACK, measured. Good at everything that does not move; weak where large and
-// small primitives overlap (there, spatial splits would help).
+// small primitives overlap (there, builder=spatial helps).
 #include <cstdio>
 
 #include "levels.hpp"
