@@ -90,6 +90,24 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #define RT_INFINITY ((vfloat)(INFINITY))
 
+/* The least and greatest lane, as a scalar. */
+#if RT_LANES == 1
+#define rt_least(v) (v)
+#define rt_greatest(v) (v)
+#else
+#define RT_FOLD4_(op, v) op(op((v).x, (v).y), op((v).z, (v).w))
+#if RT_LANES == 4
+RT_INLINE float rt_least(float4 v) { const float2 m = rt_min(v.lo, v.hi); return rt_min(m.x, m.y); }
+RT_INLINE float rt_greatest(float4 v) { const float2 m = rt_max(v.lo, v.hi); return rt_max(m.x, m.y); }
+#elif RT_LANES == 8
+RT_INLINE float rt_least(float8 v) { const float4 q = rt_min(v.lo, v.hi); const float2 m = rt_min(q.lo, q.hi); return rt_min(m.x, m.y); }
+RT_INLINE float rt_greatest(float8 v) { const float4 q = rt_max(v.lo, v.hi); const float2 m = rt_max(q.lo, q.hi); return rt_max(m.x, m.y); }
+#else
+RT_INLINE float rt_least(float16 v) { const float8 o = rt_min(v.lo, v.hi); const float4 q = rt_min(o.lo, o.hi); const float2 m = rt_min(q.lo, q.hi); return rt_min(m.x, m.y); }
+RT_INLINE float rt_greatest(float16 v) { const float8 o = rt_max(v.lo, v.hi); const float4 q = rt_max(o.lo, o.hi); const float2 m = rt_max(q.lo, q.hi); return rt_max(m.x, m.y); }
+#endif
+#endif
+
 /* Debug builds stop a traversal whose stack would overflow and count it; see CONTRACT.md. */
 #ifdef RT_DEBUG
 #define RT_STACK_OK(top, size, hit) ((top) < (size) ? 1 : ((hit)->overflow = 1, 0))

@@ -107,6 +107,100 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     }
 #undef BVH8_PUSH
 #else
+    if (ray->coherent) {
+        /* Bounds of the packet. */
+        const vmask alive = RT_MASK(hit->t >= rt_vfloat(0.0f));
+        const vfloat big = rt_vfloat(3e38f);
+        float o_lo[3], o_hi[3], i_lo[3], i_hi[3];
+        o_lo[0] = rt_least(rt_select(alive, ray->ox, big)); o_hi[0] = rt_greatest(rt_select(alive, ray->ox, -big));
+        o_lo[1] = rt_least(rt_select(alive, ray->oy, big)); o_hi[1] = rt_greatest(rt_select(alive, ray->oy, -big));
+        o_lo[2] = rt_least(rt_select(alive, ray->oz, big)); o_hi[2] = rt_greatest(rt_select(alive, ray->oz, -big));
+        i_lo[0] = rt_least(rt_select(alive, ray->ix, big)); i_hi[0] = rt_greatest(rt_select(alive, ray->ix, -big));
+        i_lo[1] = rt_least(rt_select(alive, ray->iy, big)); i_hi[1] = rt_greatest(rt_select(alive, ray->iy, -big));
+        i_lo[2] = rt_least(rt_select(alive, ray->iz, big)); i_hi[2] = rt_greatest(rt_select(alive, ray->iz, -big));
+        const float t_min = rt_least(rt_select(alive, ray->t_min, big));
+        float t_far = rt_greatest(hit->t);
+        const ulong near_x = ray->lo_x * 32u, near_y = ray->lo_y * 32u, near_z = ray->lo_z * 32u;
+        const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
+        const float slack = 8.0f * RT_EPS;
+#define BVH8_AXIS(x, k, base) \
+        const float a_##x = near_##x != base ? o_lo[k] : o_hi[k], b_##x = near_##x != base ? o_hi[k] : o_lo[k]; \
+        const float8 il##x = (float8)(i_lo[k]), ih##x = (float8)(i_hi[k]); \
+        const float al_##x = -a_##x * i_lo[k], ah_##x = -a_##x * i_hi[k], bl_##x = -b_##x * i_lo[k], bh_##x = -b_##x * i_hi[k]; \
+        const float8 nl##x = (float8)(al_##x - fabs(al_##x) * slack), nh##x = (float8)(ah_##x - fabs(ah_##x) * slack); \
+        const float8 fl##x = (float8)(bl_##x + fabs(bl_##x) * slack), fh##x = (float8)(bh_##x + fabs(bh_##x) * slack);
+        BVH8_AXIS(x, 0, 0u)
+        BVH8_AXIS(y, 1, 32u)
+        BVH8_AXIS(z, 2, 64u)
+        ulong stack[BVH8_STACK];
+        uint stack_box[BVH8_STACK];
+        const global char *node_of = 0;
+        uint slot = 0;
+        for (;;) {
+            if (at & BVH8_LEAF) {
+                /* Do its rays enter it at all? */
+                const global float *box = (const global float *)node_of + slot;
+                const vfloat ax = fma(ray->ix, rt_vfloat(box[ray->lo_x * 8u]), ray->near_x);
+                const vfloat ay = fma(ray->iy, rt_vfloat(box[ray->lo_y * 8u]), ray->near_y);
+                const vfloat az = fma(ray->iz, rt_vfloat(box[ray->lo_z * 8u]), ray->near_z);
+                const vfloat bx = fma(ray->ix, rt_vfloat(box[24u - ray->lo_x * 8u]), ray->far_x);
+                const vfloat by = fma(ray->iy, rt_vfloat(box[40u - ray->lo_y * 8u]), ray->far_y);
+                const vfloat bz = fma(ray->iz, rt_vfloat(box[56u - ray->lo_z * 8u]), ray->far_z);
+                const vfloat entry = rt_max(rt_max(ax, ay), rt_max(az, ray->t_min));
+                if (rt_any(RT_MASK(entry <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t)))) {
+                const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
+                for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
+                t_far = rt_greatest(hit->t);
+                }
+#if RT_ANY_HIT
+                if (t_far < 0.0f) return;
+#endif
+            } else {
+                RT_COUNT_VISIT(hit, 1u);
+                const global char *node = (const global char *)(ctx->bvh8_nodes + at);
+#define BVH8_IN(x) ({ const float8 p = BVH8_ROW(node, near_##x); rt_min(fma(p, il##x, nl##x), fma(p, ih##x, nh##x)); })
+#define BVH8_OUT(x) ({ const float8 p = BVH8_ROW(node, far_##x); rt_max(fma(p, il##x, fl##x), fma(p, ih##x, fh##x)); })
+                const float8 in = rt_max(rt_max(BVH8_IN(x), BVH8_IN(y)), rt_max(BVH8_IN(z), (float8)(t_min)));
+                const float8 out = rt_min(rt_min(rt_min(BVH8_OUT(x), BVH8_OUT(y)), BVH8_OUT(z)) * RT_WIDE, (float8)(t_far));
+                uint bits = BVH8_BITS(in <= out);
+                if (bits != 0u) {
+                    const global uint *child = (const global uint *)(node + 192);
+                    uint i = BVH8_LOWEST(bits);
+                    bits &= bits - 1u;
+                    node_of = node;
+                    if (bits == 0u) {
+                        at = child[i];
+                        slot = i;
+                        continue;
+                    }
+                    float entry[BVH8_WIDTH];
+                    vstore8(in, 0, entry);
+                    ulong nearest = BVH8_KEY(entry, child, i);
+                    const uint from = at * 8u;
+                    slot = i;
+                    for (; bits != 0u; bits &= bits - 1u) {
+                        i = BVH8_LOWEST(bits);
+                        const ulong key = BVH8_KEY(entry, child, i);
+                        const bool closer = key < nearest;
+                        stack[top] = closer ? nearest : key;
+                        stack_box[top++] = from + (closer ? slot : i);
+                        nearest = closer ? key : nearest;
+                        slot = closer ? i : slot;
+                    }
+                    at = (uint)nearest;
+                    continue;
+                }
+            }
+            ulong next;
+            do {
+                if (top == 0u) return;
+                next = stack[--top];
+            } while (as_float((uint)(next >> 32)) > t_far);
+            at = (uint)next;
+            slot = stack_box[top] & 7u;
+            node_of = (const global char *)(ctx->bvh8_nodes + (stack_box[top] >> 3));
+        }
+    }
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u) | (ray->lo_z == 2u ? 4u : 0u);
     vfloat stack_t[BVH8_STACK];
