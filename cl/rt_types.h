@@ -124,7 +124,8 @@ typedef struct rt_frame {
     rt_u32 pad[3];
 } rt_frame;
 
-/* A ray and its answer, for tests and benches that bring their own rays. 32 B each. */
+/* A ray and its answer, for tests and benches that bring their own rays. 32 B each; kernels see blocks of RT_LANES of them,
+ * field by field: cl/ray_blocks.h. */
 typedef struct rt_ray {
     rt_f32 origin[3], t_min, direction[3], t_max;
 } rt_ray;
@@ -137,6 +138,8 @@ typedef struct rt_hit {
     rt_u32 leaf_tests; /* primitives tested, planes aside */
     rt_u32 lane_steps; /* over the nodes visited, the rays that were in the node */
 } rt_hit;
+#define RT_RAY_FIELDS 8u
+#define RT_HIT_FIELDS 8u
 
 /* One ray of the tree behind a pixel. 96 B. */
 typedef struct rt_ray_record {

@@ -12,6 +12,7 @@
 #include "bench/bench.hpp"
 #include "bench/machine.hpp"
 #include "bench/row.hpp"
+#include "render/ray_blocks.hpp"
 
 namespace clarity {
 namespace {
@@ -143,16 +144,18 @@ class Contest {
     void add_rays(Entry& entry, const Stand::Held& held) {
         const RaySet& set = stand_.rays(case_.measure, held);
         rays_ = &set;
-        entry.once = [=, &set] {
+        const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
+        std::shared_ptr<const RayBlocks>& packed = packed_[lanes];
+        if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
+        entry.once = [=, &set, blocks = packed] {
             Take take;
-            held.frames->trace_rays(*held.prepared, set.rays, RayQuery{set.any_hit, false}, &take.time_ms);
+            take.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false});
             return take;
         };
         entry.finish = [=, &set](BenchRecord& row) {
             const auto hits = held.frames->trace_rays(*held.prepared, set.rays, RayQuery{set.any_hit, true});
             const rt_accel& accel = *held.prepared->accel->plugin->accel;
-            row.analysis = analyze(set.rays, hits, static_cast<unsigned>(held.prepared->settings.lanes),
-                                   accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
+            row.analysis = analyze(set.rays, hits, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
             std::vector<float> distances;
             for (const rt_hit& hit : hits) distances.push_back(hit.t);
             compare(row, set, distances);
@@ -309,8 +312,9 @@ class Contest {
     const MeasureRules& rules_;
     Progress& progress_;
     std::vector<Entry> entries_;
-    const RaySet* rays_ = nullptr;  // of this case
-    std::vector<float> reference_;  // distances of the first row that was compared
+    const RaySet* rays_ = nullptr;                                 // of this case
+    std::map<unsigned, std::shared_ptr<const RayBlocks>> packed_;  // the same, by lanes
+    std::vector<float> reference_;                                 // distances of the first row that was compared
 };
 
 }  // namespace

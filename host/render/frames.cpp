@@ -212,7 +212,14 @@ FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, Fr
 
 std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
                                        double* device_ms) {
-    return impl_->queries.trace(prepared, rays, query, device_ms);
+    std::vector<rt_hit> hits;
+    const double ms = trace_rays(prepared, RayBlocks(rays, unsigned(prepared.settings.lanes)), query, &hits);
+    if (device_ms) *device_ms = ms;
+    return hits;
+}
+
+double Frames::trace_rays(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
+    return impl_->queries.trace(prepared, rays, query, hits);
 }
 
 }  // namespace clarity

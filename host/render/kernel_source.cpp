@@ -199,6 +199,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "vec.h");
     include(out, "surface.h");
     include(out, "camera.h");
+    if (kind == KernelKind::rays || kind == KernelKind::counted_rays) include(out, "ray_blocks.h");
     if (shades)
         for (const char* name : {"material.h", "ray_queue.h", "inspect.h", "shading.h", "generations.h"}) include(out, name);
     include(out, kernel_file);

@@ -1,6 +1,7 @@
 // ray_queries.hpp -- rays of the caller's own through the traversals that pictures use.
 #pragma once
 #include "render/launch.hpp"
+#include "render/ray_blocks.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 #include "render/view_buffers.hpp"
@@ -10,7 +11,9 @@ namespace clarity {
 class RayQueries {
  public:
     explicit RayQueries(std::shared_ptr<Device> device) : device_(device), programs_(device) {}
-    std::vector<rt_hit> trace(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query, double* device_ms);
+    // Returns what the kernel took, ms by the device's clock. hits: null: the answers stay on the device. Throws Error(failed)
+    // if the rays were packed for other lanes.
+    double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
 
  private:
     std::shared_ptr<Device> device_;

@@ -25,6 +25,7 @@ namespace clarity {
 class DeviceScene;   // buffers of one scene in one structure
 class TraceProgram;  // compiled kernels of one specialisation
 class ProgramCache;
+class RayBlocks;  // rays as kernels read them: ray_blocks.hpp
 
 // Immutable, but that Preparer::close_device() takes away what is on the device.
 struct Prepared {
@@ -120,6 +121,8 @@ class Frames {
     // Rays of the caller's own, for tests and benches.
     std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
                                    double* device_ms = nullptr);
+    // The same packed beforehand for prepared.settings.lanes, for who traces them again and again: ms by the device's clock.
+    double trace_rays(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
 
  private:
     struct Impl;

@@ -1,0 +1,68 @@
+/* ray_blocks.h -- rays that the host brings and their answers, in memory as a packet has them in registers.
+ *
+ * A block is RT_LANES rays side by side, field by field: RT_LANES floats origin x, then y, z, t_min, direction x, y, z, t_max.
+ * Every load is one aligned vector; gathering from rays one after the other costs 15 to 20 clocks a ray. With one lane a block
+ * is an rt_ray. Answers likewise: t, u, v, prim, instance, and three fields more that only counting programs write; with one
+ * lane a block is an rt_hit. Any hit: t alone, RT_LANES floats a block, but in counting programs. The last block is filled up
+ * with inactive rays by the host, who packs and unpacks in host/render/ray_blocks.cpp. */
+#ifndef RT_RAY_BLOCKS_H
+#define RT_RAY_BLOCKS_H
+
+RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays *ray, vfloat *t_max)
+{
+#if RT_LANES == 1
+    const global float4 *in = (const global float4 *)blocks + 2u * (size_t)block; /* 16-byte loads */
+    const float4 from = in[0], along = in[1];
+    ray->ox = from.x;
+    ray->oy = from.y;
+    ray->oz = from.z;
+    ray->t_min = from.w;
+    ray->dx = along.x;
+    ray->dy = along.y;
+    ray->dz = along.z;
+    *t_max = along.w;
+#else
+    const global vfloat *in = (const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)block;
+    ray->ox = in[0];
+    ray->oy = in[1];
+    ray->oz = in[2];
+    ray->t_min = in[3];
+    ray->dx = in[4];
+    ray->dy = in[5];
+    ray->dz = in[6];
+    *t_max = in[7];
+#endif
+}
+
+/* Any hit: 0 where the ray is occluded. */
+RT_INLINE void rt_store_occlusion(global float *blocks, uint block, vfloat t)
+{
+    ((global vfloat *)blocks)[block] = t;
+}
+
+RT_INLINE void rt_store_hit_block(global float *blocks, uint block, const rt_hits *hit)
+{
+#if RT_LANES == 1
+    global float4 *out = (global float4 *)blocks + 2u * (size_t)block;
+    out[0] = (float4)(hit->t, hit->u, hit->v, as_float(hit->prim));
+#ifdef RT_COUNT_STEPS
+    out[1] = (float4)(as_float(hit->instance), as_float(hit->steps), as_float(hit->leaf_tests), as_float(hit->lane_steps));
+#else
+    out[1] = (float4)(as_float(hit->instance), 0.0f, 0.0f, 0.0f);
+#endif
+#else
+    global vfloat *out = (global vfloat *)blocks + RT_HIT_FIELDS * (size_t)block;
+    out[0] = hit->t;
+    out[1] = hit->u;
+    out[2] = hit->v;
+    out[3] = rt_as_vfloat(hit->prim);
+    out[4] = rt_as_vfloat(hit->instance);
+#ifdef RT_COUNT_STEPS
+    out[5] = rt_as_vfloat(rt_vint((int)hit->steps));
+    out[6] = rt_as_vfloat(rt_vint((int)hit->leaf_tests));
+    out[7] = rt_as_vfloat(rt_vint((int)hit->lane_steps));
+#endif
+#endif
+}
+
+#endif

@@ -1,0 +1,33 @@
+// ray_blocks.hpp -- rays of ray queries and their answers as kernels keep them: blocks of `lanes` rays, field by field within a
+// block. The layout is that of cl/ray_blocks.h.
+#pragma once
+#include <cstddef>
+#include <vector>
+
+#include "rt_types.h"
+
+namespace clarity {
+
+class RayBlocks {
+ public:
+    RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes);
+    size_t ray_count() const { return ray_count_; }
+    size_t block_count() const { return (ray_count_ + lanes_ - 1) / lanes_; }
+    unsigned lanes() const { return lanes_; }
+    const std::vector<float>& floats() const { return floats_; }
+
+ private:
+    size_t ray_count_;
+    unsigned lanes_;
+    std::vector<float> floats_;
+};
+
+// Of one ray: what a kernel writes. occlusion: the distance alone, as any-hit queries have it without counters.
+inline size_t answer_fields(bool occlusion) {
+    return occlusion ? 1 : RT_HIT_FIELDS;
+}
+// In the order of the rays. answers: of all blocks. counted: whether there are counters in them.
+std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_count, unsigned lanes, bool occlusion,
+                                bool counted);
+
+}  // namespace clarity
