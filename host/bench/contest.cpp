@@ -149,7 +149,7 @@ class Contest {
         if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
         entry.once = [=, &set, blocks = packed] {
             Take take;
-            take.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false});
+            take.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
             return take;
         };
         entry.finish = [=, &set](BenchRecord& row) {

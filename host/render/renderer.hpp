@@ -94,6 +94,7 @@ struct FrameStats {
 struct RayQuery {
     bool any_hit = false;  // only whether something lies between t_min and t_max
     bool count = false;    // fill in steps, leaf_tests and lane_steps; another, slower program: leave it out to take times
+    bool brief = false;    // only t and prim of the nearest hit: less to write, for timing beside others who write no more
 };
 
 // Owns the film of one device. Used from one thread.

@@ -133,7 +133,6 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         BVH8_AXIS(y, 1, 32u)
         BVH8_AXIS(z, 2, 64u)
         ulong stack[BVH8_STACK];
-        uint stack_box[BVH8_STACK];
         const global char *node_of = 0;
         uint slot = 0;
         for (;;) {
@@ -175,19 +174,16 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                     }
                     float entry[BVH8_WIDTH];
                     vstore8(in, 0, entry);
-                    ulong nearest = BVH8_KEY(entry, child, i);
-                    const uint from = at * 8u;
-                    slot = i;
+#define K(i) ((ulong)as_uint(entry[i]) << 32 | (at * 8u + (i)))
+                    ulong nearest = K(i);
                     for (; bits != 0u; bits &= bits - 1u) {
-                        i = BVH8_LOWEST(bits);
-                        const ulong key = BVH8_KEY(entry, child, i);
-                        const bool closer = key < nearest;
-                        stack[top] = closer ? nearest : key;
-                        stack_box[top++] = from + (closer ? slot : i);
-                        nearest = closer ? key : nearest;
-                        slot = closer ? i : slot;
+                        ulong key = K(BVH8_LOWEST(bits));
+                        ulong other = max(key, nearest);
+                        nearest = min(key, nearest);
+                        stack[top++] = other;
                     }
-                    at = (uint)nearest;
+                    slot = (uint)nearest & 7u;
+                    at = child[slot];
                     continue;
                 }
             }
@@ -196,9 +192,9 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                 if (top == 0u) return;
                 next = stack[--top];
             } while (as_float((uint)(next >> 32)) > t_far);
-            at = (uint)next;
-            slot = stack_box[top] & 7u;
-            node_of = (const global char *)(ctx->bvh8_nodes + (stack_box[top] >> 3));
+            slot = (uint)next & 7u;
+            node_of = (const global char *)(ctx->bvh8_nodes + ((uint)next >> 3));
+            at = ((const global uint *)(node_of + 192))[slot];
         }
     }
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
