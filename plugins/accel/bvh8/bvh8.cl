@@ -1,21 +1,51 @@
-/* bvh8.cl -- one ray against eight boxes at once (RT_LANES 1), or a packet of rays against one box after the other.
+/* bvh8.cl -- a tree of eight children a node, three ways to go down it.
  *
- * A single ray takes the nearest child and puts the others off in the order of their distances. Most nodes leave one or two
- * children, and branching on their number costs less than sorting vectors of eight: a network in registers took a tenth longer,
- * and so did putting all off in the order of the slots by compressing stores. Where any hit will do, order is worth nothing:
- * nearly as few nodes are visited without it, each for less. */
-void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+ * A packet whose directions agree in sign goes by its bounds: intervals of its origins and of its reciprocal directions give one
+ * slab test that no ray of the packet can beat, against all eight children at once (Reshetov, Soupikov, Hurley 2005, "Multi-Level
+ * Ray Tracing Algorithm"; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire Ray Packets"). Before
+ * a leaf the rays themselves are tested, and before a node too where the bounds are wide. Next to a test of all rays against one
+ * box after the other it halves the work of a node.
+ *
+ * Other packets test their rays against one box after the other, or, BVH8_SINGLE, each ray goes alone: where a tree outgrows the
+ * caches, rays that share few nodes only fetch more of them together.
+ *
+ * A single ray is tested against all eight boxes, takes the nearest child and puts the others off in the order of their
+ * distances. Most nodes leave one or two children, and branching on their number costs less than sorting vectors of eight: a
+ * network in registers took a tenth longer, and so did putting all off in the order of the slots by compressing stores. Where any
+ * hit will do, order is worth nothing: nearly as few nodes are visited without it, each for less. */
+#ifndef BVH8_PREFETCH
+#define BVH8_PREFETCH(ctx, child)                                                                                                \
+    {                                                                                                                            \
+        const uint code = (child);                                                                                               \
+        const ulong to = code & BVH8_LEAF ? (ulong)((ctx)->leaves + BVH8_LEAF_FIRST(code)) : (ulong)((ctx)->bvh8_nodes + code);    \
+        __builtin_prefetch((const void *)to);                                                                                    \
+        __builtin_prefetch((const void *)(to + 64));                                                                             \
+        __builtin_prefetch((const void *)(to + 128));                                                                            \
+        __builtin_prefetch((const void *)(to + 192));                                                                            \
+    }
+#define BVH8_PLANE(box, bytes) rt_vfloat(*(const global float *)((box) + (bytes)))
+#ifndef BVH8_SINGLE
+#define BVH8_SINGLE 0
+#endif
+#endif
+#define BVH8_LONE RT_CAT(RT_TRAVERSE, _lone)
+#define BVH8_ENTER RT_CAT(RT_TRAVERSE, _enter)
+#define BVH8_BOUNDED RT_CAT(RT_TRAVERSE, _bounded)
+#define BVH8_APART RT_CAT(RT_TRAVERSE, _apart)
+
+#if RT_LANES == 1 || BVH8_SINGLE
+RT_INLINE void BVH8_LONE(const rt_ctx *ctx, uint at, const rt_lone_rays *lone, uint l, rt_lone_hits *lone_hit, const rt_rays *ray,
+                         rt_hits *hit)
 {
-    uint top = 0, at = root;
-#if RT_LANES == 1
-    const ulong near_x = ray->ix < 0.0f ? 96u : 0u, near_y = ray->iy < 0.0f ? 128u : 32u, near_z = ray->iz < 0.0f ? 160u : 64u;
+    uint top = 0;
+    const ulong near_x = RT_AT(lone->ix, l) < 0.0f ? 96u : 0u, near_y = RT_AT(lone->iy, l) < 0.0f ? 128u : 32u, near_z = RT_AT(lone->iz, l) < 0.0f ? 160u : 64u;
     const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
-    const float8 ix = (float8)(ray->ix), iy = (float8)(ray->iy), iz = (float8)(ray->iz);
+    const float8 ix = (float8)(RT_AT(lone->ix, l)), iy = (float8)(RT_AT(lone->iy, l)), iz = (float8)(RT_AT(lone->iz, l));
     /* The far side is widened here instead of in each node: that rounds twice more, each time by half an ulp of origin /
      * direction or of the distance, for which the slack of rt_prepare and RT_WIDE have room. */
     const float8 wide_x = ix * RT_WIDE, wide_y = iy * RT_WIDE, wide_z = iz * RT_WIDE;
-    const float8 exit_x = (float8)(ray->far_x * RT_WIDE), exit_y = (float8)(ray->far_y * RT_WIDE),
-                 exit_z = (float8)(ray->far_z * RT_WIDE);
+    const float8 exit_x = (float8)(RT_AT(lone->far_x, l) * RT_WIDE), exit_y = (float8)(RT_AT(lone->far_y, l) * RT_WIDE),
+                 exit_z = (float8)(RT_AT(lone->far_z, l) * RT_WIDE);
 #if RT_ANY_HIT
     uint stack[BVH8_STACK];
 #else
@@ -30,24 +60,24 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
 #if RT_CPU
-            RT_LONE_LEAVES(ctx, first, count, ray, 0u, hit, ray, hit);
+            RT_LONE_LEAVES(ctx, first, count, lone, l, lone_hit, ray, hit);
 #else
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
 #endif
 #if RT_ANY_HIT
-            if (hit->t < 0.0f) return;
+            if (RT_AT(lone_hit->t, l) < 0.0f) return;
 #endif
         } else {
             RT_COUNT_VISIT(hit, 1u);
             const global char *node = (const global char *)(ctx->bvh8_nodes + at);
-            const float8 ax = fma(ix, BVH8_ROW(node, near_x), (float8)(ray->near_x));
-            const float8 ay = fma(iy, BVH8_ROW(node, near_y), (float8)(ray->near_y));
-            const float8 az = fma(iz, BVH8_ROW(node, near_z), (float8)(ray->near_z));
+            const float8 ax = fma(ix, BVH8_ROW(node, near_x), (float8)(RT_AT(lone->near_x, l)));
+            const float8 ay = fma(iy, BVH8_ROW(node, near_y), (float8)(RT_AT(lone->near_y, l)));
+            const float8 az = fma(iz, BVH8_ROW(node, near_z), (float8)(RT_AT(lone->near_z, l)));
             const float8 bx = fma(wide_x, BVH8_ROW(node, far_x), exit_x);
             const float8 by = fma(wide_y, BVH8_ROW(node, far_y), exit_y);
             const float8 bz = fma(wide_z, BVH8_ROW(node, far_z), exit_z);
-            const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(ray->t_min)));
-            const float8 out = rt_min(rt_min(bx, by), rt_min(bz, (float8)(hit->t)));
+            const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(RT_AT(lone->t_min, l))));
+            const float8 out = rt_min(rt_min(bx, by), rt_min(bz, (float8)(RT_AT(lone_hit->t, l))));
             uint bits = BVH8_BITS(in <= out);
             if (bits != 0u) {
                 const global uint *child = (const global uint *)(node + 192);
@@ -105,102 +135,148 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         do {
             if (top == 0u) return;
             next = stack[--top];
-        } while (as_float((uint)(next >> 32)) > hit->t);
+        } while (as_float((uint)(next >> 32)) > RT_AT(lone_hit->t, l));
         at = (uint)next;
 #endif
     }
 #undef BVH8_PUSH
+}
+#endif
+
+#if RT_LANES == 1
+
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    BVH8_LONE(ctx, root, ray, 0u, hit, ray, hit);
+}
+
 #else
-    if (ray->coherent) {
-        /* Bounds of the packet. */
-        const vmask alive = RT_MASK(hit->t >= rt_vfloat(0.0f));
-        const vfloat big = rt_vfloat(3e38f);
-        float o_lo[3], o_hi[3], i_lo[3], i_hi[3];
-        o_lo[0] = rt_least(rt_select(alive, ray->ox, big)); o_hi[0] = rt_greatest(rt_select(alive, ray->ox, -big));
-        o_lo[1] = rt_least(rt_select(alive, ray->oy, big)); o_hi[1] = rt_greatest(rt_select(alive, ray->oy, -big));
-        o_lo[2] = rt_least(rt_select(alive, ray->oz, big)); o_hi[2] = rt_greatest(rt_select(alive, ray->oz, -big));
-        i_lo[0] = rt_least(rt_select(alive, ray->ix, big)); i_hi[0] = rt_greatest(rt_select(alive, ray->ix, -big));
-        i_lo[1] = rt_least(rt_select(alive, ray->iy, big)); i_hi[1] = rt_greatest(rt_select(alive, ray->iy, -big));
-        i_lo[2] = rt_least(rt_select(alive, ray->iz, big)); i_hi[2] = rt_greatest(rt_select(alive, ray->iz, -big));
-        const float t_min = rt_least(rt_select(alive, ray->t_min, big));
-        float t_far = rt_greatest(hit->t);
-        const ulong near_x = ray->lo_x * 32u, near_y = ray->lo_y * 32u, near_z = ray->lo_z * 32u;
-        const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
-        const float slack = 8.0f * RT_EPS;
-#define BVH8_AXIS(x, k, base) \
-        const float a_##x = near_##x != base ? o_lo[k] : o_hi[k], b_##x = near_##x != base ? o_hi[k] : o_lo[k]; \
-        const float8 il##x = (float8)(i_lo[k]), ih##x = (float8)(i_hi[k]); \
-        const float al_##x = -a_##x * i_lo[k], ah_##x = -a_##x * i_hi[k], bl_##x = -b_##x * i_lo[k], bh_##x = -b_##x * i_hi[k]; \
-        const float8 nl##x = (float8)(al_##x - fabs(al_##x) * slack), nh##x = (float8)(ah_##x - fabs(ah_##x) * slack); \
-        const float8 fl##x = (float8)(bl_##x + fabs(bl_##x) * slack), fh##x = (float8)(bh_##x + fabs(bh_##x) * slack);
-        BVH8_AXIS(x, 0, 0u)
-        BVH8_AXIS(y, 1, 32u)
-        BVH8_AXIS(z, 2, 64u)
-        ulong stack[BVH8_STACK];
-        const global char *node_of = 0;
-        uint slot = 0;
-        for (;;) {
-            if (at & BVH8_LEAF) {
-                /* Do its rays enter it at all? */
-                const global float *box = (const global float *)node_of + slot;
-                const vfloat ax = fma(ray->ix, rt_vfloat(box[ray->lo_x * 8u]), ray->near_x);
-                const vfloat ay = fma(ray->iy, rt_vfloat(box[ray->lo_y * 8u]), ray->near_y);
-                const vfloat az = fma(ray->iz, rt_vfloat(box[ray->lo_z * 8u]), ray->near_z);
-                const vfloat bx = fma(ray->ix, rt_vfloat(box[24u - ray->lo_x * 8u]), ray->far_x);
-                const vfloat by = fma(ray->iy, rt_vfloat(box[40u - ray->lo_y * 8u]), ray->far_y);
-                const vfloat bz = fma(ray->iz, rt_vfloat(box[56u - ray->lo_z * 8u]), ray->far_z);
-                const vfloat entry = rt_max(rt_max(ax, ay), rt_max(az, ray->t_min));
-                if (rt_any(RT_MASK(entry <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t)))) {
+
+/* Rays against the box of one child, whose rows are near_x .. far_z bytes from `box`. */
+RT_INLINE uint BVH8_ENTER(const global char *box, ulong near_x, ulong near_y, ulong near_z, const rt_rays *ray, const rt_hits *hit)
+{
+    const vfloat ax = fma(ray->ix, BVH8_PLANE(box, near_x), ray->near_x), bx = fma(ray->ix, BVH8_PLANE(box, 96u - near_x), ray->far_x);
+    const vfloat ay = fma(ray->iy, BVH8_PLANE(box, near_y), ray->near_y), by = fma(ray->iy, BVH8_PLANE(box, 160u - near_y), ray->far_y);
+    const vfloat az = fma(ray->iz, BVH8_PLANE(box, near_z), ray->near_z), bz = fma(ray->iz, BVH8_PLANE(box, 224u - near_z), ray->far_z);
+    const vfloat entry = rt_max(rt_max(ax, ay), rt_max(az, ray->t_min));
+    return rt_bits(RT_MASK(entry <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t)));
+}
+
+/* A packet whose active directions agree in sign. */
+RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    const vmask alive = RT_MASK(hit->t >= rt_vfloat(0.0f));
+    const float t_min = rt_least_of(alive, ray->t_min);
+    float t_far = rt_greatest(hit->t);
+    const ulong near_x = ray->lo_x * 32u, near_y = ray->lo_y * 32u, near_z = ray->lo_z * 32u;
+    const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
+    /* A plane p is met at (p - origin) / direction. With x = p - the origin nearest to it that lies between the least and the
+     * greatest of x / direction of any ray; each side as fma(1 / direction, p, -origin / direction), with the slack of
+     * rt_prepare(). */
+    bool wide = false;
+#define BVH8_AXIS(x, turned)                                                                                                     \
+    const float o_lo_##x = rt_least_of(alive, ray->o##x), o_hi_##x = rt_greatest_of(alive, ray->o##x);                           \
+    const float i_lo_##x = rt_least_of(alive, ray->i##x), i_hi_##x = rt_greatest_of(alive, ray->i##x);                           \
+    const float o_in_##x = (turned) ? o_lo_##x : o_hi_##x, o_out_##x = (turned) ? o_hi_##x : o_lo_##x;                           \
+    const float8 lo_##x = (float8)(i_lo_##x), hi_##x = (float8)(i_hi_##x);                                                       \
+    const float8 in_lo_##x = (float8)(BVH8_DOWN(-o_in_##x * i_lo_##x)), in_hi_##x = (float8)(BVH8_DOWN(-o_in_##x * i_hi_##x));   \
+    const float8 out_lo_##x = (float8)(BVH8_UP(-o_out_##x * i_lo_##x)), out_hi_##x = (float8)(BVH8_UP(-o_out_##x * i_hi_##x));   \
+    wide |= o_lo_##x != o_hi_##x || i_hi_##x - i_lo_##x > 0.25f * fabs(i_lo_##x);
+#define BVH8_DOWN(v) ((v) - fabs(v) * (8.0f * RT_EPS))
+#define BVH8_UP(v) ((v) + fabs(v) * (8.0f * RT_EPS))
+    BVH8_AXIS(x, near_x != 0u)
+    BVH8_AXIS(y, near_y != 32u)
+    BVH8_AXIS(z, near_z != 64u)
+#define BVH8_IN(x, p) rt_min(fma(p, lo_##x, in_lo_##x), fma(p, hi_##x, in_hi_##x))
+#define BVH8_OUT(x, p) rt_max(fma(p, lo_##x, out_lo_##x), fma(p, hi_##x, out_hi_##x))
+
+    /* Put off: entry distance in the upper half; node and slot, from which a leaf's box is found again, in the lower. */
+    ulong stack[BVH8_STACK];
+    const global char *node = (const global char *)(ctx->bvh8_nodes + at);
+    uint top = 0, slot = 0;
+    bool tested = true; /* whether `at` is known to be entered */
+    for (;;) {
+        if (at & BVH8_LEAF) {
+            if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, ray, hit) != 0u) {
                 const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
                 for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
                 t_far = rt_greatest(hit->t);
-                }
 #if RT_ANY_HIT
                 if (t_far < 0.0f) return;
 #endif
-            } else {
-                RT_COUNT_VISIT(hit, 1u);
-                const global char *node = (const global char *)(ctx->bvh8_nodes + at);
-#define BVH8_IN(x) ({ const float8 p = BVH8_ROW(node, near_##x); rt_min(fma(p, il##x, nl##x), fma(p, ih##x, nh##x)); })
-#define BVH8_OUT(x) ({ const float8 p = BVH8_ROW(node, far_##x); rt_max(fma(p, il##x, fl##x), fma(p, ih##x, fh##x)); })
-                const float8 in = rt_max(rt_max(BVH8_IN(x), BVH8_IN(y)), rt_max(BVH8_IN(z), (float8)(t_min)));
-                const float8 out = rt_min(rt_min(rt_min(BVH8_OUT(x), BVH8_OUT(y)), BVH8_OUT(z)) * RT_WIDE, (float8)(t_far));
-                uint bits = BVH8_BITS(in <= out);
-                if (bits != 0u) {
-                    const global uint *child = (const global uint *)(node + 192);
-                    uint i = BVH8_LOWEST(bits);
-                    bits &= bits - 1u;
-                    node_of = node;
-                    if (bits == 0u) {
-                        at = child[i];
-                        slot = i;
-                        continue;
-                    }
-                    float entry[BVH8_WIDTH];
-                    vstore8(in, 0, entry);
-#define K(i) ((ulong)as_uint(entry[i]) << 32 | (at * 8u + (i)))
-                    ulong nearest = K(i);
-                    for (; bits != 0u; bits &= bits - 1u) {
-                        ulong key = K(BVH8_LOWEST(bits));
-                        ulong other = max(key, nearest);
-                        nearest = min(key, nearest);
-                        stack[top++] = other;
-                    }
-                    slot = (uint)nearest & 7u;
+            }
+        } else if (!wide || tested || BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, ray, hit) != 0u) {
+            tested = false;
+            RT_COUNT_VISIT(hit, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))));
+            node = (const global char *)(ctx->bvh8_nodes + at);
+            const float8 in_x = BVH8_IN(x, BVH8_ROW(node, near_x)), in_y = BVH8_IN(y, BVH8_ROW(node, near_y)),
+                         in_z = BVH8_IN(z, BVH8_ROW(node, near_z));
+            const float8 out_x = BVH8_OUT(x, BVH8_ROW(node, far_x)), out_y = BVH8_OUT(y, BVH8_ROW(node, far_y)),
+                         out_z = BVH8_OUT(z, BVH8_ROW(node, far_z));
+            const float8 in = rt_max(rt_max(in_x, in_y), rt_max(in_z, (float8)(t_min)));
+            const float8 out = rt_min(rt_min(rt_min(out_x, out_y), out_z) * RT_WIDE, (float8)(t_far));
+            uint bits = BVH8_BITS(in <= out);
+            if (bits != 0u) {
+                const global uint *child = (const global uint *)(node + 192);
+                slot = BVH8_LOWEST(bits);
+                bits &= bits - 1u;
+                if (bits == 0u) {
                     at = child[slot];
                     continue;
                 }
+                float entry[BVH8_WIDTH];
+                vstore8(in, 0, entry);
+#define BVH8_PLACE(i) ((ulong)as_uint(entry[i]) << 32 | (at * 8u + (i)))
+                BVH8_PREFETCH(ctx, child[slot])
+                ulong nearest = BVH8_PLACE(slot);
+                for (; bits != 0u; bits &= bits - 1u) {
+                    const uint i = BVH8_LOWEST(bits);
+                    BVH8_PREFETCH(ctx, child[i])
+                    const ulong place = BVH8_PLACE(i);
+                    stack[top] = max(place, nearest);
+                    nearest = min(place, nearest);
+                    if (RT_STACK_OK(top + 1u, BVH8_STACK, hit)) ++top;
+                }
+                slot = (uint)nearest & 7u;
+                at = child[slot];
+                continue;
             }
-            ulong next;
-            do {
-                if (top == 0u) return;
-                next = stack[--top];
-            } while (as_float((uint)(next >> 32)) > t_far);
-            slot = (uint)next & 7u;
-            node_of = (const global char *)(ctx->bvh8_nodes + ((uint)next >> 3));
-            at = ((const global uint *)(node_of + 192))[slot];
         }
+        ulong next;
+        do {
+            if (top == 0u) return;
+            next = stack[--top];
+        } while (as_float((uint)(next >> 32)) > t_far);
+        slot = (uint)next & 7u;
+        node = (const global char *)(ctx->bvh8_nodes + ((uint)next >> 3));
+        at = ((const global uint *)(node + 192))[slot];
     }
+}
+#undef BVH8_AXIS
+#undef BVH8_DOWN
+#undef BVH8_UP
+#undef BVH8_IN
+#undef BVH8_OUT
+#undef BVH8_PLACE
+
+#if BVH8_SINGLE
+
+RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    rt_lone_rays lone;
+    rt_lone_hits lone_hit;
+    rt_spread_rays(ray, &lone);
+    rt_spread_hits(hit, &lone_hit);
+    for (uint todo = rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))); todo != 0u; todo &= todo - 1u)
+        BVH8_LONE(ctx, root, &lone, BVH8_LOWEST(todo), &lone_hit, ray, hit);
+    rt_gather_hits(&lone_hit, hit);
+}
+
+#else
+
+RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    uint top = 0;
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u) | (ray->lo_z == 2u ? 4u : 0u);
     vfloat stack_t[BVH8_STACK];
@@ -248,5 +324,16 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         } while (inside == 0u);
         at = stack_node[top];
     }
-#endif
 }
+
+#endif
+
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    if (ray->coherent)
+        BVH8_BOUNDED(ctx, root, ray, hit);
+    else
+        BVH8_APART(ctx, root, ray, hit);
+}
+
+#endif
