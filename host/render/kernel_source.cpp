@@ -62,8 +62,8 @@ void context(std::ostream& out, const rt_accel& accel) {
     out << "#define RT_CTX_PARAMS " << params << "\n#define RT_CTX_INIT(ctx) rt_ctx ctx;" << init << "\n";
 }
 
-// One inclusion of the plugin's template, with the leaf tests that it may use. The prototype makes it inline whatever the author
-// wrote.
+// One inclusion of the plugin's template, with the leaf tests that it may use. The prototype makes it inline whatever the
+// author wrote.
 struct Template {
     const std::string &file, &text;
     bool cpu;
