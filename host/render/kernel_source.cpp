@@ -203,8 +203,8 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "rays.h");
     if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
     context(out, *accel.accel);
-    if (layout.cpu)
-        for (const char* name : {"lone.h", "primitives/triangle_row.h"}) include(out, name);
+    include(out, "lone.h");
+    if (layout.cpu) include(out, "primitives/triangle_row.h");
     const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
     const Template plugin{file, text, layout.cpu};
     query(out, false, features, plugin);

@@ -13,21 +13,6 @@
  * distances. Most nodes leave one or two children, and branching on their number costs less than sorting vectors of eight: a
  * network in registers took a tenth longer, and so did putting all off in the order of the slots by compressing stores. Where any
  * hit will do, order is worth nothing: nearly as few nodes are visited without it, each for less. */
-#ifndef BVH8_PREFETCH
-#define BVH8_PREFETCH(ctx, child)                                                                                                \
-    {                                                                                                                            \
-        const uint code = (child);                                                                                               \
-        const ulong to = code & BVH8_LEAF ? (ulong)((ctx)->leaves + BVH8_LEAF_FIRST(code)) : (ulong)((ctx)->bvh8_nodes + code);    \
-        __builtin_prefetch((const void *)to);                                                                                    \
-        __builtin_prefetch((const void *)(to + 64));                                                                             \
-        __builtin_prefetch((const void *)(to + 128));                                                                            \
-        __builtin_prefetch((const void *)(to + 192));                                                                            \
-    }
-#define BVH8_PLANE(box, bytes) rt_vfloat(*(const global float *)((box) + (bytes)))
-#ifndef BVH8_SINGLE
-#define BVH8_SINGLE 0
-#endif
-#endif
 #define BVH8_LONE RT_CAT(RT_TRAVERSE, _lone)
 #define BVH8_ENTER RT_CAT(RT_TRAVERSE, _enter)
 #define BVH8_BOUNDED RT_CAT(RT_TRAVERSE, _bounded)
@@ -227,11 +212,11 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_h
                 float entry[BVH8_WIDTH];
                 vstore8(in, 0, entry);
 #define BVH8_PLACE(i) ((ulong)as_uint(entry[i]) << 32 | (at * 8u + (i)))
-                BVH8_PREFETCH(ctx, child[slot])
+                BVH8_PREFETCH(ctx, child[slot]);
                 ulong nearest = BVH8_PLACE(slot);
                 for (; bits != 0u; bits &= bits - 1u) {
                     const uint i = BVH8_LOWEST(bits);
-                    BVH8_PREFETCH(ctx, child[i])
+                    BVH8_PREFETCH(ctx, child[i]);
                     const ulong place = BVH8_PLACE(i);
                     stack[top] = max(place, nearest);
                     nearest = min(place, nearest);
