@@ -1,9 +1,103 @@
-/* bvh8.cl -- one ray against eight boxes at once (RT_LANES 1), or a packet of rays against one box after the other.
+/* bvh8.cl -- one ray against eight boxes at once, or a packet of rays against one box after the other while they keep together.
  *
- * A single ray takes the nearest child and puts the others off in the order of their distances. Most nodes leave one or two
+ * A single ray (RT_LANES 1) takes the nearest child and puts the others off in the order of their distances. Most nodes leave one or two
  * children, and branching on their number costs less than sorting vectors of eight: a network in registers took a tenth longer,
  * and so did putting all off in the order of the slots by compressing stores. Where any hit will do, order is worth nothing:
  * nearly as few nodes are visited without it, each for less. */
+/* Where there are instances, a traversal of their meshes hangs on each of a world's leaf tests, and is compiled as often: there the
+ * packet stays together. */
+#define BVH8_PARTS (RT_LANES > 1 && !(RT_LONE_MIXED && RT_HAS_INSTANCES))
+#if BVH8_PARTS
+/* The rays of `lanes` from `at` down, then through all that was put off for them (BVH8_NOTHING: only that), each on its own way but all by turns: while one waits, for memory as
+ * much as for arithmetic, the others' work goes on, and what a turn does with a node is free of branches that depend on the ray.
+ * A turn looks for candidates in all leaves that rays have come to, enters all nodes, tests the candidates, then sends on the rays
+ * that have met a leaf or the end of their way. What lies beyond the nearest hit is passed over eight entries at a time. Children
+ * come in the order of their slots: ordering them by their distances would save a node in thirty and cost more.
+ *
+ * Puts what was hit into `hit`, all of it as bvh8_lone_begin() found it or better. */
+#define BVH8_LONE RT_CAT(RT_TRAVERSE, _lone)
+RT_INLINE void BVH8_LONE(const rt_ctx *ctx, bvh8_lone *s, uint at, uint lanes, const rt_rays *ray, rt_hits *hit)
+{
+    const rt_lone_rays *rays = &s->rays;
+    float *const entry = s->entry;
+    uint *const child = s->child, *const top = s->top;
+    /* Lanes: at nodes and at leaves, now and next; in leaves with candidates; to be sent on. One more is written than counts. */
+    uint nodes[2][RT_LANES + 1], leaves[2][RT_LANES + 1], tests[RT_LANES + 1], candidates[RT_LANES + 1], pops[RT_LANES + 1];
+    uint code[RT_LANES];
+    uint node_count = 0, leaf_count = 0;
+#define BVH8_GO_ON(l, to, alive)                                                                                                 \
+    {                                                                                                                            \
+        const uint is_leaf = (to) >> 31;                                                                                         \
+        bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, to);                                                                         \
+        code[l] = to;                                                                                                            \
+        next_nodes[node_count] = l;                                                                                              \
+        node_count += (alive) & ~is_leaf;                                                                                        \
+        next_leaves[leaf_count] = l;                                                                                             \
+        leaf_count += (alive)&is_leaf;                                                                                           \
+    }
+    uint *next_nodes = nodes[0], *next_leaves = leaves[0];
+    for (uint bits = lanes; bits != 0u; bits &= bits - 1u) {
+        const uint l = BVH8_LOWEST(bits);
+        BVH8_GO_ON(l, at, 1u)
+    }
+    for (uint turn = 0; node_count + leaf_count != 0u; ++turn) {
+        const uint *now_nodes = nodes[turn & 1u], *now_leaves = leaves[turn & 1u];
+        const uint now_node_count = node_count, now_leaf_count = leaf_count;
+        uint test_count = 0, pop_count = 0;
+        next_nodes = nodes[~turn & 1u], next_leaves = leaves[~turn & 1u];
+        node_count = leaf_count = 0;
+        for (uint i = 0; i < now_leaf_count; ++i) {
+            const uint l = now_leaves[i], first = BVH8_LEAF_FIRST(code[l]), count = BVH8_LEAF_COUNT(code[l]);
+            RT_COUNT_LEAVES(hit, count);
+            const uint bits = RT_LONE_CANDIDATES(ctx, first, count, rays, l);
+            pops[pop_count++] = l;
+            tests[test_count] = l;
+            candidates[test_count] = bits;
+            test_count += bits != 0u ? 1u : 0u;
+        }
+        for (uint i = 0; i < now_node_count; ++i) {
+            RT_COUNT_VISIT(hit, 1u);
+            const uint l = now_nodes[i];
+            const global char *node = (const global char *)(ctx->bvh8_nodes + code[l]);
+            const long x = s->near_x[l], y = s->near_y[l], z = s->near_z[l];
+            const float8 ix = (float8)(rays->ix[l]), iy = (float8)(rays->iy[l]), iz = (float8)(rays->iz[l]);
+            const float8 ax = fma(ix, BVH8_ROW(node, x), (float8)(rays->near_x[l]));
+            const float8 ay = fma(iy, BVH8_ROW(node, y), (float8)(rays->near_y[l]));
+            const float8 az = fma(iz, BVH8_ROW(node, z), (float8)(rays->near_z[l]));
+            const float8 bx = fma(ix, BVH8_ROW(node, 96 - x), (float8)(rays->far_x[l]));
+            const float8 by = fma(iy, BVH8_ROW(node, 160 - y), (float8)(rays->far_y[l]));
+            const float8 bz = fma(iz, BVH8_ROW(node, 224 - z), (float8)(rays->far_z[l]));
+            const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(rays->t_min[l])));
+            const float8 out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(s->hits.t[l]));
+            const uint base = top[l];
+            uint count = bvh8_put_off(in, out, node, s->order[l], entry + base, child + base);
+            if (!RT_STACK_OK(base + count - l * BVH8_ROOM, BVH8_BELOW + BVH8_STACK + 2u, hit)) count = 0;
+            const uint some = count != 0u ? 1u : 0u, last = base + count - some;
+            top[l] = last;
+            BVH8_GO_ON(l, child[last], some)
+            pops[pop_count] = l;
+            pop_count += 1u - some;
+        }
+        for (uint i = 0; i < test_count; ++i) {
+            const uint l = tests[i];
+            RT_LONE_TEST(ctx, BVH8_LEAF_FIRST(code[l]), candidates[i], rays, l, &s->hits, ray, hit);
+        }
+        for (uint i = 0; i < pop_count; ++i) {
+            const uint l = pops[i];
+            const float8 t = (float8)(s->hits.t[l]);
+            uint from = top[l] - 8u, open;
+            while ((open = BVH8_BITS(vload8(0, entry + from) <= t)) == 0u) from -= 8u;
+            from += 31u - (uint)clz(open);
+            top[l] = from;
+            const uint alive = from >= l * BVH8_ROOM + BVH8_BELOW ? 1u : 0u;
+            BVH8_GO_ON(l, child[from], alive)
+        }
+    }
+#undef BVH8_GO_ON
+    rt_gather_hits(&s->hits, hit);
+}
+#endif
+
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     uint top = 0, at = root;
@@ -30,7 +124,8 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
 #if RT_CPU
-            RT_LONE_LEAVES(ctx, first, count, ray, 0u, hit, ray, hit);
+            RT_COUNT_LEAVES(hit, count);
+            RT_LONE_TEST(ctx, first, RT_LONE_CANDIDATES(ctx, first, count, ray, 0u), ray, 0u, hit, ray, hit);
 #else
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
 #endif
@@ -111,6 +206,14 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     }
 #undef BVH8_PUSH
 #else
+#if BVH8_PARTS
+    if (!ray->coherent) {
+        bvh8_lone lone;
+        bvh8_lone_begin(&lone, ray, hit);
+        BVH8_LONE(ctx, &lone, root, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))), ray, hit);
+        return;
+    }
+#endif
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u) | (ray->lo_z == 2u ? 4u : 0u);
     vfloat stack_t[BVH8_STACK];
