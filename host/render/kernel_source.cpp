@@ -71,13 +71,13 @@ struct Template {
 void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n";
     if (plugin.cpu) {
-        out << "#define RT_LONE_LEAVES RT_FN(" << leaf << "_lone)\n";
+        out << "#define RT_LONE_CANDIDATES RT_FN(" << leaf << "_candidates)\n#define RT_LONE_TEST RT_FN(" << leaf << "_lone)\n";
         define_int(out, "RT_LONE_MIXED", mixed);
         include(out, "leaf_lone.h");
     }
     out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
     part(out, plugin.file, plugin.text);
-    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LONE_LEAVES\n#undef RT_LONE_MIXED\n";
+    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LONE_CANDIDATES\n#undef RT_LONE_TEST\n#undef RT_LONE_MIXED\n";
 }
 
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const Template& plugin) {
@@ -201,10 +201,10 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "rt_types.h");
     include(out, "lanes.h");
     include(out, "rays.h");
+    if (layout.cpu)
+        for (const char* name : {"lone.h", "primitives/triangle_row.h"}) include(out, name);
     if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
     context(out, *accel.accel);
-    include(out, "lone.h");
-    if (layout.cpu) include(out, "primitives/triangle_row.h");
     const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
     const Template plugin{file, text, layout.cpu};
     query(out, false, features, plugin);
