@@ -10,7 +10,9 @@ namespace {
 
 // Children whose boxes overlap by less, relative to their own or to the group's box, are not worth a look for a plane to cut
 // by.
-constexpr float kLeastOverlap = 0.2f, kLeastOverlapOfRoot = 1e-5f;
+// The first one keeps small triangles from being cut for a gain at one node that their parts cost below: with 0.2 in its place,
+// all of salle_de_bain costs a hundredth more than if nothing is cut.
+constexpr float kLeastOverlap = 0.5f, kLeastOverlapOfRoot = 1e-5f;
 // Where no plane is worth cutting by, the kernels do better with the rest of ranges this small.
 constexpr uint32_t kFew = 8;
 constexpr uint32_t kChunk = 8192;
@@ -98,8 +100,19 @@ class Cutter {
         const float cut = left_area_ * left_count_ + right_area_ * right_count_;
         const float to_left = area_.half_area(both(split_.left, whole)) * left_count_ + right_area_ * (right_count_ - 1);
         const float to_right = left_area_ * (left_count_ - 1) + area_.half_area(both(split_.right, whole)) * right_count_;
-        if (to_left < cut && to_left <= to_right) return left.take(r, whole);
-        if (to_right < cut) return right.take(r, whole);
+        // What goes whole counts for the next ones.
+        if (to_left < cut && to_left <= to_right) {
+            split_.left.add(whole);
+            left_area_ = area_.half_area(split_.left);
+            right_count_ -= 1;
+            return left.take(r, whole);
+        }
+        if (to_right < cut) {
+            split_.right.add(whole);
+            right_area_ = area_.half_area(split_.right);
+            left_count_ -= 1;
+            return right.take(r, whole);
+        }
         const rt_leaf& triangle = geometry_.triangles[RT_REF_INDEX(r.ref())];
         const float plane = planes_.plane(split_.axis, split_.bin);
         left.take(r, clip(triangle, whole, split_.axis, -FLT_MAX, plane));
@@ -107,11 +120,11 @@ class Cutter {
     }
 
  private:
-    const SpatialSplit& split_;
+    SpatialSplit split_;
     const Planes& planes_;
     const AreaScale& area_;
     const rt_geometry& geometry_;
-    const float left_area_, right_area_, left_count_, right_count_;
+    float left_area_, right_area_, left_count_, right_count_;
 };
 
 // Gives both parts, which lie at the ends of the room, their shares of what is left of it.
