@@ -38,7 +38,7 @@ RayBlocks::RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes) : ray_coun
 std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_count, unsigned lanes, rt_u32 fields,
                                 bool counted) {
     std::vector<rt_hit> hits(ray_count);
-        for_chunks(ray_count, [&](size_t first, size_t end) {
+    for_chunks(ray_count, [&](size_t first, size_t end) {
         for (size_t i = first; i < end; ++i) {
             const float* block = &answers[i / lanes * lanes * fields] + i % lanes;
             rt_hit& hit = hits[i];

@@ -15,7 +15,10 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (rays.lanes() != layout.lanes)
             throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
                                           " lanes and the program has " + std::to_string(layout.lanes) + ": pack them anew");
-        const cl_uint fields = query.count ? RT_ANSWER_ALL : query.any_hit ? RT_ANSWER_OCCLUSION : query.brief ? RT_ANSWER_NEAREST : RT_ANSWER_ALL;
+        const cl_uint fields = query.count     ? RT_ANSWER_ALL
+                               : query.any_hit ? RT_ANSWER_OCCLUSION
+                               : query.brief   ? RT_ANSWER_NEAREST
+                                               : RT_ANSWER_ALL;
         const size_t slots = rays.block_count() * layout.lanes;
         const KernelKind kind = query.count ? KernelKind::counted_rays : KernelKind::rays;
         const KernelSource source =

@@ -30,13 +30,14 @@ constexpr rt_param kParams[] = {
                    kBuilders, 0),
     rt::float_param("duplicates", "Duplicates", "what builder=spatial may add to the primitives, as a share of their number", 0,
                     4, 0.3),
-    rt::enum_param("incoherent", "Incoherent rays",
-                   "how a CPU traces packets whose rays part: packets: together; single: each alone; auto: alone where the tree "
-                   "is larger than its caches",
-                   kIncoherentWays, kAuto),
+    rt::enum_param(
+        "incoherent", "Incoherent rays",
+        "how a CPU traces packets whose rays part: packets: together; single: each alone; auto: alone where the tree "
+        "is larger than its caches",
+        kIncoherentWays, kAuto),
 };
-// Measured with diffuse rays on a CPU of 1 MiB L2 and 32 MiB L3: 70 000 triangles are traced 1.3 times as fast together, a million
-// 1.2 times as fast alone.
+// Measured with diffuse rays on a CPU of 1 MiB L2 and 32 MiB L3: 70 000 triangles are traced 1.3 times as fast together, a
+// million 1.2 times as fast alone.
 constexpr uint64_t kTogether = 250'000;  // primitives
 
 constexpr uint64_t kMaxPrimitives = bvh2::Builder::kMaxPrimitives;
