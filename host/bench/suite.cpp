@@ -94,7 +94,7 @@ class Planner {
     }
 
     // The structure that a suite about something else uses.
-    std::string main_accel() const { return request_.accels.empty() ? "bvh2" : request_.accels.front(); }
+    std::string main_accel() const { return request_.accels.empty() ? Settings().accel : request_.accels.front(); }
 
     std::vector<Variant> every_accel() const {
         std::vector<Variant> variants;

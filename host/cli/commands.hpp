@@ -20,7 +20,7 @@ struct SceneOptions {
 // What render and view share.
 struct TraceOptions {
     std::string device;                                         // "": CLARITY_DEVICE, else the best
-    std::string accel;                                          // ID[,key=value...]; "": the preset's, else bvh2
+    std::string accel;                                          // ID[,key=value...]; "": the preset's, else usual_accel()
     std::vector<std::string> sets;                              // key=value, in the order given
     std::vector<std::pair<std::string, std::string>> settings;  // from options of their own; they win over `sets`
     std::string camera, light;                                  // as make_view reads them
