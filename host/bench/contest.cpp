@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "bench/analysis.hpp"
 #include "bench/bench.hpp"
+#include "bench/breakdown.hpp"
 #include "bench/machine.hpp"
 #include "bench/row.hpp"
 #include "bench/versus.hpp"
@@ -111,6 +112,11 @@ class Contest {
             return;
         }
         guarded(entry, [&](BenchRecord&) {
+            if (case_.measure == "breakdown") {
+                const View view = case_.mirrors ? whitted_view(*stand_.scene(), stand_.view()) : stand_.view();
+                measure_breakdown(row, stand_, device, settings, view, rules_, progress_);
+                return;
+            }
             const Stand::Held held = stand_.prepare(device, settings, progress_);
             const Prepared& prepared = *held.prepared;
             describe(row, prepared);

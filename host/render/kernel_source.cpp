@@ -67,6 +67,8 @@ void context(std::ostream& out, const rt_accel& accel) {
 struct Template {
     const std::string &file, &text;
     bool cpu;
+    bool leaves_twice;  // for measuring what they take
+    bool instances;
 };
 void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n";
@@ -74,6 +76,15 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
         out << "#define RT_LONE_CANDIDATES RT_FN(" << leaf << "_candidates)\n#define RT_LONE_TEST RT_FN(" << leaf << "_lone)\n";
         define_int(out, "RT_LONE_MIXED", mixed);
         include(out, "leaf_lone.h");
+    }
+    if (plugin.leaves_twice) {
+        out << "#define RT_LEAF_ONCE RT_FN(" << leaf << ")\n#undef RT_LEAF\n#define RT_LEAF RT_FN(" << leaf << "_twice)\n";
+        if (plugin.cpu)
+            out << "#define RT_LONE_LEAVES_ONCE RT_FN(" << leaf
+                << "_lone)\n#undef RT_LONE_LEAVES\n#define RT_LONE_LEAVES RT_FN(" << leaf << "_lone_twice)\n";
+        define_int(out, "RT_LEAF_INSTANCES", mixed && plugin.instances);
+        include(out, "leaf_twice.h");
+        out << "#undef RT_LEAF_ONCE\n#undef RT_LONE_LEAVES_ONCE\n#undef RT_LEAF_INSTANCES\n";
     }
     out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
     part(out, plugin.file, plugin.text);
@@ -142,7 +153,7 @@ Layout make_layout(const Settings& settings, bool cpu) {
 }
 
 KernelSource assemble_kernel(const Settings& settings, const Layout& layout, KernelKind kind, const SceneFeatures& features,
-                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines) {
+                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines, FramePart frame_part) {
     std::ostringstream out;
     define_int(out, "RT_LANES", layout.lanes);
     define_int(out, "RT_MAX_PIXELS", layout.max_pixels);
@@ -168,6 +179,11 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
         case KernelKind::color:
             kernel_file = "tracers/" + settings.tracer + ".cl";
             source.entry = "trace_" + settings.tracer;
+            if (frame_part < FramePart::whole) {
+                define_int(out, "RT_PART", std::min(static_cast<unsigned>(frame_part), 2u));
+                kernel_file = "tracers/parts.cl";
+                source.entry = "trace_parts";
+            }
             break;
         case KernelKind::aov: {
             static const std::map<std::string, unsigned> numbers = {{"t", 1},  {"prim", 2},  {"instance", 3},   {"normal", 4},
@@ -206,8 +222,10 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
     context(out, *accel.accel);
     const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
-    const Template plugin{file, text, layout.cpu};
+    Template plugin{file, text, layout.cpu, false, features.instances};
+    plugin.leaves_twice = frame_part == FramePart::closest_twice || frame_part == FramePart::whole_closest_twice;
     query(out, false, features, plugin);
+    plugin.leaves_twice = frame_part == FramePart::whole_any_twice;
     if (kind != KernelKind::aov) query(out, true, features, plugin);
     include(out, "vec.h");
     include(out, "surface.h");

@@ -1,0 +1,31 @@
+/* leaf_twice.h -- leaf tests done twice, for `clarity bench --breakdown`: what a frame takes longer is what they take. The second
+ * changes nothing: what was hit beats itself no more. It is read from where the compiler cannot know to be the same place, so none
+ * of it is saved. An instance is no leaf test but a traversal, and is entered once. A template, see CONTRACT.md. */
+#if RT_LEAF_INSTANCES
+#define RT_AGAIN(ctx, at) (RT_REF_KIND((ctx)->leaves[at].ref) != RT_REF_INSTANCE)
+#else
+#define RT_AGAIN(ctx, at) 1
+#endif
+/* at, whatever an importer left in the padding, where there should be 0. */
+#define RT_SAME_PLACE(ctx, at) min((at) + (ctx)->materials->pad, (at))
+
+RT_INLINE void RT_LEAF(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_LEAF_ONCE(ctx, at, ray, hit);
+    if (RT_AGAIN(ctx, at)) RT_LEAF_ONCE(ctx, RT_SAME_PLACE(ctx, at), ray, hit);
+}
+
+#ifdef RT_LONE_LEAVES
+RT_INLINE void RT_LONE_LEAVES(const rt_ctx *ctx, uint first, uint count, const rt_lone_rays *lone, uint l, rt_lone_hits *lone_hit,
+                              const rt_rays *ray, rt_hits *hit)
+{
+    RT_LONE_LEAVES_ONCE(ctx, first, count, lone, l, lone_hit, ray, hit);
+    int again = 1;
+#if RT_LEAF_INSTANCES
+    for (uint i = 0; i < count; ++i) again &= RT_AGAIN(ctx, first + i);
+#endif
+    if (again) RT_LONE_LEAVES_ONCE(ctx, RT_SAME_PLACE(ctx, first), count, lone, l, lone_hit, ray, hit);
+}
+#endif
+#undef RT_AGAIN
+#undef RT_SAME_PLACE
