@@ -63,12 +63,13 @@ void context(std::ostream& out, const rt_accel& accel) {
 }
 
 // One inclusion of the plugin's template. The prototype makes it inline whatever the author wrote.
-void traversal(std::ostream& out, const std::string& name, const std::string& leaf, const std::string& file,
-               const std::string& text) {
+void traversal(std::ostream& out, const std::string& name, const std::string& leaf, bool triangles_only,
+               const std::string& file, const std::string& text) {
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
+        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n#define RT_TRIANGLES_ONLY " << triangles_only << "\n"
         << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
     part(out, file, text);
-    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n";
+    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n";
 }
 
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const std::string& file, const std::string& text) {
@@ -81,10 +82,11 @@ void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const
     if (features.planes) include(out, "primitives/plane.h");
     if (features.instances) {
         include(out, "leaf_mesh.h");
-        traversal(out, "rt_mesh", "rt_leaf_mesh", file, text);
+        traversal(out, "rt_mesh", "rt_leaf_mesh", true, file, text);
     }
     include(out, "leaf_scene.h");
-    traversal(out, "rt_scene", "rt_leaf_scene", file, text);
+    const bool triangles_only = !features.instances && !features.spheres && !features.polygons;
+    traversal(out, "rt_scene", "rt_leaf_scene", triangles_only, file, text);
     include(out, "query.h");
     out << "#undef RT_ANY_HIT\n#undef RT_FN\n";
 }
@@ -123,8 +125,8 @@ Layout make_layout(const Settings& settings, bool cpu) {
                                      " at most: take a smaller packet or fewer ray slots");
     layout.max_pixels = 1;
     while (layout.max_pixels < pixels) layout.max_pixels *= 2;
-    layout.cpu = cpu;
-    if (!cpu) return layout;  // a group is 64 neighbours, of which a warp has 8x4
+    layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // so that tests without a GPU see what GPUs run
+    if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
     // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
     layout.group_w = layout.group_h = 4;
     layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));
@@ -191,6 +193,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "rt_types.h");
     include(out, "lanes.h");
     include(out, "rays.h");
+    include(out, "loaded_leaf.h");
     if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
     context(out, *accel.accel);
     const std::string text = plugin_kernel_text(accel, traverse);

@@ -1,0 +1,90 @@
+// bvh4.cpp -- bounding volume hierarchy of four children a node, for one ray at a time on GPUs: the plugin's table, and its
+// entry.
+//
+// bvh8's builder, of another width: 128 bytes a node, 66 to 68 a triangle with the triangle itself. A GPU's thread has
+// registers for four boxes at once, fetched by seven loads; of a binary tree it would wait for twice as many fetches, one after
+// the other.
+#include <cstdio>
+
+#include "rt_plugin.hpp"
+#include "wide_levels.hpp"
+#include "wide_statistics.hpp"
+#include "wide_tree.hpp"
+
+namespace bvh8 {
+namespace {
+
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost };
+constexpr rt_param kParams[] = {
+    rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most; fewer where the heuristic finds that cheaper", 1,
+                  BVH8_LEAF_MAX, 4),
+    rt::int_param("bins", "Bins", "slices per axis in which split planes are sought; more: slower to build, slightly better", 2,
+                  bvh2::kMaxBins, 32),
+    rt::float_param("traversal_cost", "Traversal cost", "what a node costs a ray, in the unit of the intersection cost", 0.01,
+                    100, 3),
+    rt::float_param("intersection_cost", "Intersection cost", "what a primitive costs a ray, in the unit of the traversal cost",
+                    0.01, 100, 1),
+};
+
+// Positions in leaf order are 28 bits, as refs are.
+constexpr uint64_t kMaxPrimitives = RT_REF_INDEX_MAX;
+constexpr float kBinaryShare = 0.85f;  // of the time
+
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+    uint64_t count = 0;
+    for (uint32_t g = 0; g < input->group_count; ++g) count += input->groups[g].count;
+    char why[160];
+    if (count > kMaxPrimitives) {
+        std::snprintf(why, sizeof why, "holds %llu primitives at most, the scene has %llu: instance meshes, or leave some out",
+                      static_cast<unsigned long long>(kMaxPrimitives), static_cast<unsigned long long>(count));
+        throw rt::fail(host, why);
+    }
+    const Costs costs{static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
+                      static_cast<uint32_t>(input->params[kMaxLeaf])};
+    // Of the three splits behind a full node each costs its part: the binary tree then ends in about the leaves that the wide
+    // one will have, and less is built that is merged again.
+    const bvh2::Rules rules{costs.max_leaf, static_cast<uint32_t>(input->params[kBins]), costs.node / (BVH8_WIDTH - 1),
+                            costs.primitive};
+    try {
+        const BinaryTree binary = build_binary_tree(host, *input, out, rules, count, kBinaryShare);
+        const Collapse collapse(host, binary, costs);
+        rt::progress(host, (1 + kBinaryShare) / 2);
+        WideTree wide(host, collapse);
+        wide.write(out);
+        const Statistics statistics = measure(host, wide, costs, input->groups);
+        const double nodes = wide.node_count(), bytes = nodes * sizeof(bvh8_node);
+        rt::stat(out, "nodes", nodes);
+        rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
+        rt::stat(out, "depth", wide.depth());
+        rt::stat(out, "children", static_cast<double>(statistics.children) / nodes);
+        rt::stat(out, "sah_cost", statistics.sah_cost);
+        rt::stat(out, "node_bytes", bytes);
+        rt::stat(out, "bytes_per_primitive", count > 0 ? bytes / static_cast<double>(count) + sizeof(rt_leaf) : 0);
+        rt::stat(out, "build_bytes", static_cast<double>(binary_tree_bytes(count)));
+        // One to spare tells a full stack from an overflowing one; in steps of 16, since a new value recompiles the kernels.
+        rt::define(out, "BVH4_STACK", (wide.stack() + 1 + 15) / 16 * 16);
+        return RT_OK;
+    } catch (const std::bad_alloc&) {
+        std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
+                      static_cast<double>(binary_tree_bytes(count)) / (1 << 30), static_cast<unsigned long long>(count));
+        throw rt::fail(host, why);
+    }
+}
+
+constexpr rt_cl_file kFiles[] = {
+#include "bvh4.inc"
+};
+constexpr rt_slot kSlots[] = {rt::slot<bvh8_node>("bvh4_nodes", "bvh4_node")};
+constexpr rt_accel kAccel = {
+    sizeof(rt_accel),    1,      kSlots, rt::file(kFiles, "bvh4_types.h"), rt::file(kFiles, "bvh4.cl"), rt::guarded<build>,
+    rt::guarded<levels>, nullptr};
+static_assert(sizeof(bvh8_node) == 128, "rows are aligned vectors");
+static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
+
+}  // namespace
+}  // namespace bvh8
+
+const rt_plugin rt_plugin_v1 = rt::accel_plugin("bvh4", "4-wide BVH for GPUs (binned SAH, collapsed)", "1.0.0",
+                                                "Wald, Benthin, Boulos 2008, Getting Rid of Packets: Efficient SIMD "
+                                                "Single-Ray Traversal using Multi-branching BVHs",
+                                                bvh8::kParams, bvh8::kAccel);
