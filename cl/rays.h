@@ -15,6 +15,7 @@ typedef struct rt_rays {
     int same_axis;                 /* all active lanes have the same dominant axis: then */
     uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
     vmask is_y, is_z;              /* it differs by lane */
+    vfloat px, py, pz;             /* origin: pz along the dominant axis, px and py on the other two */
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
 } rt_rays;
 
@@ -37,11 +38,12 @@ typedef struct rt_hits {
 /* Counting programs; see CONTRACT.md. The plain ones are not slowed by it: what only feeds these macros is dead code there. */
 #ifdef RT_COUNT_STEPS
 #define RT_COUNT_VISIT(hit, inside) ((hit)->steps++, (hit)->lane_steps += popcount(inside))
-#define RT_COUNT_LEAF(hit) ((hit)->leaf_tests++)
+#define RT_COUNT_LEAVES(hit, n) ((hit)->leaf_tests += (n))
 #else
 #define RT_COUNT_VISIT(hit, inside) ((void)(inside))
-#define RT_COUNT_LEAF(hit) ((void)0)
+#define RT_COUNT_LEAVES(hit, n) ((void)(n))
 #endif
+#define RT_COUNT_LEAF(hit) RT_COUNT_LEAVES(hit, 1u)
 /* For traversals that do not know who is in a node: all who are still looking. */
 #define RT_COUNT_STEP(hit) RT_COUNT_VISIT(hit, rt_bits(RT_MASK((hit)->t >= rt_vfloat(0.0f))))
 
@@ -99,6 +101,9 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->ky = r->kz == 0u ? 2u : r->kz - 1u;
     r->is_y = is_y;
     r->is_z = is_z;
+    r->px = rt_select(is_z, r->ox, rt_select(is_y, r->oz, r->oy));
+    r->py = rt_select(is_z, r->oy, rt_select(is_y, r->ox, r->oz));
+    r->pz = rt_select(is_z, r->oz, rt_select(is_y, r->oy, r->ox));
     r->sx = shear_p;
     r->sy = shear_q;
     r->sz = along;

@@ -1,6 +1,7 @@
 /* plane.h -- unbounded planes on lanes. No tree can hold them: all are tested before traversal, which also shortens the rays. */
 RT_INLINE void RT_FN(rt_hit_planes)(const rt_ctx *ctx, uint count, const rt_rays *r, rt_hits *h)
 {
+#pragma OPENCL FP_CONTRACT OFF
     for (uint i = 0; i < count; ++i) {
         const global rt_plane *plane = ctx->planes + i;
         const vfloat nx = rt_vfloat(plane->normal[0]), ny = rt_vfloat(plane->normal[1]), nz = rt_vfloat(plane->normal[2]);

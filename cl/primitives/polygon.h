@@ -2,6 +2,7 @@
  * dominant axis of the normal, and edge crossings of a half line are counted (even-odd rule). */
 RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
+#pragma OPENCL FP_CONTRACT OFF
     const float nx = leaf->a[0], ny = leaf->a[1], nz = leaf->a[2];
     const vfloat zero = rt_vfloat(0.0f);
     const vfloat facing = fma(rt_vfloat(nx), r->dx, fma(rt_vfloat(ny), r->dy, rt_vfloat(nz) * r->dz));

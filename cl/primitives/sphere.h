@@ -3,6 +3,7 @@
  * Intersection, Ray Tracing Gems ch. 7). Seen from inside, the far side is the hit. */
 RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
+#pragma OPENCL FP_CONTRACT OFF
     const float radius = leaf->b[0];
     const vfloat fx = r->ox - rt_vfloat(leaf->a[0]), fy = r->oy - rt_vfloat(leaf->a[1]), fz = r->oz - rt_vfloat(leaf->a[2]);
     const vfloat a = fma(r->dx, r->dx, fma(r->dy, r->dy, r->dz * r->dz));

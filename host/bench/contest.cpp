@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <map>
+#include <optional>
 #include <thread>
 
 #include "base/error.hpp"
@@ -12,6 +14,7 @@
 #include "bench/bench.hpp"
 #include "bench/machine.hpp"
 #include "bench/row.hpp"
+#include "bench/versus.hpp"
 #include "render/ray_blocks.hpp"
 
 namespace clarity {
@@ -23,6 +26,9 @@ using Clock = std::chrono::steady_clock;
 constexpr uint64_t kTryEverything = 4000;
 // Rays whose answers may differ from those of the first row: silhouettes, seen by other arithmetic.
 constexpr double kMayDiffer = 1e-3;
+// And pixels of pictures, where five generations of mirrors enlarge every difference.
+constexpr double kPixelsMayDiffer = 1e-2;
+constexpr float kPixelMayDiffer = 0.02f;
 
 double ms_since(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -49,6 +55,7 @@ class Contest {
             derive(entry.row);
             rows.push_back(std::move(entry.row));
         }
+        compare_with_peers(rows);
         return rows;
     }
 
@@ -109,15 +116,17 @@ class Contest {
             describe(row, prepared);
             if (case_.measure == "frame")
                 add_frame(entry, settings, held);
+            else if (case_.measure == "whitted")
+                add_whitted(entry, settings, held);
             else if (case_.measure == "dropped")
-                entry.finish = [=](BenchRecord& r) { count_rays(r, settings, held); };
+                entry.finish = [=](BenchRecord& r) { count_rays(r, settings, held, stand_.view()); };
             else
                 add_rays(entry, held);
         });
     }
 
-    void count_rays(BenchRecord& row, const Settings& settings, const Stand::Held& held) {
-        const FrameStats stats = held.frames->trace(*held.prepared, settings, stand_.view(), 0, true, progress_);
+    void count_rays(BenchRecord& row, const Settings& settings, const Stand::Held& held, const View& view) {
+        const FrameStats stats = held.frames->trace(*held.prepared, settings, view, 0, true, progress_);
         row.rays_primary = stats.primary;
         row.rays_shadow = stats.shadow;
         row.rays_secondary = stats.secondary;
@@ -136,7 +145,22 @@ class Contest {
         };
         entry.finish = [=](BenchRecord& row) {
             for (const auto& [name, ms] : *kernels) row.kernels_ms.emplace_back(name, summarize(ms).median);
-            count_rays(row, settings, held);
+            count_rays(row, settings, held, stand_.view());
+        };
+    }
+
+    // The frame that peers render too: into the film, by both clocks.
+    void add_whitted(Entry& entry, const Settings& settings, const Stand::Held& held) {
+        const View view = whitted_view(*stand_.scene(), stand_.view());
+        whitted_ = whitted_scene(view, settings);
+        entry.once = [=] {
+            const auto begin = Clock::now();
+            const FrameStats stats = held.frames->trace(*held.prepared, settings, view, 0, false, progress_);
+            return Take{stats.device_ms, ms_since(begin)};
+        };
+        entry.finish = [=](BenchRecord& row) {
+            count_rays(row, settings, held, view);
+            compare(row, held.frames->read_values());
         };
     }
 
@@ -186,6 +210,21 @@ class Contest {
                   std::to_string(set.active) + " rays: one of the two is wrong, `ctest -R conformance` says which";
     }
 
+    void compare(BenchRecord& row, FloatImage picture) {
+        if (reference_picture_.pixels.empty()) {
+            reference_picture_ = std::move(picture);
+            return;
+        }
+        const double differ = differing_pixels(picture, reference_picture_, kPixelMayDiffer);
+        if (differ <= kPixelsMayDiffer) return;
+        char why[160];
+        std::snprintf(why, sizeof why,
+                      "%.2g %% of its pixels differ from the first row's by more than %g: one of the two is wrong",
+                      100 * differ, double(kPixelMayDiffer));
+        row.status = RowStatus::refused;
+        row.why = why;
+    }
+
     void add_build(Entry& entry, const rt_plugin& plugin, const Settings& settings) {
         const auto last = std::make_shared<BenchRecord>(entry.row);
         entry.once = [=, &plugin] {
@@ -210,6 +249,8 @@ class Contest {
             if (std::find(wanted.begin(), wanted.end(), kind.quality) == wanted.end()) continue;
             if (case_.measure == "build")
                 add_peer_build(kind);
+            else if (case_.measure == "whitted")
+                add_peer_frames(kind);
             else
                 add_peer_rays(kind);
         }
@@ -241,41 +282,78 @@ class Contest {
         };
     }
 
-    void add_peer_rays(const PeerKind& kind) {
-        const std::string prefix = kind.name + " ";
-        PeerScene* scene = nullptr;
-        const RaySet* const set = rays_;
-        std::vector<std::string> modes;
+    // The structure of a peer, or a row that says why there is none.
+    template <class Use>
+    void with_peer(const PeerKind& kind, const Use& use) {
         try {
-            if (!set) throw Error(Exit::failed, "no structure of ours could trace the rays");
-            scene = &stand_.peer(kind);
-            scene->take_rays(*set);
-            modes = scene->modes();
+            if (case_.measure == "whitted" ? !whitted_ : !rays_)
+                throw Error(Exit::failed, "no structure of ours could trace the rays");
+            use(stand_.peer(kind));
         } catch (const Cancelled&) {
             throw;
         } catch (const Error& e) {
-            BenchRecord& row = add_peer_entry(prefix + kind.quality).row;
+            BenchRecord& row = add_peer_entry(kind.name + " " + kind.quality).row;
             row.status = RowStatus::failed;
             row.why = e.what();
-            return;
         }
-        for (const std::string& mode : modes) {
-            Entry& entry = add_peer_entry(prefix + mode + " " + kind.quality);
-            const auto hits = std::make_shared<std::vector<PeerHit>>(set->rays.size());
-            entry.once = [=] {
-                Take take;
-                take.time_ms = scene->trace_ms(mode, *hits);
-                return take;
-            };
-            entry.finish = [=](BenchRecord& row) {
-                row.build_ms = scene->build_ms();
-                row.accel_bytes = scene->bytes();
-                std::vector<float> distances;
-                for (const PeerHit& hit : *hits) distances.push_back(hit.t);
-                compare(row, *set, distances);
-            };
-            count_active(entry.row, *set);
-        }
+    }
+
+    static void describe_peer(BenchRecord& row, const PeerScene& scene) {
+        row.build_ms = scene.build_ms();
+        row.accel_bytes = scene.bytes();
+    }
+
+    void add_peer_frames(const PeerKind& kind) {
+        with_peer(kind, [&](PeerScene& scene) {
+            for (const std::string& mode : scene.frame_modes()) {
+                Entry& entry = add_peer_entry(kind.name + " " + mode + " " + kind.quality);
+                const auto film = std::make_shared<std::vector<float>>();
+                const auto counts = std::make_shared<PeerRayCounts>();
+                entry.row.depth = int(whitted_->generations);
+                entry.row.width = int(whitted_->frame.width);
+                entry.row.height = int(whitted_->frame.height);
+                entry.once = [=, &scene, whitted = *whitted_] {
+                    Take take;
+                    take.time_ms = take.wall_ms = scene.frame_ms(mode, whitted, *film, *counts);
+                    return take;
+                };
+                entry.finish = [=, &scene](BenchRecord& row) {
+                    describe_peer(row, scene);
+                    row.rays_primary = counts->primary;
+                    row.rays_shadow = counts->shadow;
+                    row.rays_secondary = counts->secondary;
+                    FloatImage picture{unsigned(row.width), unsigned(row.height), 3, {}};
+                    for (size_t i = 0; i < film->size(); ++i)
+                        if (i % 4 < 3) picture.pixels.push_back((*film)[i]);
+                    compare(row, std::move(picture));
+                };
+            }
+        });
+    }
+
+    void add_peer_rays(const PeerKind& kind) {
+        with_peer(kind, [&](PeerScene& scene) {
+            scene.take_rays(*rays_);
+            for (const std::string& mode : scene.modes()) add_peer_mode(kind, scene, mode);
+        });
+    }
+
+    void add_peer_mode(const PeerKind& kind, PeerScene& scene, const std::string& mode) {
+        Entry& entry = add_peer_entry(kind.name + " " + mode + " " + kind.quality);
+        const RaySet* const set = rays_;
+        const auto hits = std::make_shared<std::vector<PeerHit>>(set->rays.size());
+        entry.once = [=, &scene] {
+            Take take;
+            take.time_ms = scene.trace_ms(mode, *hits);
+            return take;
+        };
+        entry.finish = [=, &scene](BenchRecord& row) {
+            describe_peer(row, scene);
+            std::vector<float> distances;
+            for (const PeerHit& hit : *hits) distances.push_back(hit.t);
+            compare(row, *set, distances);
+        };
+        count_active(entry.row, *set);
     }
 
     void measure() {
@@ -299,7 +377,7 @@ class Contest {
     static void derive(BenchRecord& row) {
         if (row.status != RowStatus::ok) return;
         const double ms = row.time_ms.median;
-        if (row.measure == "frame" && row.wall_ms.median > 0) row.fps = 1000 / row.wall_ms.median;
+        if (row.measure != "build" && row.wall_ms.median > 0) row.fps = 1000 / row.wall_ms.median;
         if (row.measure == "build") row.mtris_per_s = ms > 0 ? double(row.triangles) / ms / 1000 : 0;
         if (row.measure != "build" && ms > 0) row.mrays_per_s = double(row.rays()) / ms / 1000;
     }
@@ -314,6 +392,8 @@ class Contest {
     const RaySet* rays_ = nullptr;                                 // of this case
     std::map<unsigned, std::shared_ptr<const RayBlocks>> packed_;  // the same, by lanes
     std::vector<float> reference_;                                 // distances of the first row that was compared
+    std::optional<WhittedScene> whitted_;
+    FloatImage reference_picture_;  // likewise
 };
 
 }  // namespace

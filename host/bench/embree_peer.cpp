@@ -14,6 +14,7 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "bench/embree_frame.hpp"
 #include "plugin/host_services.hpp"
 
 namespace clarity {
@@ -132,7 +133,7 @@ void trace_block<1>(RTCScene scene, RTCIntersectContext& context, bool any_hit, 
 
 class EmbreeScene : public PeerScene {
  public:
-    EmbreeScene(const PeerMesh& mesh, const std::string& quality, unsigned threads) : threads_(threads) {
+    EmbreeScene(const PeerMesh& mesh, const std::string& quality, unsigned threads) : mesh_(mesh), threads_(threads) {
         device_ = rtcNewDevice(("threads=" + std::to_string(threads)).c_str());
         if (!device_) fail("gives no device", rtcGetDeviceError(nullptr));
         rtcSetDeviceMemoryMonitorFunction(device_, count_bytes, &bytes_);
@@ -204,6 +205,16 @@ class EmbreeScene : public PeerScene {
         return ms_since(begin);
     }
 
+    const std::vector<std::string>& frame_modes() const override {
+        static const std::vector<std::string> names = {"packet16", "packet16 mixed"};
+        return names;
+    }
+
+    double frame_ms(const std::string& mode, const WhittedScene& whitted, std::vector<float>& film,
+                    PeerRayCounts& counts) override {
+        return embree_frame(scene_, mesh_, whitted, mode == "packet16", threads_, film, counts);
+    }
+
  private:
     [[noreturn]] static void fail(const char* what, RTCError error) {
         throw Error(Exit::failed, std::string("Embree ") + what + ": error " + std::to_string(error) +
@@ -221,6 +232,7 @@ class EmbreeScene : public PeerScene {
         device_ = nullptr;
     }
 
+    const PeerMesh& mesh_;
     const unsigned threads_;
     RTCDevice device_ = nullptr;
     RTCScene scene_ = nullptr;

@@ -15,5 +15,7 @@ std::string bench_csv(const BenchReport& report);
 BenchReport read_bench_json(const std::string& text);
 // One table a suite and measure, at most 120 columns wide.
 std::string bench_table(const BenchReport& report);
+// Of these, ours by the best of the peers.
+std::string versus_table(const BenchReport& report);
 
 }  // namespace clarity

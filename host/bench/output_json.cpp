@@ -4,6 +4,7 @@
 
 #include "base/error.hpp"
 #include "bench/record_keys.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -122,6 +123,18 @@ Analysis read_analysis(const Json& json) {
     return a;
 }
 
+Json versus_json(const BenchRecord& r, const std::vector<VersusMean>& means) {
+    const VersusMean* mean = mean_of(means, r);
+    if (!mean) return nullptr;
+    return {{"peer", r.versus.peer},
+            {"ratio", number(r.versus.ratio)},
+            {"bytes_ratio", r.versus.bytes_ratio > 0 ? number(r.versus.bytes_ratio) : Json()},
+            {"geometric_mean", number(mean->mean)},
+            {"least", number(mean->least)},
+            {"least_scene", mean->least_scene},
+            {"rows", mean->rows}};
+}
+
 BenchRun read_run(const Json& json) {
     BenchRun run;
     get(json, "version", run.version);
@@ -187,6 +200,9 @@ BenchRecord read_record(const Json& json) {
     get_whole(json, "accel_bytes", r.accel_bytes);
     get_whole(json, "nodes", r.nodes);
     get(json, "sah_cost", r.sah_cost);
+    get(part(json, "versus"), "peer", r.versus.peer);
+    get(part(json, "versus"), "ratio", r.versus.ratio);
+    get(part(json, "versus"), "bytes_ratio", r.versus.bytes_ratio);
     r.analysis = read_analysis(part(json, "analysis"));
     const Json kernels = part(json, "kernels_ms");
     for (const auto& [name, ms] : kernels.items()) r.kernels_ms.emplace_back(name, ms.get<double>());
@@ -244,6 +260,7 @@ Json record_json(const BenchReport& report, const BenchRecord& r) {
     json["accel_bytes"] = figure(double(r.accel_bytes));
     json["nodes"] = figure(double(r.nodes));
     json["sah_cost"] = figure(r.sah_cost);
+    json["versus"] = shown ? versus_json(r, versus_means(report)) : Json();
     json["analysis"] = shown ? analysis_json(r.analysis) : Json();
     json["kernels_ms"] = nullptr;
     if (shown && !r.kernels_ms.empty()) json["kernels_ms"] = Json::object();

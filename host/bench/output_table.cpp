@@ -164,13 +164,14 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
             return r ? short_number(r->mrays_per_s) : std::string();
         };
         const BenchRecord* frame = find(group, "frame");
+        if (!frame) frame = find(group, "whitted");
         table.add({first.scene, who(first), only_build || !first.peer.empty() ? "" : device_cell(report, first),
                    std::to_string(first.triangles), build ? short_number(build->time_ms.median) : "",
                    build ? short_number(build->mtris_per_s) : "", build ? short_number(build->bytes_per_triangle) : "",
                    build ? short_number(build->sah_cost) : "", rays("primary"), rays("shadow"), rays("reflection"),
                    rays("diffuse"), frame ? short_number(frame->time_ms.median) : "", percent(spread)});
     }
-    return table.empty() ? std::string() : suite + ": Mrays/s by kind of ray, medians\n" + table.text(24) + "\n";
+    return table.empty() ? std::string() : suite + ": Mrays/s by kind of ray, medians\n" + table.text(28) + "\n";
 }
 
 std::string analysis_table(const BenchReport& report) {
@@ -264,8 +265,8 @@ std::string left_out(const BenchReport& report) {
 
 std::string bench_table(const BenchReport& report) {
     return steps_table(report, "thesis") + steps_table(report, "quick") + packets_table(report) + accel_table(report, "quick") +
-           accel_table(report, "accel") + accel_table(report, "scale") + analysis_table(report) + dropped_table(report) +
-           left_out(report);
+           accel_table(report, "accel") + accel_table(report, "scale") + accel_table(report, "cpu") + versus_table(report) +
+           analysis_table(report) + dropped_table(report) + left_out(report);
 }
 
 }  // namespace clarity

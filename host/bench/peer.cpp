@@ -18,6 +18,15 @@ PeerMesh make_peer_mesh(const Scene& scene) {
                 placed ? transform_point(instance.world_from_object, p) : std::array<float, 3>{p[0], p[1], p[2]};
             mesh.positions.insert(mesh.positions.end(), q.begin(), q.end());
         }
+        if (!scene.normals.empty()) {
+            // By the inverse transpose; only their proportions within a mesh matter.
+            Affine m = kIdentity;
+            if (placed) invert(instance.world_from_object, m);
+            for (size_t v = from.first_vertex; v < size_t(from.first_vertex) + from.vertex_count; ++v) {
+                const float* n = &scene.normals[3 * v];
+                for (int k = 0; k < 3; ++k) mesh.normals.push_back(m[k] * n[0] + m[4 + k] * n[1] + m[8 + k] * n[2]);
+            }
+        }
         for (size_t i = 0; i < 3 * size_t(from.triangle_count); ++i)
             mesh.triangles.push_back(scene.triangles[3 * size_t(from.first_triangle) + i] - from.first_vertex + first);
     }

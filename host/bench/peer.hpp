@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "bench/ray_sets.hpp"
+#include "bench/whitted.hpp"
 
 namespace clarity {
 
@@ -12,6 +13,7 @@ namespace clarity {
 struct PeerMesh {
     std::vector<float> positions;   // 3 per vertex, and one float of padding, which Embree reads
     std::vector<rt_u32> triangles;  // 3 per triangle, in the order of rt_hit.prim
+    std::vector<float> normals;     // 3 per vertex, (0, 0, 0) where there is none; empty: none at all
     rt_u32 vertex_count() const { return static_cast<rt_u32>(positions.size() / 3); }
     rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
 };
@@ -22,6 +24,10 @@ std::string peers_cannot(const Scene& scene);
 struct PeerHit {
     float t;  // +inf: nothing; any hit: 0 where occluded
     rt_i32 prim;
+};
+
+struct PeerRayCounts {
+    uint64_t primary = 0, shadow = 0, secondary = 0;
 };
 
 // One structure of a peer over one mesh.
@@ -37,6 +43,10 @@ class PeerScene {
     virtual void take_rays(const RaySet& rays) = 0;
     // Traces them; wall time. hits: one a ray or more; of inactive rays undefined.
     virtual double trace_ms(const std::string& mode, std::vector<PeerHit>& hits) = 0;
+    // Ways to render a whole frame; and one frame: wall time. film: r, g, b and the number of samples of each pixel.
+    virtual const std::vector<std::string>& frame_modes() const = 0;
+    virtual double frame_ms(const std::string& mode, const WhittedScene& whitted, std::vector<float>& film,
+                            PeerRayCounts& counts) = 0;
 };
 
 // A kind of structure that a peer builds.

@@ -31,12 +31,19 @@ struct Analysis {
     unsigned node_bytes = 0;
 };
 
+// Ours by the fastest row of a peer in the same case.
+struct Versus {
+    std::string peer;        // which; "": there was none
+    double ratio = 0;        // how many times as fast we are
+    double bytes_ratio = 0;  // of memory, above 1 is more
+};
+
 struct BenchRecord {
     // ---- what
-    std::string suite;      // thesis | packets | accel | scale | quick
+    std::string suite;      // thesis | packets | accel | scale | cpu | quick
     std::string case_name;  // "bunny/primary"; rows of one case were measured A B A B, so they may be compared
     std::string scene;      // "bunny"
-    std::string measure;    // frame | primary | shadow | reflection | diffuse | build | dropped
+    std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped
     std::string variant;    // tells the rows of a case apart on one device: "now", "then", "bvh2", "4x4, 16 lanes"
     std::string peer;       // "" for ours, else "embree packet16 high"
 
@@ -60,7 +67,7 @@ struct BenchRecord {
     // ---- figures; not refused ones
     Summary time_ms;  // by the device's clock: kernels. build: builder and packing
     Summary wall_ms;  // by the host's: a frame from the call to the pixels in host memory; else as the caller waited
-    double fps = 0;   // frame only: of the median wall time
+    double fps = 0;   // frames only: of the median wall time
     uint64_t rays_primary = 0, rays_shadow = 0, rays_secondary = 0, rays_dropped = 0;  // of one repetition; active ones
     uint64_t hits = 0;                                                                 // of ray rows
     double mrays_per_s = 0;                                                            // all rays by the median device time
@@ -72,6 +79,7 @@ struct BenchRecord {
     uint64_t accel_bytes = 0, nodes = 0;
     double sah_cost = 0;  // 0: the structure does not say
 
+    Versus versus;
     Analysis analysis;
     std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
 

@@ -128,6 +128,43 @@ std::vector<BenchScene> SceneCatalog::shared() const {
     return scenes;
 }
 
+std::vector<BenchView> SceneCatalog::views() const {
+    struct Row {
+        const char *name, *project, *shared;  // either a file of the project or one of the shared folder
+        const char *camera, *light;
+        uint64_t subdivide_to;
+    };
+    static const Row rows[] = {
+        {"fandisk", nullptr, "fandisk.obj", "1.3,1,1.9,0,-0.03,0,40", "2,3,2", 0},
+        {"legocar near", nullptr, "legocar.obj", "0.2,0.16,0.33,0,0.01,0.09,40", "0.4,0.6,0.5", 0},
+        {"mountain", nullptr, "mountain.obj", "-16,22,24,2,14,0,50", "-40,60,20", 0},
+        {"armadillo far", nullptr, "armadillo.obj", "-1.3,0.6,-4.3,0,-0.07,0,45", "-4,5,-4", 0},
+        {"lucy near", nullptr, "lucy_100k.ply", "1200,160,1000,750,-150,650,38", "2500,900,2500", 0},
+        {"lucy far", nullptr, "lucy_100k.ply", "2900,900,2900,690,-120,190,45", "2500,2900,2500", 0},
+        {"skull near", "thesis/models/skull", nullptr, "5,9.5,13,0.3,7.2,2,32", "12,22,18", 0},
+        {"spot far", "models/spot", nullptr, "1.4,0.9,-3.4,0,0.1,0,45", "3,5,-4", 1'000'000},
+    };
+    std::vector<BenchView> views;
+    for (const Row& row : rows) {
+        BenchView view;
+        if (row.project) {
+            view.scene = project(row.project);
+        } else {
+            view.scene.files = {shared_ + "/scenes/models/" + row.shared};
+            if (shared_.empty())
+                view.scene.missing = std::string(row.name) + ": CLARITY_SHARED is not set, so " + row.shared + " is left out";
+            else
+                view.scene.missing = existing(view.scene);
+        }
+        view.scene.name = row.name;
+        view.scene.camera = row.camera;
+        view.scene.light = row.light;
+        view.subdivide_to = row.subdivide_to;
+        views.push_back(view);
+    }
+    return views;
+}
+
 BenchScene scene_of_file(const std::string& path) {
     BenchScene scene;
     fs::path name = fs::path(path).filename();

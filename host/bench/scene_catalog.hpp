@@ -16,6 +16,12 @@ struct BenchScene {
     std::string missing;             // not empty: it was not found, and this says where it was looked for and what to do
 };
 
+// A scene seen from a chosen place.
+struct BenchView {
+    BenchScene scene;
+    uint64_t subdivide_to = 0;  // about so many triangles; 0: as it is
+};
+
 // Finds scenes of the project and larger shared ones.
 //   project  $CLARITY_SCENES, else ../share/clarity/scenes relative to the executable (a build folder has a link there)
 //   shared   $CLARITY_SHARED, with bench/cameras.json that names models and cameras
@@ -30,6 +36,9 @@ class SceneCatalog {
     std::vector<BenchScene> thesis() const;
     // Those of cameras.json; one entry that says so if there is none.
     std::vector<BenchScene> shared() const;
+    // Models of the project and the shared folder from close by, where a triangle covers many pixels, and from afar, where
+    // several share one; what is not found says so.
+    std::vector<BenchView> views() const;
 
  private:
     std::string project_, shared_;

@@ -30,15 +30,30 @@ class Planner {
         for (const std::string& name : request_.suites) add(name);
         if (request_.suites.empty() && !request_.files.empty()) accel("accel", chosen_or({}), true);
         if (request_.time_limit_s > 0) suite_.time_limit_s = request_.time_limit_s;
+        keep_only();
         return std::move(suite_);
     }
 
  private:
+    // Scenes stay where they are: cases name them by number, and none is loaded without a case.
+    void keep_only() {
+        if (request_.only.empty()) return;
+        const auto wanted = [&](const BenchCase& c) {
+            return std::any_of(request_.only.begin(), request_.only.end(),
+                               [&](const std::string& text) { return c.name.find(text) != std::string::npos; });
+        };
+        std::vector<BenchCase>& cases = suite_.cases;
+        cases.erase(std::remove_if(cases.begin(), cases.end(), [&](const BenchCase& c) { return !wanted(c); }), cases.end());
+        if (cases.empty())
+            throw Error(Exit::usage, "--only " + request_.only.front() + ": no case has it in its name; --list shows them");
+    }
+
     void add(const std::string& name) {
         if (name == "thesis") return thesis();
         if (name == "packets") return packets();
         if (name == "accel") return accel_suite();
         if (name == "scale") return scale();
+        if (name == "cpu") return cpu();
         if (name == "quick") return quick();
         std::string known;
         for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
@@ -183,6 +198,26 @@ class Planner {
         }
     }
 
+    // What a processor's vectors give, against the best that peers make of them.
+    void cpu() {
+        limit(request_.files.empty() ? 1800 : 150.0 * double(request_.files.size()));
+        std::vector<size_t> scenes = chosen_or(catalog_.shared());
+        if (request_.files.empty())
+            for (const BenchView& view : catalog_.views())
+                for (const size_t scene : chosen_or({view.scene}, view.subdivide_to)) scenes.push_back(scene);
+        for (const size_t scene : scenes)
+            for (const char* measure : {"build", "primary", "shadow", "diffuse", "whitted"}) {
+                BenchCase& c = add_case("cpu", scene, measure, measure);
+                c.variants = {{Settings().accel, Settings().accel, {}, false}};
+                if (!request_.accels.empty()) c.variants = every_accel();
+                if (c.measure == "whitted")
+                    for (Variant& variant : c.variants) variant.settings.emplace_back("depth", "5");
+                if (!request_.peers) continue;
+                c.peer_qualities = {"medium"};
+                if (c.measure != "build") c.peer_qualities.push_back("high");
+            }
+    }
+
     void quick() {
         limit(55);
         const auto frame_case = [&](size_t scene) {
@@ -220,7 +255,7 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "quick"};
+    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "cpu", "quick"};
     return names;
 }
 

@@ -11,10 +11,11 @@ namespace clarity {
 
 // What the command line asks for.
 struct BenchRequest {
-    std::vector<std::string> suites;                            // thesis | packets | accel | scale | quick
+    std::vector<std::string> suites;                            // thesis | packets | accel | scale | cpu | quick
     std::vector<std::string> files;                             // scenes instead of a suite's own; without a suite: accel
     std::vector<std::string> accels;                            // ID[,key=value...]; empty: every one found
     std::vector<std::pair<std::string, std::string>> settings;  // key, value: for all cases, where they do not set it
+    std::vector<std::string> only;                              // cases whose name has one of these in it; empty: all
     uint64_t max_triangles = 10'000'000;                        // of the suite scale
     double time_limit_s = 0;                                    // of everything; 0: what the suites want
     bool peers = true;
@@ -37,7 +38,7 @@ enum class Timing { timed, counted_only };
 
 struct BenchCase {
     std::string suite, name;
-    std::string measure;  // frame | primary | shadow | reflection | diffuse | build | dropped
+    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped
     size_t scene = 0;     // of Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> peer_qualities;  // of peers, where they can trace the scene

@@ -131,8 +131,8 @@ void add_render(CLI::App& app, RenderOptions& render) {
 void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option(
            "what", bench.what,
-           "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, quick (a minute); or "
-           "scene files, with a suite: instead of its own")
+           "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, cpu (side by side with the "
+           "best of each peer), quick (a minute); or scene files, with a suite: instead of its own")
         ->type_name("SUITE|SCENE");
     single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
         ->type_name("D[,D...]");
@@ -146,6 +146,9 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->type_name("DIR");
     app.add_option("--join", bench.join_files, "Add the records of an earlier run (its --json); may be repeated")
         ->type_name("FILE")
+        ->allow_extra_args(false);
+    app.add_option("--only", bench.only, "Only cases with this in their name, such as bunny/ or /shadow; may be repeated")
+        ->type_name("TEXT")
         ->allow_extra_args(false);
     app.add_flag("--list", bench.list, "Only list what would be measured");
     app.add_flag("--no-peers", bench.no_peers, "Leave other people's ray tracers out");

@@ -64,6 +64,7 @@ struct BenchCommand {
     std::vector<std::string> join_files;  // that --json wrote in earlier runs
     bool list = false, no_peers = false, quiet = false;
     double time_limit_s = 0, max_spread = 0.1;
+    std::vector<std::string> only;
     uint64_t max_triangles = 10'000'000;
     ImportOptions import;
     std::string text;  // of the command line

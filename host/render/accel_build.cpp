@@ -129,10 +129,10 @@ std::string contract_breach(const Output& out, const BuildScene& scene) {
 }
 
 void pack_leaves(const Output& out, AccelData& data) {
-    data.leaves = AlignedBytes(std::max<uint64_t>(data.leaf_count, 1) * sizeof(rt_leaf), false);
+    data.leaves = AlignedBytes((data.leaf_count + kLeafPadding) * sizeof(rt_leaf), false);
     const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
     rt_leaf* leaves = static_cast<rt_leaf*>(data.leaves.data());
-    if (data.leaf_count == 0) std::memset(leaves, 0, sizeof(rt_leaf));
+    std::memset(leaves + data.leaf_count, 0, kLeafPadding * sizeof(rt_leaf));
     constexpr uint64_t chunk = 1u << 15;
     parallel_for(static_cast<uint32_t>((data.leaf_count + chunk - 1) / chunk), [&](uint32_t c) {
         for (uint64_t i = c * chunk; i < std::min<uint64_t>(data.leaf_count, (c + 1) * chunk); ++i) {

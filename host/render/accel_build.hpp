@@ -51,6 +51,9 @@ struct BuildScene {
 };
 BuildScene make_build_scene(const Scene& scene, Progress& progress);
 
+// cl/primitives/triangle_row.h reads RT_ROW leaves from any on.
+constexpr uint64_t kLeafPadding = 3;
+
 // A finished structure, immutable.
 struct AccelData {
     const rt_plugin* plugin = nullptr;
@@ -60,7 +63,7 @@ struct AccelData {
         uint64_t count = 0;
     };
     std::vector<Slot> slots;
-    AlignedBytes leaves;  // rt_leaf, in leaf order
+    AlignedBytes leaves;  // rt_leaf, in leaf order, then kLeafPadding of zeros
     uint64_t leaf_count = 0;
     std::vector<rt_u32> roots;  // one a group
     std::map<std::string, rt_u32> defines;

@@ -75,7 +75,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
             for (int c = 0; c < 3; ++c) attributes_[i].v[c] = scene_->triangles[3 * size_t(build.attribute_triangle[i]) + c];
     }
     const auto add = [&](cl::Buffer buffer) { before_lights_.push_back(std::move(buffer)); };
-    add(upload(device, "leaves", accel_->leaves.data(), accel_->leaf_count * sizeof(rt_leaf), bytes_));
+    add(upload(device, "leaves", accel_->leaves.data(), (accel_->leaf_count + kLeafPadding) * sizeof(rt_leaf), bytes_));
     add(upload(device, "instances", accel_->instances, bytes_));
     add(upload(device, "polygons", build.polygon_table, bytes_));
     add(upload(device, "polygon corners", build.polygon_corners, bytes_));

@@ -62,31 +62,42 @@ void context(std::ostream& out, const rt_accel& accel) {
     out << "#define RT_CTX_PARAMS " << params << "\n#define RT_CTX_INIT(ctx) rt_ctx ctx;" << init << "\n";
 }
 
-// One inclusion of the plugin's template. The prototype makes it inline whatever the author wrote.
-void traversal(std::ostream& out, const std::string& name, const std::string& leaf, bool triangles_only,
-               const std::string& file, const std::string& text) {
+// One inclusion of the plugin's template, with the leaf tests that it may use. The prototype makes it inline whatever the
+// author wrote.
+struct Template {
+    const std::string &file, &text;
+    bool cpu;
+};
+void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
-        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n#define RT_TRIANGLES_ONLY " << triangles_only << "\n"
-        << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
-    part(out, file, text);
-    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n";
+        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n";
+    define_int(out, "RT_TRIANGLES_ONLY", !mixed);
+    if (plugin.cpu) {
+        out << "#define RT_LONE_LEAVES RT_FN(" << leaf << "_lone)\n";
+        define_int(out, "RT_LONE_MIXED", mixed);
+        include(out, "leaf_lone.h");
+    }
+    out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
+    part(out, plugin.file, plugin.text);
+    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n#undef RT_LONE_LEAVES\n#undef "
+           "RT_LONE_MIXED\n";
 }
 
-void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const std::string& file, const std::string& text) {
+void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const Template& plugin) {
     out << "#define RT_ANY_HIT " << any_hit << "\n#define RT_FN(name) RT_CAT(name, " << (any_hit ? "_any" : "_closest")
         << ")\n";
     include(out, "primitives/record.h");
     include(out, "primitives/triangle.h");
+    if (plugin.cpu) include(out, "primitives/triangle_lone.h");
     if (features.spheres) include(out, "primitives/sphere.h");
     if (features.polygons) include(out, "primitives/polygon.h");
     if (features.planes) include(out, "primitives/plane.h");
     if (features.instances) {
         include(out, "leaf_mesh.h");
-        traversal(out, "rt_mesh", "rt_leaf_mesh", true, file, text);
+        traversal(out, plugin, "rt_mesh", "rt_leaf_mesh", false);
     }
     include(out, "leaf_scene.h");
-    const bool triangles_only = !features.instances && !features.spheres && !features.polygons;
-    traversal(out, "rt_scene", "rt_leaf_scene", triangles_only, file, text);
+    traversal(out, plugin, "rt_scene", "rt_leaf_scene", features.spheres || features.polygons || features.instances);
     include(out, "query.h");
     out << "#undef RT_ANY_HIT\n#undef RT_FN\n";
 }
@@ -196,9 +207,12 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "loaded_leaf.h");
     if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
     context(out, *accel.accel);
-    const std::string text = plugin_kernel_text(accel, traverse);
-    query(out, false, features, folder + traverse.name, text);
-    if (kind != KernelKind::aov) query(out, true, features, folder + traverse.name, text);
+    if (layout.cpu)
+        for (const char* name : {"lone.h", "primitives/triangle_row.h"}) include(out, name);
+    const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
+    const Template plugin{file, text, layout.cpu};
+    query(out, false, features, plugin);
+    if (kind != KernelKind::aov) query(out, true, features, plugin);
     include(out, "vec.h");
     include(out, "surface.h");
     include(out, "camera.h");

@@ -158,6 +158,52 @@ TEST(Suites, TheThesisHasSixTestsOfFourStepsThenAndNow) {
     for (const auto& [scene, depths] : steps) EXPECT_EQ(depths, (std::set<int>{1, 2, 3, 4})) << scene;
 }
 
+TEST(Suites, TheCpuHasFramesOfPeersFromNearAndFar) {
+    const Suite suite = suite_of({"cpu"}, {}, {"bvh2", "bvh8"});
+    std::map<std::string, std::set<std::string>> measures;
+    for (const BenchCase& c : suite.cases) {
+        ASSERT_EQ(c.variants.size(), 2u);
+        EXPECT_FALSE(c.peer_qualities.empty()) << c.name;
+        measures[suite.scenes[c.scene].source.name].insert(c.measure);
+        if (c.measure != "whitted") continue;
+        EXPECT_EQ(variant_settings(Workbench::get().plugins(), {}, c.variants[1]).depth, 5);
+        EXPECT_EQ(variant_settings(Workbench::get().plugins(), {}, c.variants[1]).accel, "bvh8");
+    }
+    // Without the shared folder those of the project.
+    EXPECT_EQ(measures.count("skull near"), 1u);
+    EXPECT_EQ(measures.count("spot far_1M"), 1u);
+    for (const auto& [scene, found] : measures)
+        EXPECT_EQ(found, (std::set<std::string>{"build", "primary", "shadow", "diffuse", "whitted"})) << scene;
+    EXPECT_FALSE(suite.notes.empty());
+    EXPECT_EQ(suite_of({"cpu"}).cases[0].variants.at(0).accel, Settings().accel);
+}
+
+TEST_F(Catalog, ViewsAreOfWhatIsThere) {
+    fs::create_directories(folder_ / "scenes/models");
+    write("scenes/models/fandisk.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    size_t there = 0;
+    for (const BenchView& view : shared().views()) {
+        there += view.scene.missing.empty();
+        Scene nothing;
+        EXPECT_NO_THROW(make_view(nothing, 1, view.scene.camera, view.scene.light)) << view.scene.name;
+        if (view.scene.missing.empty()) continue;
+        EXPECT_NE(view.scene.missing.find("is not there"), std::string::npos);
+    }
+    EXPECT_EQ(there, 3u);
+    EXPECT_GE(shared().views().size(), 8u);
+}
+
+TEST(Suites, OnlySomeCases) {
+    BenchRequest request;
+    request.suites = {"quick"};
+    request.only = {"skull/sh", "/4 steps"};
+    const Suite suite = make_suite(request, project(), Workbench::get().plugins());
+    ASSERT_EQ(suite.cases.size(), 3u);
+    for (const BenchCase& c : suite.cases) EXPECT_TRUE(c.name == "skull/shadow" || c.measure == "frame") << c.name;
+    request.only = {"nothing of the kind"};
+    EXPECT_THROW(make_suite(request, project(), Workbench::get().plugins()), Error);
+}
+
 TEST(Suites, FilesReplaceASuitesScenesAndAccelsAreCompared) {
     const Suite suite = suite_of({"accel"}, {"a.obj", "b.scene"}, {"bvh2,max_leaf=2", "bvh2,max_leaf=7"});
     ASSERT_EQ(suite.scenes.size(), 2u);

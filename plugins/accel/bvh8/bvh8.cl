@@ -29,7 +29,11 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     for (;;) {
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
+#if RT_CPU
+            RT_LONE_LEAVES(ctx, first, count, ray, 0u, hit, ray, hit);
+#else
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
+#endif
 #if RT_ANY_HIT
             if (hit->t < 0.0f) return;
 #endif

@@ -1,0 +1,31 @@
+// versus.hpp -- ours by the best of the peers in the same case, and what comes out over all scenes.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "bench/record.hpp"
+
+namespace clarity {
+
+// What a row is fast by: triangles (build), frames or rays a second. 0: it was not measured.
+double speed(const BenchRecord& record);
+
+// Fills in `versus` of our rows of one case. A build is compared with the peers' builds of medium quality, which are as good as
+// ours, everything else with the fastest row of any peer.
+void compare_with_peers(std::vector<BenchRecord>& rows);
+
+// Of one structure on one device, over the scenes of a suite.
+struct VersusMean {
+    std::string suite, variant, device_id, measure;
+    size_t run = 0;
+    unsigned rows = 0;
+    double mean = 0;          // geometric
+    double least = 0;         // and
+    std::string least_scene;  // where
+};
+// In the order in which they first come.
+std::vector<VersusMean> versus_means(const BenchReport& report);
+// nullptr if the record has no peer.
+const VersusMean* mean_of(const std::vector<VersusMean>& means, const BenchRecord& record);
+
+}  // namespace clarity

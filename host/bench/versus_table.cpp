@@ -1,0 +1,87 @@
+// versus_table.cpp -- how many times the best peer we are: scenes down, measures across, and what comes out of them.
+#include <algorithm>
+#include <cstdio>
+
+#include "bench/output.hpp"
+#include "bench/text_table.hpp"
+#include "bench/versus.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr const char* kMeasures[] = {"primary", "shadow", "reflection", "diffuse", "whitted", "build"};
+
+std::string ratio_text(double ratio) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%.2f", ratio);
+    return ratio > 0 ? text : "";
+}
+
+// One line of the table: a structure on a device in one scene.
+struct Line {
+    const BenchRecord* first;
+    double ratio[std::size(kMeasures)] = {};
+    double bytes = 0;
+    std::vector<std::string> best;  // "primary packet16 high"
+};
+
+bool together(const BenchRecord& a, const BenchRecord& b) {
+    // Builders run on the host, whatever the device.
+    const bool device = a.device_id == b.device_id || a.measure == "build" || b.measure == "build";
+    return a.run == b.run && a.suite == b.suite && a.scene == b.scene && a.variant == b.variant && device;
+}
+
+void add_mean(TextTable& table, const std::vector<VersusMean>& means, const BenchRecord& of, const char* what,
+              double VersusMean::*value) {
+    std::vector<std::string> cells = {what, of.variant};
+    for (const char* measure : kMeasures) {
+        double found = 0;
+        for (const VersusMean& m : means)
+            if (m.run == of.run && m.suite == of.suite && m.variant == of.variant && m.measure == measure &&
+                (m.device_id == of.device_id || m.measure == "build"))
+                found = m.*value;
+        cells.push_back(ratio_text(found));
+    }
+    cells.emplace_back();  // of bytes there is no mean
+    table.add(cells);
+}
+
+}  // namespace
+
+std::string versus_table(const BenchReport& report) {
+    std::vector<Line> lines;
+    for (const BenchRecord& r : report.records) {
+        const auto* at =
+            std::find_if(std::begin(kMeasures), std::end(kMeasures), [&](const char* m) { return r.measure == m; });
+        if (r.versus.peer.empty() || r.status != RowStatus::ok || r.suite != "cpu" || at == std::end(kMeasures)) continue;
+        auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& l) { return together(*l.first, r); });
+        if (line == lines.end()) line = lines.insert(lines.end(), Line{&r, {}, 0, {}});
+        if (line->first->measure == "build") line->first = &r;  // so that the device is known
+        line->ratio[at - std::begin(kMeasures)] = r.versus.ratio;
+        if (r.measure == "build") line->bytes = r.versus.bytes_ratio;
+    }
+    if (lines.empty()) return {};
+    TextTable table({"scene", "structure", "primary", "shadow", "reflect", "diffuse", "whitted", "build", "bytes"}, 2);
+    std::vector<const BenchRecord*> structures;
+    for (const Line& line : lines) {
+        std::vector<std::string> cells = {line.first->scene, line.first->variant};
+        for (const double ratio : line.ratio) cells.push_back(ratio_text(ratio));
+        cells.push_back(ratio_text(line.bytes));
+        table.add(cells);
+        const auto same = [&](const BenchRecord* r) {
+            return r->run == line.first->run && r->variant == line.first->variant && r->device_id == line.first->device_id;
+        };
+        if (std::none_of(structures.begin(), structures.end(), same)) structures.push_back(line.first);
+    }
+    const std::vector<VersusMean> means = versus_means(report);
+    for (const BenchRecord* structure : structures) {
+        add_mean(table, means, *structure, "GEOMETRIC MEAN", &VersusMean::mean);
+        add_mean(table, means, *structure, "LEAST", &VersusMean::least);
+    }
+    return "cpu: how many times as fast as the fastest peer in the same case (build: as the medium one), medians; bytes: as "
+           "many "
+           "times\n" +
+           table.text(26) + "\n";
+}
+
+}  // namespace clarity

@@ -1,0 +1,114 @@
+// versus_test.cpp -- ours by the best peer: which row is compared with which, and the means over scenes.
+#include "bench/versus.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "bench/output.hpp"
+
+namespace {
+
+using namespace clarity;
+
+BenchRecord row(const std::string& scene, const std::string& measure, const std::string& variant, const std::string& peer,
+                double speed) {
+    BenchRecord r;
+    r.suite = "cpu";
+    r.case_name = scene + "/" + measure;
+    r.scene = scene;
+    r.measure = measure;
+    r.variant = peer.empty() ? variant : peer;
+    r.peer = peer;
+    r.device = "a processor";
+    r.device_id = peer.empty() && measure != "build" ? "0:0" : "host";
+    r.time_ms = r.wall_ms = {1, 1, 1, 1, 1, 9};
+    r.rays_primary = 1000;
+    (measure == "build" ? r.mtris_per_s : measure == "whitted" ? r.fps : r.mrays_per_s) = speed;
+    return r;
+}
+
+TEST(Versus, IsByTheFastestPeerThatWasMeasured) {
+    std::vector<BenchRecord> rows = {
+        row("a", "shadow", "bvh2", "", 30), row("a", "shadow", "bvh8", "", 10), row("a", "shadow", "", "embree single high", 5),
+        row("a", "shadow", "", "embree packet16 high", 20), row("a", "shadow", "", "embree packet8 high", 99)};
+    rows[4].status = RowStatus::refused;
+    compare_with_peers(rows);
+    EXPECT_EQ(rows[0].versus.peer, "embree packet16 high");
+    EXPECT_DOUBLE_EQ(rows[0].versus.ratio, 1.5);
+    EXPECT_DOUBLE_EQ(rows[1].versus.ratio, 0.5);
+    for (size_t i = 2; i < rows.size(); ++i) EXPECT_TRUE(rows[i].versus.peer.empty());
+}
+
+TEST(Versus, ABuildIsByTheMediumOneAndHasBytes) {
+    std::vector<BenchRecord> rows = {row("a", "build", "bvh2", "", 3), row("a", "build", "", "embree low", 20),
+                                     row("a", "build", "", "embree medium", 4)};
+    rows[0].accel_bytes = 50;
+    rows[2].accel_bytes = 100;
+    compare_with_peers(rows);
+    EXPECT_EQ(rows[0].versus.peer, "embree medium");
+    EXPECT_DOUBLE_EQ(rows[0].versus.ratio, 0.75);
+    EXPECT_DOUBLE_EQ(rows[0].versus.bytes_ratio, 0.5);
+}
+
+TEST(Versus, WithoutPeersThereIsNone) {
+    std::vector<BenchRecord> rows = {row("a", "shadow", "bvh2", "", 30)};
+    rows.push_back(row("a", "shadow", "", "embree single high", 5));
+    rows[1].status = RowStatus::failed;
+    compare_with_peers(rows);
+    EXPECT_TRUE(rows[0].versus.peer.empty());
+    BenchReport report;
+    report.records = rows;
+    EXPECT_TRUE(versus_means(report).empty());
+    EXPECT_EQ(versus_table(report), "");
+}
+
+BenchReport three_scenes() {
+    BenchReport report;
+    const double ours[] = {10, 40, 90}, theirs[] = {10, 20, 20};  // 1, 2, 4.5
+    const char* const names[] = {"one", "two", "three"};
+    for (int i = 0; i < 3; ++i) {
+        std::vector<BenchRecord> rows = {row(names[i], "primary", "bvh2", "", ours[i]),
+                                         row(names[i], "primary", "bvh8", "", 2 * ours[i]),
+                                         row(names[i], "primary", "", "embree packet16 high", theirs[i])};
+        compare_with_peers(rows);
+        report.records.insert(report.records.end(), rows.begin(), rows.end());
+    }
+    std::vector<BenchRecord> frames = {row("two", "whitted", "bvh2", "", 60),
+                                       row("two", "whitted", "", "embree packet16 medium", 80)};
+    compare_with_peers(frames);
+    report.records.insert(report.records.end(), frames.begin(), frames.end());
+    return report;
+}
+
+TEST(Versus, MeansAreGeometricAndByStructure) {
+    const auto means = versus_means(three_scenes());
+    ASSERT_EQ(means.size(), 3u);
+    EXPECT_EQ(means[0].variant, "bvh2");
+    EXPECT_EQ(means[0].rows, 3u);
+    EXPECT_NEAR(means[0].mean, std::cbrt(9.0), 1e-12);
+    EXPECT_DOUBLE_EQ(means[0].least, 1);
+    EXPECT_EQ(means[0].least_scene, "one");
+    EXPECT_NEAR(means[1].mean, 2 * std::cbrt(9.0), 1e-12);
+    EXPECT_EQ(means[2].measure, "whitted");
+    EXPECT_DOUBLE_EQ(means[2].mean, 0.75);
+}
+
+TEST(Versus, IsInTableAndRecordsAndComesBack) {
+    const BenchReport report = three_scenes();
+    const std::string table = versus_table(report);
+    for (const char* text : {"GEOMETRIC MEAN", "LEAST", "2.08", "4.16", "0.75", "three"})
+        EXPECT_NE(table.find(text), std::string::npos) << text << "\n" << table;
+    EXPECT_NE(bench_table(report).find(table), std::string::npos);
+    const auto json = nlohmann::json::parse(bench_json(report));
+    EXPECT_NEAR(json[0]["versus"]["geometric_mean"].get<double>(), 2.08008, 1e-5);
+    EXPECT_EQ(json[0]["versus"]["peer"], "embree packet16 high");
+    EXPECT_EQ(json[3]["versus"]["ratio"], 2);
+    EXPECT_EQ(json[3]["versus"]["least"], 1);
+    EXPECT_TRUE(json[2]["versus"].is_null());
+    EXPECT_EQ(versus_table(read_bench_json(bench_json(report))), table);
+    EXPECT_NE(bench_csv(report).find("versus.geometric_mean"), std::string::npos);
+}
+
+}  // namespace
