@@ -16,7 +16,7 @@
 typedef struct bvh8_node {
     rt_f32 plane[6][BVH8_WIDTH];
     rt_u32 child[BVH8_WIDTH];
-#if BVH8_WIDTH == 4
+#if BVH8_WIDTH == 4 /* bvh4 */
     rt_u32 pad[4];
 #endif
 } bvh8_node;
