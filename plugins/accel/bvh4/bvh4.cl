@@ -1,13 +1,16 @@
 /* bvh4.cl -- one ray against four boxes at once (RT_LANES 1), or a packet of rays against one box after the other.
  *
- * Made for GPUs. A turn of the loop is one item of each ray of a warp, a node or two triangles: whatever it is for whom, all of it
- * is fetched before anything is computed, so the warp waits once a turn, and no ray waits for another's leaf to end. The longest
- * ray of a warp, which decides over small pictures, takes as many turns as it has nodes and pairs of triangles.
- * 71 registers on an H200, a stack of 8 bytes an entry (any hit: 4) in local memory, 128 bytes a node. Measured there against
- * leaves as an inner loop: 1.08 times as fast on four scenes at 1024x768, 1.4 times where a ray meets hundreds of triangles, and
- * 2 % slower at 3840x2160. Of no use: loads by inline PTX, prefetching what is put off, a second leaf put off until all of a
- * warp have one (better at 3840x2160 only), leaves put off until several of a warp have one, constants of the ray pinned to
- * registers. */
+ * Made for GPUs. A turn of the loop is one item of each ray of a warp, a node or two triangles: whatever it is for whom, all of
+ * it is fetched before anything is computed, so the warp waits once a turn, and no ray waits for the end of another's leaf. The
+ * longest ray of a warp, which decides over small pictures, takes as many turns as it has nodes and pairs of triangles.
+ *
+ * 128 bytes a node; 71 registers on an H200, so 28 warps a multiprocessor; a stack of 8 bytes an entry (any hit: 4) in local
+ * memory. Measured there, geometric means over four scenes and three kinds of rays, at 1024x768 (at 3840x2160): 1.08 (0.98) of
+ * leaves in a loop of their own; 1.35 (1.0) of those for the longest rays of salle_de_bain; 1.10 of fetching triangles only when
+ * nodes are done. No gain: loads by inline PTX, prefetching what is put off, one triangle a turn (0.9), a node and two triangles
+ * a turn (0.88: nodes are visited that the triangles would have hidden), leaves that wait until several of a warp have one (0.94
+ * to 0.86), constants of the ray pinned to registers, nodes of eight (0.93). Leaves put off until all of a warp have one
+ * (Aila, Laine 2009) are better at 3840x2160 (1.04) and worse at 1024x768 (0.94). */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     uint top = 0, at = root;
@@ -27,29 +30,43 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
     const bvh4_ray own = bvh4_prepare(ray);
     while (at != BVH4_DONE) {
-        const bool is_leaf = (at & BVH4_LEAF) != 0u;
-        const uint first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
-#if RT_TRIANGLES_ONLY
+        const uint is_leaf = at >> 31, first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
         /* Rows a, b, c of a node's near planes or of the first triangle; d, e, f of its far planes or of the second. */
-        const global char *item =
-            is_leaf ? (const global char *)(ctx->leaves + first) : (const global char *)(ctx->bvh4_nodes + at);
-#define BVH4_ROW(of_leaf, of_node) (*(const global float4 *)(item + (is_leaf ? of_leaf : of_node)))
-        const float4 a = BVH4_ROW(0u, own.near_x), b = BVH4_ROW(16u, own.near_y), c = BVH4_ROW(32u, own.near_z);
-        float4 d = a, e = b, f = c;
-        uint4 child = (uint4)(0u);
-        if (!is_leaf || count > 1u) {
-            d = BVH4_ROW(48u, own.far_x);
-            e = BVH4_ROW(64u, own.far_y);
-            f = BVH4_ROW(80u, own.far_z);
-        }
-        if (!is_leaf) child = *(const global uint4 *)(item + 96);
+        float4 a, b, c, d, e, f;
+        uint4 child;
+        if (!is_leaf) {
+            const global char *node = (const global char *)(ctx->bvh4_nodes + at);
+#define BVH4_ROW(bytes) (*(const global float4 *)(node + (bytes)))
+            a = BVH4_ROW(own.near_x);
+            b = BVH4_ROW(own.near_y);
+            c = BVH4_ROW(own.near_z);
+            d = BVH4_ROW(own.far_x);
+            e = BVH4_ROW(own.far_y);
+            f = BVH4_ROW(own.far_z);
+            child = *(const global uint4 *)(node + 96);
 #undef BVH4_ROW
-#endif
-        if (is_leaf) {
+        }
 #if RT_TRIANGLES_ONLY
-            const rt_loaded_leaf one = {a, b, c}, two = {d, e, f};
+        else {
+            const global float4 *row = (const global float4 *)(ctx->leaves + first);
+            a = row[0];
+            b = row[1];
+            c = row[2];
+            if (count > 1u) {
+                d = row[3];
+                e = row[4];
+                f = row[5];
+            }
+        }
+#endif
+        if (bvh4_hidden(is_leaf)) {
+#if RT_TRIANGLES_ONLY
+            const rt_loaded_leaf one = {a, b, c};
             RT_LOADED_LEAF(ctx, &one, first, ray, hit);
-            if (count > 1u) RT_LOADED_LEAF(ctx, &two, first + 1u, ray, hit);
+            if (count > 1u) {
+                const rt_loaded_leaf two = {d, e, f};
+                RT_LOADED_LEAF(ctx, &two, first + 1u, ray, hit);
+            }
             const uint done = 2u;
 #else
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
@@ -65,14 +82,6 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
             continue;
         }
         RT_COUNT_VISIT(hit, 1u);
-#if !RT_TRIANGLES_ONLY
-        const global char *node = (const global char *)(ctx->bvh4_nodes + at);
-#define BVH4_ROW(bytes) (*(const global float4 *)(node + (bytes)))
-        const float4 a = BVH4_ROW(own.near_x), b = BVH4_ROW(own.near_y), c = BVH4_ROW(own.near_z), d = BVH4_ROW(own.far_x),
-                     e = BVH4_ROW(own.far_y), f = BVH4_ROW(own.far_z);
-        const uint4 child = *(const global uint4 *)(node + 96);
-#undef BVH4_ROW
-#endif
         const float4 entry = bvh4_enter(ray, &own, hit->t, a, b, c, d, e, f);
 #if RT_ANY_HIT
         /* Order is worth nothing here: the last child that is met goes first. */

@@ -73,6 +73,19 @@ RT_INLINE float4 bvh4_enter(const rt_rays *ray, const bvh4_ray *own, float t, fl
     return in <= out ? in : (float4)(INFINITY);
 }
 
+/* The same number, but the compiler does not know: or it would join what is fetched under a condition with what is computed under
+ * the same one, and the lanes of a warp that take the other way would wait for memory a second time. */
+#ifdef __NV_CL_C_VERSION
+RT_INLINE uint bvh4_hidden(uint x)
+{
+    uint same;
+    __asm volatile("mov.b32 %0, %1;" : "=r"(same) : "r"(x));
+    return same;
+}
+#else
+#define bvh4_hidden(x) (x)
+#endif
+
 /* Puts two children in the order of their distances. */
 RT_INLINE void bvh4_order(float *t0, uint *child0, float *t1, uint *child1)
 {
