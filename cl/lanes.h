@@ -90,9 +90,15 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #endif
 
-/* One instruction each; fmin and fmax have to look for NaN and take three. */
+/* One instruction each. On a CPU fmin and fmax have to look for NaN and take three; a GPU has them as one, but a comparison and
+ * a choice as two: an eighth of all rays' time. */
+#if RT_CPU
 #define rt_min(a, b) ((a) < (b) ? (a) : (b))
 #define rt_max(a, b) ((a) > (b) ? (a) : (b))
+#else
+#define rt_min(a, b) fmin(a, b)
+#define rt_max(a, b) fmax(a, b)
+#endif
 
 #define RT_INFINITY ((vfloat)(INFINITY))
 

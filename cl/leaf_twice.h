@@ -15,16 +15,22 @@ RT_INLINE void RT_LEAF(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *
     if (RT_AGAIN(ctx, at)) RT_LEAF_ONCE(ctx, RT_SAME_PLACE(ctx, at), ray, hit);
 }
 
-#ifdef RT_LONE_LEAVES
-RT_INLINE void RT_LONE_LEAVES(const rt_ctx *ctx, uint first, uint count, const rt_lone_rays *lone, uint l, rt_lone_hits *lone_hit,
-                              const rt_rays *ray, rt_hits *hit)
+#ifdef RT_LONE_TEST_ONCE
+RT_INLINE uint RT_LONE_CANDIDATES(const rt_ctx *ctx, uint first, uint count, const rt_lone_rays *lone, uint l)
 {
-    RT_LONE_LEAVES_ONCE(ctx, first, count, lone, l, lone_hit, ray, hit);
-    int again = 1;
+    return RT_LONE_CANDIDATES_ONCE(ctx, first, count, lone, l) &
+           RT_LONE_CANDIDATES_ONCE(ctx, RT_SAME_PLACE(ctx, first), count, lone, l);
+}
+
+RT_INLINE void RT_LONE_TEST(const rt_ctx *ctx, uint first, uint bits, const rt_lone_rays *lone, uint l, rt_lone_hits *lone_hit,
+                            const rt_rays *ray, rt_hits *hit)
+{
+    RT_LONE_TEST_ONCE(ctx, first, bits, lone, l, lone_hit, ray, hit);
 #if RT_LEAF_INSTANCES
-    for (uint i = 0; i < count; ++i) again &= RT_AGAIN(ctx, first + i);
+    for (uint i = 0; i < 8u; ++i)
+        if ((bits >> i & 1u) != 0u && !RT_AGAIN(ctx, first + i)) bits &= ~(1u << i);
 #endif
-    if (again) RT_LONE_LEAVES_ONCE(ctx, RT_SAME_PLACE(ctx, first), count, lone, l, lone_hit, ray, hit);
+    RT_LONE_TEST_ONCE(ctx, RT_SAME_PLACE(ctx, first), bits, lone, l, lone_hit, ray, hit);
 }
 #endif
 #undef RT_AGAIN

@@ -71,7 +71,9 @@ struct Template {
     bool instances;
 };
 void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
-    out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n";
+    out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
+        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n";
+    define_int(out, "RT_TRIANGLES_ONLY", !mixed);
     if (plugin.cpu) {
         out << "#define RT_LONE_CANDIDATES RT_FN(" << leaf << "_candidates)\n#define RT_LONE_TEST RT_FN(" << leaf << "_lone)\n";
         define_int(out, "RT_LONE_MIXED", mixed);
@@ -80,15 +82,20 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
     if (plugin.leaves_twice) {
         out << "#define RT_LEAF_ONCE RT_FN(" << leaf << ")\n#undef RT_LEAF\n#define RT_LEAF RT_FN(" << leaf << "_twice)\n";
         if (plugin.cpu)
-            out << "#define RT_LONE_LEAVES_ONCE RT_FN(" << leaf
-                << "_lone)\n#undef RT_LONE_LEAVES\n#define RT_LONE_LEAVES RT_FN(" << leaf << "_lone_twice)\n";
+            for (const char* step : {"CANDIDATES", "TEST"}) {
+                const std::string name = "RT_LONE_" + std::string(step),
+                                  once = leaf + (step == std::string("TEST") ? "_lone" : "_candidates");
+                out << "#define " << name << "_ONCE RT_FN(" << once << ")\n#undef " << name << "\n#define " << name << " RT_FN("
+                    << once << "_twice)\n";
+            }
         define_int(out, "RT_LEAF_INSTANCES", mixed && plugin.instances);
         include(out, "leaf_twice.h");
-        out << "#undef RT_LEAF_ONCE\n#undef RT_LONE_LEAVES_ONCE\n#undef RT_LEAF_INSTANCES\n";
+        out << "#undef RT_LEAF_ONCE\n#undef RT_LONE_CANDIDATES_ONCE\n#undef RT_LONE_TEST_ONCE\n#undef RT_LEAF_INSTANCES\n";
     }
     out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
     part(out, plugin.file, plugin.text);
-    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LONE_CANDIDATES\n#undef RT_LONE_TEST\n#undef RT_LONE_MIXED\n";
+    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n#undef RT_LONE_CANDIDATES\n"
+           "#undef RT_LONE_TEST\n#undef RT_LONE_MIXED\n";
 }
 
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const Template& plugin) {
@@ -144,8 +151,8 @@ Layout make_layout(const Settings& settings, bool cpu) {
                                      " at most: take a smaller packet or fewer ray slots");
     layout.max_pixels = 1;
     while (layout.max_pixels < pixels) layout.max_pixels *= 2;
-    layout.cpu = cpu;
-    if (!cpu) return layout;  // a group is 64 neighbours, of which a warp has 8x4
+    layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // so that tests without a GPU see what GPUs run
+    if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
     // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
     layout.group_w = layout.group_h = 4;
     layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));
@@ -217,6 +224,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "rt_types.h");
     include(out, "lanes.h");
     include(out, "rays.h");
+    include(out, "loaded_leaf.h");
     if (layout.cpu)
         for (const char* name : {"lone.h", "primitives/triangle_row.h"}) include(out, name);
     if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));

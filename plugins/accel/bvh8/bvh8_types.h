@@ -4,7 +4,9 @@
 #ifndef BVH8_TYPES_H
 #define BVH8_TYPES_H
 
+#ifndef BVH8_WIDTH
 #define BVH8_WIDTH 8
+#endif
 
 /* 224 B, a multiple of 32: a row is one aligned vector. plane[k] for k = 0..2 are the children's lower bounds in x, y, z, for
  * k = 3..5 the upper ones: exact, not padded, for the traversal accounts for its own rounding. The slot of a child says where
@@ -14,6 +16,9 @@
 typedef struct bvh8_node {
     rt_f32 plane[6][BVH8_WIDTH];
     rt_u32 child[BVH8_WIDTH];
+#if BVH8_WIDTH == 4 /* bvh4 */
+    rt_u32 pad[4];
+#endif
 } bvh8_node;
 
 /* A child is the index of a node, or, with bit 31 set, a leaf: bits 28..30 count its primitives (0..7), bits 0..27 are the
