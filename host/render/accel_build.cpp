@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
@@ -94,6 +95,23 @@ Output& output(void* ctx) {
     return *static_cast<Output*>(ctx);
 }
 
+constexpr uint64_t kLeafChunk = 1u << 15;  // leaves that one task looks at
+
+bool is_known(rt_u32 ref, const BuildScene& scene) {
+    const rt_u32 index = RT_REF_INDEX(ref);
+    switch (RT_REF_KIND(ref)) {
+        case RT_REF_TRIANGLE:
+            return index < scene.triangles.size();
+        case RT_REF_SPHERE:
+            return index < scene.spheres.size();
+        case RT_REF_POLYGON:
+            return index < scene.polygons.size();
+        case RT_REF_INSTANCE:
+            return index < scene.instances.size();
+    }
+    return false;
+}
+
 // Everything that a builder may get wrong, said in its terms.
 std::string contract_breach(const Output& out, const BuildScene& scene) {
     for (rt_u32 s = 0; s < out.accel.slot_count; ++s)
@@ -106,25 +124,17 @@ std::string contract_breach(const Output& out, const BuildScene& scene) {
                    out.accel.slots[0].name + " has " + std::to_string(out.data.slots[0].count) + " elements";
     }
     const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
-    for (uint64_t i = 0; i < out.data.leaf_count; ++i) {
-        const rt_u32 index = RT_REF_INDEX(refs[i]);
-        size_t known = 0;
-        switch (RT_REF_KIND(refs[i])) {
-            case RT_REF_TRIANGLE:
-                known = scene.triangles.size();
-                break;
-            case RT_REF_SPHERE:
-                known = scene.spheres.size();
-                break;
-            case RT_REF_POLYGON:
-                known = scene.polygons.size();
-                break;
-            case RT_REF_INSTANCE:
-                known = scene.instances.size();
-                break;
+    constexpr uint64_t none = ~uint64_t(0);
+    std::atomic<uint64_t> first_unknown{none};
+    parallel_for(static_cast<uint32_t>((out.data.leaf_count + kLeafChunk - 1) / kLeafChunk), [&](uint32_t c) {
+        uint64_t i = c * kLeafChunk;
+        const uint64_t end = std::min<uint64_t>(out.data.leaf_count, i + kLeafChunk);
+        while (i < end && is_known(refs[i], scene)) ++i;
+        uint64_t first = first_unknown;
+        while (i < end && i < first && !first_unknown.compare_exchange_weak(first, i)) {
         }
-        if (index >= known) return "put a ref at leaf " + std::to_string(i) + " that it was not given";
-    }
+    });
+    if (first_unknown != none) return "put a ref at leaf " + std::to_string(first_unknown) + " that it was not given";
     return {};
 }
 
@@ -133,9 +143,8 @@ void pack_leaves(const Output& out, AccelData& data) {
     const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
     rt_leaf* leaves = static_cast<rt_leaf*>(data.leaves.data());
     std::memset(leaves + data.leaf_count, 0, kLeafPadding * sizeof(rt_leaf));
-    constexpr uint64_t chunk = 1u << 15;
-    parallel_for(static_cast<uint32_t>((data.leaf_count + chunk - 1) / chunk), [&](uint32_t c) {
-        for (uint64_t i = c * chunk; i < std::min<uint64_t>(data.leaf_count, (c + 1) * chunk); ++i) {
+    parallel_for(static_cast<uint32_t>((data.leaf_count + kLeafChunk - 1) / kLeafChunk), [&](uint32_t c) {
+        for (uint64_t i = c * kLeafChunk; i < std::min<uint64_t>(data.leaf_count, (c + 1) * kLeafChunk); ++i) {
             const rt_u32 index = RT_REF_INDEX(refs[i]);
             switch (RT_REF_KIND(refs[i])) {
                 case RT_REF_TRIANGLE:
@@ -176,6 +185,10 @@ void FreeMemory::operator()(void* p) const {
         munmap(p, mapped);
     else
         std::free(p);
+}
+
+void AlignedBytes::free(void* data, size_t bytes) {
+    FreeMemory{bytes >= kMapped ? bytes : 0}(data);
 }
 
 double AccelData::stat(const std::string& label, double otherwise) const {

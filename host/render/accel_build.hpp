@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/progress.hpp"
@@ -28,23 +30,53 @@ class AlignedBytes {
     const void* data() const { return data_.get(); }
     size_t bytes() const { return bytes_; }
 
+    // For owners of another kind, which give back what they took with `free`.
+    void* release() { return data_.release(); }
+    static void free(void* data, size_t bytes);
+
  private:
     std::unique_ptr<void, FreeMemory> data_;
     size_t bytes_ = 0;
 };
 
+// For vectors that are filled before they are read, by many threads: their elements are not cleared first, on one.
+template <class T>
+struct Uncleared {
+    using value_type = T;
+    Uncleared() = default;
+    template <class U>
+    Uncleared(const Uncleared<U>&) {}
+    T* allocate(size_t n) {
+        AlignedBytes bytes(n * sizeof(T), false);
+        return static_cast<T*>(bytes.release());
+    }
+    void deallocate(T* p, size_t n) { AlignedBytes::free(p, n * sizeof(T)); }
+    template <class U>
+    void construct(U* p) {
+        ::new (static_cast<void*>(p)) U;
+    }
+    template <class U, class... Args>
+    void construct(U* p, Args&&... args) {
+        ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
+    }
+    bool operator==(const Uncleared&) const { return true; }
+    bool operator!=(const Uncleared&) const { return false; }
+};
+template <class T>
+using UnclearedVector = std::vector<T, Uncleared<T>>;
+
 // A scene as builders see it: boxes in groups, one group for the world and one for each mesh that is instanced. Meshes placed
 // once are flattened into the world.
 struct BuildScene {
-    std::vector<rt_prim> prims;
+    UnclearedVector<rt_prim> prims;
     std::vector<rt_group> groups;
-    std::vector<rt_leaf> triangles;      // by ref index, in the space of its group
+    UnclearedVector<rt_leaf> triangles;  // by ref index, in the space of its group
     std::vector<rt_instance> instances;  // roots unset
     std::vector<uint32_t> group_of_instance;
-    std::vector<Affine> world_from_object;     // per instance
-    std::vector<uint32_t> attribute_triangle;  // triangle ref -> triangle of the Scene
-    std::vector<uint32_t> flattened;           // instances of the Scene that stand in the world's group, moved
-    std::vector<rt_leaf> spheres, polygons;    // by ref index
+    std::vector<Affine> world_from_object;         // per instance
+    UnclearedVector<uint32_t> attribute_triangle;  // triangle ref -> triangle of the Scene
+    std::vector<uint32_t> flattened;               // instances of the Scene that stand in the world's group, moved
+    std::vector<rt_leaf> spheres, polygons;        // by ref index
     std::vector<rt_polygon> polygon_table;
     std::vector<float> polygon_corners;  // 2 per corner
     std::vector<rt_plane> planes;

@@ -17,8 +17,13 @@ bool is_nothing(rt_u32 child) {
 
 class Checker {
  public:
-    Checker(const Input& input, const Built& built, uint32_t max_leaf)
-        : input_(input), built_(built), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaf_seen_(built.leaves.size()) {
+    Checker(const Input& input, const Built& built, uint32_t max_leaf, bool larger_first)
+        : input_(input),
+          built_(built),
+          max_leaf_(max_leaf),
+          larger_first_(larger_first),
+          node_seen_(built.slot_counts[0]),
+          leaf_seen_(built.leaves.size()) {
         for (uint32_t i = 0; i < input.prims.size(); ++i) prim_of_ref_[input.prims[i].ref] = i;
     }
 
@@ -70,7 +75,7 @@ class Checker {
         b0.add(node.box0, node.box0 + 3);
         b1.add(node.box1, node.box1 + 3);
         // The builder compares in float, and a line has no area to speak of.
-        if (!is_nothing(node.child1) && b0.area() < 0.99 * b1.area() && b0.longest() < 0.99 * b1.longest())
+        if (larger_first_ && !is_nothing(node.child1) && b0.area() < 0.99 * b1.area() && b0.longest() < 0.99 * b1.longest())
             say() << "child 0 of node " << index << " is the smaller one";
         visit_child(index, node.box0, node.child0, depth, both);
         visit_child(index, node.box1, node.child1, depth, both);
@@ -124,6 +129,7 @@ class Checker {
     const Input& input_;
     const Built& built_;
     const uint32_t max_leaf_;
+    const bool larger_first_;
     uint32_t group_ = 0, depth_ = 0;
     double leaf_count_ = 0;
     std::vector<bool> node_seen_, leaf_seen_;
@@ -133,9 +139,9 @@ class Checker {
 
 }  // namespace
 
-std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf) {
+std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf, bool larger_first) {
     if (built.status != RT_OK) return "the build failed: " + built.why;
-    return Checker(input, built, max_leaf).run();
+    return Checker(input, built, max_leaf, larger_first).run();
 }
 
 double sah_cost(const Input& input, const Built& built, double traversal_cost, double intersection_cost) {

@@ -12,7 +12,7 @@ namespace accel_test {
 // no more than max_leaf; nodes stand in depth-first order, the larger child first, and
 // belong to one tree; the reported depth, counts and stack are
 // those of the trees. Empty: all is well.
-std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf = 4);
+std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf = 4, bool larger_first = true);
 
 // The cost that the builder reports, by its definition: see statistics.hpp of bvh2.
 double sah_cost(const Input& input, const Built& built, double traversal_cost = 1, double intersection_cost = 1);

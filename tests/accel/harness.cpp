@@ -111,7 +111,7 @@ Built build(const rt_plugin& plugin, const Input& input, const Options& options)
     built.roots.assign(input.groups.size(), RT_NONE);
     HostContext host_context{options.threads, &options.progress, {}, {}};
     const rt_host host{sizeof(rt_host), &host_context, fail, [](void*, int32_t, const char*) {}, progress, parallel_for};
-    const rt_geometry geometry{sizeof(rt_geometry), nullptr, 0};
+    const rt_geometry geometry{sizeof(rt_geometry), input.triangles.data(), input.triangles.size()};
     const rt_build_input in{
         sizeof(rt_build_input), static_cast<rt_u32>(input.groups.size()), input.prims.data(), input.groups.data(), &geometry,
         params.data()};

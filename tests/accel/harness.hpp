@@ -20,6 +20,7 @@ const rt_plugin& load(const std::string& id, const std::string& file = {});
 struct Input {
     std::vector<rt_prim> prims;
     std::vector<rt_group> groups;
+    std::vector<rt_leaf> triangles;  // by ref index, for builders that cut them; may be empty
     void add_group(const std::vector<rt_prim>& more);
 };
 

@@ -3,17 +3,30 @@
 #include <numeric>
 
 #include "rt_plugin.hpp"
-#include "statistics.hpp"
 
 namespace bvh2 {
+namespace {
+
+// 0.5 MiB of records stay in a core's own cache; small scenes are cut finer, so that all cores have some.
+uint32_t task_size_for(uint64_t primitive_count) {
+    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 8, 1024, 16384));
+}
+
+float unit_scale(const Bounds& box) {
+    double longest = 0;
+    for (int a = 0; a < 3; ++a) longest = std::max(longest, double{box.hi(a)} - box.lo[a]);
+    return longest > 2.0 / FLT_MAX ? static_cast<float>(2 / longest) : FLT_MAX;
+}
+
+}  // namespace
 
 // Part of a range that one thread takes.
 struct Builder::Chunk {
     uint32_t owner;  // range of the level, or group
     uint32_t begin, end;
     uint32_t left = 0, right = 0;  // where its primitives go
-    Box box, centroids2;           // of its primitives
-    Box left_centroids2, right_centroids2;
+    Bounds box, centroids2;        // of its primitives
+    Bounds left_centroids2, right_centroids2;
 };
 
 // What becomes of a range.
@@ -25,44 +38,89 @@ struct Builder::Cut {
     Range left, right;
 };
 
-Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count)
+uint64_t Builder::room(const Rules& rules, uint64_t primitive_count) {
+    if (rules.method != Method::spatial) return primitive_count;
+    const double all = static_cast<double>(primitive_count) * (1 + static_cast<double>(rules.duplicates));
+    return std::max(primitive_count, std::min(static_cast<uint64_t>(all), kMaxPrimitives));
+}
+
+uint64_t Builder::bytes(const Rules& rules, uint64_t primitive_count) {
+    const size_t more = rules.method == Method::morton    ? 2 * sizeof(MortonKey)
+                        : rules.method == Method::spatial ? sizeof(rt_u32)
+                                                          : 0;
+    return room(rules, primitive_count) * (2 * sizeof(Record) + sizeof(bvh2_node) + more);
+}
+
+Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count, float share)
     : host_(host),
       input_(input),
       primitive_count_(primitive_count),
+      room_(room(rules, primitive_count)),
       work_total_(2 * primitive_count + 1),
-      records_{Scratch<Record>(primitive_count), Scratch<Record>(primitive_count)},
-      nodes_(primitive_count),
-      workspace_{rules, {records_[0].data(), records_[1].data()}, nodes_.data(), nullptr},
-      roots_(input.group_count),
-      boxes_(input.group_count) {}
-
-template <class Body>
-void Builder::parallel_for(size_t count, Body&& body) const {
-    rt::parallel_for(host_, static_cast<rt_u32>(count), std::forward<Body>(body));
+      share_(share),
+      task_size_(task_size_for(primitive_count)),
+      kernels_(kernels()),
+      records_{Scratch<Record>(room_), Scratch<Record>(room_)},
+      nodes_(room_),
+      workspace_{rules, {records_[0].data(), records_[1].data()}, nodes_.data(), nullptr} {
+    tree_.nodes = nodes_.data();
+    tree_.roots.resize(input.group_count);
 }
 
 // Throws where the user cancelled.
 void Builder::report(uint64_t work) {
-    const uint64_t done = work_done_ += work;
-    rt::progress(host_,
-                 static_cast<float>(static_cast<double>(std::min(done, work_total_)) / static_cast<double>(work_total_)));
+    const uint64_t done = std::min(work_done_ += work, work_total_);
+    rt::progress(host_, share_ * static_cast<float>(static_cast<double>(done) / static_cast<double>(work_total_)));
 }
 
-void Builder::run(const rt_build_output* out) {
-    workspace_.leaves = rt::leaves(out, primitive_count_);
-    split_top(load());
-    run_tasks();
-    write_nodes(out);
+BinaryTree Builder::run(const rt_build_output* out, const std::function<void(const Task&)>& after) {
+    const bool spatial = workspace_.rules.method == Method::spatial;
+    if (!spatial) workspace_.leaves = rt::leaves(out, primitive_count_);
+    tree_.leaf_count = primitive_count_;
+    const std::vector<Pending> groups = load();
+    if (spatial) {
+        split_space(groups, out);
+        parallel_for(tree_.tasks.size(), [&](uint32_t t) { after(tree_.tasks[t]); });
+    } else if (workspace_.rules.method == Method::morton) {
+        sort(groups);
+        cut_sorted(groups);
+        run_tasks([&](uint32_t t) {
+            Task& task = tree_.tasks[t];
+            task.tree = build_sorted(workspace_, keys_->data(), task.range);
+            put(task_place_[t], task.tree.root);
+            after(task);
+        });
+        bound_tops();
+    } else {
+        split_top(groups);
+        run_tasks([&](uint32_t t) {
+            Task& task = tree_.tasks[t];
+            task.tree = kernels_.build_subtree(workspace_, task.range, task.first_node, task.range.begin);
+            put(task_place_[t], task.tree.root);
+            after(task);
+        });
+    }
+    for (const Task& task : tree_.tasks) tree_.depth = std::max(tree_.depth, task.tree.depth);
+    return std::move(tree_);
 }
 
 // Copies the primitives, one group after the other, and bounds each group.
 std::vector<Builder::Pending> Builder::load() {
     std::vector<Pending> groups;
     std::vector<Chunk> chunks;
-    uint32_t at = 0;
+    groups.reserve(input_.group_count);
+    uint64_t before = 0;
     for (uint32_t g = 0; g < input_.group_count; ++g) {
-        Pending pending{{}, RT_NONE, g};
-        pending.range.begin = at;
+        Pending pending{{}, RT_NONE, g, g, 0, 0};
+        // Each group has its share of the room.
+        const auto place = [&](uint64_t primitives) {
+            return static_cast<uint32_t>(primitives +
+                                         (room_ - primitive_count_) * primitives / std::max<uint64_t>(primitive_count_, 1));
+        };
+        pending.room_begin = place(before);
+        pending.room_end = place(before + input_.groups[g].count);
+        before += input_.groups[g].count;
+        uint32_t at = pending.range.begin = pending.room_begin;
         pending.range.end = at + input_.groups[g].count;
         for (; at < pending.range.end; at = chunks.back().end)
             chunks.push_back({g, at, std::min(at + kChunkSize, pending.range.end), 0, 0, {}, {}, {}, {}});
@@ -72,46 +130,49 @@ std::vector<Builder::Pending> Builder::load() {
         Chunk& chunk = chunks[i];
         const rt_prim* prim = input_.prims + input_.groups[chunk.owner].first + (chunk.begin - groups[chunk.owner].range.begin);
         const Vec4 least = splat(-FLT_MAX), most = splat(FLT_MAX);
-        for (uint32_t at_record = chunk.begin; at_record < chunk.end; ++at_record, ++prim) {
+        Record* const records = records_[0].data();
+        for (uint32_t r = chunk.begin; r < chunk.end; ++r, ++prim) {
             // A bound that is no number becomes the farthest one (MINPS and MAXPS give their second operand), and bounds in the
             // wrong order are put right: whatever comes in, the box is sound and nothing is lost.
-            Record& record = records_[0].data()[at_record];
-            const float p_lo[4] = {prim->lo[0], prim->lo[1], prim->lo[2], 0.0f},
-                        p_hi[4] = {prim->hi[0], prim->hi[1], prim->hi[2], 0.0f};
-            const Vec4 lo = min(max(load_any(p_lo), least), most), hi = max(min(load_any(p_hi), most), least);
-            store(record.lo, min(lo, hi));
-            store(record.hi, max(lo, hi));
-            record.set_ref(prim->ref);
-            chunk.box.add(record.box());
-            chunk.centroids2.add(record.centroid2());
+            const Vec4 lo = min(max(xyz(load_any(prim->lo)), least), most), hi = max(min(xyz(load_any(prim->hi)), most), least);
+            store(records[r].lo, min(lo, hi));
+            store(records[r].neg_hi, splat(0.0f) - max(lo, hi));
+            records[r].set_ref(prim->ref);
         }
+        bound(records + chunk.begin, records + chunk.end, chunk.box, chunk.centroids2);
     });
     for (const Chunk& chunk : chunks) {
         groups[chunk.owner].range.box.add(chunk.box);
         groups[chunk.owner].range.centroids2.add(chunk.centroids2);
     }
-    for (uint32_t g = 0; g < input_.group_count; ++g) boxes_[g] = groups[g].range.box;
+    for (uint32_t g = 0; g < input_.group_count; ++g) {
+        tree_.roots[g].box = groups[g].range.box;
+        scales_.push_back(unit_scale(tree_.roots[g].box));
+    }
     report(primitive_count_ / 2);
     return groups;
 }
 
-void Builder::put(const Pending& pending, TopChild child) {
+void Builder::put(const Pending& pending, rt_u32 code) {
     if (pending.parent == RT_NONE)
-        roots_[pending.which] = child;
+        tree_.roots[pending.which].code = code;
     else
-        top_[pending.parent].child[pending.which] = child;
+        (pending.which == 0 ? nodes_.data()[pending.parent].child0 : nodes_.data()[pending.parent].child1) = code;
+}
+
+void Builder::add_task(const Pending& pending) {
+    tree_.tasks.push_back({pending.range, pending.room_begin, scales_[pending.group], {}});
+    task_place_.push_back({{}, pending.parent, pending.which, pending.group, pending.room_begin, pending.room_end});
 }
 
 void Builder::split_top(std::vector<Pending> level) {
     while (!level.empty()) {
         std::vector<Pending> large;
         for (const Pending& pending : level) {
-            if (pending.range.count() > kTaskSize) {
+            if (pending.range.count() > task_size_)
                 large.push_back(pending);
-                continue;
-            }
-            put(pending, {true, static_cast<uint32_t>(tasks_.size())});
-            tasks_.push_back(pending.range);
+            else if (pending.range.count() > 0)
+                add_task(pending);
         }
         level = split_level(large);
         report(0);
@@ -124,7 +185,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
     for (uint32_t i = 0; i < level.size(); ++i) {
         const Range& range = level[i].range;
         cuts[i].first_chunk = static_cast<uint32_t>(chunks.size());
-        cuts[i].binned = may_use_heuristic(workspace_.rules, range);
+        cuts[i].binned = may_bin(workspace_.rules, range);
         cuts[i].bin_count = bins_for(workspace_.rules, range.count());
         for (uint32_t at = range.begin; at < range.end; at = chunks.back().end)
             chunks.push_back({i, at, std::min(at + kChunkSize, range.end), 0, 0, {}, {}, {}, {}});
@@ -138,8 +199,9 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
         if (!cut.binned) return;
         const Range& range = level[chunks[c].owner].range;
         const Record* records = workspace_.records[range.buffer];
-        chunk_bins.data()[c].clear(cut.bin_count);
-        chunk_bins.data()[c].add(records + chunks[c].begin, records + chunks[c].end, Slices(range.centroids2, cut.bin_count));
+        kernels_.clear(chunk_bins.data()[c], cut.bin_count);
+        kernels_.bin(records + chunks[c].begin, records + chunks[c].end, Slices(range.centroids2, cut.bin_count),
+                     chunk_bins.data()[c]);
     });
 
     // Choose each range's plane, and from the chunks' counts the places where each one's primitives will go.
@@ -150,9 +212,9 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
         const Bins* const bins = chunk_bins.data() + cut.first_chunk;
         if (cut.binned) {
             Bins sum;
-            sum.clear(cut.bin_count);
-            for (uint32_t c = 0; c < cut.chunk_count; ++c) sum.add(bins[c], cut.bin_count);
-            cut.split = find_split(sum, cut.bin_count, AreaScale(range.box), range.count());
+            kernels_.clear(sum, cut.bin_count);
+            for (uint32_t c = 0; c < cut.chunk_count; ++c) kernels_.merge(bins[c], cut.bin_count, sum);
+            kernels_.find_split(sum, cut.bin_count, AreaScale(range.box), range.count(), cut.split);
             cut.binned = cut.split.cost < INFINITY;
         }
         if (!cut.binned) {
@@ -179,8 +241,8 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
         const Range& range = level[chunk.owner].range;
         const Record* const from = workspace_.records[range.buffer];
         Record* const to = workspace_.records[range.buffer ^ 1];
-        scatter(from + chunk.begin, from + chunk.end, Slices(range.centroids2, cut.bin_count), cut.split, to + chunk.left,
-                to + chunk.right, chunk.left_centroids2, chunk.right_centroids2);
+        kernels_.scatter(from + chunk.begin, from + chunk.end, Slices(range.centroids2, cut.bin_count), cut.split,
+                         to + chunk.left, to + chunk.right, chunk.left_centroids2, chunk.right_centroids2);
     });
 
     std::vector<Pending> next;
@@ -190,88 +252,29 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
             cut.left.centroids2.add(chunks[c].left_centroids2);
             cut.right.centroids2.add(chunks[c].right_centroids2);
         }
-        if (right_is_larger(cut.left, cut.right)) std::swap(cut.left, cut.right);
-        const uint32_t node = static_cast<uint32_t>(top_.size());
-        put(level[i], {false, node});
-        top_.push_back({{cut.left.box, cut.right.box}, {}, 0});
-        next.push_back({cut.left, node, 0});
-        next.push_back({cut.right, node, 1});
+        const rt_u32 node = cut.left.end - 1;  // see Workspace::nodes
+        if (right_is_larger(AreaScale(level[i].range.box), cut.left, cut.right)) std::swap(cut.left, cut.right);
+        put(level[i], node);
+        tree_.tops.push_back({node, scales_[level[i].group]});
+        set_child(nodes_.data()[node], 0, cut.left.box, 0);
+        set_child(nodes_.data()[node], 1, cut.right.box, 0);
+        next.push_back({cut.left, node, 0, level[i].group, cut.left.begin, cut.left.end});
+        next.push_back({cut.right, node, 1, level[i].group, cut.right.begin, cut.right.end});
     }
     return next;
 }
 
-void Builder::run_tasks() {
-    subtrees_.resize(tasks_.size());
+void Builder::run_tasks(const std::function<void(uint32_t)>& run_task) {
+    const std::vector<Task>& tasks = tree_.tasks;
     // The largest first, so that no thread is left alone with one at the end.
-    std::vector<uint32_t> order(tasks_.size());
+    std::vector<uint32_t> order(tasks.size());
     std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return tasks_[a].count() > tasks_[b].count(); });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](uint32_t a, uint32_t b) { return tasks[a].range.count() > tasks[b].range.count(); });
     parallel_for(order.size(), [&](uint32_t i) {
-        const Range& range = tasks_[order[i]];
-        if (range.count() > 0) subtrees_[order[i]] = build_subtree(workspace_, range);
-        report(range.count());
+        run_task(order[i]);
+        report(tasks[order[i]].range.count());
     });
-}
-
-// Gives the nodes of a subtree of the top their places, in depth-first order from `next` on; returns the next free one.
-rt_u32 Builder::place(TopChild child, rt_u32 next) {
-    if (child.is_task) {
-        task_place_[child.index] = next;
-        return next + subtrees_[child.index].nodes;
-    }
-    TopNode& node = top_[child.index];
-    node.place = next++;
-    next = place(node.child[0], next);
-    return place(node.child[1], next);
-}
-
-void Builder::write_nodes(const rt_build_output* out) {
-    task_place_.resize(tasks_.size());
-    std::vector<rt_u32> roots(roots_.size());
-    rt_u32 count = 0;
-    for (size_t g = 0; g < roots_.size(); ++g) {
-        roots[g] = count;
-        const bool has_node = !roots_[g].is_task || subtrees_[roots_[g].index].nodes > 0;
-        count = has_node ? place(roots_[g], count) : count + 1;
-    }
-    bvh2_node* const nodes = rt::alloc<bvh2_node>(out, 0, count);
-
-    parallel_for(tasks_.size(), [&](uint32_t t) {
-        const bvh2_node* from = workspace_.nodes + tasks_[t].begin;
-        for (uint32_t i = 0; i < subtrees_[t].nodes; ++i) {
-            bvh2_node node = from[i];
-            if (!(node.child0 & BVH2_LEAF)) node.child0 += task_place_[t];
-            if (!(node.child1 & BVH2_LEAF)) node.child1 += task_place_[t];
-            nodes[task_place_[t] + i] = node;
-        }
-    });
-    const auto code = [&](TopChild child) {
-        if (!child.is_task) return top_[child.index].place;
-        const Subtree& subtree = subtrees_[child.index];
-        return subtree.nodes > 0 ? task_place_[child.index] : subtree.root;
-    };
-    for (const TopNode& node : top_)
-        for (int which = 0; which < 2; ++which) set_child(nodes[node.place], which, node.box[which], code(node.child[which]));
-    const Box nowhere{splat(FLT_MAX), splat(FLT_MAX)};
-    for (uint32_t g = 0; g < roots.size(); ++g) {
-        if (roots_[g].is_task && subtrees_[roots_[g].index].nodes == 0) {
-            const bool empty = input_.groups[g].count == 0;
-            set_child(nodes[roots[g]], 0, empty ? nowhere : boxes_[g], empty ? BVH2_MAKE_LEAF(0u, 0u) : code(roots_[g]));
-            set_child(nodes[roots[g]], 1, nowhere, BVH2_MAKE_LEAF(0u, 0u));
-        }
-        rt::root(out, g, roots[g]);
-    }
-    uint32_t depth = 1;
-    for (const Subtree& subtree : subtrees_) depth = std::max(depth, subtree.depth);
-    const Statistics statistics = measure(host_, workspace_.rules, nodes, count, roots, input_.groups);
-    rt::stat(out, "nodes", count);
-    rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
-    rt::stat(out, "depth", depth);
-    rt::stat(out, "sah_cost", statistics.sah_cost);
-    rt::stat(out, "build_bytes", static_cast<double>(primitive_count_ * kBytesPerPrimitive));
-    // One place a level, and one to spare that tells a full stack from an overflowing one; in steps of 8, since a new value
-    // recompiles the kernels.
-    rt::define(out, "BVH2_STACK", (depth + 1 + 7) / 8 * 8);
 }
 
 }  // namespace bvh2

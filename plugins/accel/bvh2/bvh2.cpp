@@ -5,15 +5,17 @@
 // small primitives overlap (there, spatial splits would help).
 #include <cstdio>
 
-#include "builder.hpp"
 #include "levels.hpp"
 #include "rt_plugin.hpp"
+#include "statistics.hpp"
+#include "write_nodes.hpp"
 
 namespace bvh2 {
 namespace {
 
-enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kSplit };
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kSplit, kBuilder, kDuplicates };
 constexpr const char* kSplits[] = {"sah", "median", nullptr};
+constexpr const char* kBuilders[] = {"sah", "morton", "spatial", nullptr};
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most; fewer where the heuristic finds that cheaper", 1,
                   BVH2_LEAF_MAX, 4),
@@ -25,6 +27,12 @@ constexpr rt_param kParams[] = {
                     0.01, 100, 1),
     rt::enum_param("split", "Split", "where nodes are parted: by the surface area heuristic, or into even halves by count",
                    kSplits, 0),
+    rt::enum_param("builder", "Builder",
+                   "sah: binned surface area heuristic; morton: along a space-filling curve, several times faster to build and "
+                   "slower to trace; spatial: heuristic that cuts triangles too, slow to build, for large ones among small",
+                   kBuilders, 0),
+    rt::float_param("duplicates", "Duplicates", "what builder=spatial may add to the primitives, as a share of their number", 0,
+                    4, 0.3),
 };
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
@@ -36,16 +44,31 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
                       static_cast<unsigned long long>(Builder::kMaxPrimitives), static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
-    const Rules rules{static_cast<uint32_t>(input->params[kMaxLeaf]), static_cast<uint32_t>(input->params[kBins]),
-                      static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
+    const Rules rules{static_cast<uint32_t>(input->params[kMaxLeaf]),
+                      static_cast<uint32_t>(input->params[kBins]),
+                      static_cast<float>(input->params[kTraversalCost]),
+                      static_cast<float>(input->params[kIntersectionCost]),
+                      static_cast<Method>(input->params[kBuilder]),
+                      static_cast<float>(input->params[kDuplicates]),
                       input->params[kSplit] == 1};
     try {
-        Builder(host, *input, rules, count).run(out);
+        Builder builder(host, *input, rules, count, 1.0f);
+        const BinaryTree tree = builder.run(out, [](const Task&) {});
+        const Written written = write_nodes(host, tree, out);
+        const Statistics statistics = measure(host, rules, written.nodes, written.count, written.roots, input->groups);
+        rt::stat(out, "nodes", written.count);
+        rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
+        rt::stat(out, "depth", tree.depth);
+        rt::stat(out, "references", static_cast<double>(tree.leaf_count));
+        rt::stat(out, "sah_cost", statistics.sah_cost);
+        rt::stat(out, "build_bytes", static_cast<double>(Builder::bytes(rules, count)));
+        // One place a level, and one to spare that tells a full stack from an overflowing one; in steps of 8, since a new value
+        // recompiles the kernels.
+        rt::define(out, "BVH2_STACK", (tree.depth + 1 + 7) / 8 * 8);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
-                      static_cast<double>(count * Builder::kBytesPerPrimitive) / (1 << 30),
-                      static_cast<unsigned long long>(count));
+                      static_cast<double>(Builder::bytes(rules, count)) / (1 << 30), static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
 }

@@ -4,7 +4,8 @@
 #define BVH2_TYPES_H
 
 /* 64 B, one cache line. A box is lo.xyz, hi.xyz: the exact float bounds of the primitives below, not padded: the traversal
- * accounts for its own rounding. Child 0 has the larger surface; if it is a node, it is the next element (depth-first order). */
+ * accounts for its own rounding. Child 0, if it is a node, is the next element (depth-first order); it has the larger surface where
+ * the builder went by surfaces. */
 typedef struct bvh2_node {
     rt_f32 box0[6];
     rt_u32 child0;

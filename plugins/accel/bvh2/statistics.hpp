@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "partition.hpp"
+#include "range.hpp"
 #include "rt_plugin.h"
 // after rt_types.h, whose types it uses:
 #include "bvh2_types.h"

@@ -75,6 +75,21 @@ inline void to_index(Vec4 a, uint32_t index[3]) {
     index[1] = static_cast<uint32_t>(_mm_extract_epi16(i, 2));
     index[2] = static_cast<uint32_t>(_mm_extract_epi16(i, 4));
 }
+// Tags tell equal numbers apart: the lowest bits of every lane become those of `tag` (+ 0, 1, 2, 3 in tag_lanes).
+constexpr uint32_t kTags = 64;
+inline Vec4 tag_all(Vec4 a, uint32_t tag) {
+    const __m128i bits = _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(-static_cast<int>(kTags)));
+    return {_mm_castsi128_ps(_mm_or_si128(bits, _mm_set1_epi32(static_cast<int>(tag))))};
+}
+inline Vec4 tag_lanes(Vec4 a, uint32_t tag) {
+    const __m128i bits = _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(-static_cast<int>(kTags)));
+    const __m128i tags = _mm_add_epi32(_mm_set1_epi32(static_cast<int>(tag)), _mm_setr_epi32(0, 1, 2, 3));
+    return {_mm_castsi128_ps(_mm_or_si128(bits, tags))};
+}
+inline void store_tags(uint32_t* p, Vec4 a) {
+    _mm_store_si128(reinterpret_cast<__m128i*>(p),
+                    _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(static_cast<int>(kTags) - 1)));
+}
 // From rows a, b, c: x = (a.x b.x c.x ?) and so on.
 inline void transpose3(Vec4 a, Vec4 b, Vec4 c, Vec4& x, Vec4& y, Vec4& z) {
     const __m128 low = _mm_unpacklo_ps(a.m, b.m), high = _mm_unpackhi_ps(a.m, b.m);
@@ -162,6 +177,24 @@ inline Vec4 xyz(Vec4 a) {
 inline void to_index(Vec4 a, uint32_t index[3]) {
     for (int i = 0; i < 3; ++i) index[i] = static_cast<uint32_t>(a.v[i]);
 }
+constexpr uint32_t kTags = 64;
+inline float tagged(float a, uint32_t tag) {
+    uint32_t bits;
+    std::memcpy(&bits, &a, sizeof bits);
+    bits = (bits & ~(kTags - 1)) | tag;
+    std::memcpy(&a, &bits, sizeof bits);
+    return a;
+}
+inline Vec4 tag_all(Vec4 a, uint32_t tag) {
+    return each_lane([&](int i) { return tagged(a.v[i], tag); });
+}
+inline Vec4 tag_lanes(Vec4 a, uint32_t tag) {
+    return each_lane([&](int i) { return tagged(a.v[i], tag + static_cast<uint32_t>(i)); });
+}
+inline void store_tags(uint32_t* p, Vec4 a) {
+    std::memcpy(p, a.v, sizeof a.v);
+    for (int i = 0; i < 4; ++i) p[i] &= kTags - 1;
+}
 inline void transpose3(Vec4 a, Vec4 b, Vec4 c, Vec4& x, Vec4& y, Vec4& z) {
     x = {{a.v[0], b.v[0], c.v[0], 0.0f}};
     y = {{a.v[1], b.v[1], c.v[1], 0.0f}};
@@ -184,18 +217,5 @@ inline Vec4 to_float(Count4 a) {
 }
 
 #endif
-
-// An axis-aligned box; the fourth lanes hold nothing.
-struct Box {
-    Vec4 lo = splat(FLT_MAX), hi = splat(-FLT_MAX);
-    void add(Vec4 p) {
-        lo = min(lo, p);
-        hi = max(hi, p);
-    }
-    void add(const Box& b) {
-        lo = min(lo, b.lo);
-        hi = max(hi, b.hi);
-    }
-};
 
 }  // namespace bvh2

@@ -5,6 +5,7 @@
 #include <cmath>
 
 namespace bvh8 {
+namespace {
 
 // Bit 0 of a slot: the child lies on the high side in x, bit 1: in y. Of all children and slots left over, the pair goes
 // together whose child lies farthest towards its side.
@@ -32,15 +33,18 @@ void assign_slots(const Slot children[], uint32_t count, uint32_t slot_of[]) {
     }
 }
 
-void clear_node(bvh8_node& node) {
+}  // namespace
+
+void write_node(bvh8_node& node, const Slot children[], const rt_u32 code[], uint32_t count) {
+    uint32_t slot_of[BVH8_WIDTH];
+    assign_slots(children, count, slot_of);
     for (int k = 0; k < 6; ++k) std::fill_n(node.plane[k], BVH8_WIDTH, k < 3 ? INFINITY : -INFINITY);
     std::fill_n(node.child, BVH8_WIDTH, BVH8_NOTHING);
     std::fill_n(node.pad, 4, 0u);
-}
-
-void set_slot(bvh8_node& node, uint32_t slot, const float box[6], rt_u32 child) {
-    for (int k = 0; k < 6; ++k) node.plane[k][slot] = box[k];
-    node.child[slot] = child;
+    for (uint32_t i = 0; i < count; ++i) {
+        for (int k = 0; k < 6; ++k) node.plane[k][slot_of[i]] = children[i].box[k];
+        node.child[slot_of[i]] = code[i];
+    }
 }
 
 }  // namespace bvh8

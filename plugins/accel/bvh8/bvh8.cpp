@@ -6,7 +6,6 @@
 
 #include "rt_plugin.hpp"
 #include "wide_levels.hpp"
-#include "wide_statistics.hpp"
 #include "wide_tree.hpp"
 
 namespace bvh8 {
@@ -25,7 +24,8 @@ constexpr const char *kId = "bvh8", *kName = "8-wide BVH (binned SAH, collapsed)
 constexpr rt_cl_file kTypes = rt::file(kFiles, "bvh8_types.h"), kTraversal = rt::file(kFiles, "bvh8.cl");
 #endif
 
-enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost };
+enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder, kDuplicates };
+constexpr const char* kBuilders[] = {"sah", "morton", "spatial", nullptr};
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most; fewer where the heuristic finds that cheaper", 1,
                   BVH8_LEAF_MAX, 4),
@@ -35,10 +35,15 @@ constexpr rt_param kParams[] = {
                     100, 3),
     rt::float_param("intersection_cost", "Intersection cost", "what a primitive costs a ray, in the unit of the traversal cost",
                     0.01, 100, 1),
+    rt::enum_param("builder", "Builder",
+                   "sah: binned surface area heuristic; morton: along a space-filling curve, several times faster to build and "
+                   "slower to trace; spatial: heuristic that cuts triangles too, slow to build, for large ones among small",
+                   kBuilders, 0),
+    rt::float_param("duplicates", "Duplicates", "what builder=spatial may add to the primitives, as a share of their number", 0,
+                    4, 0.3),
 };
 
-// Positions in leaf order are 28 bits, as refs are.
-constexpr uint64_t kMaxPrimitives = RT_REF_INDEX_MAX;
+constexpr uint64_t kMaxPrimitives = bvh2::Builder::kMaxPrimitives;
 constexpr float kBinaryShare = 0.85f;  // of the time
 
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
@@ -54,30 +59,37 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
                       static_cast<uint32_t>(input->params[kMaxLeaf])};
     // Of the splits behind a full node each costs its part: the binary tree then ends in about the leaves that the wide
     // one will have, and less is built that is merged again.
-    const bvh2::Rules rules{costs.max_leaf, static_cast<uint32_t>(input->params[kBins]), costs.node / (BVH8_WIDTH - 1),
-                            costs.primitive};
+    const bvh2::Rules rules{
+        costs.max_leaf,  static_cast<uint32_t>(input->params[kBins]),        costs.node / (BVH8_WIDTH - 1),
+        costs.primitive, static_cast<bvh2::Method>(input->params[kBuilder]), static_cast<float>(input->params[kDuplicates])};
     try {
-        const BinaryTree binary = build_binary_tree(host, *input, out, rules, count, kBinaryShare);
-        const Collapse collapse(host, binary, costs);
+        bvh2::Builder builder(host, *input, rules, count, kBinaryShare);
+        const Collapse collapse(builder, costs);
+        const bvh2::BinaryTree binary = builder.run(out, [&](const bvh2::Task& task) { collapse.decide_task(task); });
+        collapse.decide_tops(binary);
         rt::progress(host, (1 + kBinaryShare) / 2);
-        WideTree wide(host, collapse);
+        WideTree wide(host, collapse, binary, costs);
         wide.write(out);
-        const Statistics statistics = measure(host, wide, costs, input->groups);
+        const Statistics statistics = wide.statistics(input->groups);
         const double nodes = wide.node_count(), bytes = nodes * sizeof(bvh8_node);
         rt::stat(out, "nodes", nodes);
         rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
         rt::stat(out, "depth", wide.depth());
+        rt::stat(out, "references", static_cast<double>(binary.leaf_count));
         rt::stat(out, "children", static_cast<double>(statistics.children) / nodes);
         rt::stat(out, "sah_cost", statistics.sah_cost);
         rt::stat(out, "node_bytes", bytes);
-        rt::stat(out, "bytes_per_primitive", count > 0 ? bytes / static_cast<double>(count) + sizeof(rt_leaf) : 0);
-        rt::stat(out, "build_bytes", static_cast<double>(binary_tree_bytes(count)));
+        rt::stat(
+            out, "bytes_per_primitive",
+            count > 0 ? (bytes + static_cast<double>(binary.leaf_count * sizeof(rt_leaf))) / static_cast<double>(count) : 0);
+        rt::stat(out, "build_bytes", static_cast<double>(bvh2::Builder::bytes(rules, count)));
         // One to spare tells a full stack from an overflowing one; in steps of 16, since a new value recompiles the kernels.
         rt::define(out, kStack, (wide.stack() + 1 + 15) / 16 * 16);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
-                      static_cast<double>(binary_tree_bytes(count)) / (1 << 30), static_cast<unsigned long long>(count));
+                      static_cast<double>(bvh2::Builder::bytes(rules, count)) / (1 << 30),
+                      static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
 }

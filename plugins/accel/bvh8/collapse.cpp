@@ -1,165 +1,126 @@
 #include "collapse.hpp"
 
 #include <algorithm>
-
-#include "rt_plugin.hpp"
+#include <cmath>
 
 namespace bvh8 {
 namespace {
 
-constexpr rt_u32 kTaskNodes = 4096;
+static_assert(sizeof(RootCosts) == sizeof(bvh2::Record), "costs take the places of records");
 
 bool is_leaf(rt_u32 code) {
     return (code & BVH2_LEAF) != 0;
 }
-bool is_nothing(rt_u32 code) {
-    return code == BVH2_MAKE_LEAF(0u, 0u);
-}
-Child left_of(const bvh2_node& node) {
-    return {node.box0, node.child0};
-}
-Child right_of(const bvh2_node& node) {
-    return {node.box1, node.child1};
-}
 
 // Added to each side, so that lines and points do not cost nothing: too little to matter to what has an area.
-constexpr double kLeast = 1e-12;
+constexpr float kLeast = 1e-12f;
 
-// Half the area of the smallest box around both. In double, where no float overflows.
-double half_area(const bvh2_node& node, double scale) {
-    double e[3];
+// Halves first: no length overflows.
+float side(float lo, float hi, float scale) {
+    return kLeast + scale * (0.5f * hi - 0.5f * lo);
+}
+// Of the box around both.
+float half_area(const bvh2_node& node, float scale) {
+    float e[3];
     for (int a = 0; a < 3; ++a)
-        e[a] = kLeast + scale * (double{std::max(node.box0[3 + a], node.box1[3 + a])} - std::min(node.box0[a], node.box1[a]));
+        e[a] = side(std::min(node.box0[a], node.box1[a]), std::max(node.box0[3 + a], node.box1[3 + a]), scale);
     return e[0] * e[1] + e[2] * (e[0] + e[1]);
 }
-double half_area(const float box[6], double scale) {
-    double e[3];
-    for (int a = 0; a < 3; ++a) e[a] = kLeast + scale * (double{box[3 + a]} - box[a]);
+float half_area(const float box[6], float scale) {
+    float e[3];
+    for (int a = 0; a < 3; ++a) e[a] = side(box[a], box[3 + a], scale);
     return e[0] * e[1] + e[2] * (e[0] + e[1]);
 }
 
 }  // namespace
 
-Collapse::Collapse(const rt_host* host, const BinaryTree& tree, const Costs& costs)
-    : tree_(tree), costs_(costs), choices_(tree.node_count) {
-    for (size_t g = 0; g < tree.roots.size(); ++g) cut(g);
-    // Small groups by the thousand: several to a task's turn would gain nothing, parallel_for hands out indices cheaply.
-    rt::parallel_for(host, static_cast<rt_u32>(tasks_.size()), [&](rt_u32 t) {
-        for (rt_u32 i = tasks_[t].end; i-- > tasks_[t].begin;) decide(i, scales_[t]);  // children stand behind their parents
-    });
-    for (size_t i = top_.size(); i-- > 0;) decide(top_[i].node, top_[i].scale);
+void Collapse::decide_task(const bvh2::Task& task) const {
+    for (rt_u32 i = task.first_node + task.tree.nodes; i-- > task.first_node;) decide(i, task.scale, 0);
 }
 
-// A subtree stands in one piece, the left child's part before the right one's, so where each ends need not be counted.
-void Collapse::cut(size_t group) {
-    const bvh2_node& root = tree_.nodes.data()[tree_.roots[group]];
-    double longest = 0;
-    for (int a = 0; a < 3; ++a) {
-        double extent = double{root.box0[3 + a]} - root.box0[a];
-        if (!is_nothing(root.child1))
-            extent = double{std::max(root.box0[3 + a], root.box1[3 + a])} - std::min(root.box0[a], root.box1[a]);
-        longest = std::max(longest, extent);
-    }
-    const double scale = longest > 0 ? 1 / longest : 0;
-    std::vector<Span> open{{tree_.roots[group], tree_.end_of(group)}};
-    while (!open.empty()) {
-        const Span at = open.back();
-        open.pop_back();
-        if (at.end - at.begin <= kTaskNodes) {
-            tasks_.push_back(at);
-            scales_.push_back(scale);
-            continue;
-        }
-        top_.push_back({at.begin, scale});
-        const bvh2_node& node = tree_.nodes.data()[at.begin];
-        const rt_u32 middle = is_leaf(node.child1) ? at.end : node.child1;
-        if (middle < at.end) open.push_back({middle, at.end});  // taken after the left one, so tasks come in order
-        if (at.begin + 1 < middle) open.push_back({at.begin + 1, middle});
-    }
+void Collapse::decide_tops(const bvh2::BinaryTree& tree) const {
+    for (size_t i = tree.tops.size(); i-- > 0;) decide(tree.tops[i].node, tree.tops[i].scale, Decision::kIsTop);
 }
 
-bool Collapse::is_above_tasks(rt_u32 binary) const {
-    const auto after =
-        std::upper_bound(tasks_.begin(), tasks_.end(), binary, [](rt_u32 b, const Span& s) { return b < s.begin; });
-    return after == tasks_.begin() || binary >= std::prev(after)->end;
-}
-
-void Collapse::decide(rt_u32 binary, double scale) {
-    const bvh2_node& node = tree_.nodes.data()[binary];
-    Choice& choice = choices_.data()[binary];
-    float cost[2][BVH8_WIDTH - 1];
+void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
+    bvh2_node& node = nodes()[binary];
+    // cost[8 + i] is that of i + 1 roots from the right child; what is out of range costs too much.
+    float left[BVH8_WIDTH], right[2 * BVH8_WIDTH];
     uint32_t count = 0;
-    choice.first = RT_NONE;
+    rt_u32 first = RT_NONE;
     bool may_be_leaf = true;
-    const Child both[2] = {left_of(node), right_of(node)};
-    for (int side = 0; side < 2; ++side) {
-        const auto [box, code] = both[side];
+    std::fill_n(right, BVH8_WIDTH, INFINITY);
+    const auto look = [&](const float* box, rt_u32 code, float* cost) {
         if (is_leaf(code)) {
-            const float as_leaf =
-                is_nothing(code) ? 0.0f : static_cast<float>(half_area(box, scale) * costs_.primitive * BVH2_LEAF_COUNT(code));
-            std::fill_n(cost[side], BVH8_WIDTH - 1, as_leaf);
-            count += BVH2_LEAF_COUNT(code);
-            if (!is_nothing(code)) choice.first = std::min(choice.first, BVH2_LEAF_FIRST(code));
+            const uint32_t below = BVH2_LEAF_COUNT(code);
+            std::fill_n(cost, BVH8_WIDTH, half_area(box, scale) * costs_.primitive * static_cast<float>(below));
+            count += below;
+            first = std::min(first, BVH2_LEAF_FIRST(code));
         } else {
-            const Choice& below = choices_.data()[code];
-            std::copy_n(below.cost, BVH8_WIDTH - 1, cost[side]);
-            count += below.count;
-            may_be_leaf = may_be_leaf && below.count > 0;
-            choice.first = std::min(choice.first, below.first);
+            const uint32_t below = Decision::count(nodes()[code].pad1);
+            std::copy_n(costs_of(code).cost, BVH8_WIDTH, cost);
+            count += below;
+            may_be_leaf = may_be_leaf && below > 0;
+            first = std::min(first, nodes()[code].pad0);
         }
-    }
-    may_be_leaf = may_be_leaf && count > 0 && count <= costs_.max_leaf;
-    choice.count = may_be_leaf ? static_cast<uint8_t>(count) : uint8_t{0};
+    };
+    look(node.box0, node.child0, left);
+    look(node.box1, node.child1, right + BVH8_WIDTH);
+    may_be_leaf = may_be_leaf && count <= costs_.max_leaf;
 
-    // The cheapest way to share `roots` between left and right.
-    float shared[BVH8_WIDTH + 1];
-    for (uint32_t roots = 2; roots <= BVH8_WIDTH; ++roots) {
-        shared[roots] = INFINITY;
-        for (uint32_t left = 1; left < roots; ++left) {
-            const float sum = cost[0][left - 1] + cost[1][roots - left - 1];
-            if (sum < shared[roots]) {
-                shared[roots] = sum;
-                choice.left[roots] = static_cast<uint8_t>(left);
-            }
+    // The cheapest way to share i + 1 roots between left and right, for all i at once; among equals the fewest to the left.
+    float shared[BVH8_WIDTH];
+    uint32_t lefts[BVH8_WIDTH];
+    std::fill_n(shared, BVH8_WIDTH, INFINITY);
+    std::fill_n(lefts, BVH8_WIDTH, 0u);
+    for (uint32_t l = 1; l < BVH8_WIDTH; ++l)
+        for (uint32_t i = 0; i < BVH8_WIDTH; ++i) {
+            const float sum = left[l - 1] + right[BVH8_WIDTH + i - l];
+            lefts[i] = sum < shared[i] ? l : lefts[i];
+            shared[i] = sum < shared[i] ? sum : shared[i];
         }
+
+    const float area = half_area(node, scale);
+    const float as_node = area * costs_.node + shared[BVH8_WIDTH - 1];
+    const float as_leaf = area * costs_.primitive * static_cast<float>(count);
+    const bool leaf = may_be_leaf && as_leaf <= as_node;
+    rt_u32 bits = more_bits | (may_be_leaf ? count << 21 : 0u) | (leaf ? Decision::kIsLeaf : 0u);
+    float* const cost = costs_of(binary).cost;
+    cost[0] = leaf ? as_leaf : as_node;
+    for (uint32_t i = 1; i + 1 < BVH8_WIDTH; ++i) {
+        const bool better = shared[i] < cost[i - 1];
+        cost[i] = better ? shared[i] : cost[i - 1];
+        bits |= (better ? lefts[i] : 0u) << 3 * (i - 1);
     }
-    const bool has_area = !is_nothing(node.child1);
-    const double area = has_area ? half_area(node, scale) : half_area(node.box0, scale);
-    const float as_node = static_cast<float>(area * costs_.node) + shared[BVH8_WIDTH];
-    const float as_leaf = static_cast<float>(area * costs_.primitive * count);
-    choice.is_leaf = may_be_leaf && as_leaf <= as_node;
-    choice.cost[0] = choice.is_leaf ? as_leaf : as_node;
-    for (uint32_t roots = 2; roots < BVH8_WIDTH; ++roots) {
-        const bool better = shared[roots] < choice.cost[roots - 2];
-        choice.cost[roots - 1] = better ? shared[roots] : choice.cost[roots - 2];
-        if (!better) choice.left[roots] = 0;
-    }
+    cost[BVH8_WIDTH - 1] = cost[BVH8_WIDTH - 2];
+    node.pad0 = first;
+    node.pad1 = bits | lefts[BVH8_WIDTH - 1] << 3 * (BVH8_WIDTH - 2);
 }
 
 uint32_t Collapse::children(rt_u32 binary, Slot slots[BVH8_WIDTH]) const {
-    const bvh2_node& node = tree_.nodes.data()[binary];
-    const uint32_t left = choices_.data()[binary].left[BVH8_WIDTH];
+    const bvh2_node& node = nodes()[binary];
+    const uint32_t left = Decision::left_of(node.pad1, BVH8_WIDTH);
     Slot* next = slots;
-    gather(left_of(node), left, next);
-    gather(right_of(node), BVH8_WIDTH - left, next);
+    gather(node.box0, node.child0, left, next);
+    gather(node.box1, node.child1, BVH8_WIDTH - left, next);
     return static_cast<uint32_t>(next - slots);
 }
 
-void Collapse::gather(const Child& child, uint32_t roots, Slot*& next) const {
-    if (is_leaf(child.code)) {
-        if (!is_nothing(child.code))
-            *next++ = {child.box, BVH8_MAKE_LEAF(BVH2_LEAF_FIRST(child.code), BVH2_LEAF_COUNT(child.code)), 0};
+void Collapse::gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next) const {
+    if (is_leaf(code)) {
+        *next++ = {box, BVH8_MAKE_LEAF(BVH2_LEAF_FIRST(code), BVH2_LEAF_COUNT(code)), 0};
         return;
     }
-    const Choice& choice = choices_.data()[child.code];
-    while (roots > 1 && choice.left[roots] == 0) --roots;
+    const bvh2_node& node = nodes()[code];
+    while (roots > 1 && Decision::left_of(node.pad1, roots) == 0) --roots;
     if (roots == 1) {
-        *next++ = {child.box, choice.is_leaf ? BVH8_MAKE_LEAF(choice.first, rt_u32{choice.count}) : BVH8_NOTHING, child.code};
+        const bool leaf = node.pad1 & Decision::kIsLeaf;
+        *next++ = {box, leaf ? BVH8_MAKE_LEAF(node.pad0, Decision::count(node.pad1)) : BVH8_NOTHING, code};
         return;
     }
-    const bvh2_node& node = tree_.nodes.data()[child.code];
-    gather(left_of(node), choice.left[roots], next);
-    gather(right_of(node), roots - choice.left[roots], next);
+    const uint32_t left = Decision::left_of(node.pad1, roots);
+    gather(node.box0, node.child0, left, next);
+    gather(node.box1, node.child1, roots - left, next);
 }
 
 }  // namespace bvh8

@@ -1,8 +1,8 @@
 // collapse.hpp -- which nodes of a binary tree become nodes of the wide one: the cheapest choice by the surface area heuristic,
 // found by dynamic programming from the leaves up (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs
-// Through Compressed Wide BVHs", section 3).
+// Through Compressed Wide BVHs", section 3). Subtrees are decided by the threads that built them, while caches hold them.
 #pragma once
-#include "binary_tree.hpp"
+#include "builder.hpp"
 #include "rt_plugin.h"
 // after rt_types.h, whose types it uses:
 #include "bvh8_types.h"
@@ -15,59 +15,51 @@ struct Costs {
     uint32_t max_leaf;
 };
 
-struct Span {
-    rt_u32 begin, end;  // nodes of the binary tree
-};
-
-// A child as the binary tree has it: its box, and a node or a leaf of that tree.
-struct Child {
-    const float* box;
-    rt_u32 code;
-};
 // What stands in a slot of a wide node.
 struct Slot {
-    const float* box;
-    rt_u32 leaf;    // BVH8_NOTHING: it is a node, that of:
-    rt_u32 binary;  // node of the binary tree
+    const float* box;  // lo, hi; a seventh number may be read
+    rt_u32 leaf;       // BVH8_NOTHING: it is a node, that of:
+    rt_u32 binary;     // node of the binary tree
+};
+
+// What was decided about a binary node stands in the node itself, in the places that its layout leaves free:
+//   pad0  position of the first primitive below, in leaf order
+//   pad1  bits 3 (i - 2) .. +2, i = 2..8: of i roots to be had from it, how many the left child has; 0: no better than i - 1
+//         bits 21..23: primitives below, if they may be one leaf, else 0;  bit 24: one root is that leaf;  bit 25: above tasks
+struct Decision {
+    static constexpr rt_u32 kIsLeaf = 1u << 24, kIsTop = 1u << 25;
+    static uint32_t left_of(rt_u32 bits, uint32_t roots) { return bits >> 3 * (roots - 2) & 7; }
+    static uint32_t count(rt_u32 bits) { return bits >> 21 & 7; }
+};
+
+// What is below a binary node can be had as at most i + 1 roots for cost[i]. Costs are relative to the group's root box, whose
+// longest side is taken as 1.
+struct RootCosts {
+    float cost[8];  // of BVH8_WIDTH in use the last one is that of one root less, for a whole vector
 };
 
 class Collapse {
  public:
-    // Decides about all of the tree. `tree` must outlive this.
-    Collapse(const rt_host* host, const BinaryTree& tree, const Costs& costs);
+    Collapse(const bvh2::Builder& builder, const Costs& costs) : builder_(builder), costs_(costs) {}
+
+    // For every task as soon as it is built, on any thread.
+    void decide_task(const bvh2::Task& task) const;
+    // Then for what is above them.
+    void decide_tops(const bvh2::BinaryTree& tree) const;
 
     // The children of the wide node that a binary node becomes; returns how many.
     uint32_t children(rt_u32 binary, Slot slots[BVH8_WIDTH]) const;
-
-    // The tree falls into small subtrees, one thread's task each, and the few nodes above them.
-    bool is_above_tasks(rt_u32 binary) const;
-    const BinaryTree& tree() const { return tree_; }
+    bool is_above_tasks(rt_u32 binary) const { return nodes()[binary].pad1 & Decision::kIsTop; }
 
  private:
-    // For a binary node: what is below it can be had as at most i + 1 roots for cost[i]. The costs are those of the group's
-    // root box, whose longest side is taken as 1.
-    struct Choice {
-        float cost[BVH8_WIDTH - 1];
-        uint8_t left[BVH8_WIDTH + 1];  // of i roots, how many are the left child's; 0: no better than i - 1
-        uint8_t count;                 // primitives, if they may be one leaf, else 0
-        uint8_t is_leaf;               // one root: that leaf
-        rt_u32 first;                  // position of the first primitive below
-    };
+    bvh2_node* nodes() const { return builder_.workspace().nodes; }
+    // In the builder's records, which have done their duty.
+    RootCosts& costs_of(rt_u32 binary) const { return reinterpret_cast<RootCosts*>(builder_.workspace().records[0])[binary]; }
+    void decide(rt_u32 binary, float scale, rt_u32 more_bits) const;
+    void gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next) const;
 
-    void cut(size_t group);
-    void decide(rt_u32 binary, double scale);
-    void gather(const Child& child, uint32_t roots, Slot*& next) const;
-
-    const BinaryTree& tree_;
+    const bvh2::Builder& builder_;
     const Costs costs_;
-    bvh2::Scratch<Choice> choices_;
-    std::vector<Span> tasks_;     // ascending
-    std::vector<double> scales_;  // of tasks
-    struct Top {
-        rt_u32 node;
-        double scale;
-    };
-    std::vector<Top> top_;  // nodes above the tasks, parents first
 };
 
 }  // namespace bvh8

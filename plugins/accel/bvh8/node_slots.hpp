@@ -1,14 +1,10 @@
-// node_slots.hpp -- which child stands where in a node.
+// node_slots.hpp -- one finished node: which child stands in which slot.
 #pragma once
 #include "collapse.hpp"
 
 namespace bvh8 {
 
-// slot_of[i]: the slot of children[i], so that slots in the order i ^ signs come near before far (see bvh8_types.h).
-void assign_slots(const Slot children[], uint32_t count, uint32_t slot_of[]);
-
-// A node without children.
-void clear_node(bvh8_node& node);
-void set_slot(bvh8_node& node, uint32_t slot, const float box[6], rt_u32 child);
+// Writes a whole node. children[i] goes by code[i], and to the slot that suits its place in the node best (bvh8_types.h).
+void write_node(bvh8_node& node, const Slot children[], const rt_u32 code[], uint32_t count);
 
 }  // namespace bvh8

@@ -6,6 +6,26 @@
 #include "rt_plugin.hpp"
 
 namespace bvh8 {
+namespace {
+
+double area(const float box[6]) {
+    const double x = double{box[3]} - box[0], y = double{box[4]} - box[1], z = double{box[5]} - box[2];
+    return 2 * (x * y + y * z + z * x);
+}
+
+}  // namespace
+
+void WideTree::Sums::add(const Slot* slots, uint32_t count) {
+    children += count;
+    for (uint32_t i = 0; i < count; ++i) {
+        if (slots[i].leaf == BVH8_NOTHING) {
+            node_area += area(slots[i].box);
+        } else {
+            ++leaves;
+            primitive_area += area(slots[i].box) * BVH8_LEAF_COUNT(slots[i].leaf);
+        }
+    }
+}
 
 void WideTree::Extent::add(const Extent& child, uint32_t siblings) {
     nodes += child.nodes;
@@ -14,9 +34,10 @@ void WideTree::Extent::add(const Extent& child, uint32_t siblings) {
 }
 
 void WideTree::write(const rt_build_output* out) {
-    const std::vector<rt_u32>& binary_roots = collapse_.tree().roots;
-    std::vector<rt_u32> codes;
-    for (const rt_u32 root : binary_roots) codes.push_back(expand(root));
+    const auto group_count = static_cast<rt_u32>(tree_.roots.size());
+    std::vector<rt_u32> codes, roots;
+    root_boxes_.resize(group_count);
+    for (rt_u32 g = 0; g < group_count; ++g) codes.push_back(expand_root(g));
 
     std::vector<Extent> extents(jobs_.size());
     rt::parallel_for(host_, static_cast<rt_u32>(jobs_.size()), [&](rt_u32 j) {
@@ -27,37 +48,51 @@ void WideTree::write(const rt_build_output* out) {
         const Extent whole = measure_top(code, extents);
         depth_ = std::max(depth_, whole.depth);
         stack_ = std::max(stack_, whole.stack);
-        roots_.push_back(node_count_);
+        roots.push_back(node_count_);
         node_count_ = place(code, node_count_);
     }
     nodes_ = rt::alloc<bvh8_node>(out, 0, node_count_);
     rt::parallel_for(host_, static_cast<rt_u32>(jobs_.size()),
-                     [&](rt_u32 j) { write_subtree(jobs_[j].binary, jobs_[j].place); });
+                     [&](rt_u32 j) { write_subtree(jobs_[j].binary, jobs_[j].place, jobs_[j].sums); });
     for (const Top& top : tops_) {
-        bvh8_node& node = nodes_[top.place];
-        clear_node(node);
-        uint32_t slot_of[BVH8_WIDTH];
-        assign_slots(top.slots, top.count, slot_of);
-        for (uint32_t i = 0; i < top.count; ++i) {
-            const Slot& slot = top.slots[i];
-            set_slot(node, slot_of[i], slot.box, slot.leaf != BVH8_NOTHING ? slot.leaf : place_of(top.below[i]));
-        }
+        rt_u32 below[BVH8_WIDTH];
+        for (uint32_t i = 0; i < top.count; ++i)
+            below[i] = top.slots[i].leaf != BVH8_NOTHING ? top.slots[i].leaf : place_of(top.below[i]);
+        write_node(nodes_[top.place], top.slots, below, top.count);
     }
-    for (rt_u32 g = 0; g < roots_.size(); ++g) rt::root(out, g, roots_[g]);
+    for (rt_u32 g = 0; g < group_count; ++g) rt::root(out, g, roots[g]);
+}
+
+rt_u32 WideTree::expand_root(rt_u32 group) {
+    const bvh2::Root& root = tree_.roots[group];
+    if (root.code != RT_NONE && !(root.code & BVH2_LEAF)) return expand(root.code, group);
+    Top top;
+    top.group = group;
+    if (root.code != RT_NONE) {
+        for (int a = 0; a < 3; ++a) {
+            root_boxes_[group][a] = root.box.lo[a];
+            root_boxes_[group][3 + a] = root.box.hi(a);
+        }
+        top.slots[top.count++] = {root_boxes_[group].data(),
+                                  BVH8_MAKE_LEAF(BVH2_LEAF_FIRST(root.code), BVH2_LEAF_COUNT(root.code)), 0};
+    }
+    tops_.push_back(top);
+    return static_cast<rt_u32>(tops_.size() - 1);
 }
 
 // Of a node of the binary tree that becomes one of the wide tree: the jobs below it, and what lies above them.
-rt_u32 WideTree::expand(rt_u32 binary) {
+rt_u32 WideTree::expand(rt_u32 binary, rt_u32 group) {
     if (!collapse_.is_above_tasks(binary)) {
-        jobs_.push_back({binary});
+        jobs_.push_back({binary, group, 0, 0, {}});
         return static_cast<rt_u32>(jobs_.size() - 1) | kJob;
     }
     const auto index = static_cast<rt_u32>(tops_.size());
     tops_.emplace_back();
     Top top;
+    top.group = group;
     top.count = collapse_.children(binary, top.slots);
     for (uint32_t i = 0; i < top.count; ++i)
-        if (top.slots[i].leaf == BVH8_NOTHING) top.below[i] = expand(top.slots[i].binary);
+        if (top.slots[i].leaf == BVH8_NOTHING) top.below[i] = expand(top.slots[i].binary, group);
     tops_[index] = top;
     return index;
 }
@@ -96,19 +131,51 @@ rt_u32 WideTree::place(rt_u32 code, rt_u32 next) {
 }
 
 // Depth-first; returns the next free place.
-rt_u32 WideTree::write_subtree(rt_u32 binary, rt_u32 at) const {
+rt_u32 WideTree::write_subtree(rt_u32 binary, rt_u32 at, Sums& sums) const {
     Slot slots[BVH8_WIDTH];
-    uint32_t slot_of[BVH8_WIDTH];
     const uint32_t count = collapse_.children(binary, slots);
-    assign_slots(slots, count, slot_of);
-    bvh8_node& node = nodes_[at];
-    clear_node(node);
-    rt_u32 next = at + 1;
+    sums.add(slots, count);
+    rt_u32 below[BVH8_WIDTH], next = at + 1;
     for (uint32_t i = 0; i < count; ++i) {
-        set_slot(node, slot_of[i], slots[i].box, slots[i].leaf != BVH8_NOTHING ? slots[i].leaf : next);
-        if (slots[i].leaf == BVH8_NOTHING) next = write_subtree(slots[i].binary, next);
+        below[i] = slots[i].leaf != BVH8_NOTHING ? slots[i].leaf : next;
+        if (slots[i].leaf == BVH8_NOTHING) next = write_subtree(slots[i].binary, next, sums);
     }
+    write_node(nodes_[at], slots, below, count);
     return next;
+}
+
+Statistics WideTree::statistics(const rt_group* groups) const {
+    std::vector<Sums> of_group(tree_.roots.size());
+    const auto add = [&](rt_u32 group, const Sums& sums) {
+        of_group[group].leaves += sums.leaves;
+        of_group[group].children += sums.children;
+        of_group[group].node_area += sums.node_area;
+        of_group[group].primitive_area += sums.primitive_area;
+    };
+    for (const Top& top : tops_) {
+        Sums sums;
+        sums.add(top.slots, top.count);
+        add(top.group, sums);
+    }
+    for (const Job& job : jobs_) add(job.group, job.sums);
+    Statistics result;
+    double cost = 0, primitives = 0;
+    for (size_t g = 0; g < of_group.size(); ++g) {
+        result.leaves += of_group[g].leaves;
+        result.children += of_group[g].children;
+        if (tree_.roots[g].code == RT_NONE) continue;
+        const bvh2::Bounds& box = tree_.roots[g].box;
+        const float whole_box[6] = {box.lo[0], box.lo[1], box.lo[2], box.hi(0), box.hi(1), box.hi(2)};
+        const double whole = area(whole_box);
+        if (!(whole > 0)) continue;  // no ray meets a point or a line
+        cost +=
+            groups[g].count *
+            (double{costs_.node} * (whole + of_group[g].node_area) + double{costs_.primitive} * of_group[g].primitive_area) /
+            whole;
+        primitives += groups[g].count;
+    }
+    result.sah_cost = primitives > 0 ? cost / primitives : 0;
+    return result;
 }
 
 }  // namespace bvh8

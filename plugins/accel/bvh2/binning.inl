@@ -1,0 +1,102 @@
+// binning.inl -- the surface area heuristic over bins (Wald 2007, "On fast Construction of SAH-based Bounding Volume
+// Hierarchies"): primitives are counted and bounded in equal slices of their centroids' extent, on all three axes at once, and
+// only the planes between slices are candidates. One pass over the primitives per node, whatever their number.
+// Included once an instruction set, by kernels*.cpp.
+
+namespace bvh2 {
+namespace BVH2_ISA {
+
+void clear(Bins& bins, uint32_t bin_count) {
+    for (uint32_t b = 0; b < bin_count; ++b)
+        for (int axis = 0; axis < 3; ++axis) store_box(bins.box[b][axis], no_box());
+    std::memset(bins.count, 0, bin_count * sizeof bins.count[0]);
+}
+
+void bin(const Record* first, const Record* end, const Slices& slices, Bins& bins) {
+    for (const Record* r = first; r != end; ++r) {
+        const Box8 box = box_of(*r);
+        uint32_t b[3];
+        to_index(slices.position(centroid2(box)), b);
+        for (int axis = 0; axis < 3; ++axis) {
+            Bounds& at = bins.box[b[axis]][axis];
+            store_box(at, min(load_box(at), box));
+            ++bins.count[b[axis]][axis];
+        }
+    }
+}
+
+void merge(const Bins& from, uint32_t bin_count, Bins& to) {
+    for (uint32_t b = 0; b < bin_count; ++b) {
+        for (int axis = 0; axis < 3; ++axis)
+            store_box(to.box[b][axis], min(load_box(to.box[b][axis]), load_box(from.box[b][axis])));
+        store_counts(to.count[b], load_counts(to.count[b]) + load_counts(from.count[b]));
+    }
+}
+
+void find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, uint32_t primitive_count, Split& split) {
+    // Sweep from the right: areas of all that lies at or right of each plane.
+    Vec4 right_area[kMaxBins];
+    Box8 box[3] = {no_box(), no_box(), no_box()};
+    for (uint32_t b = bin_count - 1; b > 0; --b) {
+        for (int axis = 0; axis < 3; ++axis) box[axis] = min(box[axis], load_box(bins.box[b][axis]));
+        right_area[b] = half_areas(area, box);
+    }
+    // Sweep from the left, with the cost of each plane. A side without primitives has an area of NaN or infinity, which no
+    // primitives make NaN, and so never wins.
+    for (int axis = 0; axis < 3; ++axis) box[axis] = no_box();
+    alignas(16) const uint32_t none[4] = {0, 0, 0, 0};
+    Count4 left = load_counts(none);
+    const Vec4 all = splat(static_cast<float>(primitive_count));
+    Vec4 best_cost = splat(INFINITY), best_bin = splat(0.0f);
+    for (uint32_t b = 1; b < bin_count; ++b) {
+        for (int axis = 0; axis < 3; ++axis) box[axis] = min(box[axis], load_box(bins.box[b - 1][axis]));
+        left = left + load_counts(bins.count[b - 1]);
+        const Vec4 left_f = to_float(left);
+        const Vec4 cost = half_areas(area, box) * left_f + right_area[b] * (all - left_f);
+        const Vec4 better = less(cost, best_cost);
+        best_cost = select(better, cost, best_cost);
+        best_bin = select(better, splat(static_cast<float>(b)), best_bin);
+    }
+    alignas(16) float costs[4], planes[4];
+    store(costs, best_cost);
+    store(planes, best_bin);
+    for (int axis = 0; axis < 3; ++axis)
+        if (costs[axis] < split.cost) {
+            split.cost = costs[axis];
+            split.axis = axis;
+            split.bin = static_cast<uint32_t>(planes[axis]);
+        }
+    if (split.bin == 0) return;
+    Box8 side[2] = {no_box(), no_box()};
+    for (uint32_t b = 0; b < split.bin; ++b) {
+        side[0] = min(side[0], load_box(bins.box[b][split.axis]));
+        split.left_count += bins.count[b][split.axis];
+    }
+    for (uint32_t b = split.bin; b < bin_count; ++b) side[1] = min(side[1], load_box(bins.box[b][split.axis]));
+    store_box(split.left, side[0]);
+    store_box(split.right, side[1]);
+}
+
+void scatter(const Record* first, const Record* end, const Slices& slices, const Split& split, Record* left, Record* right,
+             Bounds& left_centroids2, Bounds& right_centroids2) {
+    alignas(16) float bound[4] = {-1.0f, -1.0f, -1.0f, -1.0f};  // of the other axes: never reached
+    bound[split.axis] = static_cast<float>(split.bin);
+    const Vec4 plane = load(bound);
+    Box8 l = load_box(left_centroids2), r = load_box(right_centroids2);
+    for (const Record* at = first; at != end; ++at) {
+        const Vec4 middle = centroid2(box_of(*at));
+        // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said.
+        const uint32_t goes_left = any(less(slices.position(middle), plane));
+        const Box8 centroid = point(middle);
+        l = min(l, choose(goes_left, centroid, no_box()));
+        r = min(r, choose(goes_left, no_box(), centroid));
+        copy(goes_left ? left : right, *at);
+        left += goes_left;
+        right += goes_left ^ 1u;
+    }
+    store_box(left_centroids2, l);
+    store_box(right_centroids2, r);
+}
+
+}  // namespace BVH2_ISA
+}  // namespace bvh2

@@ -1,0 +1,129 @@
+// box8.inl -- a box in registers: one of eight floats with AVX2, else two of four. Same operations, same bits.
+// Included once an instruction set, by kernels*.cpp.
+#ifdef BVH2_ISA_AVX2
+#define BVH2_ISA avx2
+#else
+#define BVH2_ISA generic
+#endif
+
+namespace bvh2 {
+namespace BVH2_ISA {
+
+#ifdef BVH2_ISA_AVX2
+
+struct Box8 {
+    __m256 m;
+};
+// Not the aligned forms, which gain nothing: GCC 12 puts objects that a call returns at multiples of 16 bytes, whatever they ask.
+inline Box8 load_box(const float* p) {
+    return {_mm256_loadu_ps(p)};
+}
+inline void store_box(float* p, Box8 a) {
+    _mm256_storeu_ps(p, a.m);
+}
+inline Vec4 low(Box8 a) {
+    return {_mm256_castps256_ps128(a.m)};
+}
+inline Vec4 neg_high(Box8 a) {
+    return {_mm256_extractf128_ps(a.m, 1)};
+}
+inline Box8 join(Vec4 lo, Vec4 neg_hi) {
+    return {_mm256_insertf128_ps(_mm256_castps128_ps256(lo.m), neg_hi.m, 1)};
+}
+inline Box8 min(Box8 a, Box8 b) {
+    return {_mm256_min_ps(a.m, b.m)};
+}
+inline Box8 operator-(Box8 a, Box8 b) {
+    return {_mm256_sub_ps(a.m, b.m)};
+}
+inline Box8 operator*(Box8 a, Box8 b) {
+    return {_mm256_mul_ps(a.m, b.m)};
+}
+inline Box8 no_box() {
+    return {_mm256_set1_ps(FLT_MAX)};
+}
+// A record's, without the ref.
+inline Box8 box_of(const Record& r) {
+    return {_mm256_and_ps(_mm256_loadu_ps(r.lo), _mm256_castsi256_ps(_mm256_setr_epi32(-1, -1, -1, 0, -1, -1, -1, -1)))};
+}
+// which ? a : b.
+inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
+    return {_mm256_blendv_ps(b.m, a.m, _mm256_castsi256_ps(_mm256_set1_epi32(-static_cast<int>(which))))};
+}
+inline void copy(Record* to, const Record& from) {
+    _mm256_storeu_ps(to->lo, _mm256_loadu_ps(from.lo));
+}
+
+#else
+
+struct Box8 {
+    Vec4 lo, neg_hi;
+};
+inline Box8 load_box(const float* p) {
+    return {load(p), load(p + 4)};
+}
+inline void store_box(float* p, Box8 a) {
+    store(p, a.lo);
+    store(p + 4, a.neg_hi);
+}
+inline Vec4 low(Box8 a) {
+    return a.lo;
+}
+inline Vec4 neg_high(Box8 a) {
+    return a.neg_hi;
+}
+inline Box8 join(Vec4 lo, Vec4 neg_hi) {
+    return {lo, neg_hi};
+}
+inline Box8 min(Box8 a, Box8 b) {
+    return {bvh2::min(a.lo, b.lo), bvh2::min(a.neg_hi, b.neg_hi)};
+}
+inline Box8 operator-(Box8 a, Box8 b) {
+    return {a.lo - b.lo, a.neg_hi - b.neg_hi};
+}
+inline Box8 operator*(Box8 a, Box8 b) {
+    return {a.lo * b.lo, a.neg_hi * b.neg_hi};
+}
+inline Box8 no_box() {
+    return {splat(FLT_MAX), splat(FLT_MAX)};
+}
+inline Box8 box_of(const Record& r) {
+    return {xyz(load(r.lo)), load(r.neg_hi)};
+}
+inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
+    const Vec4 mask = all_lanes(which);
+    return {select(mask, a.lo, b.lo), select(mask, a.neg_hi, b.neg_hi)};
+}
+inline void copy(Record* to, const Record& from) {
+    store(to->lo, load(from.lo));
+    store(to->neg_hi, load(from.neg_hi));
+}
+
+#endif
+
+inline Box8 load_box(const Bounds& b) {
+    return load_box(b.lo);
+}
+inline void store_box(Bounds& b, Box8 a) {
+    store_box(b.lo, a);
+}
+inline Vec4 centroid2(Box8 a) {
+    return low(a) - neg_high(a);
+}
+inline Box8 point(Vec4 p) {
+    return join(p, splat(0.0f) - p);
+}
+// Half the areas of three boxes at once, in lanes 0..2, from their sides; all sides may be negated.
+inline Vec4 half_areas_of(Vec4 a, Vec4 b, Vec4 c) {
+    Vec4 x, y, z;
+    transpose3(a, b, c, x, y, z);
+    return x * y + z * (x + y);
+}
+// NaN or infinite for an empty box.
+inline Vec4 half_areas(const AreaScale& area, const Box8 box[3]) {
+    return half_areas_of(area.sides(low(box[0]), neg_high(box[0])), area.sides(low(box[1]), neg_high(box[1])),
+                         area.sides(low(box[2]), neg_high(box[2])));
+}
+
+}  // namespace BVH2_ISA
+}  // namespace bvh2

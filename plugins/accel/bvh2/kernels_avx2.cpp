@@ -1,0 +1,23 @@
+// The kernels once more, for machines with AVX2. Everything that they do not bring themselves is included first, so that no
+// function shared with other files is compiled for these machines only.
+#include "kernels.hpp"
+
+#ifdef BVH2_AVX2
+#include <immintrin.h>
+
+#define BVH2_ISA_AVX2 1
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2"))), apply_to = function)
+#else
+#pragma GCC push_options
+#pragma GCC target("avx2")
+#endif
+
+#include "kernels.inl"
+
+#ifdef __clang__
+#pragma clang attribute pop
+#else
+#pragma GCC pop_options
+#endif
+#endif

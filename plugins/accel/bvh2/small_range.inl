@@ -1,0 +1,89 @@
+// small_range.inl -- the surface area heuristic over every plane between two primitives, for the few that a range has near the
+// leaves: there a sort in registers costs less than bins, and finds the best.
+// Included once an instruction set, by kernels*.cpp.
+
+namespace bvh2 {
+namespace BVH2_ISA {
+
+constexpr uint32_t kSmall = 8;  // what the tag of a key can number
+
+struct SmallSplit {
+    float cost = INFINITY;  // as Split's
+    uint32_t axis = 0, left_count = 0;
+    alignas(16) uint32_t order[kSmall][4];  // [k][axis]: the k-th primitive by centroid
+};
+
+// Each lane of a and b: the smaller one to a, the larger one to b.
+inline void put_in_order(Vec4& a, Vec4& b) {
+    const Vec4 smaller = bvh2::min(a, b);
+    b = bvh2::max(a, b);
+    a = smaller;
+}
+
+// Sorts on three axes at once, one a lane, by a network (Batcher 1968, odd-even merge): no branch depends on a key. What tells
+// the primitives apart is in the keys' lowest bits, which costs equal and nearly equal ones their order.
+inline void sort_small(const Record* records, uint32_t count, uint32_t order[kSmall][4]) {
+    const Vec4 least = splat(-FLT_MAX), most = splat(FLT_MAX);
+    Vec4 key[kSmall];
+    for (uint32_t i = 0; i < count; ++i)
+        key[i] = tag_all(bvh2::min(bvh2::max(centroid2(box_of(records[i])), least), most), i);
+    for (uint32_t i = count; i < kSmall; ++i) key[i] = tag_all(most, i);
+    put_in_order(key[0], key[1]);
+    put_in_order(key[2], key[3]);
+    put_in_order(key[0], key[2]);
+    put_in_order(key[1], key[3]);
+    put_in_order(key[1], key[2]);
+    if (count > 4) {
+        put_in_order(key[4], key[5]);
+        put_in_order(key[6], key[7]);
+        put_in_order(key[4], key[6]);
+        put_in_order(key[5], key[7]);
+        put_in_order(key[5], key[6]);
+        for (uint32_t i = 0; i < 4; ++i) put_in_order(key[i], key[4 + i]);
+        for (uint32_t i = 2; i < 4; ++i) put_in_order(key[i], key[2 + i]);
+        for (uint32_t i = 1; i < 7; i += 2) put_in_order(key[i], key[1 + i]);
+    }
+    for (uint32_t k = 0; k < count; ++k) store_tags(order[k], key[k]);
+}
+
+// 2 <= count <= kSmall. `range` is the box of them all, `area` made of it.
+inline void split_small(const Record* records, uint32_t count, const Bounds& range, const AreaScale& area, SmallSplit& split) {
+    sort_small(records, count, split.order);
+    // Within the unit cube, so that areas need neither scale nor sign.
+    const Vec4 corner = xyz(load(range.lo));
+    const Box8 base = point(corner), scale = join(area.scale, area.scale);
+    Box8 unit[kSmall];
+    for (uint32_t i = 0; i < count; ++i) unit[i] = (box_of(records[i]) - base) * scale;
+    const auto areas = [&](const Box8 box[3]) {
+        return half_areas_of(low(box[0]) + neg_high(box[0]) - area.pad, low(box[1]) + neg_high(box[1]) - area.pad,
+                             low(box[2]) + neg_high(box[2]) - area.pad);
+    };
+    Vec4 right_area[kSmall];
+    Box8 box[3] = {no_box(), no_box(), no_box()};
+    for (uint32_t k = count - 1; k > 0; --k) {
+        for (int axis = 0; axis < 3; ++axis) box[axis] = min(box[axis], unit[split.order[k][axis]]);
+        right_area[k] = areas(box);
+    }
+    for (int axis = 0; axis < 3; ++axis) box[axis] = no_box();
+    Vec4 best_cost = splat(INFINITY), best_count = splat(0.0f);
+    for (uint32_t k = 1; k < count; ++k) {
+        for (int axis = 0; axis < 3; ++axis) box[axis] = min(box[axis], unit[split.order[k - 1][axis]]);
+        const Vec4 cost =
+            areas(box) * splat(static_cast<float>(k)) + right_area[k] * splat(static_cast<float>(count - k));
+        const Vec4 better = less(cost, best_cost);
+        best_cost = select(better, cost, best_cost);
+        best_count = select(better, splat(static_cast<float>(k)), best_count);
+    }
+    alignas(16) float costs[4], counts[4];
+    store(costs, best_cost);
+    store(counts, best_count);
+    for (uint32_t axis = 0; axis < 3; ++axis)
+        if (costs[axis] < split.cost) {
+            split.cost = costs[axis];
+            split.axis = axis;
+            split.left_count = static_cast<uint32_t>(counts[axis]);
+        }
+}
+
+}  // namespace BVH2_ISA
+}  // namespace bvh2
