@@ -34,13 +34,13 @@ struct Decision {
 
 // What is below a binary node can be had as at most i + 1 roots for cost[i]. Costs are relative to the group's root box, whose
 // longest side is taken as 1.
-struct alignas(32) RootCosts {  // as large as a record, whatever the width: each takes its own one's place
-    float cost[BVH8_WIDTH];     // the last one is that of BVH8_WIDTH - 1, for a whole vector
+struct RootCosts {
+    float cost[bvh2::kRoots];  // of BVH8_WIDTH in use the last one is that of one root less, for a whole vector
 };
 
 class Collapse {
  public:
-    Collapse(const bvh2::Builder& builder, const Costs& costs) : builder_(builder), costs_(costs) {}
+    Collapse(const bvh2::Builder& builder, const Costs& costs) : builder_(builder), kernels_(bvh2::kernels()), costs_(costs) {}
 
     // For every task as soon as it is built, on any thread.
     void decide_task(const bvh2::Task& task) const;
@@ -59,6 +59,7 @@ class Collapse {
     void gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next) const;
 
     const bvh2::Builder& builder_;
+    const bvh2::Kernels& kernels_;
     const Costs costs_;
 };
 
