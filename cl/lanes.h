@@ -40,8 +40,14 @@ typedef RT_CAT(int, RT_LANES) vmask;
 #define rt_select(m, a, b) ((m) ? (a) : (b))
 #define rt_vfloat(x) ((vfloat)(x))
 #define rt_vint(x) ((vint)(x))
-#define rt_load(p) RT_CAT(vload, RT_LANES)(0, p)
-#define rt_store(v, p) RT_CAT(vstore, RT_LANES)(v, 0, p)
+/* From and to arrays of floats or ints, which need not be aligned. PoCL's vload and vstore go by quarters. */
+typedef vfloat rt_unaligned_vfloat __attribute__((aligned(4)));
+typedef vint rt_unaligned_vint __attribute__((aligned(4)));
+RT_INLINE __attribute__((overloadable)) vfloat rt_load(const float *p) { return *(const rt_unaligned_vfloat *)p; }
+RT_INLINE __attribute__((overloadable)) vint rt_load(const int *p) { return *(const rt_unaligned_vint *)p; }
+RT_INLINE __attribute__((overloadable)) void rt_store(vfloat v, float *p) { *(rt_unaligned_vfloat *)p = v; }
+RT_INLINE __attribute__((overloadable)) void rt_store(vint v, int *p) { *(rt_unaligned_vint *)p = v; }
+RT_INLINE __attribute__((overloadable)) void rt_store(vfloat v, global float *p) { *(global rt_unaligned_vfloat *)p = v; }
 #define rt_to_float(v) RT_CAT(convert_float, RT_LANES)(v)
 #define rt_to_int(v) RT_CAT(RT_CAT(convert_int, RT_LANES), _rtz)(v)
 #define rt_as_vint(v) RT_CAT(as_int, RT_LANES)(v)
@@ -84,11 +90,51 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #endif
 
-/* One instruction each; fmin and fmax have to look for NaN and take three. */
+/* One instruction each. On a CPU fmin and fmax have to look for NaN and take three; a GPU has them as one, but a comparison and
+ * a choice as two: an eighth of all rays' time. */
+#if RT_CPU
 #define rt_min(a, b) ((a) < (b) ? (a) : (b))
 #define rt_max(a, b) ((a) > (b) ? (a) : (b))
+#else
+#define rt_min(a, b) fmin(a, b)
+#define rt_max(a, b) fmax(a, b)
+#endif
 
 #define RT_INFINITY ((vfloat)(INFINITY))
+
+/* Says nothing of v to the compiler: what is worked out from it is neither done ahead of where it stands nor again later.
+ * Left to itself it prepares what single rays would need in every packet, and spreads scalars anew in every node. */
+#if !defined(RT_PORTABLE) && defined(__x86_64__)
+#define RT_OPAQUE(v) __asm__("" : "+v"(v))
+#else
+#define RT_OPAQUE(v) ((void)0)
+#endif
+
+/* The greatest lane, as a scalar. */
+#if RT_LANES == 1
+#define rt_greatest(v) (v)
+#else
+RT_INLINE float rt_greatest4(float4 v)
+{
+    const float2 pair = rt_max(v.lo, v.hi);
+    return rt_max(pair.x, pair.y);
+}
+#if RT_LANES == 4
+#define rt_greatest(v) rt_greatest4(v)
+#elif RT_LANES == 8
+#define rt_greatest(v) rt_greatest4(rt_max((v).lo, (v).hi))
+#else
+RT_INLINE float rt_greatest(float16 v)
+{
+    const float8 half_of = rt_max(v.lo, v.hi);
+    return rt_greatest4(rt_max(half_of.lo, half_of.hi));
+}
+#endif
+
+/* Of the lanes in a mask. */
+#define rt_greatest_of(mask, v) rt_greatest(rt_select(mask, v, rt_vfloat(-MAXFLOAT)))
+#define rt_least_of(mask, v) (-rt_greatest_of(mask, -(v)))
+#endif
 
 /* Debug builds stop a traversal whose stack would overflow and count it; see CONTRACT.md. */
 #ifdef RT_DEBUG

@@ -2,9 +2,10 @@
  *
  * A block is RT_LANES rays side by side, field by field: RT_LANES floats origin x, then y, z, t_min, direction x, y, z, t_max.
  * Every load is one aligned vector; gathering from rays one after the other costs 15 to 20 clocks a ray. With one lane a block
- * is an rt_ray. Answers likewise: t, u, v, prim, instance, and three fields more that only counting programs write; with one
- * lane a block is an rt_hit. Any hit: t alone, RT_LANES floats a block, but in counting programs. The last block is filled up
- * with inactive rays by the host, who packs and unpacks in host/render/ray_blocks.cpp. */
+ * is an rt_ray. Answers likewise, as many fields as were asked for: RT_ANSWER_ALL are t, u, v, prim, instance and three more that
+ * only counting programs write, and with one lane a block of them is an rt_hit; RT_ANSWER_NEAREST are t and prim,
+ * RT_ANSWER_OCCLUSION is t. The last block is filled up with inactive rays by the host, who packs and unpacks in
+ * host/render/ray_blocks.cpp. */
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
 
@@ -34,14 +35,21 @@ RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays
 #endif
 }
 
-/* Any hit: 0 where the ray is occluded. */
-RT_INLINE void rt_store_occlusion(global float *blocks, uint block, vfloat t)
-{
-    ((global vfloat *)blocks)[block] = t;
-}
+/* Nobody reads the answers soon: a CPU need not fetch what it overwrites, nor keep it. */
+#if RT_CPU && RT_LANES > 1 && defined(__has_builtin) && __has_builtin(__builtin_nontemporal_store)
+#define RT_STREAM(out, v) __builtin_nontemporal_store(v, out)
+#else
+#define RT_STREAM(out, v) (*(out) = (v))
+#endif
 
-RT_INLINE void rt_store_hit_block(global float *blocks, uint block, const rt_hits *hit)
+RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields, const rt_hits *hit)
 {
+    global vfloat *few = (global vfloat *)blocks + fields * (size_t)block;
+    if (fields != RT_ANSWER_ALL) {
+        RT_STREAM(few, hit->t);
+        if (fields == RT_ANSWER_NEAREST) RT_STREAM(few + 1, rt_as_vfloat(hit->prim));
+        return;
+    }
 #if RT_LANES == 1
     global float4 *out = (global float4 *)blocks + 2u * (size_t)block;
     out[0] = (float4)(hit->t, hit->u, hit->v, as_float(hit->prim));
@@ -51,7 +59,7 @@ RT_INLINE void rt_store_hit_block(global float *blocks, uint block, const rt_hit
     out[1] = (float4)(as_float(hit->instance), 0.0f, 0.0f, 0.0f);
 #endif
 #else
-    global vfloat *out = (global vfloat *)blocks + RT_HIT_FIELDS * (size_t)block;
+    global vfloat *out = few;
     out[0] = hit->t;
     out[1] = hit->u;
     out[2] = hit->v;

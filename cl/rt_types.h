@@ -139,7 +139,10 @@ typedef struct rt_hit {
     rt_u32 lane_steps; /* over the nodes visited, the rays that were in the node */
 } rt_hit;
 #define RT_RAY_FIELDS 8u
-#define RT_HIT_FIELDS 8u
+/* Fields of an answer, see ray_blocks.h. */
+#define RT_ANSWER_OCCLUSION 1u
+#define RT_ANSWER_NEAREST 2u
+#define RT_ANSWER_ALL 8u
 
 /* One ray of the tree behind a pixel. 96 B. */
 typedef struct rt_ray_record {

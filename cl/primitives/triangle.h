@@ -5,18 +5,18 @@
  * rounding is monotone, so its sign is right or it is zero, and the two triangles at an edge compute it from the same numbers.
  * A zero counts as inside, so no ray passes between triangles that share corners; Woop's double-precision fallback would only
  * decide which of the two gets it. */
-RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
-{
-#pragma OPENCL FP_CONTRACT OFF
 #if RT_CPU
 #define RT_CORNER(corner, k) leaf->corner[k]
-    const uint prim = leaf->prim;
+#define RT_PRIM leaf->prim
+RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 #else
-#define RT_CORNER(corner, k) quad_##corner.s##k
-    const global float4 *quads = (const global float4 *)leaf; /* three 16-byte loads */
-    const float4 quad_a = quads[0], quad_b = quads[1], quad_c = quads[2];
-    const uint prim = as_uint(quad_c.s3);
+#define RT_CORNER(corner, k) leaf->corner.s##k
+#define RT_PRIM as_uint(leaf->c.s3)
+RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 #endif
+{
+#pragma OPENCL FP_CONTRACT OFF
+    const uint prim = RT_PRIM;
     /* Corners across the ray (x, y) and along it (z, in units of the dominant axis), from corner to origin: the sign of the edge
      * functions does not mind, and o - corner takes the corner straight from memory. */
     vfloat ax, ay, az, bx, by, bz, cx, cy, cz;
@@ -78,3 +78,25 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const
     RT_FN(rt_record)(h, closer, t, v * scale, w * scale, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, prim);
 }
 #undef RT_CORNER
+#undef RT_PRIM
+
+#if !RT_CPU
+RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+{
+    const rt_loaded_leaf loaded = rt_load_leaf(leaf);
+    RT_FN(rt_hit_loaded_triangle)(&loaded, at, r, h);
+}
+#endif
+
+/* A triangle whose record the traversal has fetched, of the group that is traversed. */
+#if RT_LANES == 1
+RT_INLINE void RT_FN(rt_loaded_leaf)(const rt_ctx *ctx, const rt_loaded_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+{
+    RT_COUNT_LEAF(h);
+#if RT_CPU
+    RT_FN(rt_hit_triangle)(ctx->leaves + at, at, r, h);
+#else
+    RT_FN(rt_hit_loaded_triangle)(leaf, at, r, h);
+#endif
+}
+#endif

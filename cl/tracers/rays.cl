@@ -1,6 +1,6 @@
 /* rays.cl -- rays that the host brings, a block of RT_LANES at a time: for tests and benches. Memory: ray_blocks.h. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit,
+trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit, const uint fields,
            const global float *rays, global float *answers, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
@@ -26,13 +26,9 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
         }
         if (any_hit) {
             hit.t = rt_select(active & RT_MASK(hit.t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
-#ifndef RT_COUNT_STEPS
-            rt_store_occlusion(answers, block, hit.t);
-            continue;
-#endif
         } else {
             hit.t = rt_select(RT_MASK(hit.prim >= rt_vint(0)), hit.t, RT_INFINITY);
         }
-        rt_store_hit_block(answers, block, &hit);
+        rt_store_hit_block(answers, block, fields, &hit);
     }
 }

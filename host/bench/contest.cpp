@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "bench/analysis.hpp"
 #include "bench/bench.hpp"
+#include "bench/breakdown.hpp"
 #include "bench/machine.hpp"
 #include "bench/row.hpp"
 #include "bench/versus.hpp"
@@ -111,6 +112,11 @@ class Contest {
             return;
         }
         guarded(entry, [&](BenchRecord&) {
+            if (case_.measure == "breakdown") {
+                const View view = case_.mirrors ? whitted_view(*stand_.scene(), stand_.view()) : stand_.view();
+                measure_breakdown(row, stand_, device, settings, view, rules_, progress_);
+                return;
+            }
             const Stand::Held held = stand_.prepare(device, settings, progress_);
             const Prepared& prepared = *held.prepared;
             describe(row, prepared);
@@ -134,12 +140,11 @@ class Contest {
     }
 
     void add_frame(Entry& entry, const Settings& settings, const Stand::Held& held) {
-        const auto pixels = std::make_shared<std::vector<uint8_t>>(4 * size_t(settings.width) * settings.height);
         const auto kernels = std::make_shared<std::map<std::string, std::vector<double>>>();
         entry.once = [=] {
             const auto begin = Clock::now();
             FrameStats stats = held.frames->trace(*held.prepared, settings, stand_.view(), 0, false, progress_);
-            held.frames->read_display(settings, pixels->data(), &stats);
+            held.frames->look_at_display(settings, &stats);
             const Take take{stats.device_ms, ms_since(begin)};
             for (const KernelTime& kernel : stats.kernels) (*kernels)[kernel.name].push_back(kernel.ms);
             return take;
@@ -173,7 +178,7 @@ class Contest {
         if (!packed) packed = std::make_shared<const RayBlocks>(set.rays, lanes);
         entry.once = [=, &set, blocks = packed] {
             Take take;
-            take.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false});
+            take.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
             return take;
         };
         entry.finish = [=, &set](BenchRecord& row) {

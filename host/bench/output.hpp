@@ -15,7 +15,9 @@ std::string bench_csv(const BenchReport& report);
 BenchReport read_bench_json(const std::string& text);
 // One table a suite and measure, at most 120 columns wide.
 std::string bench_table(const BenchReport& report);
-// Of these, ours by the best of the peers.
+// Of these, where the time of frames goes.
+std::string breakdown_table(const BenchReport& report);
+// And ours by the best of the peers.
 std::string versus_table(const BenchReport& report);
 
 }  // namespace clarity

@@ -13,10 +13,19 @@ std::string kernels_text(const Json& kernels) {
     return text;
 }
 
+std::string parts_text(const Json& parts) {
+    std::string text;
+    if (parts.is_array())
+        for (const Json& part : parts)
+            text += (text.empty() ? "" : "; ") + part.at("part").get<std::string>() + " " + part.at("ms").dump();
+    return text;
+}
+
 // Values by their paths, "/run/clock_mhz/before".
 Json flat(const BenchReport& report, const BenchRecord& record) {
     Json json = record_json(report, record);
     json["kernels_ms"] = kernels_text(json["kernels_ms"]);
+    for (const char* key : {"parts_ms", "within_ms"}) json[key] = parts_text(json[key]);
     return json.flatten();
 }
 

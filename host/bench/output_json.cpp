@@ -123,6 +123,25 @@ Analysis read_analysis(const Json& json) {
     return a;
 }
 
+Json parts_json(const Parts& parts) {
+    if (parts.empty()) return nullptr;
+    Json json = Json::array();  // an order that an object would not keep
+    for (const auto& [name, ms] : parts) json.push_back({{"part", name}, {"ms", number(ms)}});
+    return json;
+}
+
+Parts read_parts(const Json& json, const char* key) {
+    Parts parts;
+    const auto at = json.find(key);
+    if (at != json.end() && at->is_array())
+        for (const Json& one : *at) {
+            parts.emplace_back();
+            get(one, "part", parts.back().first);
+            get(one, "ms", parts.back().second);
+        }
+    return parts;
+}
+
 Json versus_json(const BenchRecord& r, const std::vector<VersusMean>& means) {
     const VersusMean* mean = mean_of(means, r);
     if (!mean) return nullptr;
@@ -203,6 +222,9 @@ BenchRecord read_record(const Json& json) {
     get(part(json, "versus"), "peer", r.versus.peer);
     get(part(json, "versus"), "ratio", r.versus.ratio);
     get(part(json, "versus"), "bytes_ratio", r.versus.bytes_ratio);
+    r.parts_ms = read_parts(json, "parts_ms");
+    r.within_ms = read_parts(json, "within_ms");
+    get(json, "parts_error_ms", r.parts_error_ms);
     r.analysis = read_analysis(part(json, "analysis"));
     const Json kernels = part(json, "kernels_ms");
     for (const auto& [name, ms] : kernels.items()) r.kernels_ms.emplace_back(name, ms.get<double>());
@@ -262,6 +284,9 @@ Json record_json(const BenchReport& report, const BenchRecord& r) {
     json["sah_cost"] = figure(r.sah_cost);
     json["versus"] = shown ? versus_json(r, versus_means(report)) : Json();
     json["analysis"] = shown ? analysis_json(r.analysis) : Json();
+    json["parts_ms"] = shown ? parts_json(r.parts_ms) : Json();
+    json["within_ms"] = shown ? parts_json(r.within_ms) : Json();
+    json["parts_error_ms"] = shown && !r.parts_ms.empty() ? number(r.parts_error_ms) : Json();
     json["kernels_ms"] = nullptr;
     if (shown && !r.kernels_ms.empty()) json["kernels_ms"] = Json::object();
     if (shown)

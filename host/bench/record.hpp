@@ -31,6 +31,9 @@ struct Analysis {
     unsigned node_bytes = 0;
 };
 
+// Names and ms, in an order that means something.
+using Parts = std::vector<std::pair<std::string, double>>;
+
 // Ours by the fastest row of a peer in the same case.
 struct Versus {
     std::string peer;        // which; "": there was none
@@ -40,10 +43,10 @@ struct Versus {
 
 struct BenchRecord {
     // ---- what
-    std::string suite;      // thesis | packets | accel | scale | cpu | quick
+    std::string suite;      // thesis | packets | accel | scale | cpu | quick | breakdown
     std::string case_name;  // "bunny/primary"; rows of one case were measured A B A B, so they may be compared
     std::string scene;      // "bunny"
-    std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped
+    std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown
     std::string variant;    // tells the rows of a case apart on one device: "now", "then", "bvh2", "4x4, 16 lanes"
     std::string peer;       // "" for ours, else "embree packet16 high"
 
@@ -82,6 +85,10 @@ struct BenchRecord {
     Versus versus;
     Analysis analysis;
     std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
+
+    Parts parts_ms;             // breakdown: they add up to the frame
+    Parts within_ms;            // of these
+    double parts_error_ms = 0;  // half of the middle half's width, of the least steady of what they come from
 
     size_t run = 0;  // 0: BenchReport::run, else joined[run - 1]
 

@@ -52,6 +52,10 @@ const DeviceInfo& Stand::device(size_t i) const {
     return places_[i]->device->info();
 }
 
+const std::shared_ptr<Device>& Stand::opened(size_t i) const {
+    return places_[i]->device;
+}
+
 unsigned Stand::peer_threads() const {
     for (const auto& place : places_)
         if (place->device->info().cpu) return place->device->info().compute_units;

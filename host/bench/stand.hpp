@@ -19,6 +19,7 @@ class Stand {
 
     size_t device_count() const { return places_.size(); }
     const DeviceInfo& device(size_t i) const;
+    const std::shared_ptr<Device>& opened(size_t i) const;
     // Threads of peers: as many as the first CPU among the devices has. 0: there is none, and no peers then.
     unsigned peer_threads() const;
 

@@ -28,7 +28,8 @@ class Planner {
 
     Suite plan() {
         for (const std::string& name : request_.suites) add(name);
-        if (request_.suites.empty() && !request_.files.empty()) accel("accel", chosen_or({}), true);
+        if (request_.breakdown) breakdown();
+        if (request_.suites.empty() && !request_.files.empty() && !request_.breakdown) accel("accel", chosen_or({}), true);
         if (request_.time_limit_s > 0) suite_.time_limit_s = request_.time_limit_s;
         keep_only();
         return std::move(suite_);
@@ -94,7 +95,7 @@ class Planner {
     }
 
     // The structure that a suite about something else uses.
-    std::string main_accel() const { return request_.accels.empty() ? "bvh2" : request_.accels.front(); }
+    std::string main_accel() const { return request_.accels.empty() ? Settings().accel : request_.accels.front(); }
 
     std::vector<Variant> every_accel() const {
         std::vector<Variant> variants;
@@ -215,6 +216,21 @@ class Planner {
                 if (!request_.peers) continue;
                 c.peer_qualities = {"medium"};
                 if (c.measure != "build") c.peer_qualities.push_back("high");
+            }
+    }
+
+    // Scenes of a person as they are; the shared models, which mirror nothing, as the frame that peers render.
+    void breakdown() {
+        const std::vector<size_t> scenes = chosen_or(request_.files.empty() ? catalog_.shared() : std::vector<BenchScene>());
+        limit(100.0 * double(scenes.size()));
+        for (const size_t scene : scenes)
+            for (const char* measure : {"breakdown", "primary", "shadow", "reflection"}) {
+                BenchCase& c = add_case("breakdown", scene, measure, measure);
+                c.variants = {{main_accel(), main_accel(), {}, false}};
+                if (request_.accels.size() > 1) c.variants = every_accel();
+                c.timing = c.measure == "breakdown" ? Timing::timed : Timing::counted_only;
+                c.mirrors = request_.files.empty();
+                for (Variant& variant : c.variants) variant.settings.emplace_back("tracer", "iterative");
             }
     }
 

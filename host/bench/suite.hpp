@@ -19,6 +19,7 @@ struct BenchRequest {
     uint64_t max_triangles = 10'000'000;                        // of the suite scale
     double time_limit_s = 0;                                    // of everything; 0: what the suites want
     bool peers = true;
+    bool breakdown = false;  // where a frame's time goes; besides the suites
 };
 
 struct SuiteScene {
@@ -38,11 +39,12 @@ enum class Timing { timed, counted_only };
 
 struct BenchCase {
     std::string suite, name;
-    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped
+    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown
     size_t scene = 0;     // of Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> peer_qualities;  // of peers, where they can trace the scene
     Timing timing = Timing::timed;
+    bool mirrors = false;  // breakdown: of the frame that peers render, whatever the scene's materials
 };
 
 struct Suite {

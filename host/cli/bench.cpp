@@ -44,6 +44,7 @@ BenchRequest make_request(const BenchCommand& command) {
         if (key == "aov" && value != "color") throw Error(Exit::usage, "--aov " + value + ": frames are timed in colour only");
     }
     request.only = command.only;
+    request.breakdown = command.breakdown;
     request.max_triangles = command.max_triangles;
     request.time_limit_s = command.time_limit_s;
     request.peers = !command.no_peers;
@@ -135,7 +136,7 @@ void write(const BenchCommand& command, const BenchReport& report) {
 
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command) {
     const BenchRequest request = make_request(command);
-    if (request.suites.empty() && request.files.empty() && command.join_files.empty())
+    if (request.suites.empty() && request.files.empty() && !request.breakdown && command.join_files.empty())
         throw Error(Exit::usage, "bench: name a suite (thesis, packets, accel, scale, cpu, quick) or a scene file");
     check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);

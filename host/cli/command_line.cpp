@@ -96,7 +96,7 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
         ->type_name("D");
     single(app.add_option("--accel", trace.accel, "Acceleration structure with its parameters (`clarity plugins` lists them)"))
         ->type_name("ID[,key=value...]")
-        ->default_str("bvh2");
+        ->default_str("bvh8, on a GPU bvh4");
     single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or where it stands and looks"))
         ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
     single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");
@@ -150,6 +150,8 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("--only", bench.only, "Only cases with this in their name, such as bunny/ or /shadow; may be repeated")
         ->type_name("TEXT")
         ->allow_extra_args(false);
+    app.add_flag("--breakdown", bench.breakdown,
+                 "Where the time of a frame goes: of the scenes named, or of the shared models as half mirrors");
     app.add_flag("--list", bench.list, "Only list what would be measured");
     app.add_flag("--no-peers", bench.no_peers, "Leave other people's ray tracers out");
     single(app.add_option("--time-limit", bench.time_limit_s, "For everything; without it what the suites are made for"))

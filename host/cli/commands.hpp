@@ -20,7 +20,7 @@ struct SceneOptions {
 // What render and view share.
 struct TraceOptions {
     std::string device;                                         // "": CLARITY_DEVICE, else the best
-    std::string accel;                                          // ID[,key=value...]; "": the preset's, else bvh2
+    std::string accel;                                          // ID[,key=value...]; "": the preset's, else usual_accel()
     std::vector<std::string> sets;                              // key=value, in the order given
     std::vector<std::pair<std::string, std::string>> settings;  // from options of their own; they win over `sets`
     std::string camera, light;                                  // as make_view reads them
@@ -65,6 +65,7 @@ struct BenchCommand {
     bool list = false, no_peers = false, quiet = false;
     double time_limit_s = 0, max_spread = 0.1;
     std::vector<std::string> only;
+    bool breakdown = false;
     uint64_t max_triangles = 10'000'000;
     ImportOptions import;
     std::string text;  // of the command line

@@ -1,6 +1,7 @@
 #include "render/accel_choice.hpp"
 
 #include "base/error.hpp"
+#include "device/device.hpp"
 #include "plugin/parameters.hpp"
 
 namespace clarity {
@@ -23,6 +24,16 @@ void choose_accel(const PluginRegistry& plugins, const std::string& text, Settin
     settings.accel = choice.id;
     settings.accel_params = default_parameters(*plugin);
     for (const auto& [key, value] : choice.settings) set_parameter(*plugin, settings.accel_params, key, value);
+}
+
+std::string usual_accel(const PluginRegistry& plugins, const std::string& device) {
+    const std::string otherwise = Settings().accel, on_gpu = "bvh4";
+    if (!plugins.accel(on_gpu)) return otherwise;
+    try {
+        return choose_device(device).cpu ? otherwise : on_gpu;
+    } catch (const Error&) {
+        return otherwise;  // whoever opens the device says what is wrong with it
+    }
 }
 
 }  // namespace clarity

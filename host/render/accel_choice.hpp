@@ -10,4 +10,8 @@ namespace clarity {
 // Sets accel and accel_params. Throws Error(usage) for an unknown structure, listing those there are, or parameter.
 void choose_accel(const PluginRegistry& plugins, const std::string& text, Settings& settings);
 
+// What a device traces fastest over all scenes that were measured (docs/performance.md). device: as --device has it; where it
+// names none or several, or the plugin is missing, the default of Settings.
+std::string usual_accel(const PluginRegistry& plugins, const std::string& device);
+
 }  // namespace clarity

@@ -15,9 +15,15 @@ cl_uint number_of_tone(const std::string& tone) {
     return numbers.at(tone);
 }
 
+void add_times(std::vector<KernelTime>* times, const cl::Event& mapped, const cl::Event& read) {
+    if (!times) return;
+    times->push_back({"tone map", event_ms(mapped)});
+    times->push_back({"read-back", event_ms(read)});
+}
+
 }  // namespace
 
-FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(std::move(device)) {
+FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), picture_(device) {
     const BuildResult built =
         build_program(*device_, "#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film");
     guarded(*device_, "preparing the film", [&] {
@@ -42,22 +48,35 @@ RayCounts FilmKernels::sum(const cl::Buffer& counters, unsigned packets, KernelT
     return {sums[0], sums[1], sums[2], sums[3]};
 }
 
-void FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba,
-                       std::vector<KernelTime>* times) {
-    cl::CommandQueue& queue = device_->queue();
+cl::Event FilmKernels::map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings) {
+    if (device_->info().cpu) picture_.release();  // it is the display itself
     const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
     const size_t items = (room(pixels) / kPixelsAtOnce + 63) / 64 * 64;
-    cl::Event mapped, read;
+    cl::Event mapped;
     map_tones_.setArg(0, film);
     map_tones_.setArg(1, display);
     map_tones_.setArg(2, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce));
     map_tones_.setArg(3, static_cast<float>(settings.exposure));
     map_tones_.setArg(4, number_of_tone(settings.tone));
-    queue.enqueueNDRangeKernel(map_tones_, cl::NullRange, cl::NDRange(items), cl::NDRange(64), nullptr, &mapped);
-    queue.enqueueReadBuffer(display, CL_TRUE, 0, pixels * 4, rgba, nullptr, &read);
-    if (!times) return;
-    times->push_back({"tone map", event_ms(mapped)});
-    times->push_back({"read-back", event_ms(read)});
+    device_->queue().enqueueNDRangeKernel(map_tones_, cl::NullRange, cl::NDRange(items), cl::NDRange(64), nullptr, &mapped);
+    return mapped;
+}
+
+void FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba,
+                       std::vector<KernelTime>* times) {
+    const cl::Event mapped = map_tones(film, pixels, settings);
+    cl::Event read;
+    device_->queue().enqueueReadBuffer(display_.get(), CL_TRUE, 0, pixels * 4, rgba, nullptr, &read);
+    add_times(times, mapped, read);
+}
+
+const uint8_t* FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings,
+                                 std::vector<KernelTime>* times) {
+    const cl::Event mapped = map_tones(film, pixels, settings);
+    cl::Event read;
+    const uint8_t* rgba = picture_.fetch(display_.get(), pixels * 4, &read);
+    add_times(times, mapped, read);
+    return rgba;
 }
 
 }  // namespace clarity

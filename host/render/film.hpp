@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "render/growing_buffer.hpp"
+#include "render/host_picture.hpp"
 #include "render/renderer.hpp"
 
 namespace clarity {
@@ -23,12 +24,17 @@ class FilmKernels {
     RayCounts sum(const cl::Buffer& counters, unsigned packets, KernelTime& time);
     // film: room(pixels) float4, sums of samples. rgba: 4 * pixels bytes. Adds its times.
     void show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
+    // The same in memory of the device's own, which stays until the next call of either.
+    const uint8_t* show(const cl::Buffer& film, size_t pixels, const Settings& settings, std::vector<KernelTime>* times);
 
  private:
+    cl::Event map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings);
+
     std::shared_ptr<Device> device_;
     cl::Program program_;
     cl::Kernel map_tones_, sum_counters_;
     GrowingBuffer display_{CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR}, sums_{CL_MEM_READ_WRITE};
+    HostPicture picture_;  // goes before what it shows
 };
 
 }  // namespace clarity

@@ -68,6 +68,7 @@ struct Frames::Impl {
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
     Launcher launcher;
+    std::vector<uint8_t> false_picture;
     std::vector<float> scratch;  // kept: fresh pages cost more than what is done with them
 
     // Waits for all that is queued.
@@ -208,6 +209,20 @@ FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, Fr
         im.film_kernels.show(im.film.get(), size_t(im.width) * im.height, settings, rgba, stats ? &stats->kernels : nullptr);
     });
     return {};
+}
+
+const uint8_t* Frames::look_at_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
+    Impl& im = *impl_;
+    const size_t pixels = size_t(im.width) * im.height;
+    if (im.aov != "color") {
+        im.false_picture.resize(pixels * 4);
+        const FalseColorScale found = read_display(settings, im.false_picture.data(), stats);
+        if (scale) *scale = found;
+        return im.false_picture.data();
+    }
+    if (scale) *scale = {};
+    return guarded(*im.device, "reading the picture",
+                   [&] { return im.film_kernels.show(im.film.get(), pixels, settings, stats ? &stats->kernels : nullptr); });
 }
 
 std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

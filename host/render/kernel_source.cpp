@@ -67,17 +67,35 @@ void context(std::ostream& out, const rt_accel& accel) {
 struct Template {
     const std::string &file, &text;
     bool cpu;
+    bool leaves_twice;  // for measuring what they take
+    bool instances;
 };
 void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
-    out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n";
+    out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
+        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n";
+    define_int(out, "RT_TRIANGLES_ONLY", !mixed);
     if (plugin.cpu) {
-        out << "#define RT_LONE_LEAVES RT_FN(" << leaf << "_lone)\n";
+        out << "#define RT_LONE_CANDIDATES RT_FN(" << leaf << "_candidates)\n#define RT_LONE_TEST RT_FN(" << leaf << "_lone)\n";
         define_int(out, "RT_LONE_MIXED", mixed);
         include(out, "leaf_lone.h");
     }
+    if (plugin.leaves_twice) {
+        out << "#define RT_LEAF_ONCE RT_FN(" << leaf << ")\n#undef RT_LEAF\n#define RT_LEAF RT_FN(" << leaf << "_twice)\n";
+        if (plugin.cpu)
+            for (const char* step : {"CANDIDATES", "TEST"}) {
+                const std::string name = "RT_LONE_" + std::string(step),
+                                  once = leaf + (step == std::string("TEST") ? "_lone" : "_candidates");
+                out << "#define " << name << "_ONCE RT_FN(" << once << ")\n#undef " << name << "\n#define " << name << " RT_FN("
+                    << once << "_twice)\n";
+            }
+        define_int(out, "RT_LEAF_INSTANCES", mixed && plugin.instances);
+        include(out, "leaf_twice.h");
+        out << "#undef RT_LEAF_ONCE\n#undef RT_LONE_CANDIDATES_ONCE\n#undef RT_LONE_TEST_ONCE\n#undef RT_LEAF_INSTANCES\n";
+    }
     out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
     part(out, plugin.file, plugin.text);
-    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LONE_LEAVES\n#undef RT_LONE_MIXED\n";
+    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n#undef RT_LONE_CANDIDATES\n"
+           "#undef RT_LONE_TEST\n#undef RT_LONE_MIXED\n";
 }
 
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const Template& plugin) {
@@ -133,8 +151,8 @@ Layout make_layout(const Settings& settings, bool cpu) {
                                      " at most: take a smaller packet or fewer ray slots");
     layout.max_pixels = 1;
     while (layout.max_pixels < pixels) layout.max_pixels *= 2;
-    layout.cpu = cpu;
-    if (!cpu) return layout;  // a group is 64 neighbours, of which a warp has 8x4
+    layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // so that tests without a GPU see what GPUs run
+    if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
     // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
     layout.group_w = layout.group_h = 4;
     layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));
@@ -142,7 +160,7 @@ Layout make_layout(const Settings& settings, bool cpu) {
 }
 
 KernelSource assemble_kernel(const Settings& settings, const Layout& layout, KernelKind kind, const SceneFeatures& features,
-                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines) {
+                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines, FramePart frame_part) {
     std::ostringstream out;
     define_int(out, "RT_LANES", layout.lanes);
     define_int(out, "RT_MAX_PIXELS", layout.max_pixels);
@@ -168,6 +186,11 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
         case KernelKind::color:
             kernel_file = "tracers/" + settings.tracer + ".cl";
             source.entry = "trace_" + settings.tracer;
+            if (frame_part < FramePart::whole) {
+                define_int(out, "RT_PART", std::min(static_cast<unsigned>(frame_part), 2u));
+                kernel_file = "tracers/parts.cl";
+                source.entry = "trace_parts";
+            }
             break;
         case KernelKind::aov: {
             static const std::map<std::string, unsigned> numbers = {{"t", 1},  {"prim", 2},  {"instance", 3},   {"normal", 4},
@@ -201,13 +224,16 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "rt_types.h");
     include(out, "lanes.h");
     include(out, "rays.h");
-    if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
-    context(out, *accel.accel);
+    include(out, "loaded_leaf.h");
     if (layout.cpu)
         for (const char* name : {"lone.h", "primitives/triangle_row.h"}) include(out, name);
+    if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
+    context(out, *accel.accel);
     const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
-    const Template plugin{file, text, layout.cpu};
+    Template plugin{file, text, layout.cpu, false, features.instances};
+    plugin.leaves_twice = frame_part == FramePart::closest_twice || frame_part == FramePart::whole_closest_twice;
     query(out, false, features, plugin);
+    plugin.leaves_twice = frame_part == FramePart::whole_any_twice;
     if (kind != KernelKind::aov) query(out, true, features, plugin);
     include(out, "vec.h");
     include(out, "surface.h");

@@ -18,6 +18,10 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 // generations: the tracer of color, whose picture is how many generations of rays each pixel has.
 enum class KernelKind { color, generations, aov, rays, counted_rays, inspect };
 
+// How much of a frame a program of kind `color` does; see frame_parts.hpp. The first three are its beginning: the film alone,
+// camera rays, their nearest hits. twice: leaf tests are done twice, which changes no picture.
+enum class FramePart { film, rays, closest, closest_twice, whole, whole_closest_twice, whole_any_twice };
+
 // How a picture is cut. The first four are compiled in, the rest are numbers of the frame.
 struct Layout {
     unsigned lanes = 1;
@@ -42,6 +46,7 @@ struct KernelSource {
     std::string text, options, entry;  // entry: name of the kernel
 };
 KernelSource assemble_kernel(const Settings& settings, const Layout& layout, KernelKind kind, const SceneFeatures& features,
-                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines);
+                             const rt_plugin& accel, const std::map<std::string, rt_u32>& defines,
+                             FramePart part = FramePart::whole);
 
 }  // namespace clarity

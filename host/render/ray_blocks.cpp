@@ -9,7 +9,7 @@ namespace clarity {
 namespace {
 
 constexpr size_t kChunk = 16384;  // rays of one task; a multiple of all lane counts
-static_assert(sizeof(rt_ray) == RT_RAY_FIELDS * sizeof(float) && sizeof(rt_hit) == RT_HIT_FIELDS * sizeof(float),
+static_assert(sizeof(rt_ray) == RT_RAY_FIELDS * sizeof(float) && sizeof(rt_hit) == RT_ANSWER_ALL * sizeof(float),
               "rays and hits are fields of four bytes");
 
 template <class Work>
@@ -35,21 +35,21 @@ RayBlocks::RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes) : ray_coun
     });
 }
 
-std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_count, unsigned lanes, bool occlusion,
+std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_count, unsigned lanes, rt_u32 fields,
                                 bool counted) {
     std::vector<rt_hit> hits(ray_count);
-    const size_t stride = answer_fields(occlusion);
     for_chunks(ray_count, [&](size_t first, size_t end) {
         for (size_t i = first; i < end; ++i) {
-            const float* block = &answers[i / lanes * lanes * stride] + i % lanes;
+            const float* block = &answers[i / lanes * lanes * fields] + i % lanes;
             rt_hit& hit = hits[i];
-            if (occlusion) {
+            if (fields != RT_ANSWER_ALL) {
                 hit = {*block, 0, 0, -1, -1, 0, 0, 0};
+                if (fields == RT_ANSWER_NEAREST) std::memcpy(&hit.prim, block + lanes, sizeof hit.prim);
                 continue;
             }
-            float fields[RT_HIT_FIELDS];
-            for (size_t k = 0; k < RT_HIT_FIELDS; ++k) fields[k] = block[k * lanes];
-            std::memcpy(&hit, fields, sizeof hit);
+            float all[RT_ANSWER_ALL];
+            for (size_t k = 0; k < RT_ANSWER_ALL; ++k) all[k] = block[k * lanes];
+            std::memcpy(&hit, all, sizeof hit);
             if (!counted) hit.steps = hit.leaf_tests = hit.lane_steps = 0;
         }
     });

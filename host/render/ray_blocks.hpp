@@ -22,12 +22,9 @@ class RayBlocks {
     std::vector<float> floats_;
 };
 
-// Of one ray: what a kernel writes. occlusion: the distance alone, as any-hit queries have it without counters.
-inline size_t answer_fields(bool occlusion) {
-    return occlusion ? 1 : RT_HIT_FIELDS;
-}
-// In the order of the rays. answers: of all blocks. counted: whether there are counters in them.
-std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_count, unsigned lanes, bool occlusion,
+// In the order of the rays. answers: of all blocks, `fields` a ray: RT_ANSWER_*; what they lack is 0, numbers -1.
+// counted: whether there are counters in them.
+std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_count, unsigned lanes, rt_u32 fields,
                                 bool counted);
 
 }  // namespace clarity

@@ -15,8 +15,11 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (rays.lanes() != layout.lanes)
             throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
                                           " lanes and the program has " + std::to_string(layout.lanes) + ": pack them anew");
-        const bool occlusion = query.any_hit && !query.count;
-        const size_t slots = rays.block_count() * layout.lanes, fields = answer_fields(occlusion);
+        const cl_uint fields = query.count     ? RT_ANSWER_ALL
+                               : query.any_hit ? RT_ANSWER_OCCLUSION
+                               : query.brief   ? RT_ANSWER_NEAREST
+                                               : RT_ANSWER_ALL;
+        const size_t slots = rays.block_count() * layout.lanes;
         const KernelKind kind = query.count ? KernelKind::counted_rays : KernelKind::rays;
         const KernelSource source =
             assemble_kernel(prepared.settings, layout, kind, features_of(*prepared.scene, prepared.accel->scene),
@@ -36,6 +39,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const cl_uint first_group = at++;
         kernel.setArg(at++, static_cast<cl_uint>(rays.block_count()));
         kernel.setArg(at++, static_cast<cl_uint>(query.any_hit));
+        kernel.setArg(at++, fields);
         kernel.setArg(at++, in);
         kernel.setArg(at++, out);
         view_.bind(*prepared.on_device, kernel, at);
@@ -49,7 +53,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (hits) {
             std::vector<float> answers(slots * fields);
             queue.enqueueReadBuffer(out, CL_TRUE, 0, answers.size() * sizeof(float), answers.data());
-            *hits = unpack_hits(answers, rays.ray_count(), layout.lanes, occlusion, query.count);
+            *hits = unpack_hits(answers, rays.ray_count(), layout.lanes, fields, query.count);
         }
         return times.device_ms;
     });

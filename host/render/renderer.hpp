@@ -94,6 +94,7 @@ struct FrameStats {
 struct RayQuery {
     bool any_hit = false;  // only whether something lies between t_min and t_max
     bool count = false;    // fill in steps, leaf_tests and lane_steps; another, slower program: leave it out to take times
+    bool brief = false;    // only t and prim of the nearest hit: less to write, for timing beside others who write no more
 };
 
 // Owns the film of one device. Used from one thread.
@@ -117,6 +118,9 @@ class Frames {
     // first. stats: where given, gains the times of what this took.
     FalseColorScale read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats = nullptr);
     ByteImage read_display(const Settings& settings);
+    // The same in memory of this object's, which a device fills several times as fast as the caller's; it stays until the next
+    // call of read_display(), look_at_display() or trace().
+    const uint8_t* look_at_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
 
     // Rays of the caller's own, for tests and benches.
     std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

@@ -11,7 +11,7 @@ enum class Effect { frame, recompile, rebuild };
 
 struct Settings {
     // How the scene is held.
-    std::string accel = "bvh2";        // id of an accel plugin
+    std::string accel = "bvh8";        // id of an accel plugin; see usual_accel()
     std::vector<double> accel_params;  // in the order its plugin declares; empty: defaults
     // How it is traced.
     std::string tracer = "iterative";

@@ -1,5 +1,7 @@
 #include "render/view_buffers.hpp"
 
+#include <cstring>
+
 #include "base/error.hpp"
 
 namespace clarity {
@@ -16,20 +18,38 @@ void check_materials(const Scene& scene, const std::vector<rt_material>& materia
                                           std::to_string(scene.textures.size()));
 }
 
-template <class T>
-void upload(cl::CommandQueue& queue, GrowingBuffer& buffer, const T* data, size_t count) {
-    const cl::Buffer& to = buffer.fit(queue.getInfo<CL_QUEUE_CONTEXT>(), count * sizeof(T));
-    if (count) queue.enqueueWriteBuffer(to, CL_TRUE, 0, count * sizeof(T), data);
-}
-
 }  // namespace
 
 void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const rt_frame& frame, const View& view) {
     own_materials_ = !view.materials.empty();
     if (own_materials_) check_materials(scene, view.materials);
-    upload(queue, frame_, &frame, 1);
-    upload(queue, lights_, view.lights.data(), view.lights.size());
-    if (own_materials_) upload(queue, materials_, view.materials.data(), view.materials.size());
+    frame_.write(queue, &frame, sizeof frame);
+    lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
+    if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
+}
+
+void ViewBuffers::Part::write(cl::CommandQueue& queue, const void* data, size_t bytes) {
+    const cl::Buffer before = buffer_.get();
+    const cl::Buffer& to = buffer_.fit(queue.getInfo<CL_QUEUE_CONTEXT>(), bytes);
+    const bool same =
+        to() == before() && written_.size() == bytes && (bytes == 0 || std::memcmp(written_.data(), data, bytes) == 0);
+    if (same || bytes == 0) return;
+    if (on_its_way_()) on_its_way_.wait();
+    const auto* begin = static_cast<const unsigned char*>(data);
+    written_.assign(begin, begin + bytes);
+    try {
+        queue.enqueueWriteBuffer(to, CL_FALSE, 0, bytes, written_.data(), nullptr, &on_its_way_);
+    } catch (const cl::Error&) {
+        written_.clear();
+        throw;
+    }
+}
+
+ViewBuffers::Part::~Part() {
+    try {
+        if (on_its_way_()) on_its_way_.wait();
+    } catch (const cl::Error&) {  // the device is lost: nobody reads any more
+    }
 }
 
 void ViewBuffers::bind(const DeviceScene& scene, cl::Kernel& kernel, cl_uint first) const {

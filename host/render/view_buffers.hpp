@@ -15,7 +15,19 @@ class ViewBuffers {
     void bind(const DeviceScene& scene, cl::Kernel& kernel, cl_uint first) const;
 
  private:
-    GrowingBuffer frame_{CL_MEM_READ_ONLY}, lights_{CL_MEM_READ_ONLY}, materials_{CL_MEM_READ_ONLY};
+    // Sends only what has changed, and does not wait for it: either costs as much as a small frame's kernel.
+    class Part {
+     public:
+        ~Part();
+        void write(cl::CommandQueue& queue, const void* data, size_t bytes);
+        const cl::Buffer& get() const { return buffer_.get(); }
+
+     private:
+        GrowingBuffer buffer_{CL_MEM_READ_ONLY};
+        std::vector<unsigned char> written_;  // read by the device until:
+        cl::Event on_its_way_;
+    };
+    Part frame_, lights_, materials_;
     bool own_materials_ = false;
 };
 

@@ -61,7 +61,7 @@ TEST_F(Render, WritesOnePictureAndItsStatistics) {
          {"device", "accel", "tracer", "depth", "packet", "lanes", "size", "frame_ms", "build_ms", "compile_ms", "import_ms",
           "rays", "mrays_per_s", "dropped_rays", "nodes", "accel_bytes", "triangles"})
         EXPECT_TRUE(stats.contains(key)) << key;
-    EXPECT_EQ(stats["accel"], "bvh2");
+    EXPECT_EQ(stats["accel"], "bvh8");
     EXPECT_EQ(stats["depth"], 3);
     EXPECT_EQ(stats["size"], "64x48");
     EXPECT_EQ(stats["frames_timed"], 3);

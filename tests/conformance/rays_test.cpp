@@ -54,8 +54,9 @@ std::vector<rt_ray> random_rays(const Scene& scene, size_t count, unsigned seed)
 }
 
 void expect_as_oracle(const ScenePtr& scene, const Oracle& oracle, const std::vector<rt_ray>& rays, const std::string& accel,
-                      int lanes, size_t allowed) {
-    const Settings settings = settings_of(accel, lanes);
+                      int lanes, size_t allowed, bool portable = false) {
+    Settings settings = settings_of(accel, lanes);
+    settings.portable = portable;
     const std::vector<rt_hit> closest = bench().rays(scene, settings, rays, false),
                               any = bench().rays(scene, settings, rays, true);
     ASSERT_EQ(closest.size(), rays.size());
@@ -104,6 +105,15 @@ ScenePtr shapes() {
 TEST(Rays, RandomOnesOnShapes) {
     const Oracle oracle(shapes());
     expect_everywhere(shapes(), oracle, random_rays(*shapes(), 20000, 1), 0);
+}
+
+// One lane and `portable`: the program that a GPU runs, on whatever device there is.
+TEST(Rays, AsGpusTraceThem) {
+    for (const ScenePtr& scene : {shapes(), geometry_of(load_scene(source_file("scenes/primitives.scene")))}) {
+        const Oracle oracle(scene);
+        for (const std::string& accel : bench().accels())
+            expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 9), accel, 1, 0, true);
+    }
 }
 
 TEST(Rays, RandomOnesOnEveryPrimitive) {

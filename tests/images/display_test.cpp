@@ -103,6 +103,28 @@ TEST(Display, IntoMemoryOfTheCaller) {
     }
 }
 
+// The same bytes where they lie, from size to size and view to view: nothing of an earlier picture is seen again.
+TEST(Display, InMemoryOfItsOwn) {
+    const char* const eyes[] = {"0,2.5,11,0,2.2,0,50", "3,2.5,9,0,2.2,0,50"};
+    for (const char* size : {"64x48", "5x3", "33x31", "128x96"})
+        for (const char* eye : eyes) {
+            const Settings settings = make_settings({{"size", size}});
+            FrameStats stats = bench().trace(primitives(), settings, make_view(*primitives(), 4.0f / 3, eye));
+            const ByteImage image = bench().frames().read_display(settings);
+            for (int again = 0; again < 2; ++again) {
+                const uint8_t* seen = bench().frames().look_at_display(settings, &stats);
+                EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), seen)) << size << " from " << eye;
+            }
+            EXPECT_EQ(stats.kernels.size(), 6u);
+        }
+    const Settings steps = make_settings({{"size", "64x48"}, {"aov", "steps"}});
+    bench().trace(primitives(), steps, make_view(*primitives(), 4.0f / 3));
+    const ByteImage image = bench().frames().read_display(steps);
+    FalseColorScale scale;
+    EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), bench().frames().look_at_display(steps, nullptr, &scale)));
+    EXPECT_NE(scale.map, FalseColorScale::Map::none);
+}
+
 // The picture's distances are the AOV's, however the picture is cut, and later samples leave them alone.
 TEST(Display, DistancesMatchThePicture) {
     const ScenePtr scene = primitives();

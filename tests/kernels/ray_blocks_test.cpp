@@ -77,7 +77,7 @@ TEST(RayBlocks, OfOneLaneAreTheStructs) {
     for (rt_u32 i = 0; i < 3; ++i) hits[i] = {1.5f + float(i), .25f, .5f, rt_i32(i), -1, i + 1, i + 2, i + 3};
     std::vector<float> answers(8 * hits.size());
     std::memcpy(answers.data(), hits.data(), sizeof(rt_hit) * hits.size());
-    const std::vector<rt_hit> back = unpack_hits(answers, hits.size(), 1, false, true);
+    const std::vector<rt_hit> back = unpack_hits(answers, hits.size(), 1, RT_ANSWER_ALL, true);
     ASSERT_EQ(back.size(), hits.size());
     EXPECT_EQ(std::memcmp(back.data(), hits.data(), sizeof(rt_hit) * hits.size()), 0);
 }
@@ -94,9 +94,9 @@ TEST(RayBlocks, AnswersComeBackInOrder) {
                 for (size_t k = 0; k < 8; ++k) answers[(i / lanes * 8 + k) * lanes + i % lanes] = fields[k];
                 distances[i] = float(i);
             }
-            const auto counted = unpack_hits(answers, count, lanes, false, true),
-                       plain = unpack_hits(answers, count, lanes, false, false),
-                       occlusion = unpack_hits(distances, count, lanes, true, false);
+            const auto counted = unpack_hits(answers, count, lanes, RT_ANSWER_ALL, true),
+                       plain = unpack_hits(answers, count, lanes, RT_ANSWER_ALL, false),
+                       occlusion = unpack_hits(distances, count, lanes, RT_ANSWER_OCCLUSION, false);
             ASSERT_EQ(counted.size(), count);
             ASSERT_EQ(plain.size(), count);
             ASSERT_EQ(occlusion.size(), count);
@@ -122,6 +122,14 @@ TEST(RayBlocks, AnswersComeBackInOrder) {
 TEST(RayBlocks, AnswersDoNotDependOnLanes) {
     const std::vector<rt_ray> all = rays_at_ball(333);
     const std::vector<rt_hit> nearest = traced(1, all, {false, false}), any = traced(1, all, {true, false});
+    for (const unsigned lanes : kLanes) {
+        const std::vector<rt_hit> brief = traced(lanes, all, {false, false, true});
+        ASSERT_EQ(brief.size(), all.size());
+        for (size_t i = 0; i < all.size(); ++i) {
+            ASSERT_EQ(brief[i].t, nearest[i].t) << lanes << " lanes, ray " << i;
+            ASSERT_EQ(brief[i].prim, nearest[i].prim) << lanes << " lanes, ray " << i;
+        }
+    }
     size_t met = 0, occluded = 0;
     for (size_t i = 0; i < all.size(); ++i) {
         met += nearest[i].prim >= 0;

@@ -17,7 +17,7 @@ TEST(History, TakesBackAndDoesAgain) {
     history.observe(wish, false);
     EXPECT_EQ(history.undo_name(), "Structure");
     history.undo(wish);
-    EXPECT_EQ(wish.main.settings.accel, "bvh2");
+    EXPECT_EQ(wish.main.settings.accel, "bvh8");
     EXPECT_EQ(wish.main.settings.depth, 3);
     EXPECT_EQ(history.undo_name(), "Depth");
     EXPECT_EQ(history.redo_name(), "Structure");

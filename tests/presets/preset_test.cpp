@@ -43,7 +43,7 @@ TEST(Preset, ComesBackFromJson) {
 
 TEST(Preset, WhatIsMissingIsTheDefault) {
     const Preset preset = parse_preset(plugins(), R"({"clarity_preset": 1})", "short");
-    EXPECT_EQ(preset.settings.accel, "bvh2");
+    EXPECT_EQ(preset.settings.accel, "bvh8");
     EXPECT_EQ(preset.settings.depth, Settings().depth);
     EXPECT_TRUE(preset.edits.empty());
 }
@@ -79,7 +79,7 @@ TEST(Preset, RefusesWhatItDoesNotKnow) {
 
 TEST(RenderCommand, SaysWhatIsNotTheDefault) {
     Preset plain;
-    plain.settings.accel_params = default_parameters(*plugins().accel("bvh2"));
+    plain.settings.accel_params = default_parameters(*plugins().accel("bvh8"));
     EXPECT_EQ(render_command(plugins(), plain, {"a.scene"}, "out.png"), "clarity render a.scene -o out.png");
     const std::string line = render_command(plugins(), unusual(), {"it's a file.obj", "b.scene"}, "my out.png");
     EXPECT_EQ(line.find("clarity render 'it'\\''s a file.obj' b.scene -o 'my out.png' --device 0:0 --accel spheres,max_leaf=7"),

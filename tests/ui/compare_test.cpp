@@ -34,7 +34,7 @@ class Compare : public WindowTest {
 TEST_F(Compare, TwoStructuresShowTheSamePicture) {
     const auto window = compared();
     const auto state = window->state();
-    EXPECT_EQ(state["accel"], "bvh2");
+    EXPECT_EQ(state["accel"], "bvh8");
     EXPECT_EQ(state["other"]["accel"], "spheres");
     ASSERT_TRUE(state.contains("difference"));
     EXPECT_LT(double(state["difference"]["share"]), 1e-3);  // silhouettes may fall either way
@@ -112,7 +112,7 @@ TEST_F(Compare, SidesSwapAndOneIsLeft) {
     window->key("x");
     window->settle();
     EXPECT_EQ(window->state()["accel"], "spheres");
-    EXPECT_EQ(window->state()["other"]["accel"], "bvh2");
+    EXPECT_EQ(window->state()["other"]["accel"], "bvh8");
     window->key("x");
     window->settle();
     window->key("c");
@@ -120,7 +120,7 @@ TEST_F(Compare, SidesSwapAndOneIsLeft) {
     const auto state = window->state();
     EXPECT_FALSE(state["comparing"]);
     EXPECT_FALSE(state.contains("other"));
-    EXPECT_EQ(state["accel"], "bvh2");
+    EXPECT_EQ(state["accel"], "bvh8");
     EXPECT_EQ(window->query("layout")["places"].size(), 1u);
     EXPECT_EQ(difference(before, window->picture(), 0), 0);
     EXPECT_EQ(state["message"], "");

@@ -1,13 +1,22 @@
-/* bvh8.cl -- one ray against eight boxes at once (RT_LANES 1), or a packet of rays against one box after the other.
+/* bvh8.cl -- a tree of eight children a node, three ways to go down it.
  *
- * A single ray takes the nearest child and puts the others off in the order of their distances. Most nodes leave one or two
- * children, and branching on their number costs less than sorting vectors of eight: a network in registers took a tenth longer,
- * and so did putting all off in the order of the slots by compressing stores. Where any hit will do, order is worth nothing:
- * nearly as few nodes are visited without it, each for less. */
+ * A packet whose directions agree in sign goes by its bounds: intervals of its origins and of its reciprocal directions give one
+ * slab test that no ray of the packet can beat, against all eight children at once (Reshetov, Soupikov, Hurley 2005, "Multi-Level
+ * Ray Tracing Algorithm"; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire Ray Packets"). Before
+ * a leaf the rays themselves are tested, and before a node too where the bounds are wide.
+ *
+ * In other packets the rays part. They are tested together against one box after the other, or, BVH8_SINGLE, go by turns, each
+ * its own way: where a tree outgrows the caches, rays that share few nodes only fetch more of them together.
+ *
+ * A program of one lane takes the nearest child and puts the others off in the order of their distances. Most nodes leave one or
+ * two children, and branching on their number costs less than sorting vectors of eight: a network in registers took a tenth
+ * longer, and so did putting all off in the order of the slots by compressing stores. Where any hit will do, order is worth
+ * nothing: nearly as few nodes are visited without it, each for less. */
+#if RT_LANES == 1
+
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     uint top = 0, at = root;
-#if RT_LANES == 1
     const ulong near_x = ray->ix < 0.0f ? 96u : 0u, near_y = ray->iy < 0.0f ? 128u : 32u, near_z = ray->iz < 0.0f ? 160u : 64u;
     const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
     const float8 ix = (float8)(ray->ix), iy = (float8)(ray->iy), iz = (float8)(ray->iz);
@@ -30,7 +39,8 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
 #if RT_CPU
-            RT_LONE_LEAVES(ctx, first, count, ray, 0u, hit, ray, hit);
+            RT_COUNT_LEAVES(hit, count);
+            RT_LONE_TEST(ctx, first, RT_LONE_CANDIDATES(ctx, first, count, ray, 0u), ray, 0u, hit, ray, hit);
 #else
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
 #endif
@@ -110,7 +120,226 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
     }
 #undef BVH8_PUSH
+}
+
 #else
+
+#define BVH8_ENTER RT_CAT(RT_TRAVERSE, _enter)
+#define BVH8_BOUNDED RT_CAT(RT_TRAVERSE, _bounded)
+#define BVH8_TURNS RT_CAT(RT_TRAVERSE, _turns)
+#define BVH8_APART RT_CAT(RT_TRAVERSE, _apart)
+
+/* Rays against the box of one child, whose rows are near_x .. far_z bytes from `box`. */
+RT_INLINE uint BVH8_ENTER(const global char *box, ulong near_x, ulong near_y, ulong near_z, const rt_rays *ray, const rt_hits *hit)
+{
+    const vfloat ax = fma(ray->ix, BVH8_PLANE(box, near_x), ray->near_x), bx = fma(ray->ix, BVH8_PLANE(box, 96u - near_x), ray->far_x);
+    const vfloat ay = fma(ray->iy, BVH8_PLANE(box, near_y), ray->near_y), by = fma(ray->iy, BVH8_PLANE(box, 160u - near_y), ray->far_y);
+    const vfloat az = fma(ray->iz, BVH8_PLANE(box, near_z), ray->near_z), bz = fma(ray->iz, BVH8_PLANE(box, 224u - near_z), ray->far_z);
+    const vfloat entry = rt_max(rt_max(ax, ay), rt_max(az, ray->t_min));
+    return rt_bits(RT_MASK(entry <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t)));
+}
+
+/* A packet whose active directions agree in sign. */
+RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    const vmask alive = RT_MASK(hit->t >= rt_vfloat(0.0f));
+    const float t_min = rt_least_of(alive, ray->t_min);
+    float t_far = rt_greatest(hit->t);
+    const ulong near_x = ray->lo_x * 32u, near_y = ray->lo_y * 32u, near_z = ray->lo_z * 32u;
+    const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
+    /* A plane p is met at (p - origin) / direction. With x = p - the origin nearest to it that lies between the least and the
+     * greatest of x / direction of any ray; each side as fma(1 / direction, p, -origin / direction), with the slack of
+     * rt_prepare(). */
+    bool wide = false;
+#define BVH8_AXIS(x, turned)                                                                                                     \
+    const float o_lo_##x = rt_least_of(alive, ray->o##x), o_hi_##x = rt_greatest_of(alive, ray->o##x);                           \
+    const float i_lo_##x = rt_least_of(alive, ray->i##x), i_hi_##x = rt_greatest_of(alive, ray->i##x);                           \
+    const float o_in_##x = (turned) ? o_lo_##x : o_hi_##x, o_out_##x = (turned) ? o_hi_##x : o_lo_##x;                           \
+    const float8 lo_##x = (float8)(i_lo_##x), hi_##x = (float8)(i_hi_##x);                                                       \
+    const float8 in_lo_##x = (float8)(BVH8_DOWN(-o_in_##x * i_lo_##x)), in_hi_##x = (float8)(BVH8_DOWN(-o_in_##x * i_hi_##x));   \
+    const float8 out_lo_##x = (float8)(BVH8_UP(-o_out_##x * i_lo_##x)), out_hi_##x = (float8)(BVH8_UP(-o_out_##x * i_hi_##x));   \
+    wide |= o_lo_##x != o_hi_##x || i_hi_##x - i_lo_##x > 0.25f * fabs(i_lo_##x);
+#define BVH8_DOWN(v) ((v) - fabs(v) * (8.0f * RT_EPS))
+#define BVH8_UP(v) ((v) + fabs(v) * (8.0f * RT_EPS))
+    BVH8_AXIS(x, near_x != 0u)
+    BVH8_AXIS(y, near_y != 32u)
+    BVH8_AXIS(z, near_z != 64u)
+#define BVH8_IN(x, p) rt_min(fma(p, lo_##x, in_lo_##x), fma(p, hi_##x, in_hi_##x))
+#define BVH8_OUT(x, p) rt_max(fma(p, lo_##x, out_lo_##x), fma(p, hi_##x, out_hi_##x))
+
+    /* Put off: entry distance in the upper half; node and slot, from which a leaf's box is found again, in the lower. */
+    ulong stack[BVH8_STACK];
+    const global char *node = (const global char *)(ctx->bvh8_nodes + at);
+    uint top = 0, slot = 0;
+    bool tested = true; /* whether `at` is known to be entered */
+    for (;;) {
+        if (at & BVH8_LEAF) {
+            if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, ray, hit) != 0u) {
+                const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
+                for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
+                t_far = rt_greatest(hit->t);
+#if RT_ANY_HIT
+                if (t_far < 0.0f) return;
+#endif
+            }
+        } else if (!wide || tested || BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, ray, hit) != 0u) {
+            tested = false;
+            RT_COUNT_VISIT(hit, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))));
+            node = (const global char *)(ctx->bvh8_nodes + at);
+            const float8 in_x = BVH8_IN(x, BVH8_ROW(node, near_x)), in_y = BVH8_IN(y, BVH8_ROW(node, near_y)),
+                         in_z = BVH8_IN(z, BVH8_ROW(node, near_z));
+            const float8 out_x = BVH8_OUT(x, BVH8_ROW(node, far_x)), out_y = BVH8_OUT(y, BVH8_ROW(node, far_y)),
+                         out_z = BVH8_OUT(z, BVH8_ROW(node, far_z));
+            const float8 in = rt_max(rt_max(in_x, in_y), rt_max(in_z, (float8)(t_min)));
+            const float8 out = rt_min(rt_min(rt_min(out_x, out_y), out_z) * RT_WIDE, (float8)(t_far));
+            uint bits = BVH8_BITS(in <= out);
+            if (bits != 0u) {
+                const global uint *child = (const global uint *)(node + 192);
+                slot = BVH8_LOWEST(bits);
+                bits &= bits - 1u;
+                if (bits == 0u) {
+                    at = child[slot];
+                    continue;
+                }
+                float entry[BVH8_WIDTH];
+                vstore8(in, 0, entry);
+#define BVH8_PLACE(i) ((ulong)as_uint(entry[i]) << 32 | (at * 8u + (i)))
+                bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[slot]);
+                ulong nearest = BVH8_PLACE(slot);
+                for (; bits != 0u; bits &= bits - 1u) {
+                    const uint i = BVH8_LOWEST(bits);
+                    bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[i]);
+                    const ulong place = BVH8_PLACE(i);
+                    stack[top] = max(place, nearest);
+                    nearest = min(place, nearest);
+                    if (RT_STACK_OK(top + 1u, BVH8_STACK, hit)) ++top;
+                }
+                slot = (uint)nearest & 7u;
+                at = child[slot];
+                continue;
+            }
+        }
+        ulong next;
+        do {
+            if (top == 0u) return;
+            next = stack[--top];
+        } while (as_float((uint)(next >> 32)) > t_far);
+        slot = (uint)next & 7u;
+        node = (const global char *)(ctx->bvh8_nodes + ((uint)next >> 3));
+        at = ((const global uint *)(node + 192))[slot];
+    }
+}
+#undef BVH8_AXIS
+#undef BVH8_DOWN
+#undef BVH8_UP
+#undef BVH8_IN
+#undef BVH8_OUT
+#undef BVH8_PLACE
+
+/* Where there are instances, a traversal of their meshes hangs on each of a world's leaf tests, and is compiled as often: there
+ * the packet stays together. */
+#if BVH8_SINGLE && !(RT_LONE_MIXED && RT_HAS_INSTANCES)
+
+/* The rays of `lanes` from `at` down, then through all that was put off for them (BVH8_NOTHING: only that), each on its own way but all by turns: while one waits, for memory as
+ * much as for arithmetic, the others' work goes on, and what a turn does with a node is free of branches that depend on the ray.
+ * A turn looks for candidates in all leaves that rays have come to, enters all nodes, tests the candidates, then sends on the rays
+ * that have met a leaf or the end of their way. What lies beyond the nearest hit is passed over eight entries at a time. Children
+ * come in the order of their slots: ordering them by their distances would save a node in thirty and cost more.
+ *
+ * Puts what was hit into `hit`, all of it as bvh8_lone_begin() found it or better. */
+RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint at, uint lanes, const rt_rays *ray, rt_hits *hit)
+{
+    const rt_lone_rays *rays = &s->rays;
+    float *const entry = s->entry;
+    uint *const child = s->child, *const top = s->top;
+    /* Lanes: at nodes and at leaves, now and next; in leaves with candidates; to be sent on. One more is written than counts. */
+    uint nodes[2][RT_LANES + 1], leaves[2][RT_LANES + 1], tests[RT_LANES + 1], candidates[RT_LANES + 1], pops[RT_LANES + 1];
+    uint code[RT_LANES];
+    uint node_count = 0, leaf_count = 0;
+#define BVH8_GO_ON(l, to, alive)                                                                                                 \
+    {                                                                                                                            \
+        const uint is_leaf = (to) >> 31;                                                                                         \
+        bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, to);                                                                         \
+        code[l] = to;                                                                                                            \
+        next_nodes[node_count] = l;                                                                                              \
+        node_count += (alive) & ~is_leaf;                                                                                        \
+        next_leaves[leaf_count] = l;                                                                                             \
+        leaf_count += (alive)&is_leaf;                                                                                           \
+    }
+    uint *next_nodes = nodes[0], *next_leaves = leaves[0];
+    for (uint bits = lanes; bits != 0u; bits &= bits - 1u) {
+        const uint l = BVH8_LOWEST(bits);
+        BVH8_GO_ON(l, at, 1u)
+    }
+    for (uint turn = 0; node_count + leaf_count != 0u; ++turn) {
+        const uint *now_nodes = nodes[turn & 1u], *now_leaves = leaves[turn & 1u];
+        const uint now_node_count = node_count, now_leaf_count = leaf_count;
+        uint test_count = 0, pop_count = 0;
+        next_nodes = nodes[~turn & 1u], next_leaves = leaves[~turn & 1u];
+        node_count = leaf_count = 0;
+        for (uint i = 0; i < now_leaf_count; ++i) {
+            const uint l = now_leaves[i], first = BVH8_LEAF_FIRST(code[l]), count = BVH8_LEAF_COUNT(code[l]);
+            RT_COUNT_LEAVES(hit, count);
+            const uint bits = RT_LONE_CANDIDATES(ctx, first, count, rays, l);
+            pops[pop_count++] = l;
+            tests[test_count] = l;
+            candidates[test_count] = bits;
+            test_count += bits != 0u ? 1u : 0u;
+        }
+        for (uint i = 0; i < now_node_count; ++i) {
+            RT_COUNT_VISIT(hit, 1u);
+            const uint l = now_nodes[i];
+            const global char *node = (const global char *)(ctx->bvh8_nodes + code[l]);
+            const long x = s->near_x[l], y = s->near_y[l], z = s->near_z[l];
+            const float8 ix = (float8)(rays->ix[l]), iy = (float8)(rays->iy[l]), iz = (float8)(rays->iz[l]);
+            const float8 ax = fma(ix, BVH8_ROW(node, x), (float8)(rays->near_x[l]));
+            const float8 ay = fma(iy, BVH8_ROW(node, y), (float8)(rays->near_y[l]));
+            const float8 az = fma(iz, BVH8_ROW(node, z), (float8)(rays->near_z[l]));
+            const float8 bx = fma(ix, BVH8_ROW(node, 96 - x), (float8)(rays->far_x[l]));
+            const float8 by = fma(iy, BVH8_ROW(node, 160 - y), (float8)(rays->far_y[l]));
+            const float8 bz = fma(iz, BVH8_ROW(node, 224 - z), (float8)(rays->far_z[l]));
+            const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(rays->t_min[l])));
+            const float8 out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(s->hits.t[l]));
+            const uint base = top[l];
+            uint count = bvh8_put_off(in, out, node, s->order[l], entry + base, child + base);
+            if (!RT_STACK_OK(base + count - l * BVH8_ROOM, BVH8_BELOW + BVH8_STACK + 2u, hit)) count = 0;
+            const uint some = count != 0u ? 1u : 0u, last = base + count - some;
+            top[l] = last;
+            BVH8_GO_ON(l, child[last], some)
+            pops[pop_count] = l;
+            pop_count += 1u - some;
+        }
+        for (uint i = 0; i < test_count; ++i) {
+            const uint l = tests[i];
+            RT_LONE_TEST(ctx, BVH8_LEAF_FIRST(code[l]), candidates[i], rays, l, &s->hits, ray, hit);
+        }
+        for (uint i = 0; i < pop_count; ++i) {
+            const uint l = pops[i];
+            const float8 t = (float8)(s->hits.t[l]);
+            uint from = top[l] - 8u, open;
+            while ((open = BVH8_BITS(vload8(0, entry + from) <= t)) == 0u) from -= 8u;
+            from += 31u - (uint)clz(open);
+            top[l] = from;
+            const uint alive = from >= l * BVH8_ROOM + BVH8_BELOW ? 1u : 0u;
+            BVH8_GO_ON(l, child[from], alive)
+        }
+    }
+#undef BVH8_GO_ON
+    rt_gather_hits(&s->hits, hit);
+}
+
+RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    bvh8_lone lone;
+    bvh8_lone_begin(&lone, ray, hit);
+    BVH8_TURNS(ctx, &lone, root, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))), ray, hit);
+}
+
+#else
+
+RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    uint top = 0;
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u) | (ray->lo_z == 2u ? 4u : 0u);
     vfloat stack_t[BVH8_STACK];
@@ -158,5 +387,16 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         } while (inside == 0u);
         at = stack_node[top];
     }
-#endif
 }
+
+#endif
+
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    if (ray->coherent)
+        BVH8_BOUNDED(ctx, root, ray, hit);
+    else
+        BVH8_APART(ctx, root, ray, hit);
+}
+
+#endif

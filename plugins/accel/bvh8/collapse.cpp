@@ -7,7 +7,7 @@ namespace bvh8 {
 namespace {
 
 static_assert(sizeof(RootCosts) == sizeof(bvh2::Record), "costs take the places of records");
-static_assert(bvh2::kRoots == BVH8_WIDTH, "roots become children");
+static_assert(bvh2::kRoots >= BVH8_WIDTH, "roots become children");
 
 bool is_leaf(rt_u32 code) {
     return (code & BVH2_LEAF) != 0;
@@ -45,11 +45,11 @@ void Collapse::decide_tops(const bvh2::BinaryTree& tree) const {
 
 void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     bvh2_node& node = nodes()[binary];
-    float left[BVH8_WIDTH], right[2 * BVH8_WIDTH];
+    float left[bvh2::kRoots] = {}, right[2 * bvh2::kRoots] = {};  // beyond BVH8_WIDTH nobody looks
     uint32_t count = 0;
     rt_u32 first = RT_NONE;
     bool may_be_leaf = true;
-    std::fill_n(right, BVH8_WIDTH, INFINITY);
+    std::fill_n(right, bvh2::kRoots, INFINITY);
     const auto look = [&](const float* box, rt_u32 code, float* cost) {
         if (is_leaf(code)) {
             const uint32_t below = BVH2_LEAF_COUNT(code);
@@ -65,7 +65,7 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
         }
     };
     look(node.box0, node.child0, left);
-    look(node.box1, node.child1, right + BVH8_WIDTH);
+    look(node.box1, node.child1, right + bvh2::kRoots);
     may_be_leaf = may_be_leaf && count <= costs_.max_leaf;
 
     bvh2::SharedRoots shared;

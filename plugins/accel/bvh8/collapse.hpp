@@ -35,7 +35,7 @@ struct Decision {
 // What is below a binary node can be had as at most i + 1 roots for cost[i]. Costs are relative to the group's root box, whose
 // longest side is taken as 1.
 struct RootCosts {
-    float cost[BVH8_WIDTH];  // the last one is that of BVH8_WIDTH - 1, for a whole vector
+    float cost[bvh2::kRoots];  // of BVH8_WIDTH in use the last one is that of one root less, for a whole vector
 };
 
 class Collapse {

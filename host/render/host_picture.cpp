@@ -1,0 +1,35 @@
+#include "render/host_picture.hpp"
+
+namespace clarity {
+
+void HostPicture::release() {
+    if (!memory_) return;
+    try {
+        if (device_->is_open()) device_->queue().enqueueUnmapMemObject(mapped_, memory_);
+    } catch (const cl::Error&) {  // the device is lost, and the memory with it
+    }
+    mapped_ = cl::Buffer();
+    memory_ = nullptr;
+    room_ = 0;
+}
+
+const uint8_t* HostPicture::fetch(const cl::Buffer& source, size_t bytes, cl::Event* done) {
+    cl::CommandQueue& queue = device_->queue();
+    if (device_->info().cpu) {
+        release();
+        memory_ = queue.enqueueMapBuffer(source, CL_TRUE, CL_MAP_READ, 0, bytes, nullptr, done);
+        mapped_ = source;
+    } else {
+        if (bytes > room_) {
+            release();
+            cl::Buffer pinned(device_->context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
+            memory_ = queue.enqueueMapBuffer(pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes);
+            mapped_ = pinned;
+            room_ = bytes;
+        }
+        queue.enqueueReadBuffer(source, CL_TRUE, 0, bytes, memory_, nullptr, done);
+    }
+    return static_cast<const uint8_t*>(memory_);
+}
+
+}  // namespace clarity
