@@ -9,7 +9,7 @@
 namespace accel_test {
 
 // Every primitive of each group is in exactly one leaf of its tree; boxes are exactly the bounds of what is below; leaves hold
-// no more than max_leaf; nodes stand in depth-first order, the larger child first, and
+// no more than max_leaf; nodes stand in depth-first order, the larger child first unless told otherwise, and
 // belong to one tree; the reported depth, counts and stack are
 // those of the trees. Empty: all is well.
 std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf = 4, bool larger_first = true);

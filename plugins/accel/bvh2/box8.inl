@@ -39,6 +39,21 @@ inline Box8 operator-(Box8 a, Box8 b) {
 inline Box8 operator*(Box8 a, Box8 b) {
     return {_mm256_mul_ps(a.m, b.m)};
 }
+inline Box8 operator+(Box8 a, Box8 b) {
+    return {_mm256_add_ps(a.m, b.m)};
+}
+inline Box8 all_eight(float x) {
+    return {_mm256_set1_ps(x)};
+}
+inline Box8 load_eight(const float* p) {
+    return {_mm256_loadu_ps(p)};
+}
+// Where a < b: a to b and index_a to index_b.
+inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
+    const __m256 less = _mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ);
+    b.m = _mm256_blendv_ps(b.m, a.m, less);
+    index_b.m = _mm256_blendv_ps(index_b.m, index_a.m, less);
+}
 inline Box8 no_box() {
     return {_mm256_set1_ps(FLT_MAX)};
 }
@@ -83,6 +98,20 @@ inline Box8 operator-(Box8 a, Box8 b) {
 }
 inline Box8 operator*(Box8 a, Box8 b) {
     return {a.lo * b.lo, a.neg_hi * b.neg_hi};
+}
+inline Box8 operator+(Box8 a, Box8 b) {
+    return {a.lo + b.lo, a.neg_hi + b.neg_hi};
+}
+inline Box8 all_eight(float x) {
+    return {splat(x), splat(x)};
+}
+inline Box8 load_eight(const float* p) {
+    return {load_any(p), load_any(p + 4)};
+}
+inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
+    const Vec4 less_lo = less(a.lo, b.lo), less_hi = less(a.neg_hi, b.neg_hi);
+    b = {select(less_lo, a.lo, b.lo), select(less_hi, a.neg_hi, b.neg_hi)};
+    index_b = {select(less_lo, index_a.lo, index_b.lo), select(less_hi, index_a.neg_hi, index_b.neg_hi)};
 }
 inline Box8 no_box() {
     return {splat(FLT_MAX), splat(FLT_MAX)};

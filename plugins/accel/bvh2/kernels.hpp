@@ -28,6 +28,15 @@ struct Subtree {
     uint32_t depth = 0;  // nodes from the root of the group to the deepest leaf
 };
 
+// The cheapest ways to share i + 1 roots of subtrees between a left and a right child, i = 0..7: left[l - 1] is the cost of l
+// roots from the left child, right[7 + r] that of r from the right one, right[0..7] infinite. Among equals the fewest go to the
+// left.
+constexpr uint32_t kRoots = 8;
+struct alignas(16) SharedRoots {
+    float cost[kRoots];
+    float left[kRoots];  // how many go there
+};
+
 struct Kernels {
     void (*clear)(Bins& bins, uint32_t bin_count);
     void (*bin)(const Record* first, const Record* end, const Slices& slices, Bins& bins);
@@ -39,6 +48,7 @@ struct Kernels {
                     Record* right, Bounds& left_centroids2, Bounds& right_centroids2);
     // Builds the tree of one range on one thread, without allocating; nodes and leaves are put from the given places on.
     Subtree (*build_subtree)(const Workspace& workspace, const Range& range, uint32_t first_node, uint32_t first_leaf);
+    void (*share_roots)(const float left[kRoots], const float right[2 * kRoots], SharedRoots& shared);
 };
 
 namespace generic {

@@ -144,9 +144,17 @@ Subtree build_subtree(const Workspace& workspace, const Range& range, uint32_t f
     return Builder(workspace, range, first_node, first_leaf).build(range);
 }
 
+void share_roots(const float left[kRoots], const float right[2 * kRoots], SharedRoots& shared) {
+    Box8 cost = all_eight(INFINITY), lefts = all_eight(0.0f);
+    for (uint32_t l = 1; l < kRoots; ++l)
+        keep_less(all_eight(left[l - 1]) + load_eight(right + kRoots - l), all_eight(static_cast<float>(l)), cost, lefts);
+    store_box(shared.cost, cost);
+    store_box(shared.left, lefts);
+}
+
 }  // namespace
 
-const Kernels kernels = {clear, bin, merge, find_split, scatter, build_subtree};
+const Kernels kernels = {clear, bin, merge, find_split, scatter, build_subtree, share_roots};
 
 }  // namespace BVH2_ISA
 }  // namespace bvh2

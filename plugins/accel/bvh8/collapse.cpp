@@ -7,6 +7,7 @@ namespace bvh8 {
 namespace {
 
 static_assert(sizeof(RootCosts) == sizeof(bvh2::Record), "costs take the places of records");
+static_assert(bvh2::kRoots == BVH8_WIDTH, "roots become children");
 
 bool is_leaf(rt_u32 code) {
     return (code & BVH2_LEAF) != 0;
@@ -44,7 +45,6 @@ void Collapse::decide_tops(const bvh2::BinaryTree& tree) const {
 
 void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     bvh2_node& node = nodes()[binary];
-    // cost[8 + i] is that of i + 1 roots from the right child; what is out of range costs too much.
     float left[BVH8_WIDTH], right[2 * BVH8_WIDTH];
     uint32_t count = 0;
     rt_u32 first = RT_NONE;
@@ -68,33 +68,24 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     look(node.box1, node.child1, right + BVH8_WIDTH);
     may_be_leaf = may_be_leaf && count <= costs_.max_leaf;
 
-    // The cheapest way to share i + 1 roots between left and right, for all i at once; among equals the fewest to the left.
-    float shared[BVH8_WIDTH];
-    uint32_t lefts[BVH8_WIDTH];
-    std::fill_n(shared, BVH8_WIDTH, INFINITY);
-    std::fill_n(lefts, BVH8_WIDTH, 0u);
-    for (uint32_t l = 1; l < BVH8_WIDTH; ++l)
-        for (uint32_t i = 0; i < BVH8_WIDTH; ++i) {
-            const float sum = left[l - 1] + right[BVH8_WIDTH + i - l];
-            lefts[i] = sum < shared[i] ? l : lefts[i];
-            shared[i] = sum < shared[i] ? sum : shared[i];
-        }
+    bvh2::SharedRoots shared;
+    kernels_.share_roots(left, right, shared);
 
     const float area = half_area(node, scale);
-    const float as_node = area * costs_.node + shared[BVH8_WIDTH - 1];
+    const float as_node = area * costs_.node + shared.cost[BVH8_WIDTH - 1];
     const float as_leaf = area * costs_.primitive * static_cast<float>(count);
     const bool leaf = may_be_leaf && as_leaf <= as_node;
     rt_u32 bits = more_bits | (may_be_leaf ? count << 21 : 0u) | (leaf ? Decision::kIsLeaf : 0u);
     float* const cost = costs_of(binary).cost;
     cost[0] = leaf ? as_leaf : as_node;
     for (uint32_t i = 1; i + 1 < BVH8_WIDTH; ++i) {
-        const bool better = shared[i] < cost[i - 1];
-        cost[i] = better ? shared[i] : cost[i - 1];
-        bits |= (better ? lefts[i] : 0u) << 3 * (i - 1);
+        const bool better = shared.cost[i] < cost[i - 1];
+        cost[i] = better ? shared.cost[i] : cost[i - 1];
+        bits |= (better ? static_cast<rt_u32>(shared.left[i]) : 0u) << 3 * (i - 1);
     }
     cost[BVH8_WIDTH - 1] = cost[BVH8_WIDTH - 2];
     node.pad0 = first;
-    node.pad1 = bits | lefts[BVH8_WIDTH - 1] << 3 * (BVH8_WIDTH - 2);
+    node.pad1 = bits | static_cast<rt_u32>(shared.left[BVH8_WIDTH - 1]) << 3 * (BVH8_WIDTH - 2);
 }
 
 uint32_t Collapse::children(rt_u32 binary, Slot slots[BVH8_WIDTH]) const {

@@ -40,7 +40,7 @@ struct RootCosts {
 
 class Collapse {
  public:
-    Collapse(const bvh2::Builder& builder, const Costs& costs) : builder_(builder), costs_(costs) {}
+    Collapse(const bvh2::Builder& builder, const Costs& costs) : builder_(builder), kernels_(bvh2::kernels()), costs_(costs) {}
 
     // For every task as soon as it is built, on any thread.
     void decide_task(const bvh2::Task& task) const;
@@ -59,6 +59,7 @@ class Collapse {
     void gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next) const;
 
     const bvh2::Builder& builder_;
+    const bvh2::Kernels& kernels_;
     const Costs costs_;
 };
 
