@@ -4,6 +4,7 @@
 #include <exception>
 #include <new>
 
+#include "base/default_floats.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "plugin/thread_loop.hpp"
@@ -103,7 +104,11 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
     };
     // What a body throws is the plugin's own and goes back to it.
     host_.parallel_for = [](void*, uint32_t count, void (*body)(void*, rt_u32), void* user) {
-        if (body) clarity::parallel_for(count, [body, user](uint32_t i) { body(user, i); });
+        if (!body) return;
+        clarity::parallel_for(count, [body, user](uint32_t i) {
+            const DefaultFloats floats;
+            body(user, i);
+        });
     };
 }
 

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <mutex>
 
+#include "base/default_floats.hpp"
 #include "base/error.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/plugin_check.hpp"
@@ -231,7 +232,10 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
             output(ctx).refuse("gave a stat no label");
     };
     start = std::chrono::steady_clock::now();
-    services.check(static_cast<int>(Exit::failed), [&] { return plugin.accel->build(services.host(), &input, &output_table); });
+    services.check(static_cast<int>(Exit::failed), [&] {
+        const DefaultFloats floats;
+        return plugin.accel->build(services.host(), &input, &output_table);
+    });
     data.build_ms = since(start);
 
     start = std::chrono::steady_clock::now();

@@ -24,7 +24,8 @@ extern "C" {
 enum { RT_OK = 0, RT_FAILED = 1, RT_CANCELLED = 2 };
 enum { RT_LOG_DEBUG, RT_LOG_INFO, RT_LOG_WARNING };
 
-/* Services of the host; valid during the call that received them. All may be called from any thread of parallel_for. */
+/* Services of the host; valid during the call that received them. All may be called from any thread of parallel_for. Builders
+ * run with floating point as a program starts with it, on all threads: nothing is flushed to zero. */
 typedef struct rt_host {
     rt_u32 struct_bytes;
     void *ctx;
