@@ -102,12 +102,14 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #define RT_INFINITY ((vfloat)(INFINITY))
 
-/* Says nothing of v to the compiler: what is worked out from it is neither done ahead of where it stands nor again later.
- * Left to itself it prepares what single rays would need in every packet, and spreads scalars anew in every node. */
-#if !defined(RT_PORTABLE) && defined(__x86_64__)
-#define RT_OPAQUE(v) __asm__("" : "+v"(v))
+/* A mask of which the compiler is told nothing: what is worked out from it is not done ahead of where it stands. Left to itself it
+ * prepares in every packet what only rays that part will need. Where a mask is one register; elsewhere it does no harm. */
+#if defined(RT_PORTABLE) || !defined(__x86_64__)
+#define RT_OPAQUE(mask) ((void)0)
+#elif RT_LANES == 4 || (RT_LANES == 8 && defined(__AVX__)) || (RT_LANES == 16 && defined(__AVX512F__))
+#define RT_OPAQUE(mask) __asm__("" : "+x"(mask))
 #else
-#define RT_OPAQUE(v) ((void)0)
+#define RT_OPAQUE(mask) ((void)0)
 #endif
 
 /* The greatest lane, as a scalar. */

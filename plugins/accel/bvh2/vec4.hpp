@@ -75,14 +75,19 @@ inline void to_index(Vec4 a, uint32_t index[3]) {
     index[1] = static_cast<uint32_t>(_mm_extract_epi16(i, 2));
     index[2] = static_cast<uint32_t>(_mm_extract_epi16(i, 4));
 }
-// Tags tell equal numbers apart: the lowest bits of every lane become those of `tag` (+ 0, 1, 2, 3 in tag_lanes).
+// Tags tell equal numbers apart: the lowest bits of every lane become those of `tag` (+ 0, 1, 2, 3 in tag_lanes). What is about
+// 0 becomes the least normal number first: where threads treat denormal ones as 0 (Embree's do) their tags would be lost.
 constexpr uint32_t kTags = 64;
+inline __m128i room_for_tag(Vec4 a) {
+    const __m128i bits = _mm_castps_si128(a.m), exponent = _mm_set1_epi32(0x7f800000), least = _mm_set1_epi32(0x00800000);
+    const __m128i tiny = _mm_cmpeq_epi32(_mm_and_si128(bits, exponent), _mm_setzero_si128());
+    return _mm_and_si128(_mm_or_si128(bits, _mm_and_si128(tiny, least)), _mm_set1_epi32(-static_cast<int>(kTags)));
+}
 inline Vec4 tag_all(Vec4 a, uint32_t tag) {
-    const __m128i bits = _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(-static_cast<int>(kTags)));
-    return {_mm_castsi128_ps(_mm_or_si128(bits, _mm_set1_epi32(static_cast<int>(tag))))};
+    return {_mm_castsi128_ps(_mm_or_si128(room_for_tag(a), _mm_set1_epi32(static_cast<int>(tag))))};
 }
 inline Vec4 tag_lanes(Vec4 a, uint32_t tag) {
-    const __m128i bits = _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(-static_cast<int>(kTags)));
+    const __m128i bits = room_for_tag(a);
     const __m128i tags = _mm_add_epi32(_mm_set1_epi32(static_cast<int>(tag)), _mm_setr_epi32(0, 1, 2, 3));
     return {_mm_castsi128_ps(_mm_or_si128(bits, tags))};
 }
@@ -181,6 +186,7 @@ constexpr uint32_t kTags = 64;
 inline float tagged(float a, uint32_t tag) {
     uint32_t bits;
     std::memcpy(&bits, &a, sizeof bits);
+    if ((bits & 0x7f800000u) == 0) bits |= 0x00800000u;
     bits = (bits & ~(kTags - 1)) | tag;
     std::memcpy(&a, &bits, sizeof bits);
     return a;
