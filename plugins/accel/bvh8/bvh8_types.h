@@ -58,7 +58,7 @@ RT_INLINE uint bvh8_bits(int8 m)
  * core's cache a sixth faster for it. */
 RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf *leaves, uint at)
 {
-#if RT_CPU && defined(__clang__)
+#if RT_CPU && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
     const ulong lines = at & BVH8_LEAF ? (ulong)(leaves + BVH8_LEAF_FIRST(at)) : (ulong)(nodes + at);
     for (uint i = 0; i < 256u; i += 64u) __builtin_prefetch((const void *)(lines + i));
 #endif
