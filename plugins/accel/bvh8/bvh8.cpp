@@ -28,9 +28,10 @@ constexpr rt_cl_file kTypes = rt::file(kFiles, "bvh8_types.h"), kTraversal = rt:
 // How a CPU traces packets whose rays part.
 enum Incoherent { kAuto, kPackets, kSingle };
 constexpr const char* kIncoherentWays[] = {"auto", "packets", "single", nullptr};
-// Measured with diffuse rays on a CPU of 1 MiB L2 and 32 MiB L3: 70 000 triangles are traced 1.3 times as fast together, a
-// million 1.4 times as fast alone.
-constexpr uint64_t kTogether = 250'000;  // primitives
+// Measured with diffuse rays on a CPU of 1 MiB L2 (docs/performance.md): of nine scenes the three of 2 000 to 11 000 triangles
+// and one of 70 000 are traced faster together, those of 50 000, 87 000, 100 000 and a million alone, the largest 1.4 times as
+// fast.
+constexpr uint64_t kTogether = 40'000;  // primitives
 #endif
 
 enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder, kDuplicates, kIncoherent };
