@@ -1,6 +1,3 @@
-#if defined(__GNUC__) && !defined(__clang__)
-#pragma GCC diagnostic ignored "-Wpsabi"  // a note: 32-byte records were passed otherwise before GCC 4.6
-#endif
 #include "kernels.hpp"
 
 #include "kernels.inl"
