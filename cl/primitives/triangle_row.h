@@ -1,9 +1,10 @@
 /* triangle_row.h -- one ray against four triangles that lie side by side in leaf order: which of them can it hit?
  *
  * The edge functions are those of triangle.h, operation by operation, so none is lost, not even where they are NaN; what else
- * decides is left to triangle_lone.h, to which hardly more than one triangle a ray comes. Four triangles are twelve quads of 16 bytes, three vectors of
- * sixteen floats. A permutation within quads takes the coordinate along one of the ray's axes out of each, for all alike, and
- * merging three of these gives all twelve in one vector, without the transposition that arrays of structures otherwise need.
+ * decides is left to triangle_lone.h, to which hardly more than one triangle a ray comes. Four triangles are twelve quads of 16
+ * bytes, three vectors of sixteen floats. A permutation within quads takes the coordinate along one of the ray's axes out of
+ * each, for all alike, and merging three of these gives all twelve in one vector, without the transposition that arrays of
+ * structures otherwise need.
  *
  * Reads RT_ROW triangles from `leaf` on, whatever they are; the host pads the buffer. */
 #ifndef RT_TRIANGLE_ROW_H

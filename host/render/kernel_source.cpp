@@ -62,14 +62,14 @@ void context(std::ostream& out, const rt_accel& accel) {
     out << "#define RT_CTX_PARAMS " << params << "\n#define RT_CTX_INIT(ctx) rt_ctx ctx;" << init << "\n";
 }
 
-// One inclusion of the plugin's template, with the leaf tests that it may use. The prototype makes it inline whatever the
-// author wrote.
+// A plugin's traversal, and what its inclusions are to have.
 struct Template {
     const std::string &file, &text;
     bool cpu;
     bool leaves_twice;  // for measuring what they take
     bool instances;
 };
+// One inclusion, with the leaf tests that it may use. The prototype makes it inline whatever the author wrote.
 void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
         << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n";

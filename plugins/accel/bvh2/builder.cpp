@@ -165,16 +165,20 @@ void Builder::add_task(const Pending& pending) {
     task_place_.push_back({{}, pending.parent, pending.which, pending.group, pending.room_begin, pending.room_end});
 }
 
+std::vector<Builder::Pending> Builder::part_tasks(const std::vector<Pending>& level) {
+    std::vector<Pending> large;
+    for (const Pending& pending : level) {
+        if (pending.range.count() > task_size_)
+            large.push_back(pending);
+        else if (pending.range.count() > 0)
+            add_task(pending);
+    }
+    return large;
+}
+
 void Builder::split_top(std::vector<Pending> level) {
     while (!level.empty()) {
-        std::vector<Pending> large;
-        for (const Pending& pending : level) {
-            if (pending.range.count() > task_size_)
-                large.push_back(pending);
-            else if (pending.range.count() > 0)
-                add_task(pending);
-        }
-        level = split_level(large);
+        level = split_level(part_tasks(level));
         report(0);
     }
 }

@@ -73,6 +73,8 @@ class Builder {
 
     std::vector<Pending> load();
     void add_task(const Pending& pending);
+    // What is small enough becomes a task; returns the rest.
+    std::vector<Pending> part_tasks(const std::vector<Pending>& level);
     void split_top(std::vector<Pending> level);
     std::vector<Pending> split_level(const std::vector<Pending>& level);
     void sort(const std::vector<Pending>& groups);

@@ -12,13 +12,7 @@ void Builder::split_space(std::vector<Pending> level, const rt_build_output* out
     std::vector<SpatialSplitter> splitters;  // of groups
     for (const Root& root : tree_.roots) splitters.emplace_back(host_, workspace_, *input_.geometry, root.box);
     while (!level.empty()) {
-        std::vector<Pending> large;
-        for (const Pending& pending : level) {
-            if (pending.range.count() > task_size_)
-                large.push_back(pending);
-            else if (pending.range.count() > 0)
-                add_task(pending);
-        }
+        const std::vector<Pending> large = part_tasks(level);
         std::vector<RoomyRange> parts(2 * large.size());
         parallel_for(large.size(), [&](uint32_t i) {
             const Pending& from = large[i];

@@ -240,11 +240,11 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_h
  * the packet stays together. */
 #if BVH8_SINGLE && !(RT_LONE_MIXED && RT_HAS_INSTANCES)
 
-/* The rays of `lanes` from `at` down, then through all that was put off for them (BVH8_NOTHING: only that), each on its own way but all by turns: while one waits, for memory as
- * much as for arithmetic, the others' work goes on, and what a turn does with a node is free of branches that depend on the ray.
- * A turn looks for candidates in all leaves that rays have come to, enters all nodes, tests the candidates, then sends on the rays
- * that have met a leaf or the end of their way. What lies beyond the nearest hit is passed over eight entries at a time. Children
- * come in the order of their slots: ordering them by their distances would save a node in thirty and cost more.
+/* The rays of `lanes` from `at` down, each on its own way but all by turns: while one waits, for memory as much as for arithmetic,
+ * the others' work goes on, and what a turn does with a node is free of branches that depend on the ray. A turn looks for
+ * candidates in all leaves that rays have come to, enters all nodes, tests the candidates, then sends on the rays that have met a
+ * leaf or the end of their way. What lies beyond the nearest hit is passed over eight entries at a time. Children come in the
+ * order of their slots: ordering them by their distances would save a node in thirty and cost more.
  *
  * Puts what was hit into `hit`, all of it as bvh8_lone_begin() found it or better. */
 RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint at, uint lanes, const rt_rays *ray, rt_hits *hit)

@@ -92,15 +92,6 @@ RT_INLINE void bvh8_lone_begin(bvh8_lone *s, const rt_rays *ray, const rt_hits *
         s->top[l] = l * BVH8_ROOM + BVH8_BELOW;
     }
 }
-
-/* For the ray of lane l to do before what was put off earlier. */
-RT_INLINE void bvh8_lone_put_off(bvh8_lone *s, uint l, float entry, uint at)
-{
-    const uint top = s->top[l];
-    s->entry[top] = entry;
-    s->child[top] = at;
-    s->top[l] = top + 1u;
-}
 #endif
 
 /* The children of a node that a ray enters and where, in the order of slots i ^ order; returns how many. Eight are written. */
