@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "render/device_scene.hpp"
 #include "render/frame_constants.hpp"
+#include "render/memory_plan.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 
@@ -114,13 +115,16 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
             next->accel = last_->accel;
             next->on_device = last_->on_device;
         } else {
+            const SceneCounts counts = count_scene(*scene);
+            check_fits(plan_memory(counts, *scene, *plugin->accel), device_->info(),
+                       std::to_string(counts.references) + " primitives in " + plugin->id);
             progress.stage(std::string("building ") + plugin->id);
             next->accel = std::make_shared<AccelData>(build_accel(*scene, *plugin, params, progress));
         }
         if (!next->on_device) {
             progress.stage("uploading the scene");
             const auto start = std::chrono::steady_clock::now();
-            next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel);
+            next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel, progress);
             next->upload_ms = since(start);
         }
         if (progress.cancelled()) throw Cancelled();
