@@ -24,16 +24,23 @@ class FilmKernels {
     RayCounts sum(const cl::Buffer& counters, unsigned packets, KernelTime& time);
     // film: room(pixels) float4, sums of samples. rgba: 4 * pixels bytes. Adds its times.
     void show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
+    // Of some rows of work-groups alone, `row_height` pixels high, each to its place in the picture.
+    void show_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
+                   unsigned row_height, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
     // The same in memory of the device's own, which stays until the next call of either.
     const uint8_t* show(const cl::Buffer& film, size_t pixels, const Settings& settings, std::vector<KernelTime>* times);
 
  private:
     cl::Event map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings);
+    // Arguments that both kernels have. Returns the display.
+    const cl::Buffer& set_map(cl::Kernel& kernel, const cl::Buffer& film, size_t pixels, const Settings& settings);
+    cl::Event run(const cl::Kernel& kernel, size_t items);
 
     std::shared_ptr<Device> device_;
     cl::Program program_;
-    cl::Kernel map_tones_, sum_counters_;
-    GrowingBuffer display_{CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR}, sums_{CL_MEM_READ_WRITE};
+    cl::Kernel map_tones_, map_tones_of_rows_, sum_counters_;
+    GrowingBuffer display_{CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR}, sums_{CL_MEM_READ_WRITE}, rows_{CL_MEM_READ_ONLY};
+    std::vector<rt_u32> rows_written_;
     HostPicture picture_;  // goes before what it shows
 };
 
