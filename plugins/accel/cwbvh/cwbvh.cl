@@ -1,14 +1,25 @@
-/* cwbvh.cl */
+/* cwbvh.cl -- one ray against eight boxes of a byte a plane (RT_LANES 1), or a packet of rays against one box after the other.
+ *
+ * Made for GPUs and trees that outgrow their caches: a node is 80 bytes, five loads of 16. A turn of the loop is one item of each
+ * ray, a node or two triangles, fetched before anything is computed, as in bvh4. Triangles that were met come before nodes: bits
+ * in a register, never on the stack. Of the nodes the nearest goes first, and what is left of the eight takes one place on the
+ * stack together, with the least distance at which one of them is entered; they follow by the signs of the direction (Ylitie,
+ * Karras, Laine 2017). By the signs alone a third more nodes are visited by camera rays, 8 % more by diffuse ones.
+ *
+ * 80 registers on an H200, so 24 warps a multiprocessor; 8 bytes of stack a level of the tree. */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_LANES == 1
-    /* What is left of a node's children: bits 0..7 the slots, 8..15 the slots of all that stand in its row, 16..31 the upper half
-     * of the least distance at which one of the first is entered. */
-    ulong stack[CWBVH_DEPTH];
+    ulong stack[CWBVH_DEPTH]; /* CWBVH_LEFT */
     uint top = 0, at = root;
-    uint first = 0, row = 0, waiting = 0; /* primitives that were met */
-    float from = 0.0f;
-    const cwbvh_ray own = cwbvh_prepare(ray);
+    uint first = 0, row = 0, waiting = 0; /* primitives that were met: bits of `row`, which stand from `first` on */
+    float from = 0.0f;                    /* where `at` is entered */
+#if RT_ANY_HIT
+#define CWBVH_FIRST(bits) ((bits) & -(bits)) /* order is worth nothing */
+#else
+    const cwbvh_order order = cwbvh_order_of(ray);
+#define CWBVH_FIRST(bits) cwbvh_pick(&order, bits)
+#endif
     for (;;) {
         float4 a, b, c, d, e, f;
         uint second = 0, two = 0;
@@ -48,13 +59,13 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                     continue;
                 }
 #endif
-                const uint bit = cwbvh_pick(&own, left & 0xFFu);
+                const uint bit = CWBVH_FIRST(left & 0xFFu);
                 item = (uint)entry + CWBVH_RANK(left >> 8 & 0xFFu, bit);
                 left ^= bit;
                 if ((left & 0xFFu) == 0u)
                     --top;
                 else
-                    stack[top - 1u] = (ulong)left << 32 | (uint)entry;
+                    stack[top - 1u] = CWBVH_LEFT((uint)entry, left);
             }
             const global float4 *rows = (const global float4 *)(ctx->cwbvh_nodes + item);
             a = rows[0];
@@ -63,7 +74,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
             d = rows[3];
             e = rows[4];
         }
-        if (cwbvh_hidden(is_leaf)) {
+        if (is_leaf) {
 #if RT_TRIANGLES_ONLY
             const rt_loaded_leaf one = {a, b, c};
             RT_LOADED_LEAF(ctx, &one, item, ray, hit);
@@ -82,7 +93,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         }
         RT_COUNT_VISIT(hit, 1u);
         float4 in0, in1;
-        const uint met = cwbvh_enter(ray, &own, hit->t, a, c, d, e, &in0, &in1);
+        const uint met = cwbvh_enter(ray, hit->t, a, c, d, e, &in0, &in1);
         const uint cells = as_uint(a.s3), base = as_uint(b.s0), inner = cells >> 24;
         first = as_uint(b.s1);
         row = as_uint(b.s2);
@@ -91,27 +102,21 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         at = CWBVH_DONE;
         if (left != 0u) {
 #if RT_ANY_HIT
-            const uint bit = left & -left;
-            left ^= bit;
-            at = base + CWBVH_RANK(inner, bit);
-            if (left != 0u) {
-                stack[top] = (ulong)(left | inner << 8) << 32 | base;
-                if (RT_STACK_OK(top + 1u, CWBVH_DEPTH, hit)) ++top;
-            }
+            const uint bit = left & -left, second_from = 0u;
 #else
-            uint more;
-            const uint nearest = cwbvh_nearest(left, in0, in1, &more);
-            const uint bit = 1u << (nearest & 7u);
+            uint second_from;
+            const uint nearest = cwbvh_nearest(left, in0, in1, &second_from), bit = 1u << (nearest & 7u);
             from = as_float(nearest & ~7u);
+#endif
             left ^= bit;
             at = base + CWBVH_RANK(inner, bit);
             if (left != 0u) {
-                stack[top] = (ulong)(left | inner << 8 | (more & 0xFFFF0000u)) << 32 | base;
+                stack[top] = CWBVH_LEFT(base, left | inner << 8 | (second_from & 0xFFFF0000u));
                 if (RT_STACK_OK(top + 1u, CWBVH_DEPTH, hit)) ++top;
             }
-#endif
         }
     }
+#undef CWBVH_FIRST
 #else
     /* As bvh4's packets. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u) | (ray->lo_z == 2u ? 4u : 0u);
