@@ -89,8 +89,7 @@ class Refined {
         edge_of_.resize(3 * count);
         parallel_for(static_cast<uint32_t>((count + kChunk - 1) / kChunk), [&](uint32_t c) {
             for (size_t i = 3 * kChunk * c; i < std::min(keys.size(), 3 * kChunk * (c + 1)); ++i)
-                edge_of_[i] =
-                    static_cast<rt_u32>(std::lower_bound(edges.begin(), edges.end(), keys[i]) - edges.begin());
+                edge_of_[i] = static_cast<rt_u32>(std::lower_bound(edges.begin(), edges.end(), keys[i]) - edges.begin());
         });
         edge_owner_.resize(edges.size());
         point_owner_.resize(mesh.points.size());

@@ -129,10 +129,10 @@ void add_render(CLI::App& app, RenderOptions& render) {
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {
-    app.add_option(
-           "what", bench.what,
-           "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M triangles), cpu (side by side with the "
-           "best of each peer), quick (a minute); or scene files, with a suite: instead of its own")
+    app.add_option("what", bench.what,
+                   "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M "
+                   "triangles), cpu (side by side with the "
+                   "best of each peer), quick (a minute); or scene files, with a suite: instead of its own")
         ->type_name("SUITE|SCENE");
     single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
         ->type_name("D[,D...]");

@@ -153,8 +153,8 @@ rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world
     return prim;
 }
 
-// Where each mesh will stand. One that is placed once is flattened into the world: a tree of its own would only lengthen the way
-// of each ray. One that is mirrored is not, since its triangles would turn their outsides in.
+// Where each mesh will stand. One that is placed once is flattened into the world: a tree of its own would only lengthen the
+// way of each ray. One that is mirrored is not, since its triangles would turn their outsides in.
 struct Placement {
     std::vector<Affine> inverse;  // of instances
     std::vector<bool> flat;       // instances

@@ -52,9 +52,9 @@ class Uploader {
         } catch (const cl::Error& e) {
             throw Error(Exit::failed, "no room on " + device_.info().name + " for the " + content.piece.what + " (" +
                                           memory_text(bytes) + " of " + memory_text(total_) +
-                                          " that the scene takes; the device has " +
-                                          memory_text(device_.info().global_bytes) + ", for everyone who uses it): OpenCL error " +
-                                          std::to_string(e.err()) + "; close what else uses it, or take fewer triangles");
+                                          " that the scene takes; the device has " + memory_text(device_.info().global_bytes) +
+                                          ", for everyone who uses it): OpenCL error " + std::to_string(e.err()) +
+                                          "; close what else uses it, or take fewer triangles");
         }
     }
 

@@ -28,7 +28,8 @@ std::string memory_text(uint64_t bytes) {
 std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& scene, const rt_accel& accel) {
     std::vector<MemoryPiece> pieces;
     pieces.push_back({"leaves", (counts.references + kLeafPadding) * sizeof(rt_leaf)});
-    if (accel.slot_count > 0) pieces.push_back({accel.slots[0].name, counts.references / kPrimitivesPerNode * accel.slots[0].elem_bytes});
+    if (accel.slot_count > 0)
+        pieces.push_back({accel.slots[0].name, counts.references / kPrimitivesPerNode * accel.slots[0].elem_bytes});
     if (!scene.normals.empty() || !scene.uvs.empty()) pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
     pieces.push_back({"normals", scene.normals.size() * sizeof(float)});
     pieces.push_back({"texture coordinates", scene.uvs.size() * sizeof(float)});

@@ -14,11 +14,7 @@ namespace {
 class Checker {
  public:
     Checker(const Input& input, const Built& built, uint32_t max_leaf)
-        : input_(input),
-          built_(built),
-          max_leaf_(max_leaf),
-          node_seen_(built.slot_counts[0]),
-          leaf_seen_(built.leaves.size()) {
+        : input_(input), built_(built), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaf_seen_(built.leaves.size()) {
         for (uint32_t i = 0; i < input.prims.size(); ++i) prim_of_ref_[input.prims[i].ref] = i;
     }
 
@@ -58,7 +54,8 @@ class Checker {
     }
     void expect_stack(const char* name, uint32_t entries) {
         const rt_u32 stack = built_.defines.at(name);
-        if (stack < entries + 1 || stack % 16 != 0 || stack > entries + 16) say() << name << " of " << stack << " for " << entries;
+        if (stack < entries + 1 || stack % 16 != 0 || stack > entries + 16)
+            say() << name << " of " << stack << " for " << entries;
     }
 
     Visited visit(rt_u32 index, uint32_t depth) {

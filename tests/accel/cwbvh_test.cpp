@@ -37,7 +37,8 @@ std::vector<rt_prim> spread(uint32_t count, const double at[3], const double siz
     std::vector<rt_prim> prims = scattered(count, 1, 0, count);
     for (rt_prim& prim : prims)
         for (int a = 0; a < 3; ++a) {
-            const float lo = static_cast<float>(at[a] + size[a] * prim.lo[a]), hi = static_cast<float>(at[a] + size[a] * prim.hi[a]);
+            const float lo = static_cast<float>(at[a] + size[a] * prim.lo[a]),
+                        hi = static_cast<float>(at[a] + size[a] * prim.hi[a]);
             prim.lo[a] = std::min(lo, hi);
             prim.hi[a] = std::max(lo, hi);
         }
@@ -50,7 +51,8 @@ TEST(Cwbvh, HoldsEveryPrimitiveOnce) {
     for (const uint32_t count : {1u, 2u, 3u, 4u, 5u, 8u, 9u, 31u, 65u, 1000u, 16385u, 100000u})
         expect_sound(one_group(scattered(count, 10, 0, count)));
     expect_sound(one_group(bumpy_sphere(200000)));
-    for (int max_leaf = 1; max_leaf <= 4; ++max_leaf) expect_sound(one_group(bumpy_sphere(5000)), {{{"max_leaf", max_leaf}}, 2, {}});
+    for (int max_leaf = 1; max_leaf <= 4; ++max_leaf)
+        expect_sound(one_group(bumpy_sphere(5000)), {{{"max_leaf", max_leaf}}, 2, {}});
     expect_sound(one_group(bumpy_sphere(20000)), {{{"builder", 1}}, 2, {}});
 }
 
@@ -89,7 +91,8 @@ TEST(Cwbvh, IsTheTreeOfBvh8) {
     const cwbvh_node& same = compressed.slot<cwbvh_node>()[compressed.roots[0]];
     for (uint32_t slot = 0; slot < 8; ++slot) {
         EXPECT_EQ((root.child[slot] & BVH8_LEAF) == 0, (same.cells >> (24 + slot) & 1u) != 0);
-        EXPECT_EQ(BVH8_LEAF_COUNT(root.child[slot]) > 0 && (root.child[slot] & BVH8_LEAF) != 0, (same.primitives >> 4 * slot & 15u) != 0);
+        EXPECT_EQ(BVH8_LEAF_COUNT(root.child[slot]) > 0 && (root.child[slot] & BVH8_LEAF) != 0,
+                  (same.primitives >> 4 * slot & 15u) != 0);
     }
 }
 
@@ -100,7 +103,8 @@ TEST(Cwbvh, BoxesAreHardlyWider) {
     const auto area = [&](const rt_plugin& plugin, const Built& built) {
         double sum = 0;
         for (const Volume& box : volumes(plugin, built, 0, RT_LEVEL_BOTTOM)) {
-            const double x = double{box.hi[0]} - box.lo[0], y = double{box.hi[1]} - box.lo[1], z = double{box.hi[2]} - box.lo[2];
+            const double x = double{box.hi[0]} - box.lo[0], y = double{box.hi[1]} - box.lo[1],
+                         z = double{box.hi[2]} - box.lo[2];
             sum += x * y + y * z + z * x;
         }
         return sum;

@@ -19,9 +19,8 @@ constexpr rt_param kBinsParam =
                   bvh2::kMaxBins, 32);
 constexpr rt_param kTraversalParam = rt::float_param(
     "traversal_cost", "Traversal cost", "what a node costs a ray, in the unit of the intersection cost", 0.01, 100, 3);
-constexpr rt_param kIntersectionParam =
-    rt::float_param("intersection_cost", "Intersection cost",
-                    "what a primitive costs a ray, in the unit of the traversal cost", 0.01, 100, 1);
+constexpr rt_param kIntersectionParam = rt::float_param(
+    "intersection_cost", "Intersection cost", "what a primitive costs a ray, in the unit of the traversal cost", 0.01, 100, 1);
 constexpr rt_param kBuilderParam =
     rt::enum_param("builder", "Builder",
                    "sah: binned surface area heuristic; morton: along a space-filling curve, several times faster to build and "

@@ -1,4 +1,5 @@
-// compressed_levels.hpp -- the boxes of one level of a group's tree, for drawing: as rays meet them, so wider than what they hold.
+// compressed_levels.hpp -- the boxes of one level of a group's tree, for drawing: as rays meet them, so wider than what they
+// hold.
 #pragma once
 #include "rt_plugin.h"
 
