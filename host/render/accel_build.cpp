@@ -20,7 +20,28 @@ namespace clarity {
 namespace {
 
 constexpr size_t kMapped = 1u << 20;  // from this size on memory is mapped, which zeroes pages when they are first touched
+constexpr size_t kLargePage = 1u << 21, kPage = 1u << 16;  // no machine's pages are larger than this
 constexpr uint64_t kSlotLimit = uint64_t(1) << 40;
+
+// A last large page is worth having when half of it is used.
+size_t mapped_bytes(size_t bytes) {
+    const size_t step = (bytes + kLargePage / 2) % kLargePage < kLargePage / 2 ? kLargePage : kPage;
+    return (bytes + step - 1) / step * step;
+}
+
+// At a multiple of a large page: a build faults once where it would 512 times, and faults were most of the time that packing
+// took. nullptr: there is no room.
+void* map_large(size_t bytes) {
+    const size_t wide = bytes + kLargePage;
+    void* const p = mmap(nullptr, wide, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (p == MAP_FAILED) return nullptr;
+    char* const first = static_cast<char*>(p);
+    const size_t before = (kLargePage - reinterpret_cast<uintptr_t>(p) % kLargePage) % kLargePage;
+    if (before > 0) munmap(first, before);
+    munmap(first + before + bytes, kLargePage - before);
+    madvise(first + before, bytes, MADV_HUGEPAGE);  // advice: may fail
+    return first + before;
+}
 
 double since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -169,10 +190,10 @@ void pack_leaves(const Output& out, AccelData& data) {
 
 AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
     if (bytes >= kMapped) {
-        void* p = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-        if (p == MAP_FAILED) throw std::bad_alloc();
-        madvise(p, bytes, MADV_HUGEPAGE);
-        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{bytes});
+        const size_t mapped = mapped_bytes(bytes);
+        void* const p = map_large(mapped);
+        if (!p) throw std::bad_alloc();
+        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{mapped});
         return;
     }
     void* p = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
@@ -189,7 +210,7 @@ void FreeMemory::operator()(void* p) const {
 }
 
 void AlignedBytes::free(void* data, size_t bytes) {
-    FreeMemory{bytes >= kMapped ? bytes : 0}(data);
+    FreeMemory{bytes >= kMapped ? mapped_bytes(bytes) : 0}(data);
 }
 
 double AccelData::stat(const std::string& label, double otherwise) const {
