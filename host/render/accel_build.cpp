@@ -1,13 +1,10 @@
 // accel_build.cpp -- running a builder, and distrusting what it wrote.
 #include "render/accel_build.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <mutex>
 
@@ -19,29 +16,7 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kMapped = 1u << 20;  // from this size on memory is mapped, which zeroes pages when they are first touched
-constexpr size_t kLargePage = 1u << 21, kPage = 1u << 16;  // no machine's pages are larger than this
 constexpr uint64_t kSlotLimit = uint64_t(1) << 40;
-
-// A last large page is worth having when half of it is used.
-size_t mapped_bytes(size_t bytes) {
-    const size_t step = (bytes + kLargePage / 2) % kLargePage < kLargePage / 2 ? kLargePage : kPage;
-    return (bytes + step - 1) / step * step;
-}
-
-// At a multiple of a large page: a build faults once where it would 512 times, and faults were most of the time that packing
-// took. nullptr: there is no room.
-void* map_large(size_t bytes) {
-    const size_t wide = bytes + kLargePage;
-    void* const p = mmap(nullptr, wide, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (p == MAP_FAILED) return nullptr;
-    char* const first = static_cast<char*>(p);
-    const size_t before = (kLargePage - reinterpret_cast<uintptr_t>(p) % kLargePage) % kLargePage;
-    if (before > 0) munmap(first, before);
-    munmap(first + before + bytes, kLargePage - before);
-    madvise(first + before, bytes, MADV_HUGEPAGE);  // advice: may fail
-    return first + before;
-}
 
 double since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -117,7 +92,7 @@ Output& output(void* ctx) {
     return *static_cast<Output*>(ctx);
 }
 
-constexpr uint64_t kLeafChunk = 1u << 15;  // leaves that one task looks at
+constexpr uint64_t kLeafChunk = 1u << 13;  // leaves that one task looks at
 
 bool is_known(rt_u32 ref, const BuildScene& scene) {
     const rt_u32 index = RT_REF_INDEX(ref);
@@ -187,31 +162,6 @@ void pack_leaves(const Output& out, AccelData& data) {
 }
 
 }  // namespace
-
-AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
-    if (bytes >= kMapped) {
-        const size_t mapped = mapped_bytes(bytes);
-        void* const p = map_large(mapped);
-        if (!p) throw std::bad_alloc();
-        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{mapped});
-        return;
-    }
-    void* p = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!p) throw std::bad_alloc();
-    data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{});
-    if (zero) std::memset(p, 0, bytes);
-}
-
-void FreeMemory::operator()(void* p) const {
-    if (mapped)
-        munmap(p, mapped);
-    else
-        std::free(p);
-}
-
-void AlignedBytes::free(void* data, size_t bytes) {
-    FreeMemory{bytes >= kMapped ? mapped_bytes(bytes) : 0}(data);
-}
 
 double AccelData::stat(const std::string& label, double otherwise) const {
     for (const auto& [name, value] : stats)

@@ -1,7 +1,7 @@
 // bvh8.cpp -- bounding volume hierarchy of eight children a node, the usual structure on a CPU: the plugin's table, and its
 // entry.
 //
-// Binary tree by bvh2's builder, its nodes merged by the surface area heuristic, 224 bytes a node, 64 to 68 a triangle with the
+// Binary tree by bvh2's builder, its nodes merged by the surface area heuristic, 224 bytes a node, 58 to 60 a triangle with the
 // triangle itself. Packets that keep together are tested by their bounds against all children at once, and so is a single ray;
 // the tree is shallow. A tree of a few nodes is traced faster as bvh2, whose packets need no bounds.
 #include <cstdio>
