@@ -11,7 +11,7 @@ constexpr unsigned kGrowth = 8;
 }  // namespace
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                          unsigned group_size, const std::function<void()>& go_on) {
+                          unsigned group_size, const std::function<void()>& go_on, unsigned begin) {
     LaunchTimes times;
     unsigned guess = kFirstPiece;
     for (unsigned first = 0; first < group_count;) {
@@ -19,7 +19,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint f
         unsigned count = groups_per_ms_ > 0 ? static_cast<unsigned>(std::min(groups_per_ms_ * kPieceMs, 4e9)) : guess;
         count = std::clamp(count, 1u, group_count - first);
         if (group_count - first - count < count / 2) count = group_count - first;  // no crumbs
-        kernel.setArg(first_argument, first);
+        kernel.setArg(first_argument, begin + first);
         const auto start = std::chrono::steady_clock::now();
         cl::Event event;
         queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size_t(count) * group_size), cl::NDRange(group_size),
@@ -30,6 +30,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint f
         times.device_ms += 1e-6 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                                          event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
         first += count;
+        ++times.launches;
         // A slow first piece may hold a compilation, so a pace is believed once pieces take a while.
         if (wall > 5 || first == group_count) groups_per_ms_ = count / std::max(wall, 1e-3);
         guess = std::min(guess * kGrowth, group_count);

@@ -7,16 +7,17 @@ namespace clarity {
 
 struct LaunchTimes {
     double device_ms = 0, wall_ms = 0;
+    unsigned launches = 0;
 };
 
 // Keeps the pace of one kernel from launch to launch.
 class Launcher {
  public:
-    // Runs groups [0, group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of a piece's
-    // first group. Global offsets stay zero: PoCL compiles a kernel anew for others. go_on is asked between pieces and stops by
-    // throwing.
+    // Runs groups [begin, begin + group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of
+    // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others. go_on is asked between pieces
+    // and stops by throwing.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                    unsigned group_size, const std::function<void()>& go_on);
+                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0);
     void forget() { groups_per_ms_ = 0; }
 
  private:
