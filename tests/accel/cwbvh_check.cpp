@@ -54,7 +54,7 @@ class Checker {
     }
     void expect_stack(const char* name, uint32_t entries) {
         const rt_u32 stack = built_.defines.at(name);
-        if (stack < entries + 1 || stack % 16 != 0 || stack > entries + 16)
+        if (stack < entries + 1 || stack % 16 != 0 || stack > entries + 32)
             say() << name << " of " << stack << " for " << entries;
     }
 

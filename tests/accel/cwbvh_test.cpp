@@ -83,7 +83,8 @@ TEST(Cwbvh, GridsAtEveryScale) {
 // 55 bytes a triangle where the same tree in floats takes 68, and an octant order that is the same.
 TEST(Cwbvh, IsTheTreeOfBvh8) {
     const Input input = one_group(bumpy_sphere(100000));
-    const Built wide = build(load("bvh8"), input), compressed = build(cwbvh(), input);
+    const Options same_costs{{{"max_leaf", 4}, {"intersection_cost", 1}}, 2, {}};
+    const Built wide = build(load("bvh8"), input, same_costs), compressed = build(cwbvh(), input, same_costs);
     EXPECT_EQ(wide.slot_counts[0], compressed.slot_counts[0]);
     EXPECT_EQ(wide.stats.at("sah_cost"), compressed.stats.at("sah_cost"));
     EXPECT_LT(compressed.stats.at("bytes_per_primitive"), 57);
@@ -99,7 +100,8 @@ TEST(Cwbvh, IsTheTreeOfBvh8) {
 // What a plane that is a byte too generous costs: areas of all boxes, which is how often rays meet them.
 TEST(Cwbvh, BoxesAreHardlyWider) {
     const Input input = one_group(bumpy_sphere(50000));
-    const Built wide = build(load("bvh8"), input), compressed = build(cwbvh(), input);
+    const Options same_costs{{{"max_leaf", 4}, {"intersection_cost", 1}}, 2, {}};
+    const Built wide = build(load("bvh8"), input, same_costs), compressed = build(cwbvh(), input, same_costs);
     const auto area = [&](const rt_plugin& plugin, const Built& built) {
         double sum = 0;
         for (const Volume& box : volumes(plugin, built, 0, RT_LEVEL_BOTTOM)) {

@@ -22,10 +22,10 @@ static_assert(sizeof(cwbvh_node) == 80, "five loads of 16 bytes");
 constexpr rt_cl_file kTypes = rt::file(kFiles, "cwbvh_types.h"), kTraversal = rt::file(kFiles, "cwbvh.cl");
 
 constexpr rt_param kParams[] = {
-    bvh8::max_leaf_param(CWBVH_LEAF_MAX),
+    bvh8::max_leaf_param(CWBVH_LEAF_MAX, CWBVH_LEAF_MAX),
     bvh8::kBinsParam,
     bvh8::kTraversalParam,
-    bvh8::kIntersectionParam,
+    bvh8::intersection_param(1),
     bvh8::kBuilderParam,
     bvh8::kDuplicatesParam,
 };
@@ -61,8 +61,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     compress(host, {caught.nodes->data(), wide.nodes, caught.refs->data(), wide.references, &caught.roots}, out);
     bvh8::report(out, wide, uint64_t{wide.nodes} * sizeof(cwbvh_node));
     // Single rays put off what is left of a node, packets child by child.
-    rt::define(out, "CWBVH_DEPTH", bvh8::stack_define(wide.depth));
-    rt::define(out, "CWBVH_STACK", bvh8::stack_define(wide.stack));
+    rt::define(out, "CWBVH_DEPTH", bvh8::stack_places(wide.depth));
+    rt::define(out, "CWBVH_STACK", bvh8::stack_places(wide.stack));
     return RT_OK;
 }
 
