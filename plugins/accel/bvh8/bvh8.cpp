@@ -103,6 +103,7 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         // One to spare tells a full stack from an overflowing one; in steps of 16, since a new value recompiles the kernels.
         rt::define(out, kStack, (wide.stack() + 1 + 15) / 16 * 16);
 #if BVH8_WIDTH == 8
+        rt::define(out, "BVH8_DEPTH", (wide.depth() + 15) / 16 * 16);
         const auto incoherent = static_cast<Incoherent>(input->params[kIncoherent]);
         rt::define(out, "BVH8_SINGLE", incoherent == kSingle || (incoherent == kAuto && count > kTogether));
 #endif

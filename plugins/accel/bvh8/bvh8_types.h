@@ -34,6 +34,7 @@ typedef struct bvh8_node {
 #define BVH8_NOTHING BVH8_MAKE_LEAF(0u, 0u)
 
 #ifdef __OPENCL_VERSION__
+#define RT_TRAVERSES_BUNDLES
 /* Mask to bits, lane 0 in bit 0: as rt_bits of lanes.h, for eight children instead of RT_LANES rays. */
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX__)
 #define BVH8_BITS(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
@@ -52,6 +53,17 @@ RT_INLINE uint bvh8_bits(int8 m)
 #define BVH8_ROW(node, bytes) (*(const global float8 *)((node) + (bytes)))
 /* One number of one child, `box` being its slot's place in the first row. */
 #define BVH8_PLANE(box, bytes) rt_vfloat(*(const global float *)((box) + (bytes)))
+/* Bounds that have to be rounded outwards by the slack of rt_prepare(). */
+#define BVH8_DOWN(v) ((v) - fabs(v) * (8.0f * RT_EPS))
+#define BVH8_UP(v) ((v) + fabs(v) * (8.0f * RT_EPS))
+/* Whether bounds of origins and of 1 / direction are so wide that rays are tested themselves before they go on. */
+#define BVH8_WIDE(o_lo, o_hi, i_lo, i_hi) ((o_lo) != (o_hi) || (i_hi) - (i_lo) > 0.25f * fabs(i_lo))
+#ifdef RT_COUNT_STEPS
+#define BVH8_COUNT_VISITS(hits, inside)                                                                                          \
+    for (uint count_in = inside; count_in != 0u; count_in &= count_in - 1u) RT_COUNT_STEP((hits) + BVH8_LOWEST(count_in));
+#else
+#define BVH8_COUNT_VISITS(hits, inside)
+#endif
 /* Entry distance in the upper half, child in the lower: distances are not negative, so keys sort as they are. */
 #define BVH8_KEY(entry, child, i) ((ulong)as_uint((entry)[i]) << 32 | (child)[i])
 /* Asks for what will be read at a node or leaf, four lines of the cache, ahead of its turn: packets trace trees larger than a
