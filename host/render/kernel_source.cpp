@@ -96,7 +96,8 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
            "RT_INLINE void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count);\n"
            "#endif\n";
     part(out, plugin.file, plugin.text);
-    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n#undef RT_LONE_CANDIDATES\n"
+    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef "
+           "RT_TRIANGLES_ONLY\n#undef RT_LONE_CANDIDATES\n"
            "#undef RT_LONE_TEST\n#undef RT_LONE_MIXED\n";
 }
 
@@ -157,7 +158,9 @@ Layout make_layout(const Settings& settings, bool cpu) {
     if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
     // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
     layout.group_side = 4;
-    const auto in_group = [&](unsigned packet_side) { return std::clamp(16 / packet_side, 1u, layout.group_side); };  // camera.h
+    const auto in_group = [&](unsigned packet_side) {
+        return std::clamp(16 / packet_side, 1u, layout.group_side);
+    };  // camera.h
     layout.group_w = in_group(layout.packet_w);
     layout.group_h = in_group(layout.packet_h);
     layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));

@@ -140,17 +140,16 @@ RT_INLINE uint BVH8_ENTER(const global char *box, ulong near_x, ulong near_y, ul
     return rt_bits(RT_MASK(entry <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t)));
 }
 
-/* A packet whose active directions agree in sign. */
-RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+/* A packet whose active directions are of one octant. */
+RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_rays *ray, rt_hits *hit)
 {
     const vmask alive = RT_MASK(hit->t >= rt_vfloat(0.0f));
-    const float t_min = rt_least_of(alive, ray->t_min);
     float t_far = rt_greatest(hit->t);
-    const ulong near_x = ray->lo_x * 32u, near_y = ray->lo_y * 32u, near_z = ray->lo_z * 32u;
+    const ulong near_x = BVH8_NEAR(octant, 0), near_y = BVH8_NEAR(octant, 1), near_z = BVH8_NEAR(octant, 2);
     const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
     /* A plane p is met at (p - origin) / direction: no ray meets a near plane that lies before it earlier than the slowest would
      * from the foremost origin, nor leaves by a far plane later than the fastest from the hindmost. For planes that lie behind,
-     * both are negative, as they should be, and t_min is not. Each as fma(1 / direction, p, -origin / direction), with the slack
+     * both are negative, and t_min is not, so 0 stands for it. Each as fma(1 / direction, p, -origin / direction), with the slack
      * of rt_prepare(). */
     bool wide = false;
 #define BVH8_AXIS(x, turned)                                                                                                     \
@@ -190,7 +189,7 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_h
             const float8 bx = fma((float8)(fast_x), BVH8_ROW(node, far_x), (float8)(out_x));
             const float8 by = fma((float8)(fast_y), BVH8_ROW(node, far_y), (float8)(out_y));
             const float8 bz = fma((float8)(fast_z), BVH8_ROW(node, far_z), (float8)(out_z));
-            const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(t_min)));
+            const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(0.0f)));
             const float8 out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(t_far));
             uint bits = BVH8_BITS(in <= out);
             if (bits != 0u) {
@@ -386,31 +385,41 @@ RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hit
 
 #endif
 
+
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
-    if (ray->coherent)
-        BVH8_BOUNDED(ctx, root, ray, hit);
-    else
+    const vint octants = bvh8_octants(ray);
+    const vfloat t = hit->t;
+    uint rest = bvh8_which_octants(octants, t);
+    if (popcount(rest) > BVH8_SPLIT) {
         BVH8_APART(ctx, root, ray, hit);
+        return;
+    }
+    for (; rest != 0u; rest &= rest - 1u) {
+        const uint octant = BVH8_LOWEST(rest);
+        const vmask mine = RT_MASK(octants == rt_vint((int)octant));
+        const vfloat others = hit->t;
+        hit->t = rt_select(mine, hit->t, rt_vfloat(-1.0f));
+        BVH8_BOUNDED(ctx, root, octant, ray, hit);
+        hit->t = rt_select(mine, hit->t, others);
+    }
 }
 
 #if RT_BUNDLE > 1
-/* The packets `members` of a bundle, two or more, whose directions all agree in sign: the bounds of one packet in each lane. What
+/* The packets `members` of a bundle, two or more, whose active directions are all of one octant: the bounds of one packet in each lane. What
  * BVH8_BOUNDED does with eight children at once is done here with as many packets, child by child, so that a node is fetched and
  * decided on once for all that come to it. */
-RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, const rt_rays *rays, rt_hits *hits, uint members)
+RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_rays *rays, rt_hits *hits, uint members)
 {
-    const rt_rays *any = rays + BVH8_LOWEST(members);
-    const ulong near_x = any->lo_x * 32u, near_y = any->lo_y * 32u, near_z = any->lo_z * 32u;
-    vfloat slow_x, slow_y, slow_z, fast_x, fast_y, fast_z, in_x, in_y, in_z, out_x, out_y, out_z, t_min, t_far = rt_vfloat(-1.0f);
-    slow_x = slow_y = slow_z = fast_x = fast_y = fast_z = in_x = in_y = in_z = out_x = out_y = out_z = t_min = rt_vfloat(0.0f);
+    const ulong near_x = BVH8_NEAR(octant, 0), near_y = BVH8_NEAR(octant, 1), near_z = BVH8_NEAR(octant, 2);
+    vfloat slow_x, slow_y, slow_z, fast_x, fast_y, fast_z, in_x, in_y, in_z, out_x, out_y, out_z, t_far = rt_vfloat(-1.0f);
+    slow_x = slow_y = slow_z = fast_x = fast_y = fast_z = in_x = in_y = in_z = out_x = out_y = out_z = rt_vfloat(0.0f);
     uint wide = 0;
     for (uint rest = members; rest != 0u; rest &= rest - 1u) {
         const uint p = BVH8_LOWEST(rest);
         const rt_rays *ray = rays + p;
         const vmask alive = RT_MASK(hits[p].t >= rt_vfloat(0.0f)), lane = RT_MASK(rt_lane_index() == rt_vint((int)p));
         uint is_wide = 0;
-        t_min = rt_select(lane, rt_vfloat(rt_least_of(alive, ray->t_min)), t_min);
         t_far = rt_select(lane, rt_vfloat(rt_greatest(hits[p].t)), t_far);
         /* Here origins only; -origin / direction follows for all lanes at once. */
 #define BVH8_AXIS(x, turned)                                                                                                     \
@@ -437,6 +446,18 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, const rt_rays *rays, rt
     BVH8_OFF(z)
 #undef BVH8_OFF
 
+    float few_t_far[RT_LANES], few[12][RT_LANES]; /* the same numbers, packet by packet */
+    rt_store(t_far, few_t_far);
+#define BVH8_STORE(x, i)                                                                                                         \
+    rt_store(slow_##x, few[i]);                                                                                                  \
+    rt_store(in_##x, few[(i) + 1]);                                                                                              \
+    rt_store(fast_##x, few[(i) + 2]);                                                                                            \
+    rt_store(out_##x, few[(i) + 3]);
+    BVH8_STORE(x, 0)
+    BVH8_STORE(y, 4)
+    BVH8_STORE(z, 8)
+#undef BVH8_STORE
+
     /* Put off: the entry distance of one of the packets in the upper half of a key, node and slot in the lower; which packets enter;
      * and the depth at which all their entry distances are, for each slot of the node. */
     vfloat entries[BVH8_WIDTH * BVH8_DEPTH];
@@ -451,7 +472,8 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, const rt_rays *rays, rt
                 const uint p = BVH8_LOWEST(inside);
                 if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) == 0u) continue;
                 for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, rays + p, hits + p);
-                t_far = rt_select(RT_MASK(rt_lane_index() == rt_vint((int)p)), rt_vfloat(rt_greatest(hits[p].t)), t_far);
+                few_t_far[p] = rt_greatest(hits[p].t);
+                t_far = rt_select(RT_MASK(rt_lane_index() == rt_vint((int)p)), rt_vfloat(few_t_far[p]), t_far);
             }
         } else {
             for (uint doubt = depth != 0u ? inside & wide : 0u; doubt != 0u; doubt &= doubt - 1u) {
@@ -463,15 +485,36 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, const rt_rays *rays, rt
             at *= BVH8_WIDTH;
             vfloat *const entry = entries + depth * BVH8_WIDTH;
             uint enters[BVH8_WIDTH], found = 0;
-            __attribute__((opencl_unroll_hint(BVH8_WIDTH)))
-            for (uint i = 0; i < BVH8_WIDTH; ++i) {
-                const global char *box = node + 4u * i;
-                const vfloat ax = fma(slow_x, BVH8_PLANE(box, near_x), in_x), bx = fma(fast_x, BVH8_PLANE(box, 96u - near_x), out_x);
-                const vfloat ay = fma(slow_y, BVH8_PLANE(box, near_y), in_y), by = fma(fast_y, BVH8_PLANE(box, 160u - near_y), out_y);
-                const vfloat az = fma(slow_z, BVH8_PLANE(box, near_z), in_z), bz = fma(fast_z, BVH8_PLANE(box, 224u - near_z), out_z);
-                entry[i] = rt_max(rt_max(ax, ay), rt_max(az, t_min));
-                enters[i] = inside & rt_bits(RT_MASK(entry[i] <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, t_far)));
-                found |= (enters[i] != 0u ? 1u : 0u) << i;
+            if ((inside & (inside - 1u)) == 0u && inside != 0u) { /* one packet is left: all children at once */
+                const uint p = BVH8_LOWEST(inside);
+#define BVH8_FEW(i) ((float8)(few[i][p]))
+                const float8 ax = fma(BVH8_FEW(0), BVH8_ROW(node, near_x), BVH8_FEW(1));
+                const float8 bx = fma(BVH8_FEW(2), BVH8_ROW(node, 96u - near_x), BVH8_FEW(3));
+                const float8 ay = fma(BVH8_FEW(4), BVH8_ROW(node, near_y), BVH8_FEW(5));
+                const float8 by = fma(BVH8_FEW(6), BVH8_ROW(node, 160u - near_y), BVH8_FEW(7));
+                const float8 az = fma(BVH8_FEW(8), BVH8_ROW(node, near_z), BVH8_FEW(9));
+                const float8 bz = fma(BVH8_FEW(10), BVH8_ROW(node, 224u - near_z), BVH8_FEW(11));
+#undef BVH8_FEW
+                const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(0.0f)));
+                found = BVH8_BITS(in <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(few_t_far[p])));
+                float ins[BVH8_WIDTH];
+                vstore8(in, 0, ins);
+                for (uint rest = found; rest != 0u; rest &= rest - 1u) {
+                    const uint i = BVH8_LOWEST(rest);
+                    ((float *)(entry + i))[p] = ins[i];
+                    enters[i] = inside;
+                }
+            } else {
+                __attribute__((opencl_unroll_hint(BVH8_WIDTH)))
+                for (uint i = 0; i < BVH8_WIDTH; ++i) {
+                    const global char *box = node + 4u * i;
+                    const vfloat ax = fma(slow_x, BVH8_PLANE(box, near_x), in_x), bx = fma(fast_x, BVH8_PLANE(box, 96u - near_x), out_x);
+                    const vfloat ay = fma(slow_y, BVH8_PLANE(box, near_y), in_y), by = fma(fast_y, BVH8_PLANE(box, 160u - near_y), out_y);
+                    const vfloat az = fma(slow_z, BVH8_PLANE(box, near_z), in_z), bz = fma(fast_z, BVH8_PLANE(box, 224u - near_z), out_z);
+                    entry[i] = rt_max(rt_max(ax, ay), rt_max(az, rt_vfloat(0.0f)));
+                    enters[i] = inside & rt_bits(RT_MASK(entry[i] <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, t_far)));
+                    found |= (enters[i] != 0u ? 1u : 0u) << i;
+                }
             }
             if (found != 0u) {
                 const global uint *child = (const global uint *)(node + 192);
@@ -510,26 +553,36 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, const rt_rays *rays, rt
     }
 }
 
-/* Packets that agree in sign go together, whoever else is in the bundle; those that agree with nobody go alone. */
 void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count)
 {
-    uint rest = 0;
-    for (uint b = 0; b < count; ++b) rest |= (rt_any(RT_MASK(hits[b].t >= rt_vfloat(0.0f))) ? 1u : 0u) << b;
-    while (rest != 0u) {
-        const uint first = BVH8_LOWEST(rest);
-        const rt_rays *ray = rays + first;
-        uint members = 1u << first;
-        if (ray->coherent)
-            for (uint others = rest & (rest - 1u); others != 0u; others &= others - 1u) {
-                const rt_rays *other = rays + BVH8_LOWEST(others);
-                if (other->coherent && other->lo_x == ray->lo_x && other->lo_y == ray->lo_y && other->lo_z == ray->lo_z)
-                    members |= 1u << BVH8_LOWEST(others);
-            }
-        rest &= ~members;
-        if (popcount(members) > 1)
-            BVH8_TOGETHER(ctx, root, rays, hits, members);
+    uint with[8] = {0, 0, 0, 0, 0, 0, 0, 0}, apart = 0, mixed = 0;
+    for (uint p = 0; p < count; ++p) {
+        uint rest = bvh8_which_octants(bvh8_octants(rays + p), hits[p].t);
+        if (popcount(rest) > BVH8_SPLIT) {
+            apart |= 1u << p;
+            continue;
+        }
+        mixed |= (rest & (rest - 1u) ? 1u : 0u) << p;
+        for (; rest != 0u; rest &= rest - 1u) with[BVH8_LOWEST(rest)] |= 1u << p;
+    }
+    for (; apart != 0u; apart &= apart - 1u) BVH8_APART(ctx, root, rays + BVH8_LOWEST(apart), hits + BVH8_LOWEST(apart));
+    for (uint octant = 0; octant < 8u; ++octant) {
+        const uint members = with[octant];
+        if (members == 0u) continue;
+        vfloat others[RT_BUNDLE];
+        for (uint some = members & mixed; some != 0u; some &= some - 1u) {
+            const uint p = BVH8_LOWEST(some);
+            others[p] = hits[p].t;
+            hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, rt_vfloat(-1.0f));
+        }
+        if (members & (members - 1u))
+            BVH8_TOGETHER(ctx, root, octant, rays, hits, members);
         else
-            RT_TRAVERSE(ctx, root, ray, hits + first);
+            BVH8_BOUNDED(ctx, root, octant, rays + BVH8_LOWEST(members), hits + BVH8_LOWEST(members));
+        for (uint some = members & mixed; some != 0u; some &= some - 1u) {
+            const uint p = BVH8_LOWEST(some);
+            hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, others[p]);
+        }
     }
 }
 #endif

@@ -76,6 +76,23 @@ RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf
 #endif
 }
 #if RT_LANES > 1
+/* Octants of directions that a packet may be split into: where it has more, its rays have too little in common. */
+#define BVH8_SPLIT 2
+/* Bits 0, 1, 2: the direction's component is negative. */
+RT_INLINE vint bvh8_octants(const rt_rays *ray)
+{
+    return (ray->neg_x & rt_vint(1)) | (ray->neg_y & rt_vint(2)) | (ray->neg_z & rt_vint(4));
+}
+/* Octants that active lanes have, as bits. */
+RT_INLINE uint bvh8_which_octants(vint octants, vfloat t)
+{
+    const vmask alive = RT_MASK(t >= rt_vfloat(0.0f));
+    uint which = 0;
+    for (int i = 0; i < 8; ++i) which |= (rt_any(alive & RT_MASK(octants == rt_vint(i))) ? 1u : 0u) << i;
+    return which;
+}
+/* Row of near planes of an axis, in bytes from the node's begin. */
+#define BVH8_NEAR(octant, axis) ((octant) >> (axis) & 1u ? 96ul + 32ul * (axis) : 32ul * (axis))
 /* Rays of a packet that go their own ways, and what each has put off: children in the order in which they were met, the next one
  * on top, and where the ray enters them. Below each stack lie entries that end every search in it. 60 KB at most. */
 #define BVH8_BELOW 8u
