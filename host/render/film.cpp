@@ -1,5 +1,6 @@
 #include "render/film.hpp"
 
+#include <chrono>
 #include <map>
 
 #include "device/kernel_files.hpp"
@@ -23,6 +24,21 @@ void add_times(std::vector<KernelTime>* times, const cl::Event& mapped, const cl
 }
 
 }  // namespace
+
+FalseColorScale show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
+                            uint8_t* rgba, FrameStats* stats) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const FloatImage values = read();
+    const auto done = Clock::now();
+    const FalseColorScale scale = scale_of(values, aov, static_cast<float>(settings.scale_max));
+    false_colors(values, aov, scale, rgba);
+    if (stats) {
+        stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(done - begin).count()});
+        stats->kernels.push_back({"false colours", std::chrono::duration<double, std::milli>(Clock::now() - done).count()});
+    }
+    return scale;
+}
 
 FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), picture_(device) {
     const BuildResult built =

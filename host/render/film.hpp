@@ -1,5 +1,6 @@
 // film.hpp -- kernels after tracing: sums over counters, tones for a screen.
 #pragma once
+#include <functional>
 #include <memory>
 
 #include "render/growing_buffer.hpp"
@@ -7,6 +8,19 @@
 #include "render/renderer.hpp"
 
 namespace clarity {
+
+// Floats a pixel: in the film, and in a picture of its values.
+inline unsigned film_channels(const std::string& aov) {
+    if (aov == "color") return 4;
+    return aov == "normal" || aov == "uv" ? 3 : 1;
+}
+inline unsigned value_channels(const std::string& aov) {
+    return aov == "color" ? 3 : film_channels(aov);
+}
+
+// Reads what is no colour and paints it in false ones. stats: where given, gains the times.
+FalseColorScale show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
+                            uint8_t* rgba, FrameStats* stats);
 
 struct RayCounts {
     uint64_t shadow = 0, secondary = 0, dropped = 0, overflowed = 0;

@@ -1,6 +1,5 @@
 // frames.cpp -- the film, and tracing into it.
 #include <algorithm>
-#include <chrono>
 #include <cstring>
 #include <numeric>
 
@@ -16,17 +15,6 @@
 
 namespace clarity {
 namespace {
-
-// Floats a pixel, in the film.
-unsigned channels_of(const std::string& aov) {
-    if (aov == "color") return 4;
-    return aov == "normal" || aov == "uv" ? 3 : 1;
-}
-
-// And in a picture of its values.
-unsigned values_channels(const std::string& aov) {
-    return aov == "color" ? 3 : channels_of(aov);
-}
 
 // A packet's distances, block by block, to where its first pixel is.
 void put_packet(const Layout& layout, const float* block, unsigned left, unsigned top, FloatImage& image) {
@@ -93,7 +81,10 @@ struct Frames::Impl {
         rows.resize(layout.groups_y(height));
         std::iota(rows.begin(), rows.end(), 0u);
     }
-    std::vector<Band> bands() const { return bands_of(rows, layout.group_h * layout.packet_h, height); }
+    std::vector<Band> bands(size_t begin = 0) const {
+        const std::vector<rt_u32> some(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.end());
+        return bands_of(some, layout.group_h * layout.packet_h, height);
+    }
     unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
     FloatImage image(unsigned channels) const {
         FloatImage image{width, height, channels, {}};
@@ -139,7 +130,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         cl_uint at = 0;
         im.kernel.setArg(at++, im.view.frame());
         const cl_uint first_group = at++;
-        im.kernel.setArg(at++, im.film.fit(context, FilmKernels::room(pixels) * channels_of(im.aov) * sizeof(float)));
+        im.kernel.setArg(at++, im.film.fit(context, FilmKernels::room(pixels) * film_channels(im.aov) * sizeof(float)));
         if (program.has_generations()) {
             im.kernel.setArg(at++, im.counters.fit(context, size_t(packets) * 16));
             im.kernel.setArg(at++, im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float)));
@@ -156,7 +147,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         stats.device_ms = times.device_ms;
         stats.wall_ms = times.wall_ms;
         stats.launches = times.launches;
-        for (const Band& band : im.bands()) stats.primary += uint64_t(band.count) * width;
+        for (const Band& band : im.bands(shared ? shared->begin : 0)) stats.primary += uint64_t(band.count) * width;
         stats.samples = sample + 1;
         stats.kernels.push_back({"trace", times.device_ms});
         if (count_rays) count(stats);
@@ -179,7 +170,7 @@ void Frames::count(FrameStats& stats) {
 }
 
 FloatImage Frames::read_values() {
-    FloatImage image = impl_->image(values_channels(impl_->aov));
+    FloatImage image = impl_->image(value_channels(impl_->aov));
     read_values(image);
     return image;
 }
@@ -188,7 +179,7 @@ void Frames::read_values(FloatImage& image) {
     Impl& im = *impl_;
     guarded(*im.device, "reading the film", [&] {
         const bool color = im.aov == "color";
-        const size_t stored = size_t(im.width) * channels_of(im.aov);  // floats of a row of pixels
+        const size_t stored = size_t(im.width) * film_channels(im.aov);  // floats of a row of pixels
         if (color) im.scratch.resize(stored * im.height);
         float* const film = color ? im.scratch.data() : image.pixels.data();
         const std::vector<Band> bands = im.bands();
@@ -241,19 +232,7 @@ ByteImage Frames::read_display(const Settings& settings) {
 
 FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats) {
     Impl& im = *impl_;
-    if (im.aov != "color") {
-        using Clock = std::chrono::steady_clock;
-        const auto begin = Clock::now();
-        const FloatImage values = read_values();
-        const auto read = Clock::now();
-        const FalseColorScale scale = scale_of(values, im.aov, static_cast<float>(settings.scale_max));
-        false_colors(values, im.aov, scale, rgba);
-        if (stats) {
-            stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(read - begin).count()});
-            stats->kernels.push_back({"false colours", std::chrono::duration<double, std::milli>(Clock::now() - read).count()});
-        }
-        return scale;
-    }
+    if (im.aov != "color") return show_values([this] { return read_values(); }, im.aov, settings, rgba, stats);
     guarded(*im.device, "reading the picture", [&] {
         im.film_kernels.show(im.film.get(), size_t(im.width) * im.height, settings, rgba, stats ? &stats->kernels : nullptr);
     });

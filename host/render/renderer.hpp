@@ -89,6 +89,15 @@ struct KernelTime {
     double ms = 0;
 };
 
+// What one device did of a picture that several share.
+struct DeviceShare {
+    std::string id, name;
+    double share = 0;                     // 0..1 of the picture's rows
+    double device_ms = 0, wall_ms = 0;    // of tracing, by the device's clock and by its host thread's
+    double tone_map_ms = 0, read_ms = 0;  // of read_display(), by the device's clock
+    unsigned launches = 0;
+};
+
 struct FrameStats {
     double device_ms = 0;                                          // the kernels of the last sample, by the device's clock
     double wall_ms = 0;                                            // the same by the host's, waiting included
@@ -96,7 +105,8 @@ struct FrameStats {
     uint64_t overflowed = 0;                                       // traversal stacks that were full (debug programs)
     unsigned samples = 0;                                          // in the film now
     unsigned launches = 0;                                         // that the last sample was cut into
-    std::vector<KernelTime> kernels;  // of the last sample: trace, counters; read_display() adds tone map and read-back
+    std::vector<KernelTime> kernels;   // of the last sample: trace, counters; read_display() adds tone map and read-back
+    std::vector<DeviceShare> devices;  // where several share the picture; then what is above is of the slowest
 };
 
 // Rows of work-groups that a device has of a picture which several devices share, in the order they came to it. A sample may
