@@ -9,6 +9,25 @@
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
 
+/* t_max of a block: negative where no ray is. */
+RT_INLINE vfloat rt_load_reach(const global float *blocks, uint block)
+{
+    return ((const global vfloat *)blocks)[RT_RAY_FIELDS * (size_t)block + 7u];
+}
+
+/* Asks for the fields of a block that has rays, and for the t_max of the block `ahead` of it, of which the last is `last`: a CPU
+ * waits for memory else, a sixth of bunny's camera rays' time. */
+RT_INLINE void rt_fetch_ray_block(const global float *blocks, uint block, uint ahead, uint last)
+{
+#if RT_CPU && RT_LANES > 1 && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
+    const ulong from = (ulong)((const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)block);
+    if (rt_any(RT_MASK(rt_load_reach(blocks, block) >= rt_vfloat(0.0f))))
+        for (uint i = 0; i < 7u; ++i) __builtin_prefetch((const void *)(from + i * sizeof(vfloat)));
+    const uint far = min(block + ahead, last);
+    __builtin_prefetch((const void *)(ulong)((const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)far + 7u));
+#endif
+}
+
 RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays *ray, vfloat *t_max)
 {
 #if RT_LANES == 1
@@ -24,9 +43,6 @@ RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays
     *t_max = along.w;
 #else
     const global vfloat *in = (const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)block;
-#if RT_CPU && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
-    for (uint i = 0; i < RT_RAY_FIELDS; ++i) __builtin_prefetch((const void *)(ulong)(in + RT_RAY_FIELDS * RT_BUNDLE + i));
-#endif
     ray->ox = in[0];
     ray->oy = in[1];
     ray->oz = in[2];

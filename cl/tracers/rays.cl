@@ -14,13 +14,22 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
             rt_hits hit[RT_BUNDLE];
             vmask active[RT_BUNDLE];
             for (uint b = 0; b < count; ++b) {
+                rt_fetch_ray_block(rays, min(base + b + RT_BUNDLE, blocks - 1u), RT_BUNDLE, blocks - 1u);
                 vfloat t_max;
+#if RT_LANES == 1 /* one fetch has it all */
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
+#else
+                t_max = rt_load_reach(rays, base + b);
+#endif
                 active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
-                const uint bits = rt_bits(active[b]);
                 rt_clear_hits(hit + b, active[b]);
                 hit[b].t = rt_select(active[b], t_max, hit[b].t);
-                if (bits != 0u) rt_prepare(ray + b, bits);
+                const uint bits = rt_bits(active[b]);
+                if (bits == 0u) continue;
+#if RT_LANES > 1
+                rt_load_ray_block(rays, base + b, ray + b, &t_max);
+#endif
+                rt_prepare(ray + b, bits);
             }
             if (any_hit)
                 rt_trace_bundle_any(&ctx, frame, ray, hit, count);

@@ -45,6 +45,17 @@ std::vector<RayBlock> pack(const RaySet& set) {
     return blocks;
 }
 
+// Asks for the rays of the next block, where it has any, as rt_fetch_ray_block() does for ours.
+void fetch_ahead(const std::vector<RayBlock>& blocks, size_t block) {
+#if defined(__SSE2__)
+    const size_t last = blocks.size() - 1;
+    const auto& next = blocks[std::min(block + 1, last)].field;
+    if (std::any_of(next[7], next[7] + kBlock, [](float t_max) { return t_max >= 0; }))
+        for (const auto& field : next) _mm_prefetch(reinterpret_cast<const char*>(field), _MM_HINT_T0);
+    _mm_prefetch(reinterpret_cast<const char*>(blocks[std::min(block + 2, last)].field[7]), _MM_HINT_T0);
+#endif
+}
+
 template <int kWidth>
 struct Packet;
 template <>
@@ -195,8 +206,10 @@ class EmbreeScene : public PeerScene {
             for (;;) {
                 const size_t first = next.fetch_add(kTaskBlocks);
                 if (first >= blocks_.size()) break;
-                for (size_t b = first; b < std::min(first + kTaskBlocks, blocks_.size()); ++b)
+                for (size_t b = first; b < std::min(first + kTaskBlocks, blocks_.size()); ++b) {
+                    fetch_ahead(blocks_, b);
                     trace(scene_, context, any_hit_, blocks_[b], &hits[b * kBlock]);
+                }
             }
 #if defined(__SSE2__)
             _mm_setcsr(saved);
