@@ -30,14 +30,25 @@ struct Team {
     bool alike = true;
 };
 
-std::vector<size_t> team_sizes(size_t devices) {
-    std::vector<size_t> sizes;
-    for (size_t n = 1; n < devices; n *= 2) sizes.push_back(n);
-    sizes.push_back(devices);
-    return sizes;
+struct TeamPlan {
+    size_t size = 1;
+    unsigned queues = 0;  // of each device; 0: the usual number
+    std::string text() const {
+        return std::to_string(size) + (size == 1 ? " device" : " devices") +
+               (queues > 0 ? ", " + std::to_string(queues) + " queues" : "");
+    }
+};
+
+// One GPU in two queues too: what several gain by that is not the others' merit.
+std::vector<TeamPlan> team_plans(const MultiPrepared& all) {
+    std::vector<TeamPlan> plans;
+    for (size_t n = 1; n < all.parts.size(); n *= 2) plans.push_back({n});
+    plans.push_back({all.parts.size()});
+    if (!all.parts[0].device->info().cpu) plans.insert(plans.begin() + 1, {1, 2});
+    return plans;
 }
 
-std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size) {
+std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size, unsigned queues) {
     auto team = std::make_unique<Team>();
     auto prepared = std::make_shared<MultiPrepared>();
     prepared->parts.assign(all.parts.begin(), all.parts.begin() + static_cast<std::ptrdiff_t>(size));
@@ -50,7 +61,7 @@ std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size) {
     team->row.device_id = device_list_text(infos);
     team->row.threads = 0;
     for (const DeviceInfo& info : infos) team->row.threads += info.compute_units;
-    team->frames = std::make_unique<MultiFrames>(devices);
+    team->frames = std::make_unique<MultiFrames>(devices, queues);
     team->prepared = std::move(prepared);
     return team;
 }
@@ -78,10 +89,10 @@ void check_picture(Team& team, const FloatImage& truth, const FloatImage& pictur
 
 // By the rows of one device.
 void compare_with_one(std::vector<BenchRecord>& rows) {
-    const BenchRecord* one = nullptr;
+    const BenchRecord* one = nullptr;  // the first
     for (BenchRecord& row : rows) {
-        if (row.variant.find("1 device") != std::string::npos) one = &row;
-        if (!one || &row == one || row.status != RowStatus::ok || one->status != RowStatus::ok || speed(*one) <= 0) continue;
+        if (!one) one = &row;
+        if (&row == one || row.status != RowStatus::ok || one->status != RowStatus::ok || speed(*one) <= 0) continue;
         row.versus.peer = one->variant;
         row.versus.ratio = speed(row) / speed(*one);
     }
@@ -110,8 +121,8 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
         const auto samples = unsigned(settings.spp);
         try {
             const auto all = stand.prepare_all(settings, progress);
-            for (const size_t size : team_sizes(all->parts.size())) {
-                teams.push_back(make_team(*all, size));
+            for (const TeamPlan& plan : team_plans(*all)) {
+                teams.push_back(make_team(*all, plan.size, plan.queues));
                 Team& team = *teams.back();
                 BenchRecord of = row;
                 of.device = team.row.device;
@@ -119,8 +130,7 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
                 of.driver = team.row.driver;
                 of.device_clock_mhz = team.row.device_clock_mhz;
                 of.threads = team.row.threads;
-                of.variant = (variant.label.empty() ? "" : variant.label + ", ") + std::to_string(size) +
-                             (size == 1 ? " device" : " devices");
+                of.variant = (variant.label.empty() ? "" : variant.label + ", ") + plan.text();
                 describe(of, *team.prepared->first());
                 team.row = std::move(of);
                 contenders.push_back({team.row.variant, [&team, &stand, &progress, settings, samples] {

@@ -18,13 +18,59 @@ std::vector<Band> bands_of(const std::vector<rt_u32>& rows, unsigned row_height,
     return bands;
 }
 
+namespace {
+
+// `length` bands of one height, `step` rows of pixels from one to the next.
+struct Row {
+    Band band;
+    unsigned step = 0, length = 1;
+};
+
+constexpr unsigned kMostSteps = 16;  // bands between two of a row: devices share pictures by turns of about that length
+
+// The longest row that begins with bands[first] and has none that is taken; `in_row`: which are in it.
+Row longest_row(const std::vector<Band>& bands, const std::vector<bool>& taken, size_t first, std::vector<size_t>& in_row) {
+    Row best{bands[first]};
+    in_row = {first};
+    std::vector<size_t> tried;
+    unsigned steps = 0;
+    for (size_t second = first + 1; second < bands.size() && steps < kMostSteps; ++second, ++steps) {
+        const unsigned step = bands[second].first - bands[first].first;
+        tried = {first};
+        for (size_t next = second; next < bands.size(); ++next) {
+            const unsigned wanted = bands[tried.back()].first + step;
+            if (bands[next].first > wanted) break;
+            if (bands[next].first == wanted && bands[next].count == best.band.count && !taken[next]) tried.push_back(next);
+        }
+        if (tried.size() > in_row.size()) {
+            in_row = tried;
+            best.step = step;
+        }
+    }
+    best.length = static_cast<unsigned>(in_row.size());
+    return best;
+}
+
+}  // namespace
+
 void read_bands(cl::CommandQueue& queue, const cl::Buffer& from, const std::vector<Band>& bands, size_t row_bytes, void* to,
                 std::vector<cl::Event>* events) {
-    for (const Band& band : bands) {
-        const size_t at = band.first * row_bytes;
+    std::vector<bool> taken(bands.size());
+    std::vector<size_t> in_row;
+    for (size_t first = 0; first < bands.size(); ++first) {
+        if (taken[first]) continue;
+        const Row row = longest_row(bands, taken, first, in_row);
+        for (const size_t i : in_row) taken[i] = true;
+        const size_t at = row.band.first * row_bytes, bytes = row.band.count * row_bytes;
         cl::Event event;
-        queue.enqueueReadBuffer(from, CL_FALSE, at, band.count * row_bytes, static_cast<char*>(to) + at, nullptr,
-                                events ? &event : nullptr);
+        cl::Event* const done = events ? &event : nullptr;
+        if (row.length == 1) {
+            queue.enqueueReadBuffer(from, CL_FALSE, at, bytes, static_cast<char*>(to) + at, nullptr, done);
+        } else {
+            const size_t pitch = row.step * row_bytes;
+            const cl::array<cl::size_type, 3> origin = {at % pitch, at / pitch, 0}, region = {bytes, row.length, 1};
+            queue.enqueueReadBufferRect(from, CL_FALSE, origin, origin, region, pitch, 0, pitch, 0, to, nullptr, done);
+        }
         if (events) events->push_back(event);
     }
 }

@@ -16,7 +16,8 @@ namespace clarity {
 class MultiFrames {
  public:
     // A device that cannot hold a film is a warning, as long as another can. Throws what Frames throws.
-    explicit MultiFrames(const Devices& devices);
+    // queues: that each device traces in, side by side; 0: one if it is the only device, else what suits it.
+    explicit MultiFrames(const Devices& devices, unsigned queues = 0);
     ~MultiFrames();
 
     // Samples [sample, sample + samples) of the picture; the first anew if it is 0. See Frames::trace(); figures are sums over

@@ -121,6 +121,27 @@ TEST_F(SharedPictures, OfUnlikeDevices) {
     }
 }
 
+// As GPUs do it: several queues a device, and so several films.
+TEST_F(SharedPictures, InSeveralQueues) {
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    const Settings settings = make_settings({{"size", "160x230"}});
+    const View view = make_view(*scene, 160.0f / 230.0f);
+    for (const char* choice : {"cpu", "cpu/2"}) {
+        Team team(choice, 2);
+        for (int picture = 0; picture < 2; ++picture) {
+            one_->trace(scene, settings, view, 0, 3);
+            const FrameStats stats = team.trace(scene, settings, view, 0, 3);
+            ASSERT_EQ(stats.devices.size(), team.devices.size()) << "queues of one device are one share";
+            double whole = 0;
+            for (const DeviceShare& share : stats.devices) whole += share.share;
+            EXPECT_NEAR(whole, 1, 1e-9);
+            EXPECT_EQ(stats.primary, 160u * 230u * 3u);
+            EXPECT_EQ(differing(one_->frames.read_values().pixels, team.frames.read_values().pixels), 0u) << choice;
+            EXPECT_TRUE(one_->frames.read_display(settings).pixels == team.frames.read_display(settings).pixels) << choice;
+        }
+    }
+}
+
 // Stops after so many samples of so many.
 class StopAfter : public Progress {
  public:
