@@ -35,16 +35,18 @@ struct TeamPlan {
     unsigned queues = 0;  // of each device; 0: the usual number
     std::string text() const {
         return std::to_string(size) + (size == 1 ? " device" : " devices") +
-               (queues > 0 ? ", " + std::to_string(queues) + " queues" : "");
+               (queues > 0 ? ", " + std::to_string(queues) + (queues == 1 ? " queue" : " queues") : "");
     }
 };
 
-// One GPU in two queues too: what several gain by that is not the others' merit.
+// GPUs in one queue and in two: what several gain by the second is not the others' merit.
 std::vector<TeamPlan> team_plans(const MultiPrepared& all) {
     std::vector<TeamPlan> plans;
     for (size_t n = 1; n < all.parts.size(); n *= 2) plans.push_back({n});
     plans.push_back({all.parts.size()});
-    if (!all.parts[0].device->info().cpu) plans.insert(plans.begin() + 1, {1, 2});
+    if (all.parts[0].device->info().cpu) return plans;
+    plans.insert(plans.begin() + 1, {1, 2});
+    if (all.parts.size() > 1) plans.push_back({all.parts.size(), 1});
     return plans;
 }
 

@@ -20,10 +20,10 @@ std::vector<Band> bands_of(const std::vector<rt_u32>& rows, unsigned row_height,
 
 namespace {
 
-// `length` bands of one height, `step` rows of pixels from one to the next.
+// Bands of the first one's height, `step` rows of pixels from one to the next.
 struct Row {
     Band band;
-    unsigned step = 0, length = 1;
+    unsigned step = 0;
 };
 
 constexpr unsigned kMostSteps = 16;  // bands between two of a row: devices share pictures by turns of about that length
@@ -47,7 +47,6 @@ Row longest_row(const std::vector<Band>& bands, const std::vector<bool>& taken, 
             best.step = step;
         }
     }
-    best.length = static_cast<unsigned>(in_row.size());
     return best;
 }
 
@@ -55,20 +54,23 @@ Row longest_row(const std::vector<Band>& bands, const std::vector<bool>& taken, 
 
 void read_bands(cl::CommandQueue& queue, const cl::Buffer& from, const std::vector<Band>& bands, size_t row_bytes, void* to,
                 std::vector<cl::Event>* events) {
+    const size_t all_bytes = from.getInfo<CL_MEM_SIZE>();
     std::vector<bool> taken(bands.size());
     std::vector<size_t> in_row;
     for (size_t first = 0; first < bands.size(); ++first) {
         if (taken[first]) continue;
         const Row row = longest_row(bands, taken, first, in_row);
+        const size_t at = row.band.first * row_bytes, bytes = row.band.count * row_bytes, pitch = row.step * row_bytes;
+        // Some drivers want whole rows of the pitch within the buffer.
+        while (in_row.size() > 1 && (at % pitch + bytes > pitch || (at / pitch + in_row.size()) * pitch > all_bytes))
+            in_row.pop_back();
         for (const size_t i : in_row) taken[i] = true;
-        const size_t at = row.band.first * row_bytes, bytes = row.band.count * row_bytes;
         cl::Event event;
         cl::Event* const done = events ? &event : nullptr;
-        if (row.length == 1) {
+        if (in_row.size() == 1) {
             queue.enqueueReadBuffer(from, CL_FALSE, at, bytes, static_cast<char*>(to) + at, nullptr, done);
         } else {
-            const size_t pitch = row.step * row_bytes;
-            const cl::array<cl::size_type, 3> origin = {at % pitch, at / pitch, 0}, region = {bytes, row.length, 1};
+            const cl::array<cl::size_type, 3> origin = {at % pitch, at / pitch, 0}, region = {bytes, in_row.size(), 1};
             queue.enqueueReadBufferRect(from, CL_FALSE, origin, origin, region, pitch, 0, pitch, 0, to, nullptr, done);
         }
         if (events) events->push_back(event);
