@@ -15,8 +15,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr unsigned kMostStrips = 256;  // about so many: enough to balance devices, and few to keep account of
 
-// A GPU is never full while the slowest rays of a launch end, and idles while the host sees to the next launch: both are a
-// tenth of a sample of 2 ms. With two queues the other one's kernel runs meanwhile.
+// A GPU is not full while the slowest rays of a launch end, and idles while the host sees to the next one: a tenth of half a
+// sample of 2 ms. With two queues the other one's kernel runs meanwhile.
 unsigned queues_for(const DeviceInfo& info) {
     return info.cpu ? 1 : 2;
 }
@@ -75,6 +75,7 @@ SharedPicture::SharedPicture(const Devices& devices, unsigned queues) {
             std::vector<Member> own(queues > 0 ? queues : queues_for(device->info()));
             for (size_t i = 0; i < own.size(); ++i) {
                 own[i].device = device;
+                own[i].first_queue = i == 0;
                 own[i].frames = std::make_unique<Frames>(
                     i == 0 ? device : guarded(*device, "making a queue", [&] { return device->with_own_queue(); }));
             }
@@ -154,14 +155,15 @@ void SharedPicture::read(const std::function<void(size_t, Frames&)>& work) {
 }
 
 // A new picture's strips. They begin where every device's rows of work-groups do.
-void SharedPicture::cut() {
+void SharedPicture::cut(bool one_sample) {
     unsigned unit = 1;
     bool alike = true;
     const DeviceInfo* first = nullptr;
     std::vector<bool> takes_part;
     for (Member& member : members_) {
         const auto* own = prepared_->of(member.device);
-        member.prepared = own ? *own : nullptr;
+        // A second queue hides ends of launches behind the next sample's, so a picture of one sample has no use for it.
+        member.prepared = own && (member.first_queue || !one_sample) ? *own : nullptr;
         member.strips.clear();
         member.rows = {};
         member.samples = 0;
@@ -253,7 +255,7 @@ FrameStats SharedPicture::trace(const std::shared_ptr<const MultiPrepared>& prep
     settings_ = settings;
     view_ = view;
     if (fresh)
-        cut();
+        cut(end - sample == 1);
     else
         recover(progress);
     for (Member& member : members_) {

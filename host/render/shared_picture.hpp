@@ -35,6 +35,7 @@ class SharedPicture {
     struct Member {
         std::shared_ptr<Device> device;
         std::unique_ptr<Frames> frames;            // null: it failed
+        bool first_queue = true;                   // of its device
         std::shared_ptr<const Prepared> prepared;  // null: it takes no part
         std::vector<unsigned> strips;
         SharedRows rows;  // of work-groups, of these strips
@@ -44,7 +45,7 @@ class SharedPicture {
         double wall_ms = 0;
         bool works() const { return frames && prepared; }
     };
-    void cut();
+    void cut(bool one_sample);
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& strips);
     double trace_rows(Member& member, unsigned sample, Progress& progress);

@@ -136,9 +136,14 @@ TEST_F(SharedPictures, InSeveralQueues) {
             for (const DeviceShare& share : stats.devices) whole += share.share;
             EXPECT_NEAR(whole, 1, 1e-9);
             EXPECT_EQ(stats.primary, 160u * 230u * 3u);
+            EXPECT_GE(stats.launches, 6 * team.devices.size()) << "both queues take part";
             EXPECT_EQ(differing(one_->frames.read_values().pixels, team.frames.read_values().pixels), 0u) << choice;
             EXPECT_TRUE(one_->frames.read_display(settings).pixels == team.frames.read_display(settings).pixels) << choice;
         }
+        // One sample is for one queue; those that follow stay there.
+        for (unsigned sample = 0; sample < 2; ++sample) team.trace(scene, settings, view, sample);
+        one_->trace(scene, settings, view, 0, 2);
+        EXPECT_EQ(differing(one_->frames.read_values().pixels, team.frames.read_values().pixels), 0u) << choice;
     }
 }
 
