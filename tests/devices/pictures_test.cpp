@@ -59,12 +59,14 @@ Team *SharedPictures::one_ = nullptr, *SharedPictures::two_ = nullptr;
 TEST_F(SharedPictures, OfEveryPacketAndLanes) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const auto& [lanes, packet] : std::vector<std::pair<const char*, const char*>>{
-             {"auto", "auto"}, {"1", "1x1"}, {"4", "3x5"}, {"8", "8x8"}, {"16", "4x4"}, {"16", "16x16"}}) {
-        const Settings settings = make_settings({{"lanes", lanes}, {"packet", packet}, {"size", "240x181"}, {"tone", "agx"}});
+             {"auto", "auto"}, {"1", "1x1"}, {"4", "3x5"}, {"8", "8x8"}, {"16", "16x16"}}) {
+        const Settings settings =
+            make_settings({{"lanes", lanes}, {"packet", packet}, {"size", "240x181"}, {"tone", "agx"}, {"accel", "bvh2"}});
         expect_same(scene, settings, std::string(lanes) + " lanes, packet " + packet);
     }
     // As a GPU runs it, a work-item a pixel.
-    expect_same(scene, make_settings({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}}), "groups of 64");
+    expect_same(scene, make_settings({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}, {"accel", "bvh2"}}),
+                "groups of 64");
 }
 
 TEST_F(SharedPictures, OfOddSizes) {
