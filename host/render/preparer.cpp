@@ -23,7 +23,7 @@ double since(std::chrono::steady_clock::time_point start) {
 Settings resolve(const Settings& asked, const Device& device) {
     Settings s = asked;
     if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
-    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? 4 : 1;
+    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a bundle: cl/bundle.h
     return s;
 }
 
