@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include "render/guarded.hpp"
+
 namespace clarity {
 namespace {
 constexpr double kPieceMs = 200;      // drivers that also draw the desktop kill kernels after a second or two
@@ -27,8 +29,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint f
         queue.finish();
         const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         times.wall_ms += wall;
-        times.device_ms += 1e-6 * double(event.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                         event.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+        times.device_ms += event_ms(event, wall);
         first += count;
         ++times.launches;
         // A slow first piece may hold a compilation, so a pace is believed once pieces take a while.
