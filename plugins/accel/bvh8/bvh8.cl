@@ -1,12 +1,15 @@
-/* bvh8.cl -- a tree of eight children a node, three ways to go down it.
+/* bvh8.cl -- a tree of eight children a node, and ways to go down it for rays that have more or less in common.
  *
- * A packet whose directions agree in sign goes by its bounds: intervals of its origins and of its reciprocal directions give one
- * slab test that no ray of the packet can beat, against all eight children at once (Reshetov, Soupikov, Hurley 2005, "Multi-Level
- * Ray Tracing Algorithm"; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire Ray Packets"). Before
- * a leaf the rays themselves are tested, and before a node too where the bounds are wide.
+ * Rays of a packet whose directions agree in sign go by their bounds: intervals of their origins and of their reciprocal
+ * directions give one slab test that no ray of the packet can beat (Reshetov, Soupikov, Hurley 2005, "Multi-Level Ray Tracing
+ * Algorithm"; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire Ray Packets"). Before a leaf the
+ * rays themselves are tested, and before a node too where the bounds are wide. A packet alone tests all eight children at once,
+ * BVH8_BOUNDED. The packets of a bundle go together, BVH8_TOGETHER: one box at a time, the bounds of a packet in each lane, so
+ * that a node is fetched and decided on once for all who come to it, a fifth to a tenth as often. A packet whose rays are of two
+ * octants goes twice, each time with the rays of one.
  *
- * In other packets the rays part. They are tested together against one box after the other, or, BVH8_SINGLE, go by turns, each
- * its own way: where a tree outgrows the caches, rays that share few nodes only fetch more of them together.
+ * Where there are more octants the rays part. They are tested together against one box after the other, or, BVH8_SINGLE, go by
+ * turns, each its own way: where a tree outgrows the caches, rays that share few nodes only fetch more of them together.
  *
  * A program of one lane takes the nearest child and puts the others off in the order of their distances. Most nodes leave one or
  * two children, and branching on their number costs less than sorting vectors of eight: a network in registers took a tenth
