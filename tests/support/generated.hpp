@@ -32,6 +32,9 @@ TriangleMesh box(double half_size);
 Scene scene_of(const TriangleMesh& mesh);
 ScenePtr shared_scene(Scene scene);
 
+// 3000 triangles anywhere within -2..2: large and tiny, needles, points and lines, some of them several times at one place.
+ScenePtr rubble();
+
 // Adds a material and gives its number.
 rt_u32 add_material(Scene& scene, const rt_material& values);
 rt_material diffuse(float r, float g, float b);
