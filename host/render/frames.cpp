@@ -11,6 +11,7 @@
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 #include "render/view_buffers.hpp"
+#include "render/wavefront.hpp"
 
 namespace clarity {
 namespace {
@@ -54,11 +55,12 @@ void put_in_order(const Layout& layout, const float* stored, FloatImage& image) 
 }  // namespace
 
 struct Frames::Impl {
-    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), queries(d) {}
+    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), queries(d), wavefront(d) {}
 
     std::shared_ptr<Device> device;
     FilmKernels film_kernels;
     RayQueries queries;
+    Wavefront wavefront;
     ViewBuffers view;
     GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, counters{CL_MEM_READ_WRITE}, distances{CL_MEM_READ_WRITE};
     unsigned width = 0, height = 0;
@@ -103,18 +105,29 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         const unsigned packets = groups * layout.group_packets();
         im.view.write(queue, *prepared.scene, make_frame(view, settings, layout, *prepared.accel, sample), view);
 
-        cl_uint at = 0;
-        im.kernel.setArg(at++, im.view.frame());
-        const cl_uint first_group = at++;
-        im.kernel.setArg(at++, im.film.fit(context, FilmKernels::room(pixels) * channels_of(im.aov) * sizeof(float)));
-        if (program.has_generations()) {
-            im.kernel.setArg(at++, im.counters.fit(context, size_t(packets) * 16));
-            im.kernel.setArg(at++, im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float)));
-        }
-        im.view.bind(*prepared.on_device, im.kernel, at);
-        const LaunchTimes times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), [&] {
+        const auto go_on = [&] {
             if (progress.cancelled()) throw Cancelled();
-        });
+        };
+        const cl::Buffer& film = im.film.fit(context, FilmKernels::room(pixels) * channels_of(im.aov) * sizeof(float));
+        if (program.has_generations()) im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float));
+        LaunchTimes times;
+        if (program.is_wavefront()) {
+            const auto depth = static_cast<unsigned>(settings.depth);
+            times = im.wavefront.trace(
+                queue, im.launcher,
+                {prepared, view, im.view, layout, width, height, depth, sample, film, im.distances.get()}, go_on);
+        } else {
+            cl_uint at = 0;
+            im.kernel.setArg(at++, im.view.frame());
+            const cl_uint first_group = at++;
+            im.kernel.setArg(at++, film);
+            if (program.has_generations()) {
+                im.kernel.setArg(at++, im.counters.fit(context, size_t(packets) * 16));
+                im.kernel.setArg(at++, im.distances.get());
+            }
+            im.view.bind(*prepared.on_device, im.kernel, at);
+            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on);
+        }
 
         FrameStats stats;
         stats.device_ms = times.device_ms;
@@ -124,7 +137,9 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         stats.kernels.push_back({"trace", times.device_ms});
         if (program.has_generations() && count_rays) {
             stats.kernels.emplace_back();
-            const RayCounts counts = im.film_kernels.sum(im.counters.get(), packets, stats.kernels.back());
+            const bool wave = program.is_wavefront();
+            const RayCounts counts = im.film_kernels.sum(wave ? im.wavefront.counters() : im.counters.get(),
+                                                         wave ? im.wavefront.counter_count() : packets, stats.kernels.back());
             stats.shadow = counts.shadow;
             stats.secondary = counts.secondary;
             stats.dropped = counts.dropped;

@@ -182,7 +182,9 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     switch (kind) {
         case KernelKind::generations:
             out << "#define RT_SHOW_GENERATIONS\n";
-            [[fallthrough]];
+            kernel_file = "tracers/iterative.cl";
+            source.entry = "trace_iterative";
+            break;
         case KernelKind::color:
             kernel_file = "tracers/" + settings.tracer + ".cl";
             source.entry = "trace_" + settings.tracer;
@@ -241,6 +243,8 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     if (kind == KernelKind::rays || kind == KernelKind::counted_rays) include(out, "ray_blocks.h");
     if (shades)
         for (const char* name : {"material.h", "ray_queue.h", "inspect.h", "shading.h", "generations.h"}) include(out, name);
+    if (source.entry == kWavefrontEntry)
+        for (const char* name : {"wave.h", "wave_rays.h"}) include(out, name);
     include(out, kernel_file);
 
     source.text = out.str();
