@@ -124,13 +124,13 @@ RT_INLINE rt_split rt_fresnel(const rt_point *p, const rt_shade *m)
 }
 
 /* The same, and in which lanes rays go on that weigh enough to be followed. */
-RT_INLINE rt_split rt_follow(const constant rt_frame *frame, const rt_point *p, const rt_shade *m, rt_vec weight, uint *mirror_bits,
-                             uint *refract_bits)
+RT_INLINE rt_split rt_follow(const constant rt_frame *frame, const rt_point *p, const rt_shade *m, rt_vec weight, vmask *mirrored,
+                             vmask *refracted)
 {
     const rt_split split = rt_fresnel(p, m);
     const vfloat least = rt_vfloat(frame->min_weight), heaviest = rt_largest(weight);
-    *mirror_bits = rt_bits(p->hits & RT_MASK(split.mirrored * heaviest > least));
-    *refract_bits = rt_bits(p->hits & RT_MASK(split.refracted * heaviest > least));
+    *mirrored = p->hits & RT_MASK(split.mirrored * heaviest > least);
+    *refracted = p->hits & RT_MASK(split.refracted * heaviest > least);
     return split;
 }
 

@@ -42,12 +42,12 @@ RT_INLINE uint rt_wave_first(uint value, local uint *scratch)
     __asm__ volatile("shfl.sync.idx.b32 %0, %1, 0, 31, 0xffffffff;" : "=r"(first) : "r"(value));
     return first;
 }
-/* value: 3 at most. */
+/* value: 1 at most. */
 RT_INLINE uint rt_wave_before(uint value, uint *sum, local uint *scratch)
 {
-    const uint ones = rt_ballot(value & 1u), twos = rt_ballot(value & 2u), below = (1u << rt_wave_item()) - 1u;
-    *sum = popcount(ones) + 2u * popcount(twos);
-    return popcount(ones & below) + 2u * popcount(twos & below);
+    const uint ones = rt_ballot(value);
+    *sum = popcount(ones);
+    return popcount(ones & ((1u << rt_wave_item()) - 1u));
 }
 
 #else
@@ -84,6 +84,17 @@ RT_INLINE uint rt_wave_before(uint value, uint *sum, local uint *scratch)
 
 /* rt_wave_first: the value of the wave's first work-item. rt_wave_before: the values of the work-items before this one, added up;
  * *sum: of all. What follows is made of them. */
+
+/* Leaves a loop once the condition holds for none of the wave. Work-groups go on to its end. */
+#if RT_CPU
+#define RT_WAVE_BREAK_UNLESS(condition)                                                                                          \
+    if (!(condition)) break;
+#elif defined(RT_WAVE_IS_WARP)
+#define RT_WAVE_BREAK_UNLESS(condition)                                                                                          \
+    if (rt_ballot(condition) == 0u) break;
+#else
+#define RT_WAVE_BREAK_UNLESS(condition)
+#endif
 
 /* Gives out the chunks of a piece of work, each to one wave: in order, to whoever is free; *tickets counts them. Work-groups that are
  * waves take turns instead: PoCL 3.1 loses work-items where a loop with barriers is left from its middle. */

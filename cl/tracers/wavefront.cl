@@ -1,51 +1,68 @@
-/* wavefront.cl -- generations of rays one after the other, each of the whole picture, through queues in global memory.
- * Purcell, Buck, Mark, Hanrahan 2002, Ray Tracing on Programmable Graphics Hardware; Laine, Karras, Aila 2013, Megakernels
- * Considered Harmful: Wavefront Path Tracing on GPUs.
+/* wavefront.cl -- rays that part go on side by side: of a ray that is both mirrored and refracted, one stays with its work-item and
+ * the other waits in a queue of the whole picture for one that has nothing to do.
+ * After Purcell, Buck, Mark, Hanrahan 2002, Ray Tracing on Programmable Graphics Hardware; queues as in Laine, Karras, Aila 2013,
+ * Megakernels Considered Harmful: Wavefront Path Tracing on GPUs.
  *
- * A ray is a work-item's own, so pixels that branch (glass) do not hold up those that do not, and lanes stay full. The host
- * enqueues all generations at once: how many rays one has is known to the device alone, so as many work-items as run side by side
- * take chunks of RT_WAVE * RT_LANES rays by ticket until none is left. Queues hold `room` rays; a ray that finds none is dropped
- * and counted.
+ * Level 0 follows camera rays, level n the rays that were put aside at level n - 1; a level is a launch. The host enqueues all at
+ * once: how many rays a level has is known to the device alone, so as many work-items as run side by side take chunks of
+ * RT_WAVE * RT_LANES rays until none is left. Without glass there is one level, and no ray ever leaves its registers. With it a
+ * pixel of 2^n rays is the work of 2^n work-items, where iterative.cl has one that holds up its warp.
  *
- * Where no surface refracts, a pixel has one ray at most in each generation, and its light is added at once. Else the rays that go
- * on (a claim of a chunk each, wherever there was room) are numbered anew in the order of their parents: order_claims adds the
- * claims up, join_rays writes down where the n-th ray is, and adds the light of each pixel's rays, which stand side by side
- * in that order. So a picture's sums are those of the iterative tracer's order, and do not depend on who was first.
+ * A pixel's first way is a sum of its own, in the order of generations; what other ways add to it is summed as fixed-point
+ * numbers, of which the order does not matter. So a picture does not depend on who was first, and where nothing parts it has the
+ * same bits as the iterative tracer's.
  *
- * Costs: 48 B a ray written and read, 20 B more where order matters; no private arrays. */
+ * Costs: 48 B written and read and 6 atomics a ray put aside; no private arrays. */
 
-/* control: for each generation RT_CONTROL uints: rays (may be beyond `room`), tickets given out. Zeroes to begin with. */
+/* control: for each level RT_CONTROL uints: rays (may be beyond `room`), tickets given out. Zeroes to begin with. */
 #define RT_CONTROL 2u
 #define RT_CONTROLS (17u * RT_CONTROL) /* 16 generations, and one that never comes */
 
-/* One generation. ordered: see above. sums: of this sample, a pixel each, w = 1. counters: shadow, secondary, dropped rays and full
- * stacks, of each work-group; begun anew with `fresh`. distances: as iterative.cl has them. rays, order: of this generation, the
- * first has none; next: of the coming one. lights: of each ray, in order, w = bits of the pixel's number. claims: of each chunk,
- * where its rays are in `next`, and how many. idle_control: that of the pictures after this, of whom nobody is under way. */
+/* Light of ways put aside, for each pixel and channel: 64 bits in two's complement, low half first, in units of 2^-36. */
+#define RT_SHARE 6u
+#define RT_SHARE_UNIT 68719476736.0f
+#define RT_SHARE_MOST 1e8f
+
+RT_INLINE void rt_add_share(volatile global uint *cell, float value)
+{
+    const long fixed = convert_long_rte(clamp(value, -RT_SHARE_MOST, RT_SHARE_MOST) * RT_SHARE_UNIT);
+    const uint low = (uint)fixed, before = atomic_add(cell, low);
+    const uint high = (uint)(fixed >> 32) + (before + low < before ? 1u : 0u);
+    if (high != 0u) atomic_add(cell + 1, high);
+}
+
+RT_INLINE float rt_share(const global uint *cell)
+{
+    return convert_float((long)((ulong)cell[0] | (ulong)cell[1] << 32)) * (1.0f / RT_SHARE_UNIT);
+}
+
+/* One level. sums: of each pixel's first way, w = 1. shares: see above; of no use unless `parting`. counters: shadow, secondary,
+ * dropped rays and full stacks, of each work-group; begun anew with `fresh`. distances: as iterative.cl has them. rays: of this
+ * level; next: of the coming one, `room` at most. idle_control: that of the pictures after this, of whom nobody is under way. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-trace_wavefront(const constant rt_frame *frame, const uint first_group, const uint group_count, const uint generation,
-                const uint fresh, const uint room, const uint ordered, global float4 *sums, global uint4 *counters,
-                global float *distances, const global float4 *rays, global float4 *next, const global uint *order,
-                global float4 *lights, global uint2 *claims, global uint *control, global uint *idle_control, RT_CTX_PARAMS)
+trace_wavefront(const constant rt_frame *frame, const uint first_group, const uint group_count, const uint level, const uint fresh,
+                const uint room, const uint parting, global float4 *sums, global uint *shares, global uint4 *counters,
+                global float *distances, const global float4 *rays, global float4 *next, global uint *control,
+                global uint *idle_control, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     local uint scratch[RT_WAVE_SCRATCH];
     const uint group_packets = RT_GROUP_W * RT_GROUP_H, packet_w = RT_PACKET_W(frame);
-    const uint count = generation == 0u ? group_count * group_packets * RT_BLOCKS(frame) * RT_LANES
-                                        : min(control[generation * RT_CONTROL], room);
+    const uint count = level == 0u ? group_count * group_packets * RT_BLOCKS(frame) * RT_LANES
+                                   : min(control[level * RT_CONTROL], room);
     const uint units = (count + RT_LANES - 1u) / RT_LANES, chunks = (units + RT_WAVE - 1u) / RT_WAVE;
     rt_tally tally = {0, 0, 0, 0};
-    if (generation == 0u && get_global_id(0) == 0)
+    if (level == 0u && get_global_id(0) == 0)
         for (uint i = 0; i < RT_CONTROLS; ++i) idle_control[i] = 0u;
-    RT_FOR_CHUNKS(chunk, chunks, control + generation * RT_CONTROL + 1u, scratch)
+    RT_FOR_CHUNKS(chunk, chunks, control + level * RT_CONTROL + 1u, scratch)
     {
         const uint unit = chunk * RT_WAVE + rt_wave_item();
         rt_rays ray;
-        rt_vec weight = rt_splat(1.0f, 1.0f, 1.0f);
-        vint pixel = rt_vint(0);
+        rt_vec weight = rt_splat(1.0f, 1.0f, 1.0f), sum = rt_splat(0.0f, 0.0f, 0.0f);
+        vint pixel = rt_vint(0), generation = rt_vint(0);
         vmask active = rt_vint(0);
         if (unit < units) {
-            if (generation == 0u) {
+            if (level == 0u) {
                 const uint packet = unit / RT_BLOCKS(frame);
                 const uint2 origin = rt_packet_origin(frame, first_group + packet / group_packets, packet % group_packets);
                 vint x, y;
@@ -55,74 +72,101 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 pixel = y * rt_vint((int)frame->width) + x;
                 rt_camera_rays(frame, x, y, &ray);
             } else {
-                active = rt_fetch_wave_rays(rays, ordered ? order : 0, unit * RT_LANES, count, &ray, &weight, &pixel);
+                active = rt_fetch_wave_rays(rays, unit * RT_LANES, count, &ray, &weight, &pixel, &generation);
             }
         }
-        const uint bits = rt_bits(active);
-        rt_point point;
-        rt_shade material;
-        rt_split split;
-        uint mirror_bits = 0u, refract_bits = 0u;
-        vmask hits = rt_vint(0);
-        if (bits != 0u) {
-            rt_hits hit;
-            rt_prepare(&ray, bits);
-            rt_clear_hits(&hit, active);
-            rt_trace_closest(&ctx, frame, &ray, &hit);
+        const uint mine = rt_bits(active);
+
+        for (uint step = 0; step < frame->depth; ++step) {
+            const uint bits = rt_bits(active);
+            RT_WAVE_BREAK_UNLESS(bits != 0u)
+            rt_vec aside_origin, aside_direction, aside_weight;
+            uint parted = 0u;
+            if (bits != 0u) {
+                rt_hits hit;
+                rt_prepare(&ray, bits);
+                rt_clear_hits(&hit, active);
+                rt_trace_closest(&ctx, frame, &ray, &hit);
 #ifdef RT_DEBUG
-            tally.overflow += hit.overflow;
+                tally.overflow += hit.overflow;
 #endif
-            if (generation == 0u && frame->sample == 0u)
-                rt_store(hit.t, distances + ((size_t)first_group * group_packets * RT_BLOCKS(frame) + unit) * RT_LANES);
-            const rt_surface surface = rt_resolve(&ctx, &ray, &hit, bits);
-            hits = surface.hit & active;
-            const uint hit_bits = rt_bits(hits);
-            if (hit_bits != 0u) {
-                point = rt_point_of(&ray, hit.t, &surface, hits);
-                material = rt_load_materials(&ctx, &surface, hit_bits, point.at);
-                if (generation + 1u < frame->depth)
-                    split = rt_follow(frame, &point, &material, weight, &mirror_bits, &refract_bits);
+                if (level == 0u && step == 0u && frame->sample == 0u)
+                    rt_store(hit.t, distances + ((size_t)first_group * group_packets * RT_BLOCKS(frame) + unit) * RT_LANES);
+                const rt_surface surface = rt_resolve(&ctx, &ray, &hit, bits);
+                const vmask hits = surface.hit & active;
+                const uint hit_bits = rt_bits(hits);
+                rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]), passed = weight;
+                vmask going = rt_vint(0);
+                if (hit_bits != 0u) {
+                    const rt_point point = rt_point_of(&ray, hit.t, &surface, hits);
+                    const rt_shade material = rt_load_materials(&ctx, &surface, hit_bits, point.at);
+                    const vmask last = RT_MASK(generation + 1 >= rt_vint((int)frame->depth));
+                    vmask mirrored, refracted;
+                    const rt_split split = rt_follow(frame, &point, &material, weight, &mirrored, &refracted);
+                    mirrored &= ~last;
+                    refracted &= ~last;
+                    going = mirrored | refracted;
+                    const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, weight));
+                    parted = rt_bits(mirrored & refracted);
+                    if (rt_any(refracted)) {
+                        aside_origin = rt_along(-point.offset, point.geometric, point.at);
+                        aside_direction = rt_refracted_direction(&point, &split);
+                        aside_weight = through;
+                    }
+                    if (rt_any(mirrored)) {
+                        passed = rt_choose(mirrored, rt_scale(split.mirrored, weight), through);
+                    } else {
+                        passed = through;
+                    }
+                    /* The ray itself has served: what goes on is made in its place, before the shadow rays. */
+                    const vfloat side = rt_select(mirrored, point.offset, -point.offset);
+                    const rt_vec from = rt_along(side, point.geometric, point.at);
+                    rt_vec along = point.incoming;
+                    if (rt_any(mirrored)) along = rt_choose(mirrored, rt_mirror_direction(&point), along);
+                    if (rt_any(refracted)) along = rt_choose(mirrored, along, aside_direction);
+                    ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
+                    ray.dx = along.x, ray.dy = along.y, ray.dz = along.z;
+                    light = rt_choose(hits, rt_direct_light(&ctx, frame, &point, &material, &tally), light);
+                }
+                const rt_vec more = rt_mul(weight, light), none = rt_splat(0.0f, 0.0f, 0.0f);
+                sum = rt_add(sum, rt_choose(active, more, none));
+                weight = passed;
+                active = going;
+                generation += 1;
+                tally.secondary += popcount(rt_bits(going));
             }
+
+            uint wanted;
+            const uint before = rt_wave_before(popcount(parted), &wanted, scratch);
+            const uint first = rt_wave_claim(control + (level + 1u) * RT_CONTROL, wanted, scratch);
+            if (rt_wave_item() == 0u) {
+                const uint taken = min(wanted, room - min(first, room));
+                tally.secondary += taken;
+                tally.dropped += wanted - taken;
+            }
+            if (parted != 0u)
+                rt_put_wave_rays(next, room, first + before, parted, aside_origin, aside_direction, aside_weight, pixel, generation);
         }
 
-        /* Before direct light, so that less is kept over the shadow rays; and with no ray too, since all work-items must be here. */
-        uint wanted;
-        const uint before = rt_wave_before(popcount(mirror_bits) + popcount(refract_bits), &wanted, scratch);
-        const uint first = rt_wave_claim(control + (generation + 1u) * RT_CONTROL, wanted, scratch);
-        const uint taken = min(wanted, room - min(first, room));
-        if (rt_wave_item() == 0u) {
-            tally.secondary += taken;
-            tally.dropped += wanted - taken;
-            if (ordered) claims[chunk] = (uint2)(first, taken);
-        }
-        if (mirror_bits != 0u)
-            rt_put_wave_rays(next, room, first + before, mirror_bits, refract_bits, 0u,
-                             rt_along(point.offset, point.geometric, point.at), rt_mirror_direction(&point),
-                             rt_scale(split.mirrored, weight), pixel);
-        if (refract_bits != 0u)
-            rt_put_wave_rays(next, room, first + before, refract_bits, mirror_bits, mirror_bits,
-                             rt_along(-point.offset, point.geometric, point.at), rt_refracted_direction(&point, &split),
-                             rt_scale(split.refracted, rt_mul(material.color, weight)), pixel);
-
-        if (bits != 0u) {
-            rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
-            if (rt_any(hits)) light = rt_choose(hits, rt_direct_light(&ctx, frame, &point, &material, &tally), light);
-            light = rt_mul(weight, light);
+        if (mine != 0u) {
             float red[RT_LANES], green[RT_LANES], blue[RT_LANES];
             int at[RT_LANES];
-            rt_store(light.x, red);
-            rt_store(light.y, green);
-            rt_store(light.z, blue);
+            rt_store(sum.x, red);
+            rt_store(sum.y, green);
+            rt_store(sum.z, blue);
             rt_store(pixel, at);
             for (uint l = 0; l < RT_LANES; ++l) {
-                if ((bits >> l & 1u) == 0u) continue;
-                const float4 sample = (float4)(red[l], green[l], blue[l], 1.0f);
-                if (generation == 0u)
-                    sums[at[l]] = sample;
-                else if (ordered)
-                    lights[unit * RT_LANES + l] = (float4)(red[l], green[l], blue[l], as_float(at[l]));
-                else
-                    sums[at[l]] += (float4)(red[l], green[l], blue[l], 0.0f);
+                if ((mine >> l & 1u) == 0u) continue;
+                global uint *share = shares + RT_SHARE * (size_t)at[l];
+                if (level == 0u) {
+                    sums[at[l]] = (float4)(red[l], green[l], blue[l], 1.0f);
+                    if (parting)
+                        for (uint i = 0; i < RT_SHARE; ++i) share[i] = 0u;
+                } else {
+                    rt_add_share(share, red[l]);
+                    rt_add_share(share + 2, green[l]);
+                    rt_add_share(share + 4, blue[l]);
+                }
             }
         }
     }
@@ -143,73 +187,16 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
     if (get_local_id(0) == 0) counters[get_group_id(0)] = fresh != 0u ? all : counters[get_group_id(0)] + all;
 }
 
-/* Chunks of a generation: see trace_wavefront. */
-RT_INLINE uint rt_chunks(const constant rt_frame *frame, uint group_count, uint generation, uint room, const global uint *control)
-{
-    const uint units = generation == 0u ? group_count * (RT_GROUP_W * RT_GROUP_H) * RT_BLOCKS(frame)
-                                        : (min(control[generation * RT_CONTROL], room) + RT_LANES - 1u) / RT_LANES;
-    return (units + RT_WAVE - 1u) / RT_WAVE;
-}
-
-/* One work-group: how many rays each claim has becomes how many those before it have; one more entry holds them all. */
-kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-order_claims(const constant rt_frame *frame, const uint group_count, const uint generation, const uint room,
-             const global uint *control, global uint2 *claims)
-{
-    const uint chunks = rt_chunks(frame, group_count, generation, room, control);
-    const uint share = (chunks + RT_LOCAL_SIZE - 1u) / RT_LOCAL_SIZE;
-    const uint begin = min((uint)get_local_id(0) * share, chunks), end = min(begin + share, chunks);
-    uint before = 0u;
-#if RT_LOCAL_SIZE > 1
-    local uint sums[RT_LOCAL_SIZE];
-    uint mine = 0u;
-    for (uint i = begin; i < end; ++i) mine += claims[i].y;
-    sums[get_local_id(0)] = mine;
-    barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint i = 0; i < get_local_id(0); ++i) before += sums[i];
-#endif
-    for (uint i = begin; i < end; ++i) {
-        const uint taken = claims[i].y;
-        claims[i].y = before;
-        before += taken;
-    }
-    if (end == chunks && begin < end) claims[chunks] = (uint2)(0u, before);
-}
-
-/* Where each ray of the coming generation is, and this one's light into the picture. */
-kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
-join_rays(const constant rt_frame *frame, const uint group_count, const uint generation, const uint room, global float4 *sums,
-          const global float4 *lights, const global uint2 *claims, const global uint *control, global uint *order)
-{
-    const uint step = (uint)get_global_size(0);
-    if (generation + 1u < frame->depth) {
-        const uint chunks = rt_chunks(frame, group_count, generation, room, control);
-        for (uint i = (uint)get_global_id(0) / RT_WAVE; i < chunks; i += step / RT_WAVE) {
-            const uint from = claims[i].x, to = claims[i].y, taken = claims[i + 1u].y - to;
-            for (uint k = rt_wave_item(); k < taken; k += RT_WAVE) order[to + k] = from + k;
-        }
-    }
-    if (generation == 0u) return;
-    /* A pixel's rays stand side by side: the work-item of the first adds them all, one after the other. */
-    const uint count = min(control[generation * RT_CONTROL], room);
-    for (uint i = (uint)get_global_id(0); i < count; i += step) {
-        float4 light = lights[i];
-        const int pixel = as_int(light.w);
-        if (i > 0u && as_int(lights[i - 1u].w) == pixel) continue;
-        float4 sum = sums[pixel];
-        for (uint k = i;;) {
-            sum.xyz += light.xyz;
-            if (++k == count) break;
-            light = lights[k];
-            if (as_int(light.w) != pixel) break;
-        }
-        sums[pixel] = sum;
-    }
-}
-
-/* Samples beyond the first. */
-kernel void add_sample(global float4 *film, const global float4 *sums, const uint pixels)
+/* A sample into the film: the first one in place of what was there. */
+kernel void add_sample(global float4 *film, const global float4 *sums, const global uint *shares, const uint pixels,
+                       const uint parting, const uint first)
 {
     const uint i = (uint)get_global_id(0);
-    if (i < pixels) film[i] += sums[i];
+    if (i >= pixels) return;
+    float4 sample = sums[i];
+    if (parting) {
+        const global uint *share = shares + RT_SHARE * (size_t)i;
+        sample.xyz += (float3)(rt_share(share), rt_share(share + 2), rt_share(share + 4));
+    }
+    film[i] = first ? sample : film[i] + sample;
 }

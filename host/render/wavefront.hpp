@@ -31,13 +31,10 @@ class Wavefront {
     unsigned counter_count() const { return work_groups_; }
 
  private:
-    struct Kernels {
-        cl::Kernel trace, order, join, add;
-    };
-    // How many rays of one generation are kept, and for how many groups of pixels that is meant.
+    // How many rays may be put aside at each level, and for how many groups of pixels that is meant.
     struct Room {
         unsigned rays, groups;
-        bool ordered;  // a pixel may have several
+        bool parting;  // rays may part at all
     };
     Room room_for(const WavefrontFrame& frame) const;
     void bind(const WavefrontFrame& frame, const Room& room);
@@ -46,10 +43,9 @@ class Wavefront {
 
     std::shared_ptr<Device> device_;
     std::shared_ptr<const TraceProgram> program_;  // whose kernels these are
-    Kernels kernels_;
+    cl::Kernel trace_, add_;
     GrowingBuffer rays_[2] = {GrowingBuffer(CL_MEM_READ_WRITE), GrowingBuffer(CL_MEM_READ_WRITE)};
-    GrowingBuffer order_{CL_MEM_READ_WRITE}, lights_{CL_MEM_READ_WRITE}, claims_{CL_MEM_READ_WRITE};
-    GrowingBuffer sums_{CL_MEM_READ_WRITE}, counters_{CL_MEM_READ_WRITE};
+    GrowingBuffer sums_{CL_MEM_READ_WRITE}, shares_{CL_MEM_READ_WRITE}, counters_{CL_MEM_READ_WRITE};
     cl::Buffer control_[2];  // by turns: a picture's first kernel clears the other one
     unsigned turn_ = 0, work_groups_ = 0;
     bool clean_ = false;  // control_[turn_] is zeroes
