@@ -1,5 +1,5 @@
-/* wavefront.cl -- rays that part go on side by side: of a ray that is both mirrored and refracted, one stays with its work-item and
- * the other waits in a queue of the whole picture for one that has nothing to do.
+/* wavefront.cl -- rays that part go on side by side: of a ray that is both mirrored and refracted, the heavier one stays with its
+ * work-item, the other waits in a queue of the whole picture for one that has nothing to do.
  * After Purcell, Buck, Mark, Hanrahan 2002, Ray Tracing on Programmable Graphics Hardware; queues as in Laine, Karras, Aila 2013,
  * Megakernels Considered Harmful: Wavefront Path Tracing on GPUs.
  *
@@ -106,26 +106,25 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                     mirrored &= ~last;
                     refracted &= ~last;
                     going = mirrored | refracted;
-                    const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, weight));
                     parted = rt_bits(mirrored & refracted);
-                    if (rt_any(refracted)) {
-                        aside_origin = rt_along(-point.offset, point.geometric, point.at);
-                        aside_direction = rt_refracted_direction(&point, &split);
-                        aside_weight = through;
+                    /* The heavier one stays: the other soon weighs too little to part again, so there are few levels. */
+                    const vmask stays = mirrored & ~(refracted & RT_MASK(split.refracted > split.mirrored));
+                    rt_vec bounced = point.incoming, bent = bounced;
+                    if (rt_any(mirrored)) bounced = rt_mirror_direction(&point);
+                    if (rt_any(refracted)) bent = rt_refracted_direction(&point, &split);
+                    const rt_vec off = rt_scale(split.mirrored, weight),
+                                 through = rt_scale(split.refracted, rt_mul(material.color, weight));
+                    const vfloat side = rt_select(stays, point.offset, -point.offset);
+                    if (parted != 0u) {
+                        aside_origin = rt_along(-side, point.geometric, point.at);
+                        aside_direction = rt_choose(stays, bent, bounced);
+                        aside_weight = rt_choose(stays, through, off);
                     }
-                    if (rt_any(mirrored)) {
-                        passed = rt_choose(mirrored, rt_scale(split.mirrored, weight), through);
-                    } else {
-                        passed = through;
-                    }
-                    /* The ray itself has served: what goes on is made in its place, before the shadow rays. */
-                    const vfloat side = rt_select(mirrored, point.offset, -point.offset);
-                    const rt_vec from = rt_along(side, point.geometric, point.at);
-                    rt_vec along = point.incoming;
-                    if (rt_any(mirrored)) along = rt_choose(mirrored, rt_mirror_direction(&point), along);
-                    if (rt_any(refracted)) along = rt_choose(mirrored, along, aside_direction);
+                    /* The ray itself has served: the next is made in its place, before the shadow rays. */
+                    const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(stays, bounced, bent);
                     ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
                     ray.dx = along.x, ray.dy = along.y, ray.dz = along.z;
+                    passed = rt_choose(stays, off, through);
                     light = rt_choose(hits, rt_direct_light(&ctx, frame, &point, &material, &tally), light);
                 }
                 const rt_vec more = rt_mul(weight, light), none = rt_splat(0.0f, 0.0f, 0.0f);

@@ -20,8 +20,9 @@ double since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-Settings resolve(const Settings& asked, const Device& device) {
+Settings resolve(const Settings& asked, const Device& device, const Scene& scene) {
     Settings s = asked;
+    if (s.tracer == "auto") s.tracer = !device.info().cpu && refracts(scene, {}) ? "wavefront" : "iterative";
     if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
     if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? 4 : 1;
     return s;
@@ -115,7 +116,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
     }
     auto next = std::make_shared<Prepared>();
     next->scene = scene;
-    next->settings = resolve(settings, *device_);
+    next->settings = resolve(settings, *device_, *scene);
     ParameterValues params = settings.accel_params.empty() ? default_parameters(*plugin) : settings.accel_params;
     try {
         const bool same_structure =

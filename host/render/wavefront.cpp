@@ -17,13 +17,6 @@ constexpr unsigned kShareOfMemory = 8;
 constexpr uint64_t kCpuBytes = 64 << 20;
 constexpr uint64_t kMostRays = 1u << 30;  // as a uint counts, with room for those that find none
 
-bool refracts(const Prepared& prepared, const View& view) {
-    const auto clear = [](const rt_material& material) { return material.refract > 0; };
-    if (!view.materials.empty()) return std::any_of(view.materials.begin(), view.materials.end(), clear);
-    const std::vector<Material>& own = prepared.scene->materials;
-    return std::any_of(own.begin(), own.end(), [&](const Material& material) { return clear(material.values); });
-}
-
 // Arguments one after the other.
 class Arguments {
  public:
@@ -42,12 +35,19 @@ class Arguments {
 
 }  // namespace
 
+bool refracts(const Scene& scene, const std::vector<rt_material>& materials) {
+    const auto clear = [](const rt_material& material) { return material.refract > 0; };
+    if (!materials.empty()) return std::any_of(materials.begin(), materials.end(), clear);
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [&](const Material& material) { return clear(material.values); });
+}
+
 // A level holds as many rays as `ray_slots` says for each pixel, in the mean of all; pieces of the picture are so small that
 // there is room for them.
 Wavefront::Room Wavefront::room_for(const WavefrontFrame& frame) const {
     const Layout& layout = frame.layout;
     const unsigned groups = layout.groups_x(frame.width) * layout.groups_y(frame.height);
-    if (!refracts(frame.prepared, frame.view)) return {0, groups, false};
+    if (!refracts(*frame.prepared.scene, frame.view.materials)) return {0, groups, false};
     const uint64_t group_rays = uint64_t(layout.group_packets()) * layout.packet_w * layout.packet_h *
                                 static_cast<unsigned>(frame.prepared.settings.ray_slots);
     const DeviceInfo& info = device_->info();

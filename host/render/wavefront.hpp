@@ -20,6 +20,9 @@ struct WavefrontFrame {
     const cl::Buffer &film, &distances;
 };
 
+// Whether a ray may part in two: any of a view's materials, or of the scene's where the view has none, is transparent.
+bool refracts(const Scene& scene, const std::vector<rt_material>& materials);
+
 class Wavefront {
  public:
     explicit Wavefront(std::shared_ptr<Device> device) : device_(std::move(device)) {}
