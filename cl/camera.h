@@ -26,13 +26,16 @@
 #define RT_FOR_PACKETS(packet) for (uint packet = (uint)get_local_id(0), once = 1; once; once = 0)
 #endif
 
-/* First pixel of a packet. group: number of the work-group, row by row over the picture; packet: within the group. */
+/* First pixel of a packet. group: number of the work-group, row by row over the picture, or over those rows of it that a device
+ * has where several share it; packet: within the group. */
 RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uint packet)
 {
     const uint w = RT_PACKET_W(frame), h = RT_PACKET_H(frame);
     const uint groups_x = (frame->width + w * RT_GROUP_W - 1) / (w * RT_GROUP_W);
+    uint row = group / groups_x;
     const uint x = (group % groups_x) * RT_GROUP_W + packet % RT_GROUP_W;
-    const uint y = (group / groups_x) * RT_GROUP_H + packet / RT_GROUP_W;
+    if (frame->row_count != 0u) row = ((const constant uint *)(frame + 1))[row];
+    const uint y = row * RT_GROUP_H + packet / RT_GROUP_W;
     return (uint2)(x * w, y * h);
 }
 

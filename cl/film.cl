@@ -33,12 +33,9 @@ float16 rt_agx(float16 c)
     return (curve + 0.178789123f) * x - 0.00313757338f;
 }
 
-/* film: sums of samples, w counts them. display: RGBA8, sRGB, top row first. count: quadruples of pixels.
- * tone: 0 linear (clipped), 1 Reinhard, 2 ACES-like, 3 AgX-like. */
-kernel void map_tones(const global float *film, global uchar *display, const uint count, const float exposure, const uint tone)
+/* The i-th quadruple of pixels. */
+void rt_map_tones(const global float *film, global uchar *display, const uint i, const float exposure, const uint tone)
 {
-    const uint i = (uint)get_global_id(0);
-    if (i >= count) return;
     const float16 sum = vload16(i, film);
     const float4 scale = exposure / max(sum.s37bf, 1.0f);
     float16 c = max(sum * (float16)(scale.s0000, scale.s1111, scale.s2222, scale.s3333), 0.0f);
@@ -48,6 +45,24 @@ kernel void map_tones(const global float *film, global uchar *display, const uin
     const float16 s = clamp(code, 0.0f, 1.0f) * 255.0f + 0.5f;
     const uchar16 alpha = (uchar16)(0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255);
     vstore16(convert_uchar16(s) | alpha, i, display);
+}
+
+/* film: sums of samples, w counts them. display: RGBA8, sRGB, top row first. count: quadruples of pixels.
+ * tone: 0 linear (clipped), 1 Reinhard, 2 ACES-like, 3 AgX-like. */
+kernel void map_tones(const global float *film, global uchar *display, const uint count, const float exposure, const uint tone)
+{
+    const uint i = (uint)get_global_id(0);
+    if (i < count) rt_map_tones(film, display, i, exposure, tone);
+}
+
+/* The same for some rows of work-groups alone, of row_quads quadruples each; items: of all these rows. */
+kernel void map_tones_of_rows(const global float *film, global uchar *display, const uint count, const float exposure,
+                              const uint tone, const global uint *rows, const uint row_quads, const uint items)
+{
+    const uint item = (uint)get_global_id(0);
+    if (item >= items) return;
+    const uint i = rows[item / row_quads] * row_quads + item % row_quads;
+    if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
 /* sums: 4 zeroed uints. */

@@ -121,7 +121,8 @@ typedef struct rt_frame {
     rt_u32 block_w, block_w_log2; /* pixels traced side by side: block_w wide, RT_LANES in all */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
     rt_f32 within_x, within_y;    /* where in each pixel this sample's rays go through, 0..1 */
-    rt_u32 pad[3];
+    rt_u32 row_count; /* 0: rows of work-groups are those of the picture. Else so many uints follow this struct, each row's number */
+    rt_u32 pad[2];
 } rt_frame;
 
 /* A ray and its answer, for tests and benches that bring their own rays. 32 B each; kernels see blocks of RT_LANES of them,

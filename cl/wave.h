@@ -106,7 +106,7 @@ RT_INLINE uint rt_wave_ticket(volatile global uint *tickets, local uint *scratch
     return rt_wave_first(ticket, scratch);
 }
 #define RT_FOR_CHUNKS(chunk, chunks, tickets, scratch)                                                                           \
-    for (uint chunk; (chunks) != 0u && (chunk = rt_wave_ticket(tickets, scratch)) < (chunks);)
+    for (uint chunk; (chunk = rt_wave_ticket(tickets, scratch)) < (chunks);)
 #else
 #define RT_FOR_CHUNKS(chunk, chunks, tickets, scratch)                                                                           \
     for (uint chunk = (uint)get_group_id(0); chunk < (chunks); chunk += (uint)get_num_groups(0))

@@ -1,5 +1,5 @@
-/* wavefront.cl -- rays that part go on side by side: of a ray that is both mirrored and refracted, the heavier one stays with its
- * work-item, the other waits in a queue of the whole picture for one that has nothing to do.
+/* wavefront.cl -- rays that part go on side by side: of a ray that is both mirrored and refracted, what is
+ * mirrored stays with its work-item, the other waits in a queue of the whole picture for one that has nothing to do.
  * After Purcell, Buck, Mark, Hanrahan 2002, Ray Tracing on Programmable Graphics Hardware; queues as in Laine, Karras, Aila 2013,
  * Megakernels Considered Harmful: Wavefront Path Tracing on GPUs.
  *
@@ -47,10 +47,11 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
 {
     RT_CTX_INIT(ctx);
     local uint scratch[RT_WAVE_SCRATCH];
-    const uint group_packets = RT_GROUP_W * RT_GROUP_H, packet_w = RT_PACKET_W(frame);
+    const uint group_packets = RT_GROUP_W * RT_GROUP_H;
     const uint count = level == 0u ? group_count * group_packets * RT_BLOCKS(frame) * RT_LANES
                                    : min(control[level * RT_CONTROL], room);
     const uint units = (count + RT_LANES - 1u) / RT_LANES, chunks = (units + RT_WAVE - 1u) / RT_WAVE;
+    if (chunks == 0u && fresh == 0u) return;
     rt_tally tally = {0, 0, 0, 0};
     if (level == 0u && get_global_id(0) == 0)
         for (uint i = 0; i < RT_CONTROLS; ++i) idle_control[i] = 0u;
@@ -107,24 +108,21 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                     refracted &= ~last;
                     going = mirrored | refracted;
                     parted = rt_bits(mirrored & refracted);
-                    /* The heavier one stays: the other soon weighs too little to part again, so there are few levels. */
-                    const vmask stays = mirrored & ~(refracted & RT_MASK(split.refracted > split.mirrored));
                     rt_vec bounced = point.incoming, bent = bounced;
                     if (rt_any(mirrored)) bounced = rt_mirror_direction(&point);
                     if (rt_any(refracted)) bent = rt_refracted_direction(&point, &split);
-                    const rt_vec off = rt_scale(split.mirrored, weight),
-                                 through = rt_scale(split.refracted, rt_mul(material.color, weight));
-                    const vfloat side = rt_select(stays, point.offset, -point.offset);
+                    const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, weight));
                     if (parted != 0u) {
-                        aside_origin = rt_along(-side, point.geometric, point.at);
-                        aside_direction = rt_choose(stays, bent, bounced);
-                        aside_weight = rt_choose(stays, through, off);
+                        aside_origin = rt_along(-point.offset, point.geometric, point.at);
+                        aside_direction = bent;
+                        aside_weight = through;
                     }
                     /* The ray itself has served: the next is made in its place, before the shadow rays. */
-                    const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(stays, bounced, bent);
+                    const vfloat side = rt_select(mirrored, point.offset, -point.offset);
+                    const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(mirrored, bounced, bent);
                     ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
                     ray.dx = along.x, ray.dy = along.y, ray.dz = along.z;
-                    passed = rt_choose(stays, off, through);
+                    passed = rt_choose(mirrored, rt_scale(split.mirrored, weight), through);
                     light = rt_choose(hits, rt_direct_light(&ctx, frame, &point, &material, &tally), light);
                 }
                 const rt_vec more = rt_mul(weight, light), none = rt_splat(0.0f, 0.0f, 0.0f);
@@ -187,15 +185,24 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
 }
 
 /* A sample into the film: the first one in place of what was there. */
-kernel void add_sample(global float4 *film, const global float4 *sums, const global uint *shares, const uint pixels,
-                       const uint parting, const uint first)
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+add_sample(const constant rt_frame *frame, const uint first_group, global float4 *film, const global float4 *sums,
+           const global uint *shares, const uint parting)
 {
-    const uint i = (uint)get_global_id(0);
-    if (i >= pixels) return;
-    float4 sample = sums[i];
-    if (parting) {
-        const global uint *share = shares + RT_SHARE * (size_t)i;
-        sample.xyz += (float3)(rt_share(share), rt_share(share + 2), rt_share(share + 4));
+    const uint group = first_group + (uint)get_group_id(0), packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame);
+    RT_FOR_PACKETS(packet)
+    {
+        const uint2 origin = rt_packet_origin(frame, group, packet);
+        for (uint i = 0; i < pixels; ++i) {
+            const uint x = origin.x + i % packet_w, y = origin.y + i / packet_w;
+            if (x >= frame->width || y >= frame->height) continue;
+            const uint at = y * frame->width + x;
+            float4 sample = sums[at];
+            if (parting) {
+                const global uint *share = shares + RT_SHARE * (size_t)at;
+                sample.xyz += (float3)(rt_share(share), rt_share(share + 2), rt_share(share + 4));
+            }
+            film[at] = frame->sample != 0u ? film[at] + sample : sample;
+        }
     }
-    film[i] = first ? sample : film[i] + sample;
 }

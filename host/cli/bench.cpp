@@ -51,25 +51,6 @@ BenchRequest make_request(const BenchCommand& command) {
     return request;
 }
 
-// "cpu,0:1" or "all" -> devices, each once.
-std::vector<DeviceInfo> choose_devices(const std::string& choice) {
-    if (choice == "all") {
-        std::vector<DeviceInfo> all = list_devices();
-        if (all.empty()) choose_device({});  // throws, with what to install
-        return all;
-    }
-    std::vector<DeviceInfo> devices;
-    std::stringstream words(choice);
-    std::string word;
-    do {
-        std::getline(words, word, ',');
-        const DeviceInfo info = choose_device(word);
-        const auto same = [&](const DeviceInfo& other) { return other.id() == info.id(); };
-        if (std::none_of(devices.begin(), devices.end(), same)) devices.push_back(info);
-    } while (words.good());
-    return devices;
-}
-
 void print_list(const Suite& suite) {
     for (const BenchCase& c : suite.cases) {
         std::string members;

@@ -1,4 +1,5 @@
-// clarity devices: what clinfo -l shows, in the order of preference, and which one is taken without --device.
+// clarity devices: what clinfo -l shows, in the order of preference, and which ones are taken without --device.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -17,14 +18,24 @@ const char* type_name(const DeviceInfo& device) {
     return device.gpu ? "gpu" : device.cpu ? "cpu" : "other";
 }
 
+constexpr const char* kSeveral =
+    "\nSeveral share each picture: --device 0,1 or gpus or all. A CPU in two parts: cpu/2, or one of them: cpu/2.0.\n";
+
 // As Device::preferred_lanes, without opening the device.
 unsigned lanes_of(const DeviceInfo& device) {
     return !device.cpu ? 1 : device.float_width >= 16 ? 16 : device.float_width >= 8 ? 8 : 4;
 }
 
-// Which device a command without --device takes, and why.
+// Which devices a command without --device takes, and why.
 struct Default {
-    std::string id, why;
+    std::vector<DeviceInfo> devices;
+    std::string why;
+    std::string ids() const { return device_list_text(devices); }
+    bool has(const DeviceInfo& device) const {
+        return std::any_of(devices.begin(), devices.end(), [&](const DeviceInfo& one) {
+            return one.platform_index == device.platform_index && one.device_index == device.device_index;
+        });
+    }
 };
 
 Default find_default(const std::vector<DeviceInfo>& devices) {
@@ -32,17 +43,17 @@ Default find_default(const std::vector<DeviceInfo>& devices) {
     if (variable && *variable) {
         const std::string from = std::string("CLARITY_DEVICE=") + variable;
         try {
-            return {choose_device({}).id(), from};
+            return {choose_devices({}), from};
         } catch (const Error& e) {
             return {{}, e.what()};
         }
     }
     if (devices.empty()) return {{}, "there is no device"};
     const DeviceInfo& best = devices.front();
-    if (devices.size() == 1) return {best.id(), "the only one"};
+    if (devices.size() == 1) return {{best}, "the only one"};
     const bool same_kind = devices[1].gpu == best.gpu && devices[1].cpu == best.cpu;
-    if (same_kind) return {best.id(), std::string("most compute units x clock of every ") + type_name(best)};
-    return {best.id(), best.gpu ? "a GPU goes before a CPU" : "a CPU goes before other devices"};
+    if (same_kind) return {{best}, std::string("most compute units x clock of every ") + type_name(best)};
+    return {{best}, best.gpu ? "a GPU goes before a CPU" : "a CPU goes before other devices"};
 }
 
 std::string memory_text(uint64_t bytes) {
@@ -51,8 +62,9 @@ std::string memory_text(uint64_t bytes) {
     return text;
 }
 
-Json device_json(const DeviceInfo& device, const Default& chosen) {
-    return {{"id", device.id()},
+Json device_json(const DeviceInfo& device, size_t number, const Default& chosen) {
+    return {{"number", number},
+            {"id", device.id()},
             {"platform_index", device.platform_index},
             {"device_index", device.device_index},
             {"platform", device.platform},
@@ -66,16 +78,16 @@ Json device_json(const DeviceInfo& device, const Default& chosen) {
             {"global_bytes", device.global_bytes},
             {"max_allocation_bytes", device.max_allocation_bytes},
             {"lanes", lanes_of(device)},
-            {"default", device.id() == chosen.id}};
+            {"default", chosen.has(device)}};
 }
 
-void print_device(const DeviceInfo& device, const Default& chosen) {
-    std::printf("%-5s %s  [%s, %u compute units", device.id().c_str(), device.name.c_str(), type_name(device),
+void print_device(const DeviceInfo& device, size_t number, const Default& chosen) {
+    std::printf("%zu = %-5s %s  [%s, %u compute units", number, device.id().c_str(), device.name.c_str(), type_name(device),
                 device.compute_units);
     if (device.clock_mhz > 0) std::printf(" at %u MHz", device.clock_mhz);
     std::printf(", %s, lanes %u]\n", memory_text(device.global_bytes).c_str(), lanes_of(device));
-    std::printf("      %s, driver %s\n", device.platform.c_str(), device.driver.c_str());
-    if (device.id() == chosen.id) std::printf("      default: %s\n", chosen.why.c_str());
+    std::printf("          %s, driver %s\n", device.platform.c_str(), device.driver.c_str());
+    if (chosen.has(device)) std::printf("          default: %s\n", chosen.why.c_str());
 }
 
 }  // namespace
@@ -86,15 +98,16 @@ int run_devices(bool json) {
     const Default chosen = find_default(devices);
     if (json) {
         Json list = {
-            {"devices", Json::array()}, {"default", chosen.id.empty() ? Json() : Json(chosen.id)}, {"why", chosen.why}};
-        for (const DeviceInfo& device : devices) list["devices"].push_back(device_json(device, chosen));
+            {"devices", Json::array()}, {"default", chosen.devices.empty() ? Json() : Json(chosen.ids())}, {"why", chosen.why}};
+        for (size_t i = 0; i < devices.size(); ++i) list["devices"].push_back(device_json(devices[i], i, chosen));
         list["warnings"] = warnings;
         std::printf("%s\n", list.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     } else {
-        for (const DeviceInfo& device : devices) print_device(device, chosen);
+        for (size_t i = 0; i < devices.size(); ++i) print_device(devices[i], i, chosen);
         for (const std::string& warning : warnings)
-            if (!devices.empty()) std::printf("      %s\n", warning.c_str());  // else they are part of the error
-        if (chosen.id.empty() && !devices.empty()) std::printf("      no default: %s\n", chosen.why.c_str());
+            if (!devices.empty()) std::printf("          %s\n", warning.c_str());  // else they are part of the error
+        if (chosen.devices.empty() && !devices.empty()) std::printf("          no default: %s\n", chosen.why.c_str());
+        if (!devices.empty()) std::fputs(kSeveral, stdout);
     }
     if (devices.empty()) choose_device({});  // throws, with what to install
     return static_cast<int>(Exit::done);

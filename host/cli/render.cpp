@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <utility>
 
 #include "base/error.hpp"
 #include "base/file_watch.hpp"
@@ -19,7 +20,7 @@
 #include "cli/progress_bar.hpp"
 #include "cli/render_stats.hpp"
 #include "device/kernel_watch.hpp"
-#include "render/renderer.hpp"
+#include "render/multi_frames.hpp"
 
 namespace clarity {
 namespace {
@@ -94,9 +95,8 @@ class RenderJob {
         check_options(options_, settings_, range_);
         check_scene_files(options_.scene.files);
         const CancelOnSignal cancel(bar_);
-        device_ = std::make_shared<Device>(choose_device(words_.device));
-        stats_.device = device_->info();
-        log(LogLevel::debug, "device " + device_->info().id() + " " + device_->info().name);
+        take_devices(open_devices(choose_devices(words_.device)));
+        for (const DeviceInfo& info : stats_.devices) log(LogLevel::debug, "device " + info.id() + " " + info.name);
         if (options_.watch) return watch();
         return static_cast<int>(round(bar_));
     }
@@ -106,7 +106,7 @@ class RenderJob {
     Exit round(Progress& progress) {
         if (!scene_) import(progress);
         prepare(progress);
-        Frames frames(device_);
+        MultiFrames frames(devices_);
         for (int number = range_.first;; number += range_.step) {
             const bool whole = render(frames, number, progress);
             if (!whole) return Exit::interrupted;
@@ -159,7 +159,7 @@ class RenderJob {
             return code;
         };
         try {
-            if (preparer_ && preparer_->worn()) reopen_device();
+            if (preparer_ && preparer_->worn()) reopen_devices();
             stats_.frame_ms.clear();
             stats_.wall_ms.clear();
             return round(progress);
@@ -172,9 +172,14 @@ class RenderJob {
         }
     }
 
-    void reopen_device() {
-        device_ = std::make_shared<Device>(preparer_->close_device());
-        preparer_->open_device(device_);
+    void take_devices(const Devices& devices) {
+        devices_ = devices;
+        stats_.devices = infos_of(devices);
+    }
+
+    void reopen_devices() {
+        take_devices(open_devices(preparer_->close_devices()));
+        preparer_->open_devices(devices_);
     }
 
     void import(Progress& progress) {
@@ -193,8 +198,9 @@ class RenderJob {
     }
 
     void prepare(Progress& progress) {
-        if (!preparer_) preparer_ = std::make_unique<Preparer>(plugins_, device_);
-        stats_.prepared = preparer_->prepare(scene_, settings_, progress);
+        if (!preparer_) preparer_ = std::make_unique<MultiPreparer>(plugins_, devices_);
+        prepared_ = preparer_->prepare(scene_, settings_, progress);
+        stats_.prepared = prepared_->first();
         const Prepared& prepared = *stats_.prepared;
         char line[160];
         std::snprintf(line, sizeof line, "import %.0f ms, build %.0f ms, upload %.0f ms, compile %.0f ms%s", stats_.import_ms,
@@ -204,7 +210,7 @@ class RenderJob {
     }
 
     // One picture; with --repeat the same one again and again. False if interrupted: then what was accumulated is written.
-    bool render(Frames& frames, int number, Progress& progress) {
+    bool render(MultiFrames& frames, int number, Progress& progress) {
         bar_.stage("rendering " + std::filesystem::path(frame_path(options_.output, number)).filename().string());
         // Counting rays costs a little, and the first frame warms caches: timed frames come after it.
         const bool warm_up = options_.repeat > 1;
@@ -228,21 +234,25 @@ class RenderJob {
     }
 
     // All samples of one frame. Returns how many are complete.
-    unsigned trace_pass(Frames& frames, bool count, bool timed, double from, double share, Progress& progress) {
+    unsigned trace_pass(MultiFrames& frames, bool count, bool timed, double from, double share, Progress& progress) {
         if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
         double device_ms = 0, wall_ms = 0;
-        for (int sample = 0; sample < settings_.spp; ++sample) {
+        const auto all = unsigned(settings_.spp);
+        std::vector<DeviceShare> devices;
+        for (unsigned sample = 0, next = 1; sample < all; sample += std::exchange(next, batch(wall_ms, sample + next))) {
+            const double at = from + share * sample / all;
             // A short sample is one launch and asks nobody.
-            if (!progress.report(float(from + share * sample / settings_.spp))) return unsigned(sample);
-            PartOf part(progress, from + share * sample / settings_.spp, share / settings_.spp);
+            if (!progress.report(float(at))) return sample;
+            PartOf part(progress, at, share * next / all);
             FrameStats frame;
             try {
-                frame = frames.trace(*stats_.prepared, settings_, view_, unsigned(sample), count, part);
+                frame = frames.trace(prepared_, settings_, view_, sample, count, part, next);
             } catch (const Cancelled&) {
-                return unsigned(sample);
+                return frames.samples();
             }
             device_ms += frame.device_ms;
             wall_ms += frame.wall_ms;
+            add_shares(devices, frame.devices);
             if (count) {
                 stats_.primary += frame.primary;
                 stats_.shadow += frame.shadow;
@@ -251,14 +261,35 @@ class RenderJob {
                 stats_.overflowed += frame.overflowed;
             }
         }
+        stats_.shares = devices;
         if (timed) {
             stats_.frame_ms.push_back(device_ms);
             stats_.wall_ms.push_back(wall_ms);
         }
-        return unsigned(settings_.spp);
+        return all;
     }
 
-    void write(Frames& frames, int number) {
+    // Samples to trace at once after so many, which took so long: several devices wait for each other after each batch, and a
+    // person for the bar.
+    unsigned batch(double wall_ms, unsigned done) const {
+        constexpr double kBatchMs = 100;
+        const double each = std::max(wall_ms / done, 1e-3);
+        return std::min(unsigned(std::clamp(kBatchMs / each, 1.0, 1024.0)),
+                        unsigned(settings_.spp) - std::min(done, unsigned(settings_.spp)));
+    }
+
+    static void add_shares(std::vector<DeviceShare>& sum, const std::vector<DeviceShare>& more) {
+        if (sum.size() != more.size()) sum.assign(more.size(), {});
+        for (size_t i = 0; i < more.size(); ++i) {
+            DeviceShare total = more[i];
+            total.device_ms += sum[i].device_ms;
+            total.wall_ms += sum[i].wall_ms;
+            total.launches += sum[i].launches;
+            sum[i] = total;
+        }
+    }
+
+    void write(MultiFrames& frames, int number) {
         const std::string path = frame_path(options_.output, number);
         const bool png = writes_display(path);
         const FloatImage values = png ? FloatImage{} : frames.read_values();
@@ -294,11 +325,12 @@ class RenderJob {
     const FrameRange range_;
     const PluginRegistry& plugins_;
     ProgressBar bar_;
-    std::shared_ptr<Device> device_;
+    Devices devices_;
     std::function<bool()> superseded_;  // with --watch: whether a save made this round useless
     std::shared_ptr<const Scene> scene_;
     View view_;
-    std::unique_ptr<Preparer> preparer_;
+    std::unique_ptr<MultiPreparer> preparer_;
+    std::shared_ptr<const MultiPrepared> prepared_;
     RenderStats stats_;
 };
 

@@ -47,6 +47,18 @@ Json accel_parameters(const AccelData& accel) {
     return json;
 }
 
+Json shares_json(const std::vector<DeviceShare>& shares) {
+    Json json = Json::array();
+    for (const DeviceShare& share : shares)
+        json.push_back({{"id", share.id},
+                        {"name", share.name},
+                        {"share", rounded(share.share)},
+                        {"frame_ms", rounded(share.device_ms)},
+                        {"frame_wall_ms", rounded(share.wall_ms)},
+                        {"launches", share.launches}});
+    return json;
+}
+
 }  // namespace
 
 double median_frame_ms(const RenderStats& stats) {
@@ -64,9 +76,10 @@ std::string stats_json(const RenderStats& stats) {
     const Settings& used = prepared.settings;  // with what was automatic resolved
     Json json;
     json["files"] = stats.files;
-    json["device"] = stats.device.name;
-    json["device_id"] = stats.device.id();
-    json["driver"] = stats.device.platform + ", " + stats.device.driver;
+    json["device"] = devices_name(stats.devices);
+    json["device_id"] = device_list_text(stats.devices);
+    json["driver"] = stats.devices.front().platform + ", " + stats.devices.front().driver;
+    if (!stats.shares.empty()) json["devices"] = shares_json(stats.shares);
     json["accel"] = used.accel;
     json["accel_params"] = accel_parameters(accel);
     json["tracer"] = used.tracer;

@@ -3,13 +3,14 @@
 #include <string>
 #include <vector>
 
-#include "render/renderer.hpp"
+#include "render/multi_preparer.hpp"
 
 namespace clarity {
 
 struct RenderStats {
     std::vector<std::string> files;
-    DeviceInfo device;
+    std::vector<DeviceInfo> devices;
+    std::vector<DeviceShare> shares;  // of the last frame, where several devices shared it
     std::shared_ptr<const Prepared> prepared;
     Settings settings;
     double import_ms = 0;

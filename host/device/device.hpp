@@ -10,6 +10,7 @@ namespace clarity {
 
 struct DeviceInfo {
     unsigned platform_index = 0, device_index = 0;  // as clinfo -l counts them
+    unsigned part = 0, parts = 0;                   // of a CPU that is parted, counted from 0; 0 parts: it is whole
     std::string platform, name, vendor, version, driver;
     bool cpu = false, gpu = false;
     unsigned compute_units = 0, clock_mhz = 0, float_width = 1;  // native_vector_width_float
@@ -17,16 +18,23 @@ struct DeviceInfo {
     bool pocl = false, nvidia = false;
     cl::Platform cl_platform;
     cl::Device cl_device;
-    std::string id() const { return std::to_string(platform_index) + ":" + std::to_string(device_index); }
+    std::string id() const;  // "0:0"; the second of four parts: "0:0/4.1"
 };
 
 // All devices of all platforms, best first (GPU before CPU before others, then compute units x clock). A platform without
 // devices or with a failing driver is skipped with a warning in `warnings`.
 std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings = nullptr);
 
-// choice: "" (CLARITY_DEVICE, else the best), "P:D", "cpu", "gpu", or part of a name. Throws Error(no_device) that lists what
-// there is.
+// choice: "" (CLARITY_DEVICE, else the best), or words with commas between them, each device once:
+//   2, P:D, cpu, gpu, part of a name   one: by its place in the list, by its id, the first that fits
+//   cpus, gpus, all                    every one
+//   WORD/4, WORD/4.1                   in four parts (sub-devices), or the second of these
+// Throws Error(no_device) that lists what there is.
+std::vector<DeviceInfo> choose_devices(const std::string& choice);
+// The first of them.
 DeviceInfo choose_device(const std::string& choice);
+// As choose_devices() reads it: ids with commas.
+std::string device_list_text(const std::vector<DeviceInfo>& devices);
 
 // An open device. Not thread-safe per object, except that programs may be built from other threads.
 class Device {

@@ -1,4 +1,4 @@
-// device_list.cpp -- which OpenCL devices there are, which is the best, and which one a user means.
+// device_list.cpp -- which OpenCL devices there are, and which is the best.
 //
 // A machine may have platforms without devices (Mesa's rusticl without a GPU), drivers that fail, or no driver at all: each of
 // them is one line of warning, never the end.
@@ -11,11 +11,20 @@
 #include <mutex>
 #include <tuple>
 
-#include "base/error.hpp"
-#include "base/log.hpp"
-#include "device/device.hpp"
+#include "device/device_list.hpp"
 
 namespace clarity {
+
+std::string lower(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
+bool says(const std::string& text, const std::string& part) {
+    return lower(text).find(lower(part)) != std::string::npos;
+}
+
 namespace {
 
 // Two of PoCL's threads on one core halve the speed of a frame of a few milliseconds: the system's scheduler takes longer than
@@ -28,20 +37,6 @@ void pin_pocl_threads() {
     for (long core = 0; core < cores; ++core)
         if (core >= CPU_SETSIZE || !CPU_ISSET(static_cast<size_t>(core), &allowed)) return;
     setenv("POCL_AFFINITY", "1", 0);
-}
-
-constexpr const char* kInstallDriver =
-    "install an OpenCL driver: on Debian `apt-get install pocl-opencl-icd` runs on every CPU, a GPU needs its vendor's "
-    "(`clinfo -l` shows what is found)";
-
-std::string lower(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-    return lower(text).find(lower(part)) != std::string::npos;
 }
 
 // Drivers pad their names with blanks and zero bytes.
@@ -93,8 +88,8 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, unsi
     info.float_width = std::max(1u, ask<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT));
     info.global_bytes = ask<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
     info.max_allocation_bytes = ask<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
-    info.pocl = contains(info.platform, "Portable Computing Language");
-    info.nvidia = contains(info.vendor, "NVIDIA");
+    info.pocl = says(info.platform, "Portable Computing Language");
+    info.nvidia = says(info.vendor, "NVIDIA");
     return info;
 }
 
@@ -130,24 +125,6 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
     }
 }
 
-std::string table_of(const std::vector<DeviceInfo>& devices) {
-    std::string text;
-    for (const DeviceInfo& device : devices)
-        text += (text.empty() ? "" : ", ") + device.id() + " " + device.name +
-                (device.gpu   ? " (gpu)"
-                 : device.cpu ? " (cpu)"
-                              : "");
-    return text;
-}
-
-bool matches(const DeviceInfo& device, const std::string& choice) {
-    const std::string wanted = lower(choice);
-    if (wanted == "cpu") return device.cpu;
-    if (wanted == "gpu") return device.gpu;
-    if (choice.find_first_not_of("0123456789:") == std::string::npos) return device.id() == choice;
-    return contains(device.name, choice) || contains(device.platform, choice);
-}
-
 }  // namespace
 
 std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
@@ -175,29 +152,6 @@ std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
     };
     std::stable_sort(found.begin(), found.end(), [&](const DeviceInfo& a, const DeviceInfo& b) { return rank(a) > rank(b); });
     return found;
-}
-
-DeviceInfo choose_device(const std::string& choice) {
-    std::vector<std::string> warnings;
-    const std::vector<DeviceInfo> devices = list_devices(&warnings);
-    const char* variable = std::getenv("CLARITY_DEVICE");
-    const std::string wanted = choice.empty() && variable ? variable : choice;
-    if (devices.empty()) {
-        std::string why;
-        for (const std::string& warning : warnings) why += "; " + warning;
-        if (why.find(kInstallDriver) == std::string::npos) why += std::string("; ") + kInstallDriver;
-        throw Error(Exit::no_device, "no OpenCL device" + why);
-    }
-    for (const std::string& warning : warnings) log(LogLevel::warning, warning);
-    if (wanted.empty()) return devices.front();
-    for (const DeviceInfo& device : devices)
-        if (matches(device, wanted)) return device;
-    const std::string from = choice.empty() ? "CLARITY_DEVICE=" : "--device ";
-    if (wanted.find(',') != std::string::npos)
-        throw Error(Exit::no_device,
-                    from + wanted + ": one device at a time traces a picture; choose one of " + table_of(devices));
-    throw Error(Exit::no_device, from + wanted + ": no such device; there are " + table_of(devices) +
-                                     ". Write P:D as listed, cpu, gpu or part of a name");
 }
 
 }  // namespace clarity

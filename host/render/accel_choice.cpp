@@ -1,5 +1,7 @@
 #include "render/accel_choice.hpp"
 
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "device/device.hpp"
 #include "plugin/parameters.hpp"
@@ -30,7 +32,9 @@ std::string usual_accel(const PluginRegistry& plugins, const std::string& device
     const std::string otherwise = Settings().accel, on_gpu = "bvh4";
     if (!plugins.accel(on_gpu)) return otherwise;
     try {
-        return choose_device(device).cpu ? otherwise : on_gpu;
+        const std::vector<DeviceInfo> devices = choose_devices(device);
+        const auto is_cpu = [](const DeviceInfo& info) { return info.cpu; };
+        return std::all_of(devices.begin(), devices.end(), is_cpu) ? otherwise : on_gpu;
     } catch (const Error&) {
         return otherwise;  // whoever opens the device says what is wrong with it
     }

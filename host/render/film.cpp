@@ -1,9 +1,11 @@
 #include "render/film.hpp"
 
+#include <chrono>
 #include <map>
 
 #include "device/kernel_files.hpp"
 #include "device/program.hpp"
+#include "render/bands.hpp"
 #include "render/guarded.hpp"
 
 namespace clarity {
@@ -23,12 +25,28 @@ void add_times(std::vector<KernelTime>* times, const cl::Event& mapped, const cl
 
 }  // namespace
 
+FalseColorScale show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
+                            uint8_t* rgba, FrameStats* stats) {
+    using Clock = std::chrono::steady_clock;
+    const auto begin = Clock::now();
+    const FloatImage values = read();
+    const auto done = Clock::now();
+    const FalseColorScale scale = scale_of(values, aov, static_cast<float>(settings.scale_max));
+    false_colors(values, aov, scale, rgba);
+    if (stats) {
+        stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(done - begin).count()});
+        stats->kernels.push_back({"false colours", std::chrono::duration<double, std::milli>(Clock::now() - done).count()});
+    }
+    return scale;
+}
+
 FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), picture_(device) {
     const BuildResult built =
         build_program(*device_, "#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film");
     guarded(*device_, "preparing the film", [&] {
         program_ = built.program;
         map_tones_ = cl::Kernel(program_, "map_tones");
+        map_tones_of_rows_ = cl::Kernel(program_, "map_tones_of_rows");
         sum_counters_ = cl::Kernel(program_, "sum_counters");
     });
 }
@@ -48,18 +66,51 @@ RayCounts FilmKernels::sum(const cl::Buffer& counters, unsigned packets, KernelT
     return {sums[0], sums[1], sums[2], sums[3]};
 }
 
-cl::Event FilmKernels::map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings) {
+const cl::Buffer& FilmKernels::set_map(cl::Kernel& kernel, const cl::Buffer& film, size_t pixels, const Settings& settings) {
     if (device_->info().cpu) picture_.release();  // it is the display itself
     const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
-    const size_t items = (room(pixels) / kPixelsAtOnce + 63) / 64 * 64;
-    cl::Event mapped;
-    map_tones_.setArg(0, film);
-    map_tones_.setArg(1, display);
-    map_tones_.setArg(2, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce));
-    map_tones_.setArg(3, static_cast<float>(settings.exposure));
-    map_tones_.setArg(4, number_of_tone(settings.tone));
-    device_->queue().enqueueNDRangeKernel(map_tones_, cl::NullRange, cl::NDRange(items), cl::NDRange(64), nullptr, &mapped);
-    return mapped;
+    kernel.setArg(0, film);
+    kernel.setArg(1, display);
+    kernel.setArg(2, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce));
+    kernel.setArg(3, static_cast<float>(settings.exposure));
+    kernel.setArg(4, number_of_tone(settings.tone));
+    return display;
+}
+
+cl::Event FilmKernels::map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings) {
+    set_map(map_tones_, film, pixels, settings);
+    return run(map_tones_, room(pixels) / kPixelsAtOnce);
+}
+
+cl::Event FilmKernels::run(const cl::Kernel& kernel, size_t items) {
+    cl::Event done;
+    device_->queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange((items + 63) / 64 * 64), cl::NDRange(64), nullptr,
+                                          &done);
+    return done;
+}
+
+void FilmKernels::show_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
+                            unsigned row_height, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times) {
+    const cl::Buffer& display = set_map(map_tones_of_rows_, film, size_t(width) * height, settings);
+    const size_t bytes = rows.size() * sizeof(rt_u32), row_quads = size_t(width) * row_height / kPixelsAtOnce;
+    const cl::Buffer before = rows_.get();
+    const cl::Buffer& table = rows_.fit(device_->context(), bytes);
+    if (rows_written_ != rows || table() != before()) {
+        rows_written_ = rows;
+        device_->queue().enqueueWriteBuffer(table, CL_TRUE, 0, bytes, rows_written_.data());
+    }
+    map_tones_of_rows_.setArg(5, table);
+    map_tones_of_rows_.setArg(6, static_cast<cl_uint>(row_quads));
+    map_tones_of_rows_.setArg(7, static_cast<cl_uint>(row_quads * rows.size()));
+    const cl::Event mapped = run(map_tones_of_rows_, row_quads * rows.size());
+    std::vector<cl::Event> reads;
+    read_bands(device_->queue(), display, bands_of(rows, row_height, height), size_t(width) * 4, rgba, &reads);
+    device_->queue().finish();
+    if (!times) return;
+    times->push_back({"tone map", event_ms(mapped)});
+    const auto begin = reads.front().getProfilingInfo<CL_PROFILING_COMMAND_START>(),
+               end = reads.back().getProfilingInfo<CL_PROFILING_COMMAND_END>();
+    times->push_back({"read-back", 1e-6 * double(end - begin)});
 }
 
 void FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba,

@@ -1,8 +1,9 @@
 // frames.cpp -- the film, and tracing into it.
 #include <algorithm>
-#include <chrono>
 #include <cstring>
+#include <numeric>
 
+#include "render/bands.hpp"
 #include "render/film.hpp"
 #include "render/frame_constants.hpp"
 #include "render/guarded.hpp"
@@ -15,11 +16,6 @@
 
 namespace clarity {
 namespace {
-
-unsigned channels_of(const std::string& aov) {
-    if (aov == "color") return 4;
-    return aov == "normal" || aov == "uv" ? 3 : 1;
-}
 
 // A packet's distances, block by block, to where its first pixel is.
 void put_packet(const Layout& layout, const float* block, unsigned left, unsigned top, FloatImage& image) {
@@ -42,9 +38,9 @@ void put_packet(const Layout& layout, const float* block, unsigned left, unsigne
 }
 
 // Rays are stored by groups, packets, blocks and lanes, as rt_packet_origin() and rt_block_pixels() number them.
-void put_in_order(const Layout& layout, const float* stored, FloatImage& image) {
-    const unsigned groups_x = layout.groups_x(image.width), groups_y = layout.groups_y(image.height);
-    for (unsigned y = 0; y < groups_y; ++y)
+void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const float* stored, FloatImage& image) {
+    const unsigned groups_x = layout.groups_x(image.width);
+    for (const rt_u32 y : rows)
         for (unsigned x = 0; x < groups_x; ++x)
             for (unsigned in_y = 0; in_y < layout.group_h; ++in_y)
                 for (unsigned in_x = 0; in_x < layout.group_w; ++in_x, stored += layout.rays())
@@ -66,6 +62,7 @@ struct Frames::Impl {
     unsigned width = 0, height = 0;
     std::string aov;
     Layout layout;                                // of the picture in the film
+    std::vector<rt_u32> rows;                     // of work-groups, that are traced; counters and distances are in this order
     std::shared_ptr<const TraceProgram> program;  // whose pace and kernel these are:
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
@@ -77,13 +74,32 @@ struct Frames::Impl {
     void read(const cl::Buffer& buffer, void* out, size_t bytes) {
         device->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, out);
     }
+
+    void take_rows(const SharedRows* shared) {
+        if (shared) {
+            rows = shared->rows;
+            return;
+        }
+        rows.resize(layout.groups_y(height));
+        std::iota(rows.begin(), rows.end(), 0u);
+    }
+    std::vector<Band> bands(size_t begin = 0) const {
+        const std::vector<rt_u32> some(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.end());
+        return bands_of(some, layout.group_h * layout.packet_h, height);
+    }
+    unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
+    FloatImage image(unsigned channels) const {
+        FloatImage image{width, height, channels, {}};
+        image.pixels.resize(size_t(width) * height * channels);
+        return image;
+    }
 };
 
 Frames::Frames(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>(device)) {}
 Frames::~Frames() = default;
 
 FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
-                         Progress& progress) {
+                         Progress& progress, const SharedRows* shared) {
     Impl& im = *impl_;
     return guarded(*im.device, "tracing", [&] {
         const TraceProgram& program = *prepared.program;
@@ -101,21 +117,31 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
 
         const size_t pixels = size_t(width) * height;
         const Layout layout = im.layout = make_layout(prepared.settings, im.device->info().cpu);
-        const unsigned groups = layout.groups_x(width) * layout.groups_y(height);
-        const unsigned packets = groups * layout.group_packets();
-        im.view.write(queue, *prepared.scene, make_frame(view, settings, layout, *prepared.accel, sample), view);
+        const unsigned packets = layout.groups_x(width) * layout.groups_y(height) * layout.group_packets();
+        im.take_rows(shared);
+        const unsigned begin = shared ? layout.groups_x(width) * static_cast<unsigned>(shared->begin) : 0;
+        rt_frame frame = make_frame(view, settings, layout, *prepared.accel, sample);
+        std::vector<rt_u32> table;
+        if (shared) {
+            frame.row_count = static_cast<rt_u32>(im.rows.size());
+            table = im.rows;
+            table.resize(layout.groups_y(height));  // so that the buffer does not grow row by row
+        }
+        im.view.write(queue, *prepared.scene, frame, view, table);
 
         const auto go_on = [&] {
             if (progress.cancelled()) throw Cancelled();
         };
-        const cl::Buffer& film = im.film.fit(context, FilmKernels::room(pixels) * channels_of(im.aov) * sizeof(float));
+        const cl::Buffer& film = im.film.fit(context, FilmKernels::room(pixels) * film_channels(im.aov) * sizeof(float));
         if (program.has_generations()) im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float));
+        const unsigned groups = im.groups() - begin;
         LaunchTimes times;
         if (program.is_wavefront()) {
             const auto depth = static_cast<unsigned>(settings.depth);
-            times = im.wavefront.trace(
-                queue, im.launcher,
-                {prepared, view, im.view, layout, width, height, depth, sample, film, im.distances.get()}, go_on);
+            times = im.wavefront.trace(queue, im.launcher,
+                                       {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film,
+                                        im.distances.get()},
+                                       go_on);
         } else {
             cl_uint at = 0;
             im.kernel.setArg(at++, im.view.frame());
@@ -126,74 +152,87 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
                 im.kernel.setArg(at++, im.distances.get());
             }
             im.view.bind(*prepared.on_device, im.kernel, at);
-            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on);
+            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on, begin);
         }
 
         FrameStats stats;
         stats.device_ms = times.device_ms;
         stats.wall_ms = times.wall_ms;
-        stats.primary = pixels;
+        stats.launches = times.launches;
+        for (const Band& band : im.bands(shared ? shared->begin : 0)) stats.primary += uint64_t(band.count) * width;
         stats.samples = sample + 1;
         stats.kernels.push_back({"trace", times.device_ms});
-        if (program.has_generations() && count_rays) {
-            stats.kernels.emplace_back();
-            const bool wave = program.is_wavefront();
-            const RayCounts counts = im.film_kernels.sum(wave ? im.wavefront.counters() : im.counters.get(),
-                                                         wave ? im.wavefront.counter_count() : packets, stats.kernels.back());
-            stats.shadow = counts.shadow;
-            stats.secondary = counts.secondary;
-            stats.dropped = counts.dropped;
-            stats.overflowed = counts.overflowed;
-        }
+        if (count_rays) count(stats);
         return stats;
     });
 }
 
-FloatImage Frames::read_values() {
+void Frames::count(FrameStats& stats) {
     Impl& im = *impl_;
-    return guarded(*im.device, "reading the film", [&] {
-        const unsigned stored = channels_of(im.aov);
-        FloatImage image;
-        image.width = im.width;
-        image.height = im.height;
-        image.channels = im.aov == "color" ? 3 : stored;
-        const size_t pixels = size_t(im.width) * im.height;
-        std::vector<float> film(pixels * stored);
-        im.read(im.film.get(), film.data(), film.size() * sizeof(float));
-        if (im.aov == "color") {
-            image.pixels.resize(pixels * 3);
-            for (size_t i = 0; i < pixels; ++i)
-                for (int k = 0; k < 3; ++k) image.pixels[3 * i + k] = film[4 * i + k] / std::max(film[4 * i + 3], 1.0f);
-            return image;
-        }
-        if (im.aov == "prim" || im.aov == "instance")
-            for (float& value : film) {
-                rt_i32 number;
-                std::memcpy(&number, &value, sizeof number);
-                value = static_cast<float>(number);
+    if (!im.program || !im.program->has_generations() || im.rows.empty()) return;
+    guarded(*im.device, "counting rays", [&] {
+        stats.kernels.emplace_back();
+        const bool wave = im.program->is_wavefront();
+        const RayCounts counts = im.film_kernels.sum(
+            wave ? im.wavefront.counters() : im.counters.get(),
+            wave ? im.wavefront.counter_count() : im.groups() * im.layout.group_packets(), stats.kernels.back());
+        stats.shadow = counts.shadow;
+        stats.secondary = counts.secondary;
+        stats.dropped = counts.dropped;
+        stats.overflowed = counts.overflowed;
+    });
+}
+
+FloatImage Frames::read_values() {
+    FloatImage image = impl_->image(value_channels(impl_->aov));
+    read_values(image);
+    return image;
+}
+
+void Frames::read_values(FloatImage& image) {
+    Impl& im = *impl_;
+    guarded(*im.device, "reading the film", [&] {
+        const bool color = im.aov == "color";
+        const size_t stored = size_t(im.width) * film_channels(im.aov);  // floats of a row of pixels
+        if (color) im.scratch.resize(stored * im.height);
+        float* const film = color ? im.scratch.data() : image.pixels.data();
+        const std::vector<Band> bands = im.bands();
+        read_bands(im.device->queue(), im.film.get(), bands, stored * sizeof(float), film);
+        im.device->queue().finish();
+        for (const Band& band : bands) {
+            const size_t begin = band.first * size_t(im.width), end = begin + band.count * size_t(im.width);
+            if (color) {
+                for (size_t i = begin; i < end; ++i)
+                    for (int k = 0; k < 3; ++k) image.pixels[3 * i + k] = film[4 * i + k] / std::max(film[4 * i + 3], 1.0f);
+            } else if (im.aov == "prim" || im.aov == "instance") {
+                for (size_t i = begin; i < end; ++i) {
+                    rt_i32 number;
+                    std::memcpy(&number, &film[i], sizeof number);
+                    film[i] = static_cast<float>(number);
+                }
             }
-        image.pixels = std::move(film);
-        return image;
+        }
     });
 }
 
 FloatImage Frames::read_distance() {
+    FloatImage image = impl_->image(1);
+    return read_distance(image) ? image : FloatImage{};
+}
+
+bool Frames::read_distance(FloatImage& image) {
     Impl& im = *impl_;
-    if (im.aov == "t") return read_values();
-    if (!im.program || !im.program->has_generations()) return {};
-    return guarded(*im.device, "reading distances", [&] {
-        const Layout& layout = im.layout;
-        const unsigned groups = layout.groups_x(im.width) * layout.groups_y(im.height);
-        im.scratch.resize(size_t(groups) * layout.group_packets() * layout.rays());
-        im.read(im.distances.get(), im.scratch.data(), im.scratch.size() * sizeof(float));
-        FloatImage image;
-        image.width = im.width;
-        image.height = im.height;
-        image.channels = 1;
-        image.pixels.resize(size_t(im.width) * im.height);
-        put_in_order(layout, im.scratch.data(), image);
-        return image;
+    if (im.aov == "t") {
+        read_values(image);
+        return true;
+    }
+    if (!im.program || !im.program->has_generations()) return false;
+    guarded(*im.device, "reading distances", [&] {
+        im.scratch.resize(size_t(im.groups()) * im.layout.group_packets() * im.layout.rays());
+        if (!im.scratch.empty()) im.read(im.distances.get(), im.scratch.data(), im.scratch.size() * sizeof(float));
+        put_in_order(im.layout, im.rows, im.scratch.data(), image);
     });
+    return true;
 }
 
 ByteImage Frames::read_display(const Settings& settings) {
@@ -207,23 +246,20 @@ ByteImage Frames::read_display(const Settings& settings) {
 
 FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats) {
     Impl& im = *impl_;
-    if (im.aov != "color") {
-        using Clock = std::chrono::steady_clock;
-        const auto begin = Clock::now();
-        const FloatImage values = read_values();
-        const auto read = Clock::now();
-        const FalseColorScale scale = scale_of(values, im.aov, static_cast<float>(settings.scale_max));
-        false_colors(values, im.aov, scale, rgba);
-        if (stats) {
-            stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(read - begin).count()});
-            stats->kernels.push_back({"false colours", std::chrono::duration<double, std::milli>(Clock::now() - read).count()});
-        }
-        return scale;
-    }
+    if (im.aov != "color") return show_values([this] { return read_values(); }, im.aov, settings, rgba, stats);
     guarded(*im.device, "reading the picture", [&] {
         im.film_kernels.show(im.film.get(), size_t(im.width) * im.height, settings, rgba, stats ? &stats->kernels : nullptr);
     });
     return {};
+}
+
+void Frames::read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times) {
+    Impl& im = *impl_;
+    if (im.rows.empty()) return;
+    guarded(*im.device, "reading the picture", [&] {
+        im.film_kernels.show_rows(im.film.get(), im.width, im.height, im.rows, im.layout.group_h * im.layout.packet_h, settings,
+                                  rgba, times);
+    });
 }
 
 const uint8_t* Frames::look_at_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {

@@ -20,16 +20,20 @@ const uint8_t* HostPicture::fetch(const cl::Buffer& source, size_t bytes, cl::Ev
         memory_ = queue.enqueueMapBuffer(source, CL_TRUE, CL_MAP_READ, 0, bytes, nullptr, done);
         mapped_ = source;
     } else {
-        if (bytes > room_) {
-            release();
-            cl::Buffer pinned(device_->context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
-            memory_ = queue.enqueueMapBuffer(pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes);
-            mapped_ = pinned;
-            room_ = bytes;
-        }
-        queue.enqueueReadBuffer(source, CL_TRUE, 0, bytes, memory_, nullptr, done);
+        queue.enqueueReadBuffer(source, CL_TRUE, 0, bytes, pinned(bytes), nullptr, done);
     }
     return static_cast<const uint8_t*>(memory_);
+}
+
+uint8_t* HostPicture::pinned(size_t bytes) {
+    if (bytes > room_) {
+        release();
+        cl::Buffer room(device_->context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
+        memory_ = device_->queue().enqueueMapBuffer(room, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes);
+        mapped_ = room;
+        room_ = bytes;
+    }
+    return static_cast<uint8_t*>(memory_);
 }
 
 }  // namespace clarity

@@ -20,6 +20,8 @@ class HostPicture {
     // The first `bytes` of a buffer, when all that is queued is done; stays until the next release() or fetch(). `done` is the
     // copy's event, or none.
     const uint8_t* fetch(const cl::Buffer& source, size_t bytes, cl::Event* done);
+    // So many bytes of pinned memory, which stay where they are until more are wanted. Not for a CPU.
+    uint8_t* pinned(size_t bytes);
 
  private:
     std::shared_ptr<Device> device_;

@@ -29,6 +29,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
         times.device_ms += 1e-6 * double(piece.last.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
                                          piece.first.getProfilingInfo<CL_PROFILING_COMMAND_START>());
         first += count;
+        ++times.launches;
         // A slow first piece may hold a compilation, so a pace is believed once pieces take a while.
         if (wall > 5 || first == group_count) groups_per_ms_ = count / std::max(wall, 1e-3);
         guess = std::min(guess * kGrowth, group_count);
@@ -37,10 +38,10 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
 }
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                          unsigned group_size, const std::function<void()>& go_on) {
+                          unsigned group_size, const std::function<void()>& go_on, unsigned begin) {
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;
-        kernel.setArg(first_argument, first);
+        kernel.setArg(first_argument, begin + first);
         queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size_t(count) * group_size), cl::NDRange(group_size),
                                    nullptr, &event);
         return Piece{event, event};

@@ -7,6 +7,7 @@ namespace clarity {
 
 struct LaunchTimes {
     double device_ms = 0, wall_ms = 0;
+    unsigned launches = 0;
 };
 
 // Keeps the pace of one kernel, or of several that run one after the other, from launch to launch.
@@ -20,10 +21,10 @@ class Launcher {
     // stops by throwing.
     LaunchTimes run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
                     const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on);
-    // Runs groups [0, group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of a piece's
-    // first group. Global offsets stay zero: PoCL compiles a kernel anew for others.
+    // Runs groups [begin, begin + group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of
+    // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                    unsigned group_size, const std::function<void()>& go_on);
+                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0);
     void forget() { groups_per_ms_ = 0; }
 
  private:

@@ -34,7 +34,7 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
     Device& device = *opened;
     Settings tiny = prepared.settings;
     tiny.width = tiny.height = 1;
-    tiny.depth = program.is_wavefront() ? 2 : 1;  // whose other kernels stand between generations
+    tiny.depth = 1;
     View view;
     view.camera.eye = {0, 0, 1e6f};
     const Layout layout = make_layout(tiny, device.info().cpu);
@@ -51,7 +51,7 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
         ViewBuffers view_buffers;
         view_buffers.write(queue, *prepared.scene, frame, view);
         Launcher launcher;
-        const WavefrontFrame pixel{prepared, view, view_buffers, layout, 1, 1, 2, 0, out, distances};
+        const WavefrontFrame pixel{prepared, view, view_buffers, layout, 1, 1, 0, 1, 1, 0, out, distances};
         Wavefront(opened).trace(queue, launcher, pixel, [] {});
         return;
     }
@@ -103,31 +103,41 @@ void Preparer::open_device(std::shared_ptr<Device> device) {
     programs_ = std::make_unique<ProgramCache>(device_);
 }
 
+const rt_plugin& Preparer::plugin_of(const Settings& settings) const {
+    if (const rt_plugin* plugin = plugins_.accel(settings.accel)) return *plugin;
+    std::string known;
+    for (const rt_plugin* p : plugins_.accels()) known += (known.empty() ? "" : ", ") + std::string(p->id);
+    throw Error(Exit::usage, "no acceleration structure `" + settings.accel + "`; there " +
+                                 (known.empty() ? "are none: `clarity plugins` says why" : "are " + known));
+}
+
+std::shared_ptr<const AccelData> Preparer::build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                                 Progress& progress) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return build_or_last(scene, settings, progress);
+}
+
+std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                                         Progress& progress) {
+    const rt_plugin& plugin = plugin_of(settings);
+    const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
+    if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->params == params)
+        return last_->accel;
+    progress.stage(std::string("building ") + plugin.id);
+    return std::make_shared<AccelData>(build_accel(*scene, plugin, params, progress));
+}
+
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
-                                                  Progress& progress) {
+                                                  Progress& progress, std::shared_ptr<const AccelData> built) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose it anew");
-    const rt_plugin* plugin = plugins_.accel(settings.accel);
-    if (!plugin) {
-        std::string known;
-        for (const rt_plugin* p : plugins_.accels()) known += (known.empty() ? "" : ", ") + std::string(p->id);
-        throw Error(Exit::usage, "no acceleration structure `" + settings.accel + "`; there " +
-                                     (known.empty() ? "are none: `clarity plugins` says why" : "are " + known));
-    }
+    const rt_plugin* plugin = &plugin_of(settings);
     auto next = std::make_shared<Prepared>();
     next->scene = scene;
     next->settings = resolve(settings, *device_, *scene);
-    ParameterValues params = settings.accel_params.empty() ? default_parameters(*plugin) : settings.accel_params;
     try {
-        const bool same_structure =
-            last_ && last_->scene == scene && last_->accel->plugin == plugin && last_->accel->params == params;
-        if (same_structure) {
-            next->accel = last_->accel;
-            next->on_device = last_->on_device;
-        } else {
-            progress.stage(std::string("building ") + plugin->id);
-            next->accel = std::make_shared<AccelData>(build_accel(*scene, *plugin, params, progress));
-        }
+        next->accel = built ? std::move(built) : build_or_last(scene, settings, progress);
+        if (last_ && last_->scene == scene && last_->accel == next->accel) next->on_device = last_->on_device;
         if (!next->on_device) {
             progress.stage("uploading the scene");
             const auto start = std::chrono::steady_clock::now();

@@ -45,7 +45,12 @@ class Preparer {
     ~Preparer();
     // Throws Error(failed) for a build, Error(kernel_build_failed) with the compiler's log in details(), Cancelled; then what
     // was prepared before stays valid.
-    std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress);
+    // built: what build() gave for these settings, or for another device; without it, prepare() builds.
+    std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress,
+                                            std::shared_ptr<const AccelData> built = nullptr);
+    // The structure alone, which needs no device.
+    std::shared_ptr<const AccelData> build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                           Progress& progress);
     // Whether the device should be closed and opened anew: PoCL frees what its compiler made, 0.15 MB a program and more, only
     // with the last context of a process, and whoever edits kernels compiles hundreds.
     bool worn() const;
@@ -55,6 +60,9 @@ class Preparer {
     void open_device(std::shared_ptr<Device> device);
 
  private:
+    const rt_plugin& plugin_of(const Settings& settings) const;
+    std::shared_ptr<const AccelData> build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                                   Progress& progress);
     const PluginRegistry& plugins_;
     std::shared_ptr<Device> device_;
     std::unique_ptr<ProgramCache> programs_;
@@ -81,13 +89,31 @@ struct KernelTime {
     double ms = 0;
 };
 
+// What one device did of a picture that several share.
+struct DeviceShare {
+    std::string id, name;
+    double share = 0;                     // 0..1 of the picture's rows
+    double device_ms = 0, wall_ms = 0;    // of tracing, by the device's clock and by its host thread's
+    double tone_map_ms = 0, read_ms = 0;  // of read_display(), by the device's clock
+    unsigned launches = 0;
+};
+
 struct FrameStats {
     double device_ms = 0;                                          // the kernels of the last sample, by the device's clock
     double wall_ms = 0;                                            // the same by the host's, waiting included
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0;  // rays of the last sample; counted if asked for
     uint64_t overflowed = 0;                                       // traversal stacks that were full (debug programs)
     unsigned samples = 0;                                          // in the film now
-    std::vector<KernelTime> kernels;  // of the last sample: trace, counters; read_display() adds tone map and read-back
+    unsigned launches = 0;                                         // that the last sample was cut into
+    std::vector<KernelTime> kernels;   // of the last sample: trace, counters; read_display() adds tone map and read-back
+    std::vector<DeviceShare> devices;  // where several share the picture; then what is above is of the slowest
+};
+
+// Rows of work-groups that a device has of a picture which several devices share, in the order they came to it. A sample may
+// be traced in several calls, while rows come in: those before `begin` are done.
+struct SharedRows {
+    std::vector<rt_u32> rows;
+    size_t begin = 0;
 };
 
 // How trace_rays() asks.
@@ -106,14 +132,22 @@ class Frames {
     // One sample of the picture. sample 0 starts the film anew, n adds the n-th. settings: width, height, depth, shadows and
     // the like are taken from here; what needs a rebuild or recompile from `prepared`. Cut into launches under half a second;
     // between them `progress` is asked, and a cancel throws Cancelled.
+    // shared: the rows to trace, null for all; what is read back below is then theirs alone.
     FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
-                     Progress& progress);
+                     Progress& progress, const SharedRows* shared = nullptr);
+    // Adds the rays of the last sample, as trace() does if it is to count them.
+    void count(FrameStats& stats);
 
     // The film's mean as floats: 3 channels for color, normal, uv; 1 for the others, prim and instance as numbers, -1 for none.
     FloatImage read_values();
     // Distance along the camera ray of sample 0 of the picture traced last, +inf where nothing is; 1 channel. Empty where the
     // program does not know it: any AOV but `t`.
     FloatImage read_distance();
+    // The rows traced, into a picture of the whole size that other devices fill too. False: the distance is not known.
+    void read_values(FloatImage& image);
+    bool read_distance(FloatImage& image);
+    // Colours only.
+    void read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
     // Tone-mapped sRGB; AOVs in false colours, whose scale is returned. rgba: width * height * 4 bytes of the caller's, top row
     // first. stats: where given, gains the times of what this took.
     FalseColorScale read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats = nullptr);

@@ -46,15 +46,14 @@ bool refracts(const Scene& scene, const std::vector<rt_material>& materials) {
 // there is room for them.
 Wavefront::Room Wavefront::room_for(const WavefrontFrame& frame) const {
     const Layout& layout = frame.layout;
-    const unsigned groups = layout.groups_x(frame.width) * layout.groups_y(frame.height);
-    if (!refracts(*frame.prepared.scene, frame.view.materials)) return {0, groups, false};
+    if (!refracts(*frame.prepared.scene, frame.view.materials)) return {0, frame.groups, false};
     const uint64_t group_rays = uint64_t(layout.group_packets()) * layout.packet_w * layout.packet_h *
                                 static_cast<unsigned>(frame.prepared.settings.ray_slots);
     const DeviceInfo& info = device_->info();
     uint64_t most = (info.cpu ? kCpuBytes : info.global_bytes / kShareOfMemory) / (2 * kRayBytes);
     if (info.max_allocation_bytes) most = std::min(most, info.max_allocation_bytes / kRayBytes);
     most = std::min(most, kMostRays);
-    const auto fitting = static_cast<unsigned>(std::clamp<uint64_t>(most / group_rays, 1, groups));
+    const auto fitting = static_cast<unsigned>(std::clamp<uint64_t>(most / group_rays, 1, frame.groups));
     return {static_cast<unsigned>(fitting * group_rays), fitting, true};
 }
 
@@ -78,7 +77,9 @@ void Wavefront::bind(const WavefrontFrame& frame, const Room& room) {
 Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame& frame, const Room& room, unsigned first,
                                    unsigned count) {
     const size_t local = frame.layout.local_size(), global = work_groups_ * local;
-    const cl::Buffer &control = control_[turn_], &idle = control_[turn_ ^ 1];
+    const cl::Buffer &control = control_[turn_], &idle = control_[turn_ ^ 1],
+                     &sums = frame.sample > 0 ? sums_.get() : frame.film;
+    first += frame.begin;
     if (!clean_) queue.enqueueFillBuffer(control, cl_uint(0), 0, kControlBytes);
     clean_ = false;  // unless all goes well
     Launcher::Piece piece;
@@ -86,12 +87,17 @@ Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame
     for (cl_uint level = 0; level < levels; ++level) {
         Arguments arguments(trace_);
         arguments << frame.view_buffers.frame() << cl_uint(first) << cl_uint(count) << level << cl_uint(first == 0 && level == 0)
-                  << cl_uint(room.rays) << cl_uint(room.parting) << (frame.sample > 0 ? sums_.get() : frame.film)
+                  << cl_uint(room.rays) << cl_uint(room.parting) << sums
                   << shares_.get() << counters_.get() << frame.distances << rays_[level & 1].get() << rays_[~level & 1].get()
                   << control << idle;
         frame.view_buffers.bind(*frame.prepared.on_device, trace_, arguments.count());
         queue.enqueueNDRangeKernel(trace_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr, &piece.last);
         if (level == 0) piece.first = piece.last;
+    }
+    if (room.parting || frame.sample > 0) {
+        Arguments(add_) << frame.view_buffers.frame() << cl_uint(first) << frame.film << sums << shares_.get()
+                        << cl_uint(room.parting);
+        queue.enqueueNDRangeKernel(add_, cl::NullRange, cl::NDRange(count * local), cl::NDRange(local), nullptr, &piece.last);
     }
     turn_ ^= 1;
     clean_ = true;
@@ -102,18 +108,8 @@ LaunchTimes Wavefront::trace(cl::CommandQueue& queue, Launcher& launcher, const 
                              const std::function<void()>& go_on) {
     const Room room = room_for(frame);
     bind(frame, room);
-    const unsigned groups = frame.layout.groups_x(frame.width) * frame.layout.groups_y(frame.height);
-    const LaunchTimes times =
-        launcher.run(queue, groups, room.groups,
-                     [&](unsigned first, unsigned count) { return enqueue(queue, frame, room, first, count); }, go_on);
-    if (room.parting || frame.sample > 0) {
-        const cl_uint pixels = frame.width * frame.height;
-        const size_t local = frame.layout.local_size();
-        Arguments(add_) << frame.film << (frame.sample > 0 ? sums_.get() : frame.film) << shares_.get() << pixels
-                        << cl_uint(room.parting) << cl_uint(frame.sample == 0);
-        queue.enqueueNDRangeKernel(add_, cl::NullRange, cl::NDRange((pixels + local - 1) / local * local), cl::NDRange(local));
-    }
-    return times;
+    const auto piece = [&](unsigned first, unsigned count) { return enqueue(queue, frame, room, first, count); };
+    return launcher.run(queue, frame.groups, room.groups, piece, go_on);
 }
 
 }  // namespace clarity

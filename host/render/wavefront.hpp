@@ -10,13 +10,14 @@
 
 namespace clarity {
 
-// One picture's. The buffers are the caller's; film and distances are as trace_iterative has them.
+// One picture's, or of work-groups [begin, begin + groups) of it. The buffers are the caller's; film and distances are as
+// trace_iterative has them.
 struct WavefrontFrame {
     const Prepared& prepared;
     const View& view;
     const ViewBuffers& view_buffers;
     Layout layout;
-    unsigned width, height, depth, sample;
+    unsigned width, height, begin, groups, depth, sample;
     const cl::Buffer &film, &distances;
 };
 
@@ -26,10 +27,10 @@ bool refracts(const Scene& scene, const std::vector<rt_material>& materials);
 class Wavefront {
  public:
     explicit Wavefront(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // A sample of every pixel. go_on is asked between pieces and stops by throwing.
+    // A sample of these pixels. go_on is asked between pieces and stops by throwing.
     LaunchTimes trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
                       const std::function<void()>& go_on);
-    // Of the last picture: shadow, secondary, dropped rays and full stacks of each work-group.
+    // Of the last sample: shadow, secondary, dropped rays and full stacks of each work-group.
     const cl::Buffer& counters() const { return counters_.get(); }
     unsigned counter_count() const { return work_groups_; }
 

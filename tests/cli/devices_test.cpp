@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
@@ -31,6 +33,28 @@ class Devices : public ::testing::Test {
         RunOptions options;
         options.environment = {{"OCL_ICD_VENDORS", scratch_.path("vendors")}, {"CLARITY_DEVICE", device}};
         return run_program(words, options);
+    }
+    // Of a rendered picture: how the program ended, what --stats says and the file's bytes.
+    struct Rendered {
+        ProgramResult result;
+        nlohmann::json stats;
+        std::string picture;
+    };
+    Rendered render(const std::string& devices) {
+        const std::string png = scratch_.path("picture.png"), json = scratch_.path("stats.json");
+        std::filesystem::remove(png);
+        std::filesystem::remove(json);
+        Rendered rendered{run({"render", std::string(CLARITY_SOURCE_DIR) + "/scenes/primitives.scene", "-o", png, "--size",
+                               "160x120", "--spp", "3", "--device", devices, "--stats", json}),
+                          {},
+                          {}};
+        if (std::filesystem::exists(json)) rendered.stats = nlohmann::json::parse(read(json));
+        if (std::filesystem::exists(png)) rendered.picture = read(png);
+        return rendered;
+    }
+    static std::string read(const std::string& path) {
+        std::ifstream file(path, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
     }
     std::string scene() { return scratch_.write("a.scene", "sphere center 0 0 0 radius 1\n"); }
 
@@ -99,5 +123,68 @@ TEST_F(Devices, AreChosenByNumberKindAndName) {
         EXPECT_EQ(result.exit_code, 3) << nobody << "\n" << result.err;
         EXPECT_NE(result.err.find(list["devices"][0]["id"].get<std::string>()), std::string::npos)
             << "the choices: " << result.err;
+    }
+}
+
+TEST_F(Devices, SeveralMakeThePictureOfOne) {
+    if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
+    const Rendered alone = render("cpu"), shared = render("cpu/2");
+    if (shared.result.exit_code == 3) GTEST_SKIP() << "NOT TESTED: " << shared.result.err;
+    ASSERT_EQ(shared.result.exit_code, 0) << shared.result.err;
+    ASSERT_FALSE(alone.picture.empty());
+    EXPECT_TRUE(alone.picture == shared.picture);
+    EXPECT_FALSE(alone.stats.contains("devices"));
+    ASSERT_EQ(shared.stats["devices"].size(), 2u);
+    double whole = 0;
+    std::string ids;
+    for (const auto& device : shared.stats["devices"]) {
+        whole += device["share"].get<double>();
+        ids += (ids.empty() ? "" : ",") + device["id"].get<std::string>();
+        EXPECT_GT(device["frame_ms"].get<double>(), 0);
+        EXPECT_GE(device["launches"].get<int>(), 3);
+    }
+    EXPECT_NEAR(whole, 1, 0.01);
+    EXPECT_EQ(shared.stats["device_id"], ids);
+    EXPECT_EQ(shared.stats["rays"], alone.stats["rays"]);
+    EXPECT_TRUE(render(ids).picture == alone.picture) << "what is printed can be typed: " << ids;
+}
+
+TEST_F(Devices, OneThatIsMissingIsNamed) {
+    if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
+    for (const char* words : {"0,99", "0,no such device", "0,gpu/2"}) {
+        const Rendered rendered = render(words);
+        if (rendered.result.exit_code == 0) continue;  // there is a GPU that can be parted
+        EXPECT_EQ(rendered.result.exit_code, 3) << rendered.result.err;
+        const std::string word = std::string(words).substr(2);
+        EXPECT_NE(rendered.result.err.find(word.substr(0, word.find('/'))), std::string::npos) << rendered.result.err;
+        EXPECT_TRUE(rendered.picture.empty());
+    }
+}
+
+TEST_F(Devices, OneThatCannotBeOpenedIsAWarning) {
+    if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
+    const Rendered alone = render("0");
+    add_fake("broken");
+    const Rendered rendered = render("all");
+    EXPECT_EQ(rendered.result.exit_code, 0) << rendered.result.err;
+    EXPECT_TRUE(rendered.picture == alone.picture || rendered.stats.contains("devices"));
+    EXPECT_NE(rendered.result.err.find("Broken device) cannot be opened"), std::string::npos) << rendered.result.err;
+    EXPECT_NE(rendered.result.err.find("go on without it"), std::string::npos) << rendered.result.err;
+    // Alone it is an error.
+    const Rendered failed = render("Broken");
+    EXPECT_EQ(failed.result.exit_code, 3) << failed.result.err;
+    EXPECT_NE(failed.result.err.find("Broken device) cannot be opened"), std::string::npos) << failed.result.err;
+    EXPECT_NE(run({"devices"}).out.find("Broken device"), std::string::npos);
+}
+
+TEST_F(Devices, TheListSaysHowSeveralAreNamed) {
+    if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
+    const std::string text = run({"devices"}).out;
+    EXPECT_EQ(text.find("0 = "), 0u) << text;
+    EXPECT_NE(text.find("--device 0,1"), std::string::npos) << text;
+    const nlohmann::json all = nlohmann::json::parse(run({"devices", "--json"}, "all").out);
+    for (size_t i = 0; i < all["devices"].size(); ++i) {
+        EXPECT_EQ(all["devices"][i]["number"], i);
+        EXPECT_TRUE(all["devices"][i]["default"].get<bool>());
     }
 }

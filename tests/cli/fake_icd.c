@@ -1,5 +1,5 @@
-/* An OpenCL driver as small as the loader accepts: one platform, which has no device (FAKE_EMPTY) or fails when it is asked for
- * them (FAKE_FAILING). */
+/* An OpenCL driver as small as the loader accepts: one platform, which has no device (FAKE_EMPTY), fails when it is asked for
+ * them (FAKE_FAILING), or has one that cannot be opened (FAKE_BROKEN). */
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
 #include <string.h>
@@ -7,6 +7,9 @@
 struct _cl_platform_id {
     const cl_icd_dispatch *dispatch; /* first, as the loader reads it */
 };
+
+static cl_icd_dispatch dispatch;
+static struct _cl_platform_id platform = {&dispatch};
 
 static cl_int answer(const char *text, size_t bytes, void *value, size_t *needed)
 {
@@ -18,9 +21,9 @@ static cl_int answer(const char *text, size_t bytes, void *value, size_t *needed
     return CL_SUCCESS;
 }
 
-static cl_int CL_API_CALL platform_info(cl_platform_id platform, cl_platform_info what, size_t bytes, void *value, size_t *needed)
+static cl_int CL_API_CALL platform_info(cl_platform_id id, cl_platform_info what, size_t bytes, void *value, size_t *needed)
 {
-    (void)platform;
+    (void)id;
     switch (what) {
     case CL_PLATFORM_NAME: return answer("Fake platform", bytes, value, needed);
     case CL_PLATFORM_VENDOR: return answer("Fake vendor", bytes, value, needed);
@@ -32,24 +35,77 @@ static cl_int CL_API_CALL platform_info(cl_platform_id platform, cl_platform_inf
     }
 }
 
-static cl_int CL_API_CALL device_ids(cl_platform_id platform, cl_device_type type, cl_uint entries, cl_device_id *devices,
+#ifdef FAKE_BROKEN
+struct _cl_device_id {
+    const cl_icd_dispatch *dispatch;
+};
+static struct _cl_device_id device;
+
+static cl_int number(cl_ulong value, size_t bytes, void *to, size_t room, size_t *needed)
+{
+    if (needed) *needed = bytes;
+    if (to && room < bytes) return CL_INVALID_VALUE;
+    if (to) memcpy(to, &value, bytes); /* little-endian, as all that has OpenCL */
+    return CL_SUCCESS;
+}
+
+static cl_int CL_API_CALL device_info(cl_device_id id, cl_device_info what, size_t bytes, void *value, size_t *needed)
+{
+    (void)id;
+    switch (what) {
+    case CL_DEVICE_NAME: return answer("Broken device", bytes, value, needed);
+    case CL_DEVICE_VENDOR: return answer("Fake vendor", bytes, value, needed);
+    case CL_DEVICE_VERSION: return answer("OpenCL 1.2 fake", bytes, value, needed);
+    case CL_DRIVER_VERSION: return answer("1", bytes, value, needed);
+    case CL_DEVICE_PLATFORM: return number((cl_ulong)(size_t)&platform, sizeof(cl_platform_id), value, bytes, needed);
+    case CL_DEVICE_TYPE: return number(CL_DEVICE_TYPE_ACCELERATOR, sizeof(cl_device_type), value, bytes, needed);
+    case CL_DEVICE_GLOBAL_MEM_SIZE:
+    case CL_DEVICE_MAX_MEM_ALLOC_SIZE: return number(1u << 30, sizeof(cl_ulong), value, bytes, needed);
+    default: return number(1, sizeof(cl_uint), value, bytes, needed);
+    }
+}
+
+static cl_int CL_API_CALL keep_device(cl_device_id id)
+{
+    (void)id;
+    return CL_SUCCESS;
+}
+
+static cl_context CL_API_CALL create_context(const cl_context_properties *properties, cl_uint count, const cl_device_id *devices,
+                                             void(CL_CALLBACK *notify)(const char *, const void *, size_t, void *), void *user,
+                                             cl_int *error)
+{
+    (void)properties, (void)count, (void)devices, (void)notify, (void)user;
+    if (error) *error = CL_OUT_OF_RESOURCES;
+    return NULL;
+}
+#endif
+
+static cl_int CL_API_CALL device_ids(cl_platform_id id, cl_device_type type, cl_uint entries, cl_device_id *devices,
                                      cl_uint *count)
 {
-    (void)platform, (void)type, (void)entries, (void)devices, (void)count;
+    (void)id, (void)type, (void)entries, (void)devices, (void)count;
 #ifdef FAKE_FAILING
     return CL_OUT_OF_RESOURCES;
+#elif defined(FAKE_BROKEN)
+    if (count) *count = 1;
+    if (devices && entries > 0) devices[0] = &device;
+    return CL_SUCCESS;
 #else
     return CL_DEVICE_NOT_FOUND;
 #endif
 }
 
-static cl_icd_dispatch dispatch;
-static struct _cl_platform_id platform = {&dispatch};
-
 CL_API_ENTRY cl_int CL_API_CALL clIcdGetPlatformIDsKHR(cl_uint entries, cl_platform_id *platforms, cl_uint *count)
 {
     dispatch.clGetPlatformInfo = platform_info;
     dispatch.clGetDeviceIDs = device_ids;
+#ifdef FAKE_BROKEN
+    device.dispatch = &dispatch;
+    dispatch.clGetDeviceInfo = device_info;
+    dispatch.clRetainDevice = dispatch.clReleaseDevice = keep_device;
+    dispatch.clCreateContext = create_context;
+#endif
     if (count) *count = 1;
     if (platforms && entries > 0) platforms[0] = &platform;
     return CL_SUCCESS;

@@ -1,0 +1,15 @@
+// device_list.hpp -- what listing and choosing devices share.
+#pragma once
+#include "device/device.hpp"
+
+namespace clarity {
+
+inline constexpr const char* kInstallDriver =
+    "install an OpenCL driver: on Debian `apt-get install pocl-opencl-icd` runs on every CPU, a GPU needs its vendor's "
+    "(`clinfo -l` shows what is found)";
+
+std::string lower(std::string text);
+// Whatever the case.
+bool says(const std::string& text, const std::string& part);
+
+}  // namespace clarity

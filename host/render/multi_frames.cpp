@@ -1,0 +1,128 @@
+#include "render/multi_frames.hpp"
+
+#include <algorithm>
+
+#include "render/film.hpp"
+#include "render/host_picture.hpp"
+#include "render/shared_picture.hpp"
+
+namespace clarity {
+
+struct MultiFrames::Impl {
+    std::unique_ptr<Frames> alone;  // of the only device, which needs nothing of the rest
+    std::unique_ptr<SharedPicture> shared;
+    // The picture traced last.
+    std::shared_ptr<const MultiPrepared> prepared;
+    unsigned width = 0, height = 0;
+    unsigned samples = 0;  // of `alone`
+    std::vector<uint8_t> plain_picture;
+    std::unique_ptr<HostPicture> pinned_picture;
+    const Device* pinned_by = nullptr;
+
+    const std::string& aov() const { return prepared->first()->settings.aov; }
+    FloatImage image(unsigned channels) const {
+        FloatImage image{width, height, channels, {}};
+        image.pixels.resize(size_t(width) * height * channels);
+        return image;
+    }
+
+    // Room that all devices write to; pinned by the first GPU.
+    uint8_t* picture() {
+        const size_t bytes = size_t(width) * height * 4;
+        for (size_t i = 0; i < shared->size(); ++i) {
+            const auto& device = shared->device(i);
+            if (!shared->works(i) || device->info().cpu) continue;
+            if (pinned_by != device.get()) pinned_picture = std::make_unique<HostPicture>(device);
+            pinned_by = device.get();
+            return pinned_picture->pinned(bytes);
+        }
+        plain_picture.resize(bytes);
+        return plain_picture.data();
+    }
+};
+
+MultiFrames::MultiFrames(const Devices& devices) : impl_(std::make_unique<Impl>()) {
+    if (devices.size() == 1)
+        impl_->alone = std::make_unique<Frames>(devices[0]);
+    else
+        impl_->shared = std::make_unique<SharedPicture>(devices);
+}
+MultiFrames::~MultiFrames() = default;
+
+unsigned MultiFrames::samples() const {
+    return impl_->alone ? impl_->samples : impl_->shared->samples();
+}
+
+FrameStats MultiFrames::trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
+                              unsigned sample, bool count_rays, Progress& progress, unsigned samples) {
+    Impl& im = *impl_;
+    im.prepared = prepared;
+    im.width = unsigned(settings.width);
+    im.height = unsigned(settings.height);
+    const unsigned end = sample + samples;
+    if (im.shared) return im.shared->trace(prepared, settings, view, sample, end, count_rays, progress);
+    im.samples = sample;
+    FrameStats sum;
+    for (unsigned s = sample; s < end; ++s) {
+        if (s > sample && !progress.report(float(s - sample) / float(samples))) throw Cancelled();
+        const FrameStats one = im.alone->trace(*prepared->first(), settings, view, s, count_rays, progress);
+        im.samples = s + 1;
+        add_stats(sum, one);
+    }
+    return sum;
+}
+
+FloatImage MultiFrames::read_values() {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->read_values();
+    FloatImage image = im.image(value_channels(im.aov()));
+    im.shared->read([&](size_t, Frames& frames) { frames.read_values(image); });
+    return image;
+}
+
+FloatImage MultiFrames::read_distance() {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->read_distance();
+    if (!im.prepared) return {};
+    FloatImage image = im.image(1);
+    std::vector<char> known(im.shared->size(), true);
+    im.shared->read([&](size_t i, Frames& frames) { known[i] = frames.read_distance(image); });
+    return std::find(known.begin(), known.end(), false) == known.end() ? image : FloatImage{};
+}
+
+ByteImage MultiFrames::read_display(const Settings& settings) {
+    if (impl_->alone) return impl_->alone->read_display(settings);
+    ByteImage image{impl_->width, impl_->height, {}};
+    image.pixels.resize(size_t(image.width) * image.height * 4);
+    read_display(settings, image.pixels.data());
+    return image;
+}
+
+FalseColorScale MultiFrames::read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats) {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->read_display(settings, rgba, stats);
+    if (im.aov() != "color") return show_values([this] { return read_values(); }, im.aov(), settings, rgba, stats);
+    std::vector<std::vector<KernelTime>> times(im.shared->size());
+    im.shared->read([&](size_t i, Frames& frames) {
+        times[i].clear();
+        frames.read_display(settings, rgba, stats ? &times[i] : nullptr);
+    });
+    for (size_t i = 0; stats && i < times.size(); ++i) {
+        merge_times(stats->kernels, times[i]);
+        for (DeviceShare& share : stats->devices)
+            if (share.id == im.shared->device(i)->info().id())
+                for (const KernelTime& time : times[i]) (time.name == "tone map" ? share.tone_map_ms : share.read_ms) = time.ms;
+    }
+    return {};
+}
+
+const uint8_t* MultiFrames::look_at_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->look_at_display(settings, stats, scale);
+    uint8_t* const rgba = im.picture();
+    const FalseColorScale found = read_display(settings, rgba, stats);
+    if (scale) *scale = found;
+    return rgba;
+}
+
+}  // namespace clarity

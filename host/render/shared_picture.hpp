@@ -1,0 +1,73 @@
+// shared_picture.hpp -- a picture in the films of several devices: whose strips are whose, and what to do if one fails.
+#pragma once
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "base/error.hpp"
+#include "render/device_threads.hpp"
+#include "render/multi_preparer.hpp"
+#include "render/strips.hpp"
+
+namespace clarity {
+
+// Used from one thread. Devices that fail are out for good; functions throw when none is left.
+class SharedPicture {
+ public:
+    // Throws what Frames throws, if no device can hold a film.
+    explicit SharedPicture(const Devices& devices);
+
+    // Samples [sample, end). See MultiFrames::trace().
+    FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
+                     unsigned sample, unsigned end, bool count_rays, Progress& progress);
+    // That are complete everywhere.
+    unsigned samples() const;
+    // work(i, frames of device i) on each that has something of the picture, until all of it is done.
+    void read(const std::function<void(size_t, Frames&)>& work);
+
+    size_t size() const { return members_.size(); }
+    const std::shared_ptr<Device>& device(size_t i) const { return members_[i].device; }
+    bool works(size_t i) const { return members_[i].works(); }
+
+ private:
+    struct Member {
+        std::shared_ptr<Device> device;
+        std::unique_ptr<Frames> frames;            // null: it failed
+        std::shared_ptr<const Prepared> prepared;  // null: it takes no part
+        std::vector<unsigned> strips;
+        SharedRows rows;  // of work-groups, of these strips
+        unsigned rows_in_strip = 1, rows_in_picture = 1;
+        unsigned samples = 0;  // complete, of all its strips
+        FrameStats stats;      // of the last trace()
+        double wall_ms = 0;
+        bool works() const { return frames && prepared; }
+    };
+    void cut();
+    bool goes_on(const MultiPrepared& prepared, const Settings& settings);
+    void give(Member& member, const std::vector<unsigned>& strips);
+    double trace_rows(Member& member, unsigned sample, Progress& progress);
+    void trace_part(size_t index, unsigned sample, unsigned end, bool fresh, bool count_rays, Progress& progress);
+    std::vector<std::vector<unsigned>> orphans() const;
+    void recover(Progress& progress);
+    void on_all(const std::function<void(size_t)>& work);
+    void fail(Member& member, const Error& error);
+    size_t working() const;
+    FrameStats gathered(double wall_ms) const;
+
+    std::vector<Member> members_;
+    StripDealer dealer_;
+    // What is in the films.
+    std::shared_ptr<const MultiPrepared> prepared_;
+    Settings settings_;
+    View view_;
+    unsigned strip_count_ = 0;
+    Error last_failure_{Exit::failed, "no device takes part"};
+    DeviceThreads threads_;  // last: it goes first
+};
+
+// Adds up what was traced one after the other; times of kernels by their names.
+void add_stats(FrameStats& sum, const FrameStats& more);
+// Of devices side by side: the slowest's time.
+void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& one);
+
+}  // namespace clarity
