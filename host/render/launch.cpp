@@ -1,26 +1,17 @@
 #include "render/launch.hpp"
 
-#include <algorithm>
 #include <chrono>
 
 namespace clarity {
-namespace {
-constexpr double kPieceMs = 200;      // drivers that also draw the desktop kill kernels after a second or two
-constexpr unsigned kFirstPiece = 64;  // groups, while nothing is known
-constexpr unsigned kGrowth = 8;
-}  // namespace
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
                           const std::function<Piece(unsigned first, unsigned count)>& enqueue,
                           const std::function<void()>& go_on) {
     LaunchTimes times;
-    unsigned guess = kFirstPiece;
+    pace_.begin_picture();
     for (unsigned first = 0; first < group_count;) {
         go_on();
-        unsigned count = groups_per_ms_ > 0 ? static_cast<unsigned>(std::min(groups_per_ms_ * kPieceMs, 4e9)) : guess;
-        count = std::clamp(count, 1u, std::min(most, group_count - first));
-        const unsigned left = group_count - first - count;
-        if (left < count / 2 && count + left <= most) count += left;  // no crumbs
+        const unsigned count = pace_.next(group_count - first, most);
         const auto start = std::chrono::steady_clock::now();
         const Piece piece = enqueue(first, count);
         queue.finish();
@@ -30,10 +21,9 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
                                          piece.first.getProfilingInfo<CL_PROFILING_COMMAND_START>());
         first += count;
         ++times.launches;
-        // A slow first piece may hold a compilation, so a pace is believed once pieces take a while.
-        if (wall > 5 || first == group_count) groups_per_ms_ = count / std::max(wall, 1e-3);
-        guess = std::min(guess * kGrowth, group_count);
+        pace_.took(count, wall);
     }
+    pace_.end_picture();
     return times;
 }
 

@@ -3,6 +3,8 @@
 #include <CL/opencl.hpp>
 #include <functional>
 
+#include "render/pace.hpp"
+
 namespace clarity {
 
 struct LaunchTimes {
@@ -25,10 +27,10 @@ class Launcher {
     // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
                     unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0);
-    void forget() { groups_per_ms_ = 0; }
+    void forget() { pace_.forget(); }
 
  private:
-    double groups_per_ms_ = 0;  // 0: unknown
+    Pace pace_;
 };
 
 }  // namespace clarity
