@@ -1,13 +1,10 @@
 // accel_build.cpp -- running a builder, and distrusting what it wrote.
 #include "render/accel_build.hpp"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <mutex>
 
@@ -19,7 +16,6 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kMapped = 1u << 20;  // from this size on memory is mapped, which zeroes pages when they are first touched
 constexpr uint64_t kSlotLimit = uint64_t(1) << 40;
 
 double since(std::chrono::steady_clock::time_point start) {
@@ -96,7 +92,7 @@ Output& output(void* ctx) {
     return *static_cast<Output*>(ctx);
 }
 
-constexpr uint64_t kLeafChunk = 1u << 15;  // leaves that one task looks at
+constexpr uint64_t kLeafChunk = 1u << 13;  // leaves that one task looks at
 
 bool is_known(rt_u32 ref, const BuildScene& scene) {
     const rt_u32 index = RT_REF_INDEX(ref);
@@ -166,31 +162,6 @@ void pack_leaves(const Output& out, AccelData& data) {
 }
 
 }  // namespace
-
-AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
-    if (bytes >= kMapped) {
-        void* p = mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-        if (p == MAP_FAILED) throw std::bad_alloc();
-        madvise(p, bytes, MADV_HUGEPAGE);
-        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{bytes});
-        return;
-    }
-    void* p = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
-    if (!p) throw std::bad_alloc();
-    data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{});
-    if (zero) std::memset(p, 0, bytes);
-}
-
-void FreeMemory::operator()(void* p) const {
-    if (mapped)
-        munmap(p, mapped);
-    else
-        std::free(p);
-}
-
-void AlignedBytes::free(void* data, size_t bytes) {
-    FreeMemory{bytes >= kMapped ? bytes : 0}(data);
-}
 
 double AccelData::stat(const std::string& label, double otherwise) const {
     for (const auto& [name, value] : stats)

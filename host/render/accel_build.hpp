@@ -3,67 +3,17 @@
 #include <array>
 #include <cstdint>
 #include <map>
-#include <memory>
-#include <new>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/aligned_bytes.hpp"
 #include "base/progress.hpp"
 #include "plugin/parameters.hpp"
 #include "rt_plugin.h"
 #include "scene/scene.hpp"
 
 namespace clarity {
-
-struct FreeMemory {
-    size_t mapped = 0;  // bytes; 0: from the heap
-    void operator()(void* p) const;
-};
-
-// Storage aligned to 64 bytes, which builders and devices like; never grows.
-class AlignedBytes {
- public:
-    AlignedBytes() = default;
-    explicit AlignedBytes(size_t bytes, bool zero);
-    void* data() { return data_.get(); }
-    const void* data() const { return data_.get(); }
-    size_t bytes() const { return bytes_; }
-
-    // For owners of another kind, which give back what they took with `free`.
-    void* release() { return data_.release(); }
-    static void free(void* data, size_t bytes);
-
- private:
-    std::unique_ptr<void, FreeMemory> data_;
-    size_t bytes_ = 0;
-};
-
-// For vectors that are filled before they are read, by many threads: their elements are not cleared first, on one.
-template <class T>
-struct Uncleared {
-    using value_type = T;
-    Uncleared() = default;
-    template <class U>
-    Uncleared(const Uncleared<U>&) {}
-    T* allocate(size_t n) {
-        AlignedBytes bytes(n * sizeof(T), false);
-        return static_cast<T*>(bytes.release());
-    }
-    void deallocate(T* p, size_t n) { AlignedBytes::free(p, n * sizeof(T)); }
-    template <class U>
-    void construct(U* p) {
-        ::new (static_cast<void*>(p)) U;
-    }
-    template <class U, class... Args>
-    void construct(U* p, Args&&... args) {
-        ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
-    }
-    bool operator==(const Uncleared&) const { return true; }
-    bool operator!=(const Uncleared&) const { return false; }
-};
-template <class T>
-using UnclearedVector = std::vector<T, Uncleared<T>>;
 
 // A scene as builders see it: boxes in groups, one group for the world and one for each mesh that is instanced. Meshes placed
 // once are flattened into the world.

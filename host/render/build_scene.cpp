@@ -10,7 +10,7 @@
 namespace clarity {
 namespace {
 
-constexpr uint32_t kChunk = 1u << 14;  // triangles that one task copies
+constexpr uint32_t kChunk = 1u << 12;  // triangles that one task copies
 
 rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
     rt_prim prim;
@@ -44,27 +44,36 @@ void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt
                    rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
     const uint32_t chunks = (mesh.triangle_count + kChunk - 1) / kChunk;
     parallel_for(chunks, [&](uint32_t chunk) {
-        const rt_u32 end = std::min(mesh.triangle_count, (chunk + 1) * kChunk);
-        for (rt_u32 i = chunk * kChunk; i < end; ++i) {
-            const rt_u32 source = mesh.first_triangle + i;
-            rt_leaf& leaf = out.triangles[first_ref + i];
-            leaf.ref = RT_REF_TRIANGLE | (first_ref + i);
-            leaf.material = material != RT_NONE ? material : scene.triangle_materials[source];
-            leaf.prim = first_prim + i;
-            rt_prim prim = empty_prim(leaf.ref, run);
-            float* const corners[3] = {leaf.a, leaf.b, leaf.c};
-            for (int c = 0; c < 3; ++c) {
-                const float* position = &scene.positions[3 * size_t(scene.triangles[3 * size_t(source) + c])];
+        const rt_u32 begin = chunk * kChunk, end = std::min(mesh.triangle_count, begin + kChunk);
+        const float* const positions = scene.positions.data();
+        const rt_u32* const vertices = scene.triangles.data() + 3 * (size_t(mesh.first_triangle) + begin);
+        const rt_u32* const materials = scene.triangle_materials.data() + mesh.first_triangle + begin;
+        rt_leaf* const leaves = out.triangles.data() + first_ref + begin;
+        rt_prim* const prims = out.prims.data() + prim_at + begin;
+        rt_u32* const sources = out.attribute_triangle.data() + first_ref + begin;
+        for (rt_u32 i = 0; i < end - begin; ++i) {
+            // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
+            rt_leaf leaf;
+            const auto corner = [&](int c, float* to) {
+                const float* const position = positions + 3 * size_t(vertices[3 * size_t(i) + c]);
                 if (world) {
                     const auto p = transform_point(*world, position);
-                    std::memcpy(corners[c], p.data(), sizeof p);
+                    std::copy(p.begin(), p.end(), to);
                 } else {
-                    std::memcpy(corners[c], position, 3 * sizeof(float));
+                    std::copy_n(position, 3, to);
                 }
-                grow(prim, corners[c]);
-            }
-            out.prims[prim_at + i] = prim;
-            out.attribute_triangle[first_ref + i] = source;
+            };
+            corner(0, leaf.a);
+            corner(1, leaf.b);
+            corner(2, leaf.c);
+            leaf.ref = RT_REF_TRIANGLE | (first_ref + begin + i);
+            leaf.material = material != RT_NONE ? material : materials[i];
+            leaf.prim = first_prim + begin + i;
+            rt_prim prim = empty_prim(leaf.ref, run);
+            for (const float* p : {leaf.a, leaf.b, leaf.c}) grow(prim, p);
+            leaves[i] = leaf;
+            prims[i] = prim;
+            sources[i] = mesh.first_triangle + begin + i;
         }
     });
 }

@@ -35,8 +35,8 @@ void expect_sound(const Input& input, const Options& options = {}) {
         const auto found = options.params.find(key);
         return found == options.params.end() ? otherwise : found->second;
     };
-    EXPECT_EQ(check_bvh8(input, build(bvh8(), input, options), static_cast<uint32_t>(param("max_leaf", 4)),
-                         param("traversal_cost", 3), param("intersection_cost", 1)),
+    EXPECT_EQ(check_bvh8(input, build(bvh8(), input, options), static_cast<uint32_t>(param("max_leaf", 7)),
+                         param("traversal_cost", 3), param("intersection_cost", 0.4)),
               "");
 }
 

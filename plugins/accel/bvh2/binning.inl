@@ -82,17 +82,21 @@ void scatter(const Record* first, const Record* end, const Slices& slices, const
     alignas(16) float bound[4] = {-1.0f, -1.0f, -1.0f, -1.0f};  // of the other axes: never reached
     bound[split.axis] = static_cast<float>(split.bin);
     const Vec4 plane = load(bound);
+    const Slices place = slices;  // whatever is written, it stays in registers
     Box8 l = load_box(left_centroids2), r = load_box(right_centroids2);
+    // Where the next one goes, left or right: chosen by arithmetic, for a branch would be guessed wrongly every other time.
+    char* to_left = reinterpret_cast<char*>(left);
+    char* to_right = reinterpret_cast<char*>(right);
     for (const Record* at = first; at != end; ++at) {
         const Vec4 middle = centroid2(box_of(*at));
         // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said.
-        const uint32_t goes_left = any(less(slices.position(middle), plane));
+        const uint32_t goes_left = any(less(place.position(middle), plane));
         const Box8 centroid = point(middle);
         l = min(l, choose(goes_left, centroid, no_box()));
         r = min(r, choose(goes_left, no_box(), centroid));
-        copy(goes_left ? left : right, *at);
-        left += goes_left;
-        right += goes_left ^ 1u;
+        copy(reinterpret_cast<Record*>(to_right + ((to_left - to_right) & -static_cast<ptrdiff_t>(goes_left))), *at);
+        to_left += sizeof(Record) * goes_left;
+        to_right += sizeof(Record) * (goes_left ^ 1u);
     }
     store_box(left_centroids2, l);
     store_box(right_centroids2, r);

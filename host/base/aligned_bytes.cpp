@@ -1,0 +1,121 @@
+#include "base/aligned_bytes.hpp"
+
+#include <sys/mman.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdlib>
+#include <cstring>
+#include <mutex>
+
+namespace clarity {
+namespace {
+
+constexpr size_t kMapped = 1u << 20;  // from this size on memory is mapped: cleared by whoever touches a page first
+constexpr size_t kLargePage = 1u << 21, kPage = 1u << 16;  // no machine's ordinary pages are larger than this
+
+// A last large page is worth having when half of it is used.
+size_t mapped_bytes(size_t bytes) {
+    const size_t step = (bytes + kLargePage / 2) % kLargePage < kLargePage / 2 ? kLargePage : kPage;
+    return (bytes + step - 1) / step * step;
+}
+
+// At a multiple of a large page: a build faults once where it would 512 times. nullptr: there is no room.
+void* map_large(size_t bytes) {
+    void* const p = mmap(nullptr, bytes + kLargePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (p == MAP_FAILED) return nullptr;
+    char* const first = static_cast<char*>(p);
+    const size_t before = (kLargePage - reinterpret_cast<uintptr_t>(p) % kLargePage) % kLargePage;
+    if (before > 0) munmap(first, before);
+    munmap(first + before + bytes, kLargePage - before);
+    madvise(first + before, bytes, MADV_HUGEPAGE);  // advice: may fail
+    return first + before;
+}
+
+// Blocks that were freed, the latest last. A size fits itself only: a scene that is built again asks for the same ones.
+class SpareBlocks {
+ public:
+    void* take(size_t bytes) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        for (size_t i = count_; i-- > 0;)
+            if (blocks_[i].bytes == bytes) return remove(i);
+        return nullptr;
+    }
+    void give(void* p, size_t bytes) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (bytes > AlignedBytes::kKept) {
+            munmap(p, bytes);
+            return;
+        }
+        while (count_ == kMost || sum_ + bytes > AlignedBytes::kKept) {
+            const size_t oldest = blocks_[0].bytes;
+            munmap(remove(0), oldest);
+        }
+        blocks_[count_++] = {p, bytes};
+        sum_ += bytes;
+    }
+    size_t sum() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return sum_;
+    }
+
+ private:
+    struct Block {
+        void* p;
+        size_t bytes;
+    };
+    static constexpr size_t kMost = 16;
+
+    void* remove(size_t i) {
+        void* const p = blocks_[i].p;
+        sum_ -= blocks_[i].bytes;
+        std::copy(blocks_ + i + 1, blocks_ + count_, blocks_ + i);
+        --count_;
+        return p;
+    }
+
+    std::mutex mutex_;
+    Block blocks_[kMost];
+    size_t count_ = 0, sum_ = 0;
+};
+
+// Never destroyed: memory may be freed by whatever goes last.
+SpareBlocks& spare_blocks() {
+    static SpareBlocks& blocks = *new SpareBlocks;
+    return blocks;
+}
+
+}  // namespace
+
+AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
+    if (bytes >= kMapped) {
+        const size_t mapped = mapped_bytes(bytes);
+        void* p = spare_blocks().take(mapped);
+        if (p && zero) std::memset(p, 0, bytes);
+        if (!p) p = map_large(mapped);
+        if (!p) throw std::bad_alloc();
+        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{mapped});
+        return;
+    }
+    void* p = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    if (!p) throw std::bad_alloc();
+    data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{});
+    if (zero) std::memset(p, 0, bytes);
+}
+
+void FreeMemory::operator()(void* p) const {
+    if (mapped)
+        spare_blocks().give(p, mapped);
+    else
+        std::free(p);
+}
+
+void AlignedBytes::free(void* data, size_t bytes) {
+    FreeMemory{bytes >= kMapped ? mapped_bytes(bytes) : 0}(data);
+}
+
+size_t AlignedBytes::kept() {
+    return spare_blocks().sum();
+}
+
+}  // namespace clarity
