@@ -145,8 +145,8 @@ class Contest {
         for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, summarize(ms).median);
     }
 
-    // A frame from the call to tone-mapped pixels in host memory: ms by the wall clock. What of it the device did nothing for this
-    // frame is `waiting`.
+    // A frame from the call to tone-mapped pixels in host memory: ms by the wall clock. What of it the device did nothing for
+    // this frame is `waiting`.
     double show_frame(const Settings& settings, const Stand::Held& held, const View& view, FrameStats& stats, Parts& parts) {
         const auto begin = Clock::now();
         stats = held.frames->trace(*held.prepared, settings, view, 0, false, progress_);

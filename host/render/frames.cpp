@@ -138,10 +138,10 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         LaunchTimes times;
         if (program.is_wavefront()) {
             const auto depth = static_cast<unsigned>(settings.depth);
-            times = im.wavefront.trace(queue, im.launcher,
-                                       {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film,
-                                        im.distances.get()},
-                                       go_on);
+            times = im.wavefront.trace(
+                queue, im.launcher,
+                {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film, im.distances.get()},
+                go_on);
         } else {
             cl_uint at = 0;
             im.kernel.setArg(at++, im.view.frame());

@@ -3,8 +3,8 @@
 
 namespace clarity {
 
-// Drivers that also draw the desktop kill kernels after a second or two, and a launch under way cannot be cancelled: pieces aim at
-// 200 ms, which leaves room for parts of a picture that take longer than others. Nothing is known of a first picture, so its
+// Drivers that also draw the desktop kill kernels after a second or two, and a launch under way cannot be cancelled: pieces aim
+// at 200 ms, which leaves room for parts of a picture that take longer than others. Nothing is known of a first picture, so its
 // pieces begin small, grow by steps and aim at less; later ones go by the slowest piece of the picture before.
 class Pace {
  public:

@@ -86,10 +86,9 @@ Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame
     const unsigned levels = room.parting ? frame.depth : 1;
     for (cl_uint level = 0; level < levels; ++level) {
         Arguments arguments(trace_);
-        arguments << frame.view_buffers.frame() << cl_uint(first) << cl_uint(count) << level << cl_uint(first == 0 && level == 0)
-                  << cl_uint(room.rays) << cl_uint(room.parting) << sums
-                  << shares_.get() << counters_.get() << frame.distances << rays_[level & 1].get() << rays_[~level & 1].get()
-                  << control << idle;
+        arguments << frame.view_buffers.frame() << cl_uint(first) << cl_uint(count) << level
+                  << cl_uint(first == 0 && level == 0) << cl_uint(room.rays) << cl_uint(room.parting) << sums << shares_.get()
+                  << counters_.get() << frame.distances << rays_[level & 1].get() << rays_[~level & 1].get() << control << idle;
         frame.view_buffers.bind(*frame.prepared.on_device, trace_, arguments.count());
         queue.enqueueNDRangeKernel(trace_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr, &piece.last);
         if (level == 0) piece.first = piece.last;

@@ -60,7 +60,8 @@ TEST_F(Oclgrind, EveryStructureIsClean) {
         const std::string id = plugin["id"];
         EXPECT_EQ(report({"--accel", id, "--lanes", "4"}).substr(0, 2000), "") << id;
         EXPECT_EQ(report({"--accel", id, "--lanes", "1", "--debug", "true"}).substr(0, 2000), "") << id;
-        EXPECT_EQ(report({"--accel", id, "--lanes", "1", "--portable", "true", "--tracer", "wavefront"}).substr(0, 2000), "") << id;
+        EXPECT_EQ(report({"--accel", id, "--lanes", "1", "--portable", "true", "--tracer", "wavefront"}).substr(0, 2000), "")
+            << id;
         ++count;
     }
     EXPECT_GE(count, 3);

@@ -1,5 +1,5 @@
-// wavefront_test.cpp -- the tracer `wavefront` gives the pictures and counts of `iterative`, whoever is first and however small its
-// queues are.
+// wavefront_test.cpp -- the tracer `wavefront` gives the pictures and counts of `iterative`, whoever is first and however small
+// its queues are.
 #include <gtest/gtest.h>
 
 #include <cmath>
