@@ -1,10 +1,11 @@
 /* camera.h -- which pixels a work-item computes, and the camera rays through them.
  *
- * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels. A
- * work-group is RT_GROUP_W x RT_GROUP_H packets, so that neighbours in the picture run close in time. On a CPU (RT_CPU) it is
- * one work-item that does these packets in turn: PoCL would keep the private arrays of all work-items of a group side by side,
- * and they would fall out of the cache. The packet's size is no define but a number of the frame, so changing it compiles
- * nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
+ * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels, of
+ * which RT_BUNDLE are traced together (bundle.h). A work-group is several packets, so that neighbours in the picture run close
+ * in time. On a CPU (RT_CPU) it is one work-item that does these packets in turn: PoCL would keep the private arrays of all
+ * work-items of a group side by side, and they would fall out of the cache. There a group is at least 16 pixels wide and high
+ * and at most four packets, so that many cores have enough groups to share. The packet's size is no define but a number of the
+ * frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
 
@@ -18,24 +19,31 @@
 #define RT_BLOCKS(frame) ((frame)->blocks_x * (frame)->blocks_y)
 #endif
 
+/* Packets of a group side by side, RT_GROUP_SIDE at most: as Layout::group_w() of the host. */
 #if RT_CPU
+#define RT_IN_GROUP(packet_side) clamp(16u / (packet_side), 1u, (uint)RT_GROUP_SIDE)
+#define RT_GROUP_W(frame) RT_IN_GROUP(RT_PACKET_W(frame))
+#define RT_GROUP_H(frame) RT_IN_GROUP(RT_PACKET_H(frame))
 #define RT_LOCAL_SIZE 1
-#define RT_FOR_PACKETS(packet) for (uint packet = 0; packet < RT_GROUP_W * RT_GROUP_H; ++packet)
+#define RT_FOR_PACKETS(frame, packet) for (uint packet = 0; packet < RT_GROUP_PACKETS(frame); ++packet)
 #else
-#define RT_LOCAL_SIZE (RT_GROUP_W * RT_GROUP_H)
-#define RT_FOR_PACKETS(packet) for (uint packet = (uint)get_local_id(0), once = 1; once; once = 0)
+#define RT_GROUP_W(frame) RT_GROUP_SIDE
+#define RT_GROUP_H(frame) RT_GROUP_SIDE
+#define RT_LOCAL_SIZE (RT_GROUP_SIDE * RT_GROUP_SIDE)
+#define RT_FOR_PACKETS(frame, packet) for (uint packet = (uint)get_local_id(0), once = 1; once; once = 0)
 #endif
+#define RT_GROUP_PACKETS(frame) (RT_GROUP_W(frame) * RT_GROUP_H(frame))
 
 /* First pixel of a packet. group: number of the work-group, row by row over the picture, or over those rows of it that a device
  * has where several share it; packet: within the group. */
 RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uint packet)
 {
     const uint w = RT_PACKET_W(frame), h = RT_PACKET_H(frame);
-    const uint groups_x = (frame->width + w * RT_GROUP_W - 1) / (w * RT_GROUP_W);
+    const uint group_w = RT_GROUP_W(frame), groups_x = (frame->width + w * group_w - 1) / (w * group_w);
     uint row = group / groups_x;
-    const uint x = (group % groups_x) * RT_GROUP_W + packet % RT_GROUP_W;
+    const uint x = (group % groups_x) * group_w + packet % group_w;
     if (frame->row_count != 0u) row = ((const constant uint *)(frame + 1))[row];
-    const uint y = row * RT_GROUP_H + packet / RT_GROUP_W;
+    const uint y = row * RT_GROUP_H(frame) + packet / group_w;
     return (uint2)(x * w, y * h);
 }
 

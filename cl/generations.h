@@ -83,71 +83,88 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
         const rt_queue *current = queues + (generation & 1u);
         rt_queue *next = queues + (1u - (generation & 1u));
         uint next_count = 0;
-        for (uint base = 0; base < count; base += RT_LANES) {
-            rt_rays ray;
-            rt_vec weight = rt_splat(1.0f, 1.0f, 1.0f);
-            vint pixel;
-            vmask active;
-            if (generation == 0u) {
-                vint in_x, in_y;
-                active = rt_block_pixels(frame, origin, base / RT_LANES, &in_x, &in_y);
-                pixel = in_y * rt_vint((int)packet_w) + in_x;
-                rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), &ray);
-            } else {
-                active = RT_MASK(rt_lane_index() + rt_vint((int)base) < rt_vint((int)count));
-                rt_take(current, base, &ray, &weight, &pixel);
-            }
-            const uint bits = rt_bits(active);
-            if (bits == 0u) continue;
-
+        const uint blocks = (count + RT_LANES - 1u) / RT_LANES;
+        for (uint first = 0; first < blocks; first += RT_BUNDLE) {
+            const uint bundle = RT_BUNDLE_OF(blocks - first);
+            rt_rays rays[RT_BUNDLE];
+            rt_hits hits[RT_BUNDLE];
+            rt_vec weights[RT_BUNDLE], light[RT_BUNDLE];
+            vint pixels_of[RT_BUNDLE];
+            vmask active[RT_BUNDLE];
+            for (uint b = 0; b < bundle; ++b) {
+                const uint base = (first + b) * RT_LANES;
+                weights[b] = rt_splat(1.0f, 1.0f, 1.0f);
+                if (generation == 0u) {
+                    vint in_x, in_y;
+                    active[b] = rt_block_pixels(frame, origin, first + b, &in_x, &in_y);
+                    pixels_of[b] = in_y * rt_vint((int)packet_w) + in_x;
+                    rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b);
+                } else {
+                    active[b] = RT_MASK(rt_lane_index() + rt_vint((int)base) < rt_vint((int)count));
+                    rt_take(current, base, rays + b, weights + b, pixels_of + b);
+                }
+                rt_prepare(rays + b, rt_bits(active[b]));
+                rt_clear_hits(hits + b, active[b]);
 #ifdef RT_INSPECT
-            tally->recorder.generation = generation + 1u;
-            if (generation == 0u)
-                rt_watch_camera(&tally->recorder, &ray, pixel, bits);
-            else
-                rt_watch_queue(&tally->recorder, current, base, bits, weight);
+                tally->recorder.generation = generation + 1u;
+                if (generation == 0u)
+                    rt_watch_camera(&tally->recorder, rays + b, pixels_of[b], rt_bits(active[b]));
+                else
+                    rt_watch_queue(&tally->recorder, current, base, rt_bits(active[b]), weights[b]);
 #endif
+            }
+            rt_trace_bundle_closest(ctx, frame, rays, hits, bundle);
 
-            rt_hits hit;
-            rt_prepare(&ray, bits);
-            rt_clear_hits(&hit, active);
-            rt_trace_closest(ctx, frame, &ray, &hit);
+            rt_point points[RT_BUNDLE];
+            rt_shade materials[RT_BUNDLE];
+            uint any_hit = 0;
+            const rt_vec behind = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
+            for (uint b = 0; b < bundle; ++b) {
+                const rt_hits *hit = hits + b;
+                const uint bits = rt_bits(active[b]), hit_bits = rt_bits(active[b] & RT_MASK(hit->prim >= rt_vint(0)));
 #ifdef RT_DEBUG
-            tally->overflow += hit.overflow;
+                tally->overflow += hit->overflow;
 #endif
-            /* Known for the picture's first sample, so that things can be drawn into it, before or behind what it shows. */
-            if (generation == 0u && frame->sample == 0u) rt_store(hit.t, distance + base);
+                /* Known for the picture's first sample, so that things can be drawn into it, before or behind what it shows. */
+                if (generation == 0u && frame->sample == 0u && bits != 0u) rt_store(hit->t, distance + (first + b) * RT_LANES);
 
-            const rt_surface surface = rt_resolve(ctx, &ray, &hit, bits);
-            const vmask hits = surface.hit & active;
-            const uint hit_bits = rt_bits(hits);
-            rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
-            if (hit_bits != 0u) {
-                const rt_point point = rt_point_of(&ray, hit.t, &surface, hits);
-                const rt_shade material = rt_load_materials(ctx, &surface, hit_bits, point.at);
+                points[b].hits = active[b] & RT_MASK(hit->prim >= rt_vint(0));
+                if (hit_bits == 0u) {
+#ifdef RT_INSPECT
+                    rt_record_hit(&tally->recorder, hit, hit->prim, rt_vint(0), behind);
+#endif
+                    continue;
+                }
+                any_hit = 1u;
+                const rt_surface surface = rt_resolve(ctx, rays + b, hit, bits);
+                points[b] = rt_point_of(rays + b, hit->t, &surface, points[b].hits);
+                materials[b] = rt_load_materials(ctx, &surface, hit_bits, points[b].at);
 #ifdef RT_INSPECT
                 const rt_vec ambient = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]),
                              none = rt_splat(0.0f, 0.0f, 0.0f);
-                rt_record_hit(&tally->recorder, &hit, surface.prim, surface.material,
-                              rt_choose(hits, rt_add(material.emission, rt_reflected_light(&material, ambient, none)), light));
+                rt_record_hit(&tally->recorder, hit, surface.prim, surface.material,
+                              rt_choose(points[b].hits,
+                                        rt_add(materials[b].emission, rt_reflected_light(materials + b, ambient, none)), behind));
                 tally->recorder.too_deep = generation + 1u == frame->depth;
-                if (tally->recorder.too_deep) rt_spawn(frame, next, 0u, 0u, &point, &material, weight, pixel, tally);
+                if (tally->recorder.too_deep)
+                    rt_spawn(frame, next, 0u, 0u, points + b, materials + b, weights[b], pixels_of[b], tally);
 #endif
-#ifndef RT_SHOW_GENERATIONS
-                light = rt_choose(hits, rt_direct_light(ctx, frame, &point, &material, tally), light);
-#endif
-                if (generation + 1u < frame->depth)
-                    next_count = rt_spawn(frame, next, capacity, next_count, &point, &material, weight, pixel, tally);
             }
-#ifdef RT_INSPECT
-            else
-                rt_record_hit(&tally->recorder, &hit, surface.prim, surface.material, light);
+#ifndef RT_SHOW_GENERATIONS
+            if (any_hit != 0u) rt_direct_light(ctx, frame, points, materials, bundle, rays, hits, light, tally);
 #endif
+            for (uint b = 0; b < bundle; ++b) {
+                const uint bits = rt_bits(active[b]);
+                if (bits == 0u) continue;
+                if (rt_any(points[b].hits) && generation + 1u < frame->depth)
+                    next_count = rt_spawn(frame, next, capacity, next_count, points + b, materials + b, weights[b], pixels_of[b], tally);
 #ifdef RT_SHOW_GENERATIONS
-            rt_mark_pixels((float)(generation + 1u), pixel, bits, red);
+                rt_mark_pixels((float)(generation + 1u), pixels_of[b], bits, red);
 #else
-            rt_add_to_pixels(rt_mul(weight, light), pixel, bits, red, green, blue);
+                const rt_vec seen = rt_any(points[b].hits) ? rt_choose(points[b].hits, light[b], behind) : behind;
+                rt_add_to_pixels(rt_mul(weights[b], seen), pixels_of[b], bits, red, green, blue);
 #endif
+            }
         }
         count = next_count;
         tally->secondary += next_count;

@@ -9,3 +9,17 @@ RT_INLINE void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame
 #endif
     RT_FN(rt_scene)(ctx, frame->root, ray, hit);
 }
+
+/* The same for `count` blocks of rays. Those without active lanes, hit.t = -1 in all, need not be prepared. */
+RT_INLINE void RT_FN(rt_trace_bundle)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *rays, rt_hits *hits, uint count)
+{
+#if RT_BUNDLE == 1
+    if (rt_any(RT_MASK(hits->t >= rt_vfloat(0.0f)))) RT_FN(rt_trace)(ctx, frame, rays, hits);
+#else
+#if RT_HAS_PLANES
+    for (uint b = 0; b < count; ++b)
+        if (rt_any(RT_MASK(hits[b].t >= rt_vfloat(0.0f)))) RT_FN(rt_hit_planes)(ctx, frame->plane_count, rays + b, hits + b);
+#endif
+    RT_FN(rt_scene_bundle)(ctx, frame->root, rays, hits, count);
+#endif
+}

@@ -24,6 +24,9 @@ RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays
     *t_max = along.w;
 #else
     const global vfloat *in = (const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)block;
+#if RT_CPU && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
+    for (uint i = 0; i < RT_RAY_FIELDS; ++i) __builtin_prefetch((const void *)(ulong)(in + RT_RAY_FIELDS * RT_BUNDLE + i));
+#endif
     ray->ox = in[0];
     ray->oy = in[1];
     ray->oz = in[2];

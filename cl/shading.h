@@ -43,61 +43,90 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, vfloat distance, const rt_sur
     return p;
 }
 
-/* Emission, ambient light, and every light that is not in shadow: what the points send back along the rays. */
-RT_INLINE rt_vec rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame, const rt_point *p, const rt_shade *m, rt_tally *tally)
+/* Emission, ambient light, and every light that is not in shadow: what the points of `count` blocks send back along the rays. rays
+ * and hits: room for the shadow rays. sent: written where something was hit. */
+RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame, const rt_point *points, const rt_shade *materials,
+                               uint count, rt_rays *rays, rt_hits *hits, rt_vec *sent, rt_tally *tally)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    const rt_vec above = rt_along(p->offset, p->geometric, p->at);
-    rt_vec diffuse = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]), shine = rt_splat(0.0f, 0.0f, 0.0f);
+    rt_vec diffuse[RT_BUNDLE], shine[RT_BUNDLE];
+    for (uint b = 0; b < count; ++b) {
+        diffuse[b] = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]);
+        shine[b] = rt_splat(0.0f, 0.0f, 0.0f);
+    }
     for (uint i = 0; i < frame->light_count; ++i) {
         const global rt_light *light = ctx->lights + i;
-        rt_vec towards = rt_spread(light->position);
-        vfloat distance = RT_INFINITY;
-        if (light->kind == RT_LIGHT_POINT) {
-            towards = rt_sub(towards, above);
-            const vfloat scale = rt_inverse_length(towards);
-            distance = one / scale;
-            towards = rt_scale(scale, towards);
+        vfloat cosines[RT_BUNDLE];
+        uint asked[RT_BUNDLE], any_asked = 0;
+#ifdef RT_INSPECT
+        vfloat distances[RT_BUNDLE];
+#endif
+        for (uint b = 0; b < count; ++b) {
+            const rt_point *p = points + b;
+            rt_rays *shadow = rays + b;
+            asked[b] = 0u;
+            if (!rt_any(p->hits)) {
+                rt_clear_hits(hits + b, p->hits);
+                continue;
+            }
+            const rt_vec above = rt_along(p->offset, p->geometric, p->at);
+            rt_vec towards = rt_spread(light->position);
+            vfloat distance = RT_INFINITY;
+            if (light->kind == RT_LIGHT_POINT) {
+                towards = rt_sub(towards, above);
+                const vfloat scale = rt_inverse_length(towards);
+                distance = one / scale;
+                towards = rt_scale(scale, towards);
+            }
+            cosines[b] = rt_dot(p->normal, towards);
+            const vmask lit = p->hits & RT_MASK(cosines[b] > zero) & RT_MASK(rt_dot(p->geometric, towards) > zero);
+            asked[b] = rt_bits(lit);
+            any_asked |= asked[b];
+            shadow->ox = above.x;
+            shadow->oy = above.y;
+            shadow->oz = above.z;
+            shadow->dx = towards.x;
+            shadow->dy = towards.y;
+            shadow->dz = towards.z;
+            shadow->t_min = zero;
+            rt_clear_hits(hits + b, lit);
+            hits[b].t = rt_select(lit, distance, rt_vfloat(-1.0f));
+            if (frame->shadows != 0u && asked[b] != 0u) rt_prepare(shadow, asked[b]);
+#ifdef RT_INSPECT
+            distances[b] = distance;
+#endif
         }
-        const vfloat cosine = rt_dot(p->normal, towards);
-        vmask lit = p->hits & RT_MASK(cosine > zero) & RT_MASK(rt_dot(p->geometric, towards) > zero);
-        const uint lit_bits = rt_bits(lit);
-        if (lit_bits == 0u) continue;
+        if (any_asked == 0u) continue;
         if (frame->shadows != 0u) {
-            rt_rays shadow;
-            rt_hits blocked;
-            shadow.ox = above.x;
-            shadow.oy = above.y;
-            shadow.oz = above.z;
-            shadow.dx = towards.x;
-            shadow.dy = towards.y;
-            shadow.dz = towards.z;
-            shadow.t_min = zero;
-            rt_prepare(&shadow, lit_bits);
-            rt_clear_hits(&blocked, lit);
-            blocked.t = rt_select(lit, distance, rt_vfloat(-1.0f));
-            rt_trace_any(ctx, frame, &shadow, &blocked);
-            lit &= RT_MASK(blocked.t >= zero);
-            tally->shadow += popcount(lit_bits);
+            rt_trace_bundle_any(ctx, frame, rays, hits, count);
+            for (uint b = 0; b < count; ++b) {
+                tally->shadow += popcount(asked[b]);
 #ifdef RT_DEBUG
-            tally->overflow += blocked.overflow;
+                tally->overflow += hits[b].overflow;
 #endif
+            }
+        }
+        for (uint b = 0; b < count; ++b) {
+            if (asked[b] == 0u) continue;
+            const rt_point *p = points + b;
+            const rt_shade *m = materials + b;
+            const vmask lit = RT_MASK(hits[b].t >= zero);
+            const rt_vec towards = rt_vec_of(rays[b].dx, rays[b].dy, rays[b].dz);
+            const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
+            const vfloat highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
+            const rt_vec color = rt_spread(light->color);
+            diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
+            shine[b] = rt_along(rt_select(lit, highlight, zero), color, shine[b]);
 #ifdef RT_INSPECT
-            tally->recorder.steps = blocked.steps;
-            tally->recorder.leaf_tests = blocked.leaf_tests;
+            tally->recorder.steps = frame->shadows != 0u ? hits[b].steps : tally->recorder.steps;
+            tally->recorder.leaf_tests = frame->shadows != 0u ? hits[b].leaf_tests : tally->recorder.leaf_tests;
+            rt_record_shadow(&tally->recorder, i, frame->shadows != 0u, asked[b], rt_bits(lit), rt_vec_of(rays[b].ox, rays[b].oy, rays[b].oz),
+                             towards, distances[b], rt_reflected_light(m, rt_scale(cosines[b], color), rt_scale(highlight, color)));
 #endif
         }
-        const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
-        const vfloat highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
-        const rt_vec color = rt_spread(light->color);
-        diffuse = rt_along(rt_select(lit, cosine, zero), color, diffuse);
-        shine = rt_along(rt_select(lit, highlight, zero), color, shine);
-#ifdef RT_INSPECT
-        rt_record_shadow(&tally->recorder, i, frame->shadows != 0u, lit_bits, rt_bits(lit), above, towards, distance,
-                         rt_reflected_light(m, rt_scale(cosine, color), rt_scale(highlight, color)));
-#endif
     }
-    return rt_add(m->emission, rt_reflected_light(m, diffuse, shine));
+    for (uint b = 0; b < count; ++b)
+        if (rt_any(points[b].hits)) sent[b] = rt_add(materials[b].emission, rt_reflected_light(materials + b, diffuse[b], shine[b]));
 }
 
 /* Shares of light that go on as mirrored and as refracted rays. */

@@ -10,53 +10,63 @@
 #define RT_AOV_LEAF_TESTS 7
 #define RT_AOV_LANES 8
 
+RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, vint x, vint y, const rt_rays *ray, const rt_hits *hit,
+                           uint bits, global float *out)
+{
+    const vint at = y * rt_vint((int)frame->width) + x;
+#if RT_AOV == RT_AOV_T
+    RT_FOR_LANES_STORE(out, at, hit->t, bits)
+#elif RT_AOV == RT_AOV_STEPS
+    RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit->steps), bits)
+#elif RT_AOV == RT_AOV_LEAF_TESTS
+    RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit->leaf_tests), bits)
+#elif RT_AOV == RT_AOV_LANES
+    /* Nothing visited, nothing idle. */
+    const float visited = (float)(hit->steps * popcount(bits));
+    RT_FOR_LANES_STORE(out, at, rt_vfloat(hit->steps != 0u ? (float)hit->lane_steps / visited : 1.0f), bits)
+#else
+    const rt_surface s = rt_resolve(ctx, ray, hit, bits);
+#if RT_AOV == RT_AOV_PRIM
+    RT_FOR_LANES_STORE(out, at, rt_as_vfloat(s.prim), bits)
+#elif RT_AOV == RT_AOV_INSTANCE
+    RT_FOR_LANES_STORE(out, at, rt_as_vfloat(hit->instance), bits)
+#elif RT_AOV == RT_AOV_NORMAL
+    const vint at3 = at * 3;
+    RT_FOR_LANES_STORE(out, at3, s.geometric.x, bits)
+    RT_FOR_LANES_STORE(out, at3 + 1, s.geometric.y, bits)
+    RT_FOR_LANES_STORE(out, at3 + 2, s.geometric.z, bits)
+#else
+    const vint at3 = at * 3;
+    RT_FOR_LANES_STORE(out, at3, s.tex_u, bits)
+    RT_FOR_LANES_STORE(out, at3 + 1, s.tex_v, bits)
+    RT_FOR_LANES_STORE(out, at3 + 2, rt_vfloat(0.0f), bits)
+#endif
+#endif
+}
+
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_aov(const constant rt_frame *frame, const uint first_group, global float *out, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    RT_FOR_PACKETS(packet)
-    for (uint block = 0; block < RT_BLOCKS(frame); ++block) {
+    const uint blocks = RT_BLOCKS(frame);
+    RT_FOR_PACKETS(frame, packet)
+    for (uint base = 0; base < blocks; base += RT_BUNDLE) {
         const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0), packet);
-        vint in_x, in_y;
-        const vmask active = rt_block_pixels(frame, origin, block, &in_x, &in_y);
-        const uint bits = rt_bits(active);
-        if (bits == 0u) continue;
-        const vint x = in_x + rt_vint((int)origin.x), y = in_y + rt_vint((int)origin.y);
-        rt_rays ray;
-        rt_hits hit;
-        rt_camera_rays(frame, x, y, &ray);
-        rt_prepare(&ray, bits);
-        rt_clear_hits(&hit, active);
-        rt_trace_closest(&ctx, frame, &ray, &hit);
-
-        const vint at = y * rt_vint((int)frame->width) + x;
-#if RT_AOV == RT_AOV_T
-        RT_FOR_LANES_STORE(out, at, hit.t, bits)
-#elif RT_AOV == RT_AOV_STEPS
-        RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit.steps), bits)
-#elif RT_AOV == RT_AOV_LEAF_TESTS
-        RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit.leaf_tests), bits)
-#elif RT_AOV == RT_AOV_LANES
-        /* Nothing visited, nothing idle. */
-        const float visited = (float)(hit.steps * popcount(bits));
-        RT_FOR_LANES_STORE(out, at, rt_vfloat(hit.steps != 0u ? (float)hit.lane_steps / visited : 1.0f), bits)
-#else
-        const rt_surface s = rt_resolve(&ctx, &ray, &hit, bits);
-#if RT_AOV == RT_AOV_PRIM
-        RT_FOR_LANES_STORE(out, at, rt_as_vfloat(s.prim), bits)
-#elif RT_AOV == RT_AOV_INSTANCE
-        RT_FOR_LANES_STORE(out, at, rt_as_vfloat(hit.instance), bits)
-#elif RT_AOV == RT_AOV_NORMAL
-        const vint at3 = at * 3;
-        RT_FOR_LANES_STORE(out, at3, s.geometric.x, bits)
-        RT_FOR_LANES_STORE(out, at3 + 1, s.geometric.y, bits)
-        RT_FOR_LANES_STORE(out, at3 + 2, s.geometric.z, bits)
-#else
-        const vint at3 = at * 3;
-        RT_FOR_LANES_STORE(out, at3, s.tex_u, bits)
-        RT_FOR_LANES_STORE(out, at3 + 1, s.tex_v, bits)
-        RT_FOR_LANES_STORE(out, at3 + 2, rt_vfloat(0.0f), bits)
-#endif
-#endif
+        const uint count = RT_BUNDLE_OF(blocks - base);
+        rt_rays rays[RT_BUNDLE];
+        rt_hits hits[RT_BUNDLE];
+        for (uint b = 0; b < count; ++b) {
+            vint in_x, in_y;
+            const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
+            rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b);
+            rt_prepare(rays + b, rt_bits(active));
+            rt_clear_hits(hits + b, active);
+        }
+        rt_trace_bundle_closest(&ctx, frame, rays, hits, count);
+        for (uint b = 0; b < count; ++b) {
+            vint in_x, in_y;
+            const uint bits = rt_bits(rt_block_pixels(frame, origin, base + b, &in_x, &in_y));
+            if (bits != 0u) rt_store_aov(&ctx, frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b, hits + b, bits, out);
+        }
     }
 }

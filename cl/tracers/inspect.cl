@@ -9,7 +9,7 @@ trace_inspect(const constant rt_frame *frame, const uint group, const uint packe
     RT_CTX_INIT(ctx);
     rt_queue queues[2];
     float red[RT_MAX_PIXELS], green[RT_MAX_PIXELS], blue[RT_MAX_PIXELS];
-    RT_FOR_PACKETS(packet)
+    RT_FOR_PACKETS(frame, packet)
     {
         if (packet != packet_wanted) continue;
         rt_tally tally = {0, 0, 0, 0};

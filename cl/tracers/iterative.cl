@@ -18,10 +18,10 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global r
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), rays = RT_BLOCKS(frame) * RT_LANES;
     rt_queue queues[2];
     float red[RT_MAX_PIXELS], green[RT_MAX_PIXELS], blue[RT_MAX_PIXELS];
-    RT_FOR_PACKETS(packet)
+    RT_FOR_PACKETS(frame, packet)
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
-        const uint number = group * (RT_GROUP_W * RT_GROUP_H) + packet;
+        const uint number = group * RT_GROUP_PACKETS(frame) + packet;
         rt_tally tally = {0, 0, 0, 0};
         rt_trace_generations(&ctx, frame, origin, queues, red, green, blue, distances + (size_t)number * rays, &tally);
 

@@ -8,40 +8,50 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
     const uint group = first_group + (uint)get_group_id(0);
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), blocks = RT_BLOCKS(frame);
     float red[RT_MAX_PIXELS], green[RT_MAX_PIXELS], blue[RT_MAX_PIXELS];
-    RT_FOR_PACKETS(packet)
+    RT_FOR_PACKETS(frame, packet)
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
-        const uint number = group * (RT_GROUP_W * RT_GROUP_H) + packet;
+        const uint number = group * RT_GROUP_PACKETS(frame) + packet;
         for (uint i = 0; i < pixels; ++i) red[i] = green[i] = blue[i] = 0.0f;
-        for (uint block = 0; block < blocks; ++block) {
-            vint in_x, in_y;
-            const vmask active = rt_block_pixels(frame, origin, block, &in_x, &in_y);
-            const vint pixel = in_y * rt_vint((int)packet_w) + in_x;
-            const uint bits = rt_bits(active);
-            if (bits == 0u) continue;
-            rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
+        for (uint base = 0; base < blocks; base += RT_BUNDLE) {
+            const uint count = RT_BUNDLE_OF(blocks - base);
+            rt_rays rays[RT_BUNDLE];
+            rt_hits hits[RT_BUNDLE];
 #if RT_PART >= 1
-            rt_rays ray;
-            rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), &ray);
-            rt_prepare(&ray, bits);
-            light.x += ray.near_x + ray.far_x + ray.ix + ray.sx;
-            light.y += ray.near_y + ray.far_y + ray.iy + ray.sy;
-            light.z += ray.near_z + ray.far_z + ray.iz + ray.sz;
+            for (uint b = 0; b < count; ++b) {
+                vint in_x, in_y;
+                const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
+                rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b);
+                rt_prepare(rays + b, rt_bits(active));
+                rt_clear_hits(hits + b, active);
+            }
 #endif
 #if RT_PART >= 2
-            rt_hits hit;
-            rt_clear_hits(&hit, active);
-            rt_trace_closest(&ctx, frame, &ray, &hit);
-            if (frame->sample == 0u) rt_store(hit.t, distances + ((size_t)number * blocks + block) * RT_LANES);
-            light.x += hit.nx + rt_to_float(hit.leaf);
-            light.y += hit.ny + rt_to_float(hit.prim);
-            light.z += hit.nz + rt_to_float(hit.instance);
+            rt_trace_bundle_closest(&ctx, frame, rays, hits, count);
+#endif
+            for (uint b = 0; b < count; ++b) {
+                vint in_x, in_y;
+                const uint bits = rt_bits(rt_block_pixels(frame, origin, base + b, &in_x, &in_y));
+                rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
+#if RT_PART >= 1
+                const rt_rays *ray = rays + b;
+                light.x += ray->near_x + ray->far_x + ray->ix + ray->sx;
+                light.y += ray->near_y + ray->far_y + ray->iy + ray->sy;
+                light.z += ray->near_z + ray->far_z + ray->iz + ray->sz;
+#endif
+#if RT_PART >= 2
+                const rt_hits *hit = hits + b;
+                if (frame->sample == 0u) rt_store(hit->t, distances + ((size_t)number * blocks + base + b) * RT_LANES);
+                light.x += hit->nx + rt_to_float(hit->leaf);
+                light.y += hit->ny + rt_to_float(hit->prim);
+                light.z += hit->nz + rt_to_float(hit->instance);
 #if RT_HAS_ATTRIBUTES || RT_HAS_TEXTURES
-            light.x += hit.u;
-            light.y += hit.v;
+                light.x += hit->u;
+                light.y += hit->v;
 #endif
 #endif
-            rt_add_to_pixels(light, pixel, bits, red, green, blue);
+                rt_add_to_pixels(light, in_y * rt_vint((int)packet_w) + in_x, bits, red, green, blue);
+            }
         }
         for (uint i = 0; i < pixels; ++i) {
             const uint x = origin.x + i % packet_w, y = origin.y + i / packet_w;

@@ -4,31 +4,35 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
            const global float *rays, global float *answers, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    RT_FOR_PACKETS(packet)
+    const uint group = first_group + (uint)get_group_id(0), packet_blocks = RT_BLOCKS(frame);
+    RT_FOR_PACKETS(frame, packet)
     {
-        const uint block = (first_group + (uint)get_group_id(0)) * (RT_GROUP_W * RT_GROUP_H) + packet;
-        if (block >= blocks) return;
-
-        rt_rays ray;
-        rt_hits hit;
-        vfloat t_max;
-        rt_load_ray_block(rays, block, &ray, &t_max);
-        const vmask active = RT_MASK(t_max >= rt_vfloat(0.0f));
-        const uint bits = rt_bits(active);
-        rt_clear_hits(&hit, active);
-        hit.t = rt_select(active, t_max, hit.t);
-        if (bits != 0u) {
-            rt_prepare(&ray, bits);
+        const uint first = (group * RT_GROUP_PACKETS(frame) + packet) * packet_blocks, end = min(first + packet_blocks, blocks);
+        for (uint base = first; base < end; base += RT_BUNDLE) {
+            const uint count = RT_BUNDLE_OF(end - base);
+            rt_rays ray[RT_BUNDLE];
+            rt_hits hit[RT_BUNDLE];
+            vmask active[RT_BUNDLE];
+            for (uint b = 0; b < count; ++b) {
+                vfloat t_max;
+                rt_load_ray_block(rays, base + b, ray + b, &t_max);
+                active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
+                const uint bits = rt_bits(active[b]);
+                rt_clear_hits(hit + b, active[b]);
+                hit[b].t = rt_select(active[b], t_max, hit[b].t);
+                if (bits != 0u) rt_prepare(ray + b, bits);
+            }
             if (any_hit)
-                rt_trace_any(&ctx, frame, &ray, &hit);
+                rt_trace_bundle_any(&ctx, frame, ray, hit, count);
             else
-                rt_trace_closest(&ctx, frame, &ray, &hit);
+                rt_trace_bundle_closest(&ctx, frame, ray, hit, count);
+            for (uint b = 0; b < count; ++b) {
+                if (any_hit)
+                    hit[b].t = rt_select(active[b] & RT_MASK(hit[b].t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
+                else
+                    hit[b].t = rt_select(RT_MASK(hit[b].prim >= rt_vint(0)), hit[b].t, RT_INFINITY);
+                rt_store_hit_block(answers, base + b, fields, hit + b);
+            }
         }
-        if (any_hit) {
-            hit.t = rt_select(active & RT_MASK(hit.t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
-        } else {
-            hit.t = rt_select(RT_MASK(hit.prim >= rt_vint(0)), hit.t, RT_INFINITY);
-        }
-        rt_store_hit_block(answers, block, fields, &hit);
     }
 }

@@ -12,7 +12,7 @@ namespace clarity {
 namespace {
 
 // What a triangle takes on the host while three structures, a peer and their inputs are held and one more is built, roughly.
-constexpr uint64_t kBytesPerTriangle = 900;
+constexpr uint64_t kBytesPerTriangle = 600;
 
 // All that asks for another structure or program.
 std::string key_of(size_t device, const Settings& settings) {

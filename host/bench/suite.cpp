@@ -54,6 +54,7 @@ class Planner {
         if (name == "packets") return packets();
         if (name == "accel") return accel_suite();
         if (name == "scale") return scale();
+        if (name == "large") return large();
         if (name == "cpu") return cpu();
         if (name == "quick") return quick();
         std::string known;
@@ -180,15 +181,18 @@ class Planner {
         accel("accel", chosen_or(own), false);
     }
 
+    bool beyond_limit(uint64_t size) {
+        if (size <= request_.max_triangles) return false;
+        suite_.notes.push_back(size_name(size) + " triangles and more: beyond --max-triangles " +
+                               std::to_string(request_.max_triangles));
+        return true;
+    }
+
     void scale() {
         limit(900);
         const std::vector<BenchScene> own = {catalog_.project("models/spot")};
         for (const uint64_t size : {1'000, 3'000, 10'000, 30'000, 100'000, 300'000, 1'000'000, 3'000'000, 10'000'000}) {
-            if (size > request_.max_triangles) {
-                suite_.notes.push_back(size_name(size) + " triangles and more: beyond --max-triangles " +
-                                       std::to_string(request_.max_triangles));
-                break;
-            }
+            if (beyond_limit(size)) break;
             for (const size_t scene : chosen_or(own, size))
                 for (const char* measure : {"build", "primary", "shadow", "diffuse", "frame"}) {
                     BenchCase& c = add_case("scale", scene, measure, measure);
@@ -197,6 +201,31 @@ class Planner {
                     if (request_.peers && c.measure != "frame") c.peer_qualities = {"medium"};
                 }
         }
+    }
+
+    // What a model costs in memory and speed once it outgrows caches: a GPU's two structures, or those that are asked for.
+    void large() {
+        limit(1200);
+        std::vector<Variant> variants = every_accel();
+        if (request_.accels.empty()) variants = {{"bvh4", "bvh4", {}, false}, {"cwbvh", "cwbvh", {}, false}};
+        std::vector<size_t> scenes;
+        if (request_.files.empty()) {
+            std::vector<BenchScene> whole = catalog_.shared();
+            whole.erase(std::remove_if(whole.begin(), whole.end(),
+                                       [](const BenchScene& s) { return s.name != "dragon_871k" && s.missing.empty(); }),
+                        whole.end());
+            scenes = chosen_or(whole);
+        }
+        std::vector<BenchScene> grown;
+        for (const BenchView& view : catalog_.views())
+            if (view.scene.name == "skull near") grown.push_back(view.scene);
+        for (const uint64_t size : {1'000'000, 10'000'000, 100'000'000}) {
+            if (beyond_limit(size)) break;
+            for (const size_t scene : chosen_or(grown, size)) scenes.push_back(scene);
+        }
+        for (const size_t scene : scenes)
+            for (const char* measure : {"build", "primary", "shadow", "diffuse", "frame"})
+                add_case("large", scene, measure, measure).variants = variants;
     }
 
     // What a processor's vectors give, against the best that peers make of them.
@@ -271,7 +300,7 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "cpu", "quick"};
+    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "large", "cpu", "quick"};
     return names;
 }
 

@@ -11,12 +11,12 @@ namespace clarity {
 
 // What the command line asks for.
 struct BenchRequest {
-    std::vector<std::string> suites;                            // thesis | packets | accel | scale | cpu | quick
+    std::vector<std::string> suites;                            // thesis | packets | accel | scale | large | cpu | quick
     std::vector<std::string> files;                             // scenes instead of a suite's own; without a suite: accel
     std::vector<std::string> accels;                            // ID[,key=value...]; empty: every one found
     std::vector<std::pair<std::string, std::string>> settings;  // key, value: for all cases, where they do not set it
     std::vector<std::string> only;                              // cases whose name has one of these in it; empty: all
-    uint64_t max_triangles = 10'000'000;                        // of the suite scale
+    uint64_t max_triangles = 10'000'000;                        // of the suites scale and large
     double time_limit_s = 0;                                    // of everything; 0: what the suites want
     bool peers = true;
     bool breakdown = false;  // where a frame's time goes; besides the suites

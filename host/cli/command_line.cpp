@@ -129,10 +129,10 @@ void add_render(CLI::App& app, RenderOptions& render) {
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {
-    app.add_option(
-           "what", bench.what,
-           "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, cpu (side by side with the "
-           "best of each peer), quick (a minute); or scene files, with a suite: instead of its own")
+    app.add_option("what", bench.what,
+                   "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M "
+                   "triangles), cpu (side by side with the "
+                   "best of each peer), quick (a minute); or scene files, with a suite: instead of its own")
         ->type_name("SUITE|SCENE");
     single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
         ->type_name("D[,D...]");
@@ -162,7 +162,7 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->type_name("SHARE")
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();
-    single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suite scale"))
+    single(app.add_option("--max-triangles", bench.max_triangles, "Largest model of the suites scale and large"))
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--search-path", bench.import.search_paths,

@@ -208,12 +208,15 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
         return plugin.accel->build(services.host(), &input, &output_table);
     });
     data.build_ms = since(start);
+    data.scene.prims = {};  // what is no longer needed goes as soon as may be: large scenes fill memory with it
 
     start = std::chrono::steady_clock::now();
     if (const std::string why = contract_breach(out, data.scene); !why.empty())
         throw Error(Exit::failed,
                     std::string("accel ") + plugin.id + ": the builder " + why + "; this is a fault of the plugin");
     pack_leaves(out, data);
+    out.refs = {};
+    data.scene.triangles = {};
     data.instances = data.scene.instances;
     for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
     data.bytes = data.leaf_count * sizeof(rt_leaf) + data.instances.size() * sizeof(rt_instance);

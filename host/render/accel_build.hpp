@@ -18,7 +18,7 @@ namespace clarity {
 // A scene as builders see it: boxes in groups, one group for the world and one for each mesh that is instanced. Meshes placed
 // once are flattened into the world.
 struct BuildScene {
-    UnclearedVector<rt_prim> prims;
+    UnclearedVector<rt_prim> prims;  // empty once it is built, and so are the triangles
     std::vector<rt_group> groups;
     UnclearedVector<rt_leaf> triangles;  // by ref index, in the space of its group
     std::vector<rt_instance> instances;  // roots unset

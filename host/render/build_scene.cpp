@@ -6,6 +6,7 @@
 #include "base/error.hpp"
 #include "plugin/host_services.hpp"
 #include "render/accel_build.hpp"
+#include "render/memory_plan.hpp"
 
 namespace clarity {
 namespace {
@@ -161,39 +162,66 @@ rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world
     return prim;
 }
 
-}  // namespace
+// Where each mesh will stand. One that is placed once is flattened into the world: a tree of its own would only lengthen the
+// way of each ray. One that is mirrored is not, since its triangles would turn their outsides in.
+struct Placement {
+    std::vector<Affine> inverse;  // of instances
+    std::vector<bool> flat;       // instances
+    std::vector<rt_u32> group_of_mesh;
+    rt_u32 group_count = 1;
+    uint64_t world_prims = 0, refs = 0;
+};
 
-BuildScene make_build_scene(const Scene& scene, Progress& progress) {
-    BuildScene out;
-    // A mesh that is placed once is flattened: a tree of its own would only lengthen the way of each ray. One that is mirrored
-    // is not, since its triangles would turn their outsides in.
+Placement place(const Scene& scene) {
+    Placement out;
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
-    std::vector<Affine> inverse(scene.instances.size());
-    std::vector<bool> flat(scene.instances.size());
-    uint64_t world_prims = scene.spheres.size() + scene.polygons.size(), refs = 0;
-    std::vector<rt_u32> group_of_mesh(scene.meshes.size(), 0);
-    rt_u32 group_count = 1;
+    out.inverse.resize(scene.instances.size());
+    out.flat.resize(scene.instances.size());
+    out.group_of_mesh.assign(scene.meshes.size(), 0);
+    out.world_prims = scene.spheres.size() + scene.polygons.size();
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
         if (!instance.visible) continue;
-        const bool singular = !invert(instance.world_from_object, inverse[i]);
-        flat[i] = (uses[instance.mesh] == 1 && !mirrors(instance.world_from_object)) || singular || count == 0;
-        if (flat[i]) {
-            world_prims += count;
-            refs += count;
+        const bool singular = !invert(instance.world_from_object, out.inverse[i]);
+        out.flat[i] = (uses[instance.mesh] == 1 && !mirrors(instance.world_from_object)) || singular || count == 0;
+        if (out.flat[i]) {
+            out.world_prims += count;
+            out.refs += count;
         } else {
-            ++world_prims;
-            if (group_of_mesh[instance.mesh] == 0) {
-                group_of_mesh[instance.mesh] = group_count++;
-                refs += count;
+            ++out.world_prims;
+            if (out.group_of_mesh[instance.mesh] == 0) {
+                out.group_of_mesh[instance.mesh] = out.group_count++;
+                out.refs += count;
             }
         }
     }
-    uint64_t prim_total = world_prims;
-    out.groups.assign(group_count, rt_group{0, 0});
-    out.groups[0] = {0, static_cast<rt_u32>(world_prims)};
+    return out;
+}
+
+}  // namespace
+
+SceneCounts count_scene(const Scene& scene) {
+    const Placement placement = place(scene);
+    SceneCounts counts;
+    counts.triangles = placement.refs;
+    counts.references = placement.world_prims;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        if (placement.group_of_mesh[m]) counts.references += scene.meshes[m].triangle_count;
+    return counts;
+}
+
+BuildScene make_build_scene(const Scene& scene, Progress& progress) {
+    BuildScene out;
+    const Placement placement = place(scene);
+    const std::vector<Affine>& inverse = placement.inverse;
+    const std::vector<bool>& flat = placement.flat;
+    const std::vector<rt_u32>& group_of_mesh = placement.group_of_mesh;
+    const uint64_t refs = placement.refs, placed = scene.placed_triangle_count();
+    uint64_t prim_total = placement.world_prims;
+    out.groups.assign(placement.group_count, rt_group{0, 0});
+    out.groups[0] = {0, static_cast<rt_u32>(placement.world_prims)};
     for (size_t m = 0; m < scene.meshes.size(); ++m)
         if (group_of_mesh[m]) {
             out.groups[group_of_mesh[m]] = {static_cast<rt_u32>(prim_total), scene.meshes[m].triangle_count};
@@ -201,7 +229,12 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         }
     if (refs > RT_REF_INDEX_MAX || prim_total > 0xFFFFFFF0u)
         throw Error(Exit::failed, "the scene has " + std::to_string(refs) + " triangles; this build can hold " +
-                                      std::to_string(RT_REF_INDEX_MAX));
+                                      std::to_string(RT_REF_INDEX_MAX) +
+                                      ": take fewer, or place one mesh several times instead of copies of it");
+    if (placed > INT32_MAX)
+        throw Error(Exit::failed, "the scene's instances have " + std::to_string(placed) +
+                                      " triangles together; they are numbered up to " + std::to_string(INT32_MAX) +
+                                      ": place fewer");
     out.prims.resize(prim_total);
     out.triangles.resize(refs);
     out.attribute_triangle.resize(refs);

@@ -1,43 +1,71 @@
 #include "render/device_scene.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
+#include "render/memory_plan.hpp"
 
 namespace clarity {
 namespace {
 
-std::string mebibytes(uint64_t bytes) {
-    return std::to_string((bytes + (1u << 20) - 1) >> 20) + " MiB";
-}
+constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two looks at progress
 
-// Read-only memory of the device with this content; at least something, since no device takes empty buffers.
-cl::Buffer upload(Device& device, const char* what, const void* data, uint64_t bytes, uint64_t& total) {
-    static const char nothing[256] = {};
-    if (bytes == 0) {
-        data = nothing;
-        bytes = sizeof nothing;
-    }
-    const DeviceInfo& info = device.info();
-    if (info.max_allocation_bytes && bytes > info.max_allocation_bytes)
-        throw Error(Exit::failed, "the scene does not fit: its " + std::string(what) + " take " + mebibytes(bytes) + " and " +
-                                      info.name + " allows " + mebibytes(info.max_allocation_bytes) + " in one piece");
-    total += bytes;
-    const bool shared = info.cpu && data != nothing;
-    try {
-        return cl::Buffer(device.context(), CL_MEM_READ_ONLY | (shared ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR), bytes,
-                          const_cast<void*>(data));
-    } catch (const cl::Error& e) {
-        throw Error(Exit::failed, "no room on " + info.name + " for the " + what + " (" + mebibytes(bytes) + ", with " +
-                                      mebibytes(total) + " of " + mebibytes(info.global_bytes) +
-                                      " in use by this scene): OpenCL error " + std::to_string(e.err()));
-    }
-}
+// One buffer to be made, and what it is to hold.
+struct Content {
+    MemoryPiece piece;
+    const void* data;
+};
 
 template <class T>
-cl::Buffer upload(Device& device, const char* what, const std::vector<T>& data, uint64_t& total) {
-    return upload(device, what, data.data(), data.size() * sizeof(T), total);
+Content content(const char* what, const std::vector<T>& data) {
+    return {{what, data.size() * sizeof(T)}, data.data()};
 }
+
+// Read-only buffers of a device. On a CPU they are the host's own memory; elsewhere they are filled piece by piece from it, for
+// a driver that is given all at once may copy all of it on the host first.
+class Uploader {
+ public:
+    Uploader(Device& device, const std::vector<Content>& contents, Progress& progress)
+        : device_(device), progress_(progress), queue_(device.context(), device.info().cl_device) {
+        for (const Content& content : contents) total_ += content.piece.bytes;
+    }
+
+    cl::Buffer upload(const Content& content) {
+        static const char nothing[256] = {};  // no device takes empty buffers
+        const uint64_t bytes = content.piece.bytes;
+        try {
+            if (bytes == 0)
+                return cl::Buffer(device_.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof nothing,
+                                  const_cast<char*>(nothing));
+            if (device_.info().cpu)
+                return cl::Buffer(device_.context(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes,
+                                  const_cast<void*>(content.data));
+            cl::Buffer buffer(device_.context(), CL_MEM_READ_ONLY, bytes);
+            for (uint64_t at = 0; at < bytes; at += kPiece) {
+                const uint64_t count = std::min(kPiece, bytes - at);
+                queue_.enqueueWriteBuffer(buffer, CL_TRUE, at, count, static_cast<const char*>(content.data) + at);
+                done_ += count;
+                if (!progress_.report(static_cast<float>(double(done_) / double(total_)))) throw Cancelled();
+            }
+            return buffer;
+        } catch (const cl::Error& e) {
+            throw Error(Exit::failed, "no room on " + device_.info().name + " for the " + content.piece.what + " (" +
+                                          memory_text(bytes) + " of " + memory_text(total_) +
+                                          " that the scene takes; the device has " + memory_text(device_.info().global_bytes) +
+                                          ", for everyone who uses it): OpenCL error " + std::to_string(e.err()) +
+                                          "; close what else uses it, or take fewer triangles");
+        }
+    }
+
+    uint64_t total() const { return total_; }
+
+ private:
+    Device& device_;
+    Progress& progress_;
+    cl::CommandQueue queue_;  // its own: frames may go on in the device's
+    uint64_t total_ = 0, done_ = 0;
+};
 
 // Normals of vertices in the space where their triangles stand: those of flattened meshes go by the inverse transpose, as those
 // of instances do in the kernels, but for a factor that keeps their lengths near what they were, however large the scale.
@@ -65,7 +93,8 @@ std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build
 
 }  // namespace
 
-DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel)
+DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel,
+                         Progress& progress)
     : scene_(std::move(scene)), accel_(std::move(accel)) {
     for (const Material& material : scene_->materials) materials_.push_back(material.values);
     const BuildScene& build = accel_->scene;
@@ -74,25 +103,41 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         for (size_t i = 0; i < attributes_.size(); ++i)
             for (int c = 0; c < 3; ++c) attributes_[i].v[c] = scene_->triangles[3 * size_t(build.attribute_triangle[i]) + c];
     }
-    const auto add = [&](cl::Buffer buffer) { before_lights_.push_back(std::move(buffer)); };
-    add(upload(device, "leaves", accel_->leaves.data(), (accel_->leaf_count + kLeafPadding) * sizeof(rt_leaf), bytes_));
-    add(upload(device, "instances", accel_->instances, bytes_));
-    add(upload(device, "polygons", build.polygon_table, bytes_));
-    add(upload(device, "polygon corners", build.polygon_corners, bytes_));
-    add(upload(device, "planes", build.planes, bytes_));
-    materials_at_ = before_lights_.size();
-    add(upload(device, "materials", materials_, bytes_));
-    add(upload(device, "triangles", attributes_, bytes_));
     const bool moved = !scene_->normals.empty() && !build.flattened.empty();
     if (moved) normals_ = normals_as_placed(*scene_, build);
-    add(upload(device, "normals", moved ? normals_ : scene_->normals, bytes_));
-    add(upload(device, "texture coordinates", scene_->uvs, bytes_));
-    add(upload(device, "texture table", scene_->textures, bytes_));
-    add(upload(device, "textures", scene_->texels, bytes_));
+    // In the order of the context's arguments: see kernel_source.cpp.
+    const size_t leaf_bytes = (accel_->leaf_count + kLeafPadding) * sizeof(rt_leaf);
+    std::vector<Content> contents = {
+        {{"leaves", leaf_bytes}, accel_->leaves.data()},
+        content("instances", accel_->instances),
+        content("polygons", build.polygon_table),
+        content("polygon corners", build.polygon_corners),
+        content("planes", build.planes),
+        content("materials", materials_),
+        content("triangles", attributes_),
+        content("normals", moved ? normals_ : scene_->normals),
+        content("texture coordinates", scene_->uvs),
+        content("texture table", scene_->textures),
+        content("textures", scene_->texels),
+    };
+    materials_at_ = 5;
+    const size_t before_lights = contents.size();
     const rt_accel& table = *accel_->plugin->accel;
     for (rt_u32 s = 0; s < table.slot_count; ++s)
-        slots_.push_back(upload(device, table.slots[s].name, accel_->slots[s].memory.data(),
-                                accel_->slots[s].count * table.slots[s].elem_bytes, bytes_));
+        contents.push_back(
+            {{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes}, accel_->slots[s].memory.data()});
+    std::vector<MemoryPiece> pieces;
+    for (const Content& content : contents) pieces.push_back(content.piece);
+    check_fits(pieces, device.info(), std::to_string(accel_->leaf_count) + " primitives in " + accel_->plugin->id);
+
+    Uploader uploader(device, contents, progress);
+    for (size_t i = 0; i < contents.size(); ++i)
+        (i < before_lights ? before_lights_ : slots_).push_back(uploader.upload(contents[i]));
+    bytes_ = uploader.total();
+    if (device.info().cpu) return;
+    // Copies that only the upload needed.
+    attributes_ = {};
+    normals_ = {};
 }
 
 void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {

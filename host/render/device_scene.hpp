@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "device/device.hpp"
 #include "render/accel_build.hpp"
 #include "scene/scene.hpp"
@@ -13,8 +14,8 @@ namespace clarity {
 // Immutable once made. On a CPU the buffers are the host's own memory, which it keeps alive.
 class DeviceScene {
  public:
-    // Throws Error(failed) with the numbers where it does not fit.
-    DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel);
+    // Uploads piece by piece. Throws Error(failed) with the numbers where it does not fit, Cancelled.
+    DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel, Progress& progress);
 
     // Sets the context's arguments from `first` on (see kernel_source.cpp for their order); lights come from the frame, and
     // materials where it brings its own.

@@ -72,7 +72,7 @@ struct Template {
 // One inclusion, with the leaf tests that it may use. The prototype makes it inline whatever the author wrote.
 void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
-        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n";
+        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n#define RT_TRAVERSE_BUNDLE RT_FN(" << name << "_bundle)\n";
     define_int(out, "RT_TRIANGLES_ONLY", !mixed);
     if (plugin.cpu) {
         out << "#define RT_LONE_CANDIDATES RT_FN(" << leaf << "_candidates)\n#define RT_LONE_TEST RT_FN(" << leaf << "_lone)\n";
@@ -92,9 +92,12 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
         include(out, "leaf_twice.h");
         out << "#undef RT_LEAF_ONCE\n#undef RT_LONE_CANDIDATES_ONCE\n#undef RT_LONE_TEST_ONCE\n#undef RT_LEAF_INSTANCES\n";
     }
-    out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n";
+    out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n#if RT_BUNDLE > 1\n"
+           "RT_INLINE void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count);\n"
+           "#endif\n";
     part(out, plugin.file, plugin.text);
-    out << "#undef RT_TRAVERSE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n#undef RT_LONE_CANDIDATES\n"
+    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef "
+           "RT_TRIANGLES_ONLY\n#undef RT_LONE_CANDIDATES\n"
            "#undef RT_LONE_TEST\n#undef RT_LONE_MIXED\n";
 }
 
@@ -125,10 +128,10 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
     f.spheres = !build.spheres.empty();
     f.polygons = !build.polygons.empty();
     f.planes = !build.planes.empty();
-    f.normals = !scene.normals.empty() && !build.triangles.empty();
+    f.normals = !scene.normals.empty() && !build.attribute_triangle.empty();
     f.textures = std::any_of(scene.materials.begin(), scene.materials.end(),
                              [](const Material& m) { return m.values.texture != RT_NONE; });
-    f.uvs = !scene.uvs.empty() && !build.triangles.empty();
+    f.uvs = !scene.uvs.empty() && !build.attribute_triangle.empty();
     return f;
 }
 
@@ -154,7 +157,12 @@ Layout make_layout(const Settings& settings, bool cpu) {
     layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // so that tests without a GPU see what GPUs run
     if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
     // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
-    layout.group_w = layout.group_h = 4;
+    layout.group_side = 4;
+    const auto in_group = [&](unsigned packet_side) {
+        return std::clamp(16 / packet_side, 1u, layout.group_side);
+    };  // camera.h
+    layout.group_w = in_group(layout.packet_w);
+    layout.group_h = in_group(layout.packet_h);
     layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));
     return layout;
 }
@@ -165,8 +173,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     define_int(out, "RT_LANES", layout.lanes);
     define_int(out, "RT_MAX_PIXELS", layout.max_pixels);
     define_int(out, "RT_CPU", layout.cpu);
-    define_int(out, "RT_GROUP_W", layout.group_w);
-    define_int(out, "RT_GROUP_H", layout.group_h);
+    define_int(out, "RT_GROUP_SIDE", layout.group_side);
     define_int(out, "RT_HAS_INSTANCES", features.instances);
     define_int(out, "RT_HAS_SPHERES", features.spheres);
     define_int(out, "RT_HAS_POLYGONS", features.polygons);
@@ -231,6 +238,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     if (layout.cpu)
         for (const char* name : {"lone.h", "primitives/triangle_row.h"}) include(out, name);
     if (types.text) part(out, folder + types.name, plugin_kernel_text(accel, types));
+    include(out, "bundle.h");
     context(out, *accel.accel);
     const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
     Template plugin{file, text, layout.cpu, false, features.instances};

@@ -22,13 +22,14 @@ enum class KernelKind { color, generations, aov, rays, counted_rays, inspect };
 // camera rays, their nearest hits. twice: leaf tests are done twice, which changes no picture.
 enum class FramePart { film, rays, closest, closest_twice, whole, whole_closest_twice, whole_any_twice };
 
-// How a picture is cut. The first four are compiled in, the rest are numbers of the frame.
+// How a picture is cut. The first four are compiled in, the rest are numbers of the frame or follow from them.
 struct Layout {
     unsigned lanes = 1;
     bool cpu = false;                     // a work-group is one work-item that does its packets in turn
-    unsigned group_w = 8, group_h = 8;    // packets of a work-group
+    unsigned group_side = 8;              // packets of a work-group side by side, at most
     unsigned max_pixels = 1;              // room for a packet's pixels
     unsigned packet_w = 1, packet_h = 1;  // pixels of a work-item
+    unsigned group_w = 8, group_h = 8;    // packets of a work-group
     unsigned block_w = 1, block_h = 1;    // pixels traced side by side, block_w * block_h = lanes
     unsigned groups_x(unsigned width) const { return (width + packet_w * group_w - 1) / (packet_w * group_w); }
     unsigned groups_y(unsigned height) const { return (height + packet_h * group_h - 1) / (packet_h * group_h); }

@@ -2,6 +2,7 @@
 #include "base/error.hpp"
 #include "render/device_scene.hpp"
 #include "render/frame_constants.hpp"
+#include "render/memory_plan.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 #include "render/wavefront.hpp"
@@ -24,7 +25,7 @@ Settings resolve(const Settings& asked, const Device& device, const Scene& scene
     Settings s = asked;
     if (s.tracer == "auto") s.tracer = !device.info().cpu && refracts(scene, {}) ? "wavefront" : "iterative";
     if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
-    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? 4 : 1;
+    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a bundle: cl/bundle.h
     return s;
 }
 
@@ -123,6 +124,9 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
     if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->params == params)
         return last_->accel;
+    const SceneCounts counts = count_scene(*scene);
+    check_fits(plan_memory(counts, *scene, *plugin.accel), device_->info(),
+               std::to_string(counts.references) + " primitives in " + plugin.id);
     progress.stage(std::string("building ") + plugin.id);
     return std::make_shared<AccelData>(build_accel(*scene, plugin, params, progress));
 }
@@ -141,7 +145,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         if (!next->on_device) {
             progress.stage("uploading the scene");
             const auto start = std::chrono::steady_clock::now();
-            next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel);
+            next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel, progress);
             next->upload_ms = since(start);
         }
         if (progress.cancelled()) throw Cancelled();

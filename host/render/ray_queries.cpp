@@ -47,7 +47,8 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (program != last_program_ || prepared.on_device != last_scene_) launcher_.forget();
         last_program_ = program;
         last_scene_ = prepared.on_device;
-        const size_t groups = (rays.block_count() + layout.group_packets() - 1) / layout.group_packets();
+        const size_t in_group = size_t(layout.group_packets()) * layout.blocks();
+        const size_t groups = (rays.block_count() + in_group - 1) / in_group;
         const LaunchTimes times =
             launcher_.run(queue, kernel, first_group, static_cast<unsigned>(groups), layout.local_size(), [] {});
         if (hits) {

@@ -16,7 +16,7 @@ struct Settings {
     // How it is traced.
     std::string tracer = "auto";
     int depth = 5;                   // generations of rays, 1 = camera rays only
-    int packet_w = 0, packet_h = 0;  // pixels of one work-item; 0: 4x4 on a CPU, 1x1 on a GPU
+    int packet_w = 0, packet_h = 0;  // pixels of one work-item; 0: 1x1 on a GPU, on a CPU lanes x lanes, 4x4 at least
     int lanes = 0;                   // 1, 4, 8, 16; 0: what suits the device
     int ray_slots = 8;               // rays a pixel may have in one generation
     bool fast_math = false;          // -cl-fast-relaxed-math

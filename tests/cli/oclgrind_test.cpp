@@ -74,7 +74,7 @@ TEST_F(Oclgrind, WouldTell) {
     const std::string store = "alpha, i, display)";
     const size_t at = film.find(store);
     ASSERT_NE(at, std::string::npos) << "film.cl has changed: this test needs a store to spoil";
-    film.replace(at, store.size(), "alpha, i + 1000u, display)");
+    film.replace(at, store.size(), "alpha, i + (1u << 20), display)");
     scratch_.write("cl/film.cl", film);
     EXPECT_NE(report({}, scratch_.path("cl")).find("Invalid write"), std::string::npos);
 }

@@ -123,7 +123,7 @@ TEST(Rays, NoPrimitiveIsLostWhereDenormalsAreFlushed) {
         const auto* leaves = static_cast<const rt_leaf*>(prepared->accel->leaves.data());
         std::set<rt_u32> refs;
         for (uint64_t i = 0; i < prepared->accel->leaf_count; ++i) refs.insert(leaves[i].ref);
-        EXPECT_EQ(refs.size(), prepared->accel->scene.prims.size()) << accel;
+        EXPECT_EQ(refs.size(), prepared->accel->scene.attribute_triangle.size()) << accel;
     }
 }
 #endif

@@ -128,6 +128,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #define BVH8_BOUNDED RT_CAT(RT_TRAVERSE, _bounded)
 #define BVH8_TURNS RT_CAT(RT_TRAVERSE, _turns)
 #define BVH8_APART RT_CAT(RT_TRAVERSE, _apart)
+#define BVH8_TOGETHER RT_CAT(RT_TRAVERSE, _together)
 
 /* Rays against the box of one child, whose rows are near_x .. far_z bytes from `box`. */
 RT_INLINE uint BVH8_ENTER(const global char *box, ulong near_x, ulong near_y, ulong near_z, const rt_rays *ray, const rt_hits *hit)
@@ -139,33 +140,29 @@ RT_INLINE uint BVH8_ENTER(const global char *box, ulong near_x, ulong near_y, ul
     return rt_bits(RT_MASK(entry <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t)));
 }
 
-/* A packet whose active directions agree in sign. */
-RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+/* A packet whose active directions are of one octant. */
+RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_rays *ray, rt_hits *hit)
 {
     const vmask alive = RT_MASK(hit->t >= rt_vfloat(0.0f));
-    const float t_min = rt_least_of(alive, ray->t_min);
     float t_far = rt_greatest(hit->t);
-    const ulong near_x = ray->lo_x * 32u, near_y = ray->lo_y * 32u, near_z = ray->lo_z * 32u;
+    const ulong near_x = BVH8_NEAR(octant, 0), near_y = BVH8_NEAR(octant, 1), near_z = BVH8_NEAR(octant, 2);
     const ulong far_x = 96u - near_x, far_y = 160u - near_y, far_z = 224u - near_z;
-    /* A plane p is met at (p - origin) / direction. With x = p - the origin nearest to it that lies between the least and the
-     * greatest of x / direction of any ray; each side as fma(1 / direction, p, -origin / direction), with the slack of
-     * rt_prepare(). */
+    /* A plane p is met at (p - origin) / direction: no ray meets a near plane that lies before it earlier than the slowest would
+     * from the foremost origin, nor leaves by a far plane later than the fastest from the hindmost. For planes that lie behind,
+     * both are negative, and t_min is not, so 0 stands for it. Each as fma(1 / direction, p, -origin / direction), with the slack
+     * of rt_prepare(). */
     bool wide = false;
 #define BVH8_AXIS(x, turned)                                                                                                     \
     const float o_lo_##x = rt_least_of(alive, ray->o##x), o_hi_##x = rt_greatest_of(alive, ray->o##x);                           \
     const float i_lo_##x = rt_least_of(alive, ray->i##x), i_hi_##x = rt_greatest_of(alive, ray->i##x);                           \
-    const float o_in_##x = (turned) ? o_lo_##x : o_hi_##x, o_out_##x = (turned) ? o_hi_##x : o_lo_##x;                           \
-    const float8 lo_##x = (float8)(i_lo_##x), hi_##x = (float8)(i_hi_##x);                                                       \
-    const float8 in_lo_##x = (float8)(BVH8_DOWN(-o_in_##x * i_lo_##x)), in_hi_##x = (float8)(BVH8_DOWN(-o_in_##x * i_hi_##x));   \
-    const float8 out_lo_##x = (float8)(BVH8_UP(-o_out_##x * i_lo_##x)), out_hi_##x = (float8)(BVH8_UP(-o_out_##x * i_hi_##x));   \
-    wide |= o_lo_##x != o_hi_##x || i_hi_##x - i_lo_##x > 0.25f * fabs(i_lo_##x);
-#define BVH8_DOWN(v) ((v) - fabs(v) * (8.0f * RT_EPS))
-#define BVH8_UP(v) ((v) + fabs(v) * (8.0f * RT_EPS))
+    const float slow_##x = (turned) ? i_hi_##x : i_lo_##x, fast_##x = (turned) ? i_lo_##x : i_hi_##x;                            \
+    const float in_##x = BVH8_DOWN(-((turned) ? o_lo_##x : o_hi_##x) * slow_##x);                                                \
+    const float out_##x = BVH8_UP(-((turned) ? o_hi_##x : o_lo_##x) * fast_##x);                                                 \
+    wide |= BVH8_WIDE(o_lo_##x, o_hi_##x, i_lo_##x, i_hi_##x);
     BVH8_AXIS(x, near_x != 0u)
     BVH8_AXIS(y, near_y != 32u)
     BVH8_AXIS(z, near_z != 64u)
-#define BVH8_IN(x, p) rt_min(fma(p, lo_##x, in_lo_##x), fma(p, hi_##x, in_hi_##x))
-#define BVH8_OUT(x, p) rt_max(fma(p, lo_##x, out_lo_##x), fma(p, hi_##x, out_hi_##x))
+#undef BVH8_AXIS
 
     /* Put off: entry distance in the upper half; node and slot, from which a leaf's box is found again, in the lower. */
     ulong stack[BVH8_STACK];
@@ -186,12 +183,14 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_h
             tested = false;
             RT_COUNT_VISIT(hit, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))));
             node = (const global char *)(ctx->bvh8_nodes + at);
-            const float8 in_x = BVH8_IN(x, BVH8_ROW(node, near_x)), in_y = BVH8_IN(y, BVH8_ROW(node, near_y)),
-                         in_z = BVH8_IN(z, BVH8_ROW(node, near_z));
-            const float8 out_x = BVH8_OUT(x, BVH8_ROW(node, far_x)), out_y = BVH8_OUT(y, BVH8_ROW(node, far_y)),
-                         out_z = BVH8_OUT(z, BVH8_ROW(node, far_z));
-            const float8 in = rt_max(rt_max(in_x, in_y), rt_max(in_z, (float8)(t_min)));
-            const float8 out = rt_min(rt_min(rt_min(out_x, out_y), out_z) * RT_WIDE, (float8)(t_far));
+            const float8 ax = fma((float8)(slow_x), BVH8_ROW(node, near_x), (float8)(in_x));
+            const float8 ay = fma((float8)(slow_y), BVH8_ROW(node, near_y), (float8)(in_y));
+            const float8 az = fma((float8)(slow_z), BVH8_ROW(node, near_z), (float8)(in_z));
+            const float8 bx = fma((float8)(fast_x), BVH8_ROW(node, far_x), (float8)(out_x));
+            const float8 by = fma((float8)(fast_y), BVH8_ROW(node, far_y), (float8)(out_y));
+            const float8 bz = fma((float8)(fast_z), BVH8_ROW(node, far_z), (float8)(out_z));
+            const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(0.0f)));
+            const float8 out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(t_far));
             uint bits = BVH8_BITS(in <= out);
             if (bits != 0u) {
                 const global uint *child = (const global uint *)(node + 192);
@@ -229,11 +228,6 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_h
         at = ((const global uint *)(node + 192))[slot];
     }
 }
-#undef BVH8_AXIS
-#undef BVH8_DOWN
-#undef BVH8_UP
-#undef BVH8_IN
-#undef BVH8_OUT
 #undef BVH8_PLACE
 
 /* Where there are instances, a traversal of their meshes hangs on each of a world's leaf tests, and is compiled as often: there
@@ -391,12 +385,206 @@ RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hit
 
 #endif
 
+
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
-    if (ray->coherent)
-        BVH8_BOUNDED(ctx, root, ray, hit);
-    else
+    const vint octants = bvh8_octants(ray);
+    const vfloat t = hit->t;
+    uint rest = bvh8_which_octants(octants, t);
+    if (popcount(rest) > BVH8_SPLIT) {
         BVH8_APART(ctx, root, ray, hit);
+        return;
+    }
+    for (; rest != 0u; rest &= rest - 1u) {
+        const uint octant = BVH8_LOWEST(rest);
+        const vmask mine = RT_MASK(octants == rt_vint((int)octant));
+        const vfloat others = hit->t;
+        hit->t = rt_select(mine, hit->t, rt_vfloat(-1.0f));
+        BVH8_BOUNDED(ctx, root, octant, ray, hit);
+        hit->t = rt_select(mine, hit->t, others);
+    }
 }
+
+#if RT_BUNDLE > 1
+/* The packets `members` of a bundle, two or more, whose active directions are all of one octant: the bounds of one packet in each lane. What
+ * BVH8_BOUNDED does with eight children at once is done here with as many packets, child by child, so that a node is fetched and
+ * decided on once for all that come to it. */
+RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_rays *rays, rt_hits *hits, uint members)
+{
+    const ulong near_x = BVH8_NEAR(octant, 0), near_y = BVH8_NEAR(octant, 1), near_z = BVH8_NEAR(octant, 2);
+    vfloat slow_x, slow_y, slow_z, fast_x, fast_y, fast_z, in_x, in_y, in_z, out_x, out_y, out_z, t_far = rt_vfloat(-1.0f);
+    slow_x = slow_y = slow_z = fast_x = fast_y = fast_z = in_x = in_y = in_z = out_x = out_y = out_z = rt_vfloat(0.0f);
+    uint wide = 0;
+    for (uint rest = members; rest != 0u; rest &= rest - 1u) {
+        const uint p = BVH8_LOWEST(rest);
+        const rt_rays *ray = rays + p;
+        const vmask alive = RT_MASK(hits[p].t >= rt_vfloat(0.0f)), lane = RT_MASK(rt_lane_index() == rt_vint((int)p));
+        uint is_wide = 0;
+        t_far = rt_select(lane, rt_vfloat(rt_greatest(hits[p].t)), t_far);
+        /* Here origins only; -origin / direction follows for all lanes at once. */
+#define BVH8_AXIS(x, turned)                                                                                                     \
+    {                                                                                                                            \
+        const float o_lo = rt_least_of(alive, ray->o##x), o_hi = rt_greatest_of(alive, ray->o##x);                               \
+        const float i_lo = rt_least_of(alive, ray->i##x), i_hi = rt_greatest_of(alive, ray->i##x);                               \
+        slow_##x = rt_select(lane, rt_vfloat((turned) ? i_hi : i_lo), slow_##x);                                                 \
+        fast_##x = rt_select(lane, rt_vfloat((turned) ? i_lo : i_hi), fast_##x);                                                 \
+        in_##x = rt_select(lane, rt_vfloat((turned) ? o_lo : o_hi), in_##x);                                                     \
+        out_##x = rt_select(lane, rt_vfloat((turned) ? o_hi : o_lo), out_##x);                                                   \
+        is_wide |= BVH8_WIDE(o_lo, o_hi, i_lo, i_hi);                                                                            \
+    }
+        BVH8_AXIS(x, near_x != 0u)
+        BVH8_AXIS(y, near_y != 32u)
+        BVH8_AXIS(z, near_z != 64u)
+#undef BVH8_AXIS
+        wide |= is_wide << p;
+    }
+#define BVH8_OFF(x)                                                                                                              \
+    in_##x = BVH8_DOWN(-in_##x * slow_##x);                                                                                      \
+    out_##x = BVH8_UP(-out_##x * fast_##x);
+    BVH8_OFF(x)
+    BVH8_OFF(y)
+    BVH8_OFF(z)
+#undef BVH8_OFF
+
+    float few_t_far[RT_LANES], few[12][RT_LANES]; /* the same numbers, packet by packet */
+    rt_store(t_far, few_t_far);
+#define BVH8_STORE(x, i)                                                                                                         \
+    rt_store(slow_##x, few[i]);                                                                                                  \
+    rt_store(in_##x, few[(i) + 1]);                                                                                              \
+    rt_store(fast_##x, few[(i) + 2]);                                                                                            \
+    rt_store(out_##x, few[(i) + 3]);
+    BVH8_STORE(x, 0)
+    BVH8_STORE(y, 4)
+    BVH8_STORE(z, 8)
+#undef BVH8_STORE
+
+    /* Put off: the entry distance of one of the packets in the upper half of a key, node and slot in the lower; which packets enter;
+     * and the depth at which all their entry distances are, for each slot of the node. */
+    vfloat entries[BVH8_WIDTH * BVH8_DEPTH];
+    ulong stack[BVH8_STACK];
+    uint packets[BVH8_STACK], depths[BVH8_STACK];
+    const global char *node = (const global char *)(ctx->bvh8_nodes + at);
+    uint top = 0, slot = 0, depth = 0, inside = members;
+    for (;;) {
+        if (at & BVH8_LEAF) {
+            const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
+            for (; inside != 0u; inside &= inside - 1u) {
+                const uint p = BVH8_LOWEST(inside);
+                if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) == 0u) continue;
+                for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, rays + p, hits + p);
+                few_t_far[p] = rt_greatest(hits[p].t);
+                t_far = rt_select(RT_MASK(rt_lane_index() == rt_vint((int)p)), rt_vfloat(few_t_far[p]), t_far);
+            }
+        } else {
+            for (uint doubt = depth != 0u ? inside & wide : 0u; doubt != 0u; doubt &= doubt - 1u) {
+                const uint p = BVH8_LOWEST(doubt);
+                if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) == 0u) inside &= ~(1u << p);
+            }
+            BVH8_COUNT_VISITS(hits, inside)
+            node = (const global char *)(ctx->bvh8_nodes + at);
+            at *= BVH8_WIDTH;
+            vfloat *const entry = entries + depth * BVH8_WIDTH;
+            uint enters[BVH8_WIDTH], found = 0;
+            if ((inside & (inside - 1u)) == 0u && inside != 0u) { /* one packet is left: all children at once */
+                const uint p = BVH8_LOWEST(inside);
+#define BVH8_FEW(i) ((float8)(few[i][p]))
+                const float8 ax = fma(BVH8_FEW(0), BVH8_ROW(node, near_x), BVH8_FEW(1));
+                const float8 bx = fma(BVH8_FEW(2), BVH8_ROW(node, 96u - near_x), BVH8_FEW(3));
+                const float8 ay = fma(BVH8_FEW(4), BVH8_ROW(node, near_y), BVH8_FEW(5));
+                const float8 by = fma(BVH8_FEW(6), BVH8_ROW(node, 160u - near_y), BVH8_FEW(7));
+                const float8 az = fma(BVH8_FEW(8), BVH8_ROW(node, near_z), BVH8_FEW(9));
+                const float8 bz = fma(BVH8_FEW(10), BVH8_ROW(node, 224u - near_z), BVH8_FEW(11));
+#undef BVH8_FEW
+                const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(0.0f)));
+                found = BVH8_BITS(in <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(few_t_far[p])));
+                float ins[BVH8_WIDTH];
+                vstore8(in, 0, ins);
+                for (uint rest = found; rest != 0u; rest &= rest - 1u) {
+                    const uint i = BVH8_LOWEST(rest);
+                    ((float *)(entry + i))[p] = ins[i];
+                    enters[i] = inside;
+                }
+            } else {
+                __attribute__((opencl_unroll_hint(BVH8_WIDTH)))
+                for (uint i = 0; i < BVH8_WIDTH; ++i) {
+                    const global char *box = node + 4u * i;
+                    const vfloat ax = fma(slow_x, BVH8_PLANE(box, near_x), in_x), bx = fma(fast_x, BVH8_PLANE(box, 96u - near_x), out_x);
+                    const vfloat ay = fma(slow_y, BVH8_PLANE(box, near_y), in_y), by = fma(fast_y, BVH8_PLANE(box, 160u - near_y), out_y);
+                    const vfloat az = fma(slow_z, BVH8_PLANE(box, near_z), in_z), bz = fma(fast_z, BVH8_PLANE(box, 224u - near_z), out_z);
+                    entry[i] = rt_max(rt_max(ax, ay), rt_max(az, rt_vfloat(0.0f)));
+                    enters[i] = inside & rt_bits(RT_MASK(entry[i] <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, t_far)));
+                    found |= (enters[i] != 0u ? 1u : 0u) << i;
+                }
+            }
+            if (found != 0u) {
+                const global uint *child = (const global uint *)(node + 192);
+                const float *one = (const float *)entry + BVH8_LOWEST(inside);
+#define BVH8_PLACE(i) ((ulong)as_uint(one[(i) * RT_LANES]) << 32 | (at + (i)))
+                slot = BVH8_LOWEST(found);
+                bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[slot]);
+                ulong nearest = BVH8_PLACE(slot);
+                for (found &= found - 1u; found != 0u; found &= found - 1u) {
+                    slot = BVH8_LOWEST(found);
+                    bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[slot]);
+                    const ulong place = BVH8_PLACE(slot), farther = max(place, nearest);
+                    nearest = min(place, nearest);
+                    stack[top] = farther;
+                    packets[top] = enters[(uint)farther % BVH8_WIDTH];
+                    depths[top] = depth;
+                    if (RT_STACK_OK(top + 1u, BVH8_STACK, hits)) ++top;
+                }
+#undef BVH8_PLACE
+                slot = (uint)nearest % BVH8_WIDTH;
+                at = child[slot];
+                inside = enters[slot];
+                ++depth;
+                continue;
+            }
+        }
+        do {
+            if (top == 0u) return;
+            --top;
+            slot = (uint)stack[top] % BVH8_WIDTH;
+            inside = packets[top] & rt_bits(RT_MASK(entries[depths[top] * BVH8_WIDTH + slot] <= t_far));
+        } while (inside == 0u);
+        depth = depths[top] + 1u;
+        node = (const global char *)(ctx->bvh8_nodes + (uint)stack[top] / BVH8_WIDTH);
+        at = ((const global uint *)(node + 192))[slot];
+    }
+}
+
+void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count)
+{
+    uint with[8] = {0, 0, 0, 0, 0, 0, 0, 0}, apart = 0, mixed = 0;
+    for (uint p = 0; p < count; ++p) {
+        uint rest = bvh8_which_octants(bvh8_octants(rays + p), hits[p].t);
+        if (popcount(rest) > BVH8_SPLIT) {
+            apart |= 1u << p;
+            continue;
+        }
+        mixed |= (rest & (rest - 1u) ? 1u : 0u) << p;
+        for (; rest != 0u; rest &= rest - 1u) with[BVH8_LOWEST(rest)] |= 1u << p;
+    }
+    for (; apart != 0u; apart &= apart - 1u) BVH8_APART(ctx, root, rays + BVH8_LOWEST(apart), hits + BVH8_LOWEST(apart));
+    for (uint octant = 0; octant < 8u; ++octant) {
+        const uint members = with[octant];
+        if (members == 0u) continue;
+        vfloat others[RT_BUNDLE];
+        for (uint some = members & mixed; some != 0u; some &= some - 1u) {
+            const uint p = BVH8_LOWEST(some);
+            others[p] = hits[p].t;
+            hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, rt_vfloat(-1.0f));
+        }
+        if (members & (members - 1u))
+            BVH8_TOGETHER(ctx, root, octant, rays, hits, members);
+        else
+            BVH8_BOUNDED(ctx, root, octant, rays + BVH8_LOWEST(members), hits + BVH8_LOWEST(members));
+        for (uint some = members & mixed; some != 0u; some &= some - 1u) {
+            const uint p = BVH8_LOWEST(some);
+            hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, others[p]);
+        }
+    }
+}
+#endif
 
 #endif

@@ -34,6 +34,7 @@ typedef struct bvh8_node {
 #define BVH8_NOTHING BVH8_MAKE_LEAF(0u, 0u)
 
 #ifdef __OPENCL_VERSION__
+#define RT_TRAVERSES_BUNDLES
 /* Mask to bits, lane 0 in bit 0: as rt_bits of lanes.h, for eight children instead of RT_LANES rays. */
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX__)
 #define BVH8_BITS(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
@@ -52,6 +53,17 @@ RT_INLINE uint bvh8_bits(int8 m)
 #define BVH8_ROW(node, bytes) (*(const global float8 *)((node) + (bytes)))
 /* One number of one child, `box` being its slot's place in the first row. */
 #define BVH8_PLANE(box, bytes) rt_vfloat(*(const global float *)((box) + (bytes)))
+/* Bounds that have to be rounded outwards by the slack of rt_prepare(). */
+#define BVH8_DOWN(v) ((v) - fabs(v) * (8.0f * RT_EPS))
+#define BVH8_UP(v) ((v) + fabs(v) * (8.0f * RT_EPS))
+/* Whether bounds of origins and of 1 / direction are so wide that rays are tested themselves before they go on. */
+#define BVH8_WIDE(o_lo, o_hi, i_lo, i_hi) ((o_lo) != (o_hi) || (i_hi) - (i_lo) > 0.25f * fabs(i_lo))
+#ifdef RT_COUNT_STEPS
+#define BVH8_COUNT_VISITS(hits, inside)                                                                                          \
+    for (uint count_in = inside; count_in != 0u; count_in &= count_in - 1u) RT_COUNT_STEP((hits) + BVH8_LOWEST(count_in));
+#else
+#define BVH8_COUNT_VISITS(hits, inside)
+#endif
 /* Entry distance in the upper half, child in the lower: distances are not negative, so keys sort as they are. */
 #define BVH8_KEY(entry, child, i) ((ulong)as_uint((entry)[i]) << 32 | (child)[i])
 /* Asks for what will be read at a node or leaf, four lines of the cache, ahead of its turn: packets trace trees larger than a
@@ -64,6 +76,23 @@ RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf
 #endif
 }
 #if RT_LANES > 1
+/* Octants of directions that a packet may be split into: where it has more, its rays have too little in common. */
+#define BVH8_SPLIT 2
+/* Bits 0, 1, 2: the direction's component is negative. */
+RT_INLINE vint bvh8_octants(const rt_rays *ray)
+{
+    return (ray->neg_x & rt_vint(1)) | (ray->neg_y & rt_vint(2)) | (ray->neg_z & rt_vint(4));
+}
+/* Octants that active lanes have, as bits. */
+RT_INLINE uint bvh8_which_octants(vint octants, vfloat t)
+{
+    const vmask alive = RT_MASK(t >= rt_vfloat(0.0f));
+    uint which = 0;
+    for (int i = 0; i < 8; ++i) which |= (rt_any(alive & RT_MASK(octants == rt_vint(i))) ? 1u : 0u) << i;
+    return which;
+}
+/* Row of near planes of an axis, in bytes from the node's begin. */
+#define BVH8_NEAR(octant, axis) ((octant) >> (axis) & 1u ? 96ul + 32ul * (axis) : 32ul * (axis))
 /* Rays of a packet that go their own ways, and what each has put off: children in the order in which they were met, the next one
  * on top, and where the ray enters them. Below each stack lie entries that end every search in it. 60 KB at most. */
 #define BVH8_BELOW 8u

@@ -1,0 +1,21 @@
+/* bundle.h -- how many blocks of rays are traced together.
+ *
+ * One vector of rays fills the lanes of a ray test. Neighbouring vectors mostly go down the same tree, so a structure may take
+ * RT_BUNDLE of them down together, each a lane again: bounds of a whole vector of rays in one lane, against one box after the
+ * other (rt_trace_bundle() of query.h, RT_TRAVERSE_BUNDLE of the plugin). Tracers hold a bundle's rays in private arrays; where
+ * nothing goes by bundles they are of one element, which compilers keep in registers.
+ *
+ * An instance's tree hangs on each leaf test of the scene's, and is compiled as often: there vectors of rays go one by one. So
+ * they do while rays are written down one after the other. */
+#ifndef RT_BUNDLE_H
+#define RT_BUNDLE_H
+
+#if defined(RT_TRAVERSES_BUNDLES) && RT_CPU && RT_LANES > 1 && !RT_HAS_INSTANCES && !defined(RT_INSPECT)
+#define RT_BUNDLE RT_LANES
+#define RT_BUNDLE_OF(blocks_left) min(blocks_left, (uint)RT_LANES)
+#else
+#define RT_BUNDLE 1
+#define RT_BUNDLE_OF(blocks_left) 1u
+#endif
+
+#endif

@@ -1,0 +1,60 @@
+#include "render/memory_plan.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "base/error.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr uint64_t kPrimitivesPerNode = 12;
+
+const char kAdvice[] =
+    "; take fewer triangles, meshes placed several times instead of copies, or another device (`clarity devices`)";
+
+}  // namespace
+
+std::string memory_text(uint64_t bytes) {
+    char text[32];
+    const double mebibytes = double(bytes) / (1u << 20);
+    if (mebibytes < 1000)
+        std::snprintf(text, sizeof text, "%.*f MiB", mebibytes < 10 ? 1 : 0, mebibytes);
+    else
+        std::snprintf(text, sizeof text, "%.1f GiB", mebibytes / 1024);
+    return text;
+}
+
+std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& scene, const rt_accel& accel) {
+    std::vector<MemoryPiece> pieces;
+    pieces.push_back({"leaves", (counts.references + kLeafPadding) * sizeof(rt_leaf)});
+    if (accel.slot_count > 0)
+        pieces.push_back({accel.slots[0].name, counts.references / kPrimitivesPerNode * accel.slots[0].elem_bytes});
+    if (!scene.normals.empty() || !scene.uvs.empty()) pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
+    pieces.push_back({"normals", scene.normals.size() * sizeof(float)});
+    pieces.push_back({"texture coordinates", scene.uvs.size() * sizeof(float)});
+    pieces.push_back({"textures", scene.texels.size() * sizeof(uint32_t)});
+    return pieces;
+}
+
+void check_fits(const std::vector<MemoryPiece>& pieces, const DeviceInfo& device, const std::string& scene) {
+    uint64_t total = 0;
+    for (const MemoryPiece& piece : pieces) {
+        total += piece.bytes;
+        if (device.max_allocation_bytes == 0 || piece.bytes <= device.max_allocation_bytes) continue;
+        throw Error(Exit::failed, "the scene does not fit: the " + piece.what + " of " + scene + " take " +
+                                      memory_text(piece.bytes) + ", and " + device.name + " allows " +
+                                      memory_text(device.max_allocation_bytes) + " in one piece" + kAdvice);
+    }
+    if (device.global_bytes == 0 || total <= device.global_bytes) return;
+    std::vector<MemoryPiece> largest = pieces;
+    std::stable_sort(largest.begin(), largest.end(),
+                     [](const MemoryPiece& a, const MemoryPiece& b) { return a.bytes > b.bytes; });
+    std::string parts;
+    for (size_t i = 0; i < std::min<size_t>(largest.size(), 3) && largest[i].bytes > 0; ++i)
+        parts += (parts.empty() ? "" : ", ") + largest[i].what + " " + memory_text(largest[i].bytes);
+    throw Error(Exit::failed, "the scene does not fit: " + scene + " take at least " + memory_text(total) + " (" + parts +
+                                  "), and " + device.name + " has " + memory_text(device.global_bytes) + kAdvice);
+}
+
+}  // namespace clarity

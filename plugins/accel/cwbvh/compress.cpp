@@ -1,0 +1,99 @@
+#include "compress.hpp"
+
+#include <algorithm>
+
+#include "rt_plugin.hpp"
+#include "scratch.hpp"
+
+namespace cwbvh {
+namespace {
+
+constexpr rt_u32 kChunk = 4096;  // nodes of a task
+
+bool is_node(rt_u32 child) {
+    return (child & BVH8_LEAF) == 0;
+}
+
+// What the nodes of a chunk have below themselves, then what all before it have.
+struct Below {
+    uint64_t nodes = 0, primitives = 0;
+};
+
+Below below(const bvh8_node& node) {
+    Below sum;
+    for (const rt_u32 child : node.child) {
+        if (is_node(child))
+            ++sum.nodes;
+        else
+            sum.primitives += BVH8_LEAF_COUNT(child);
+    }
+    return sum;
+}
+
+}  // namespace
+
+void compress(const rt_host* host, const WideNodes& wide, const rt_build_output* out) {
+    const rt_u32 chunk_count = (wide.node_count + kChunk - 1) / kChunk;
+    const auto each_of = [&](rt_u32 chunk, const auto& do_one) {
+        const rt_u32 end = std::min(wide.node_count, (chunk + 1) * kChunk);
+        for (rt_u32 i = chunk * kChunk; i < end; ++i) do_one(i);
+    };
+    std::vector<Below> before(chunk_count);
+    rt::parallel_for(host, chunk_count, [&](rt_u32 c) {
+        each_of(c, [&](rt_u32 i) {
+            const Below own = below(wide.nodes[i]);
+            before[c].nodes += own.nodes;
+            before[c].primitives += own.primitives;
+        });
+    });
+    const auto root_count = static_cast<rt_u32>(wide.roots->size());
+    Below sum{root_count, 0};  // roots stand first
+    for (Below& chunk : before) {
+        const Below own = chunk;
+        chunk = sum;
+        sum.nodes += own.nodes;
+        sum.primitives += own.primitives;
+    }
+
+    // Where each node goes is known by its parent, which comes before it, so all places come first.
+    const bvh2::Scratch<rt_u32> place(wide.node_count);
+    for (rt_u32 g = 0; g < root_count; ++g) {
+        place.data()[(*wide.roots)[g]] = g;
+        rt::root(out, g, g);
+    }
+    rt::parallel_for(host, chunk_count, [&](rt_u32 c) {
+        auto next = static_cast<rt_u32>(before[c].nodes);
+        each_of(c, [&](rt_u32 i) {
+            for (const rt_u32 child : wide.nodes[i].child)
+                if (is_node(child)) place.data()[child] = next++;
+        });
+    });
+
+    auto* const nodes = rt::alloc<cwbvh_node>(out, 0, wide.node_count);
+    rt_u32* const refs = rt::leaves(out, wide.ref_count);
+    rt::parallel_for(host, chunk_count, [&](rt_u32 c) {
+        auto next_child = static_cast<rt_u32>(before[c].nodes), next_leaf = static_cast<rt_u32>(before[c].primitives);
+        each_of(c, [&](rt_u32 i) {
+            const bvh8_node& from = wide.nodes[i];
+            cwbvh_node to{};
+            to.first_child = next_child;
+            to.first_leaf = next_leaf;
+            for (rt_u32 slot = 0; slot < BVH8_WIDTH; ++slot) {
+                const rt_u32 child = from.child[slot];
+                if (is_node(child)) {
+                    to.cells |= 1u << (24 + slot);
+                    ++next_child;
+                    continue;
+                }
+                const rt_u32 count = BVH8_LEAF_COUNT(child);
+                to.primitives |= ((1u << count) - 1u) << 4 * slot;
+                std::copy_n(wide.refs + BVH8_LEAF_FIRST(child), count, refs + next_leaf);
+                next_leaf += count;
+            }
+            quantize(from, to);
+            nodes[place.data()[i]] = to;
+        });
+    });
+}
+
+}  // namespace cwbvh
