@@ -47,7 +47,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
 {
     RT_CTX_INIT(ctx);
     local uint scratch[RT_WAVE_SCRATCH];
-    const uint group_packets = RT_GROUP_W * RT_GROUP_H;
+    const uint group_packets = RT_GROUP_PACKETS(frame);
     const uint count = level == 0u ? group_count * group_packets * RT_BLOCKS(frame) * RT_LANES
                                    : min(control[level * RT_CONTROL], room);
     const uint units = (count + RT_LANES - 1u) / RT_LANES, chunks = (units + RT_WAVE - 1u) / RT_WAVE;
@@ -123,7 +123,10 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                     ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
                     ray.dx = along.x, ray.dy = along.y, ray.dz = along.z;
                     passed = rt_choose(mirrored, rt_scale(split.mirrored, weight), through);
-                    light = rt_choose(hits, rt_direct_light(&ctx, frame, &point, &material, &tally), light);
+                    rt_rays shadow;
+                    rt_vec sent;
+                    rt_direct_light(&ctx, frame, &point, &material, 1u, &shadow, &hit, &sent, &tally);
+                    light = rt_choose(hits, sent, light);
                 }
                 const rt_vec more = rt_mul(weight, light), none = rt_splat(0.0f, 0.0f, 0.0f);
                 sum = rt_add(sum, rt_choose(active, more, none));
@@ -190,7 +193,7 @@ add_sample(const constant rt_frame *frame, const uint first_group, global float4
            const global uint *shares, const uint parting)
 {
     const uint group = first_group + (uint)get_group_id(0), packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame);
-    RT_FOR_PACKETS(packet)
+    RT_FOR_PACKETS(frame, packet)
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
         for (uint i = 0; i < pixels; ++i) {
