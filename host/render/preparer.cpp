@@ -127,6 +127,8 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     const SceneCounts counts = count_scene(*scene);
     check_fits(plan_memory(counts, *scene, *plugin.accel), device_->info(),
                std::to_string(counts.references) + " primitives in " + plugin.id);
+    // A scene that nobody shows any more makes room for the next one.
+    if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
     progress.stage(std::string("building ") + plugin.id);
     return std::make_shared<AccelData>(build_accel(*scene, plugin, params, progress));
 }

@@ -6,7 +6,9 @@
  * stack together, with the least distance at which one of them is entered; they follow by the signs of the direction (Ylitie,
  * Karras, Laine 2017). By the signs alone a third more nodes are visited by camera rays, 8 % more by diffuse ones.
  *
- * 80 registers on an H200, so 24 warps a multiprocessor; 8 bytes of stack a level of the tree. */
+ * 80 registers on an H200, so 24 warps a multiprocessor; 8 bytes of stack a level of the tree. Of bvh4's speed there it has 0.74 to
+ * 0.86 with 871 k triangles and 0.82 to 0.93 with 102 M, for half the bytes fetched and 12 bytes a triangle less
+ * (docs/performance.md): a node takes twice as long as one of four children. */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_LANES == 1
