@@ -194,8 +194,8 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
             status_item(cut_to(notice, ImGui::GetContentRegionAvail().x), colors::kGreen, notice);
         } else {
             status_item(side.prepared->accel->plugin->id, colors::kDim, side.prepared->accel->plugin->name);
-            status_item(cut_to(side.device->info().name, ImGui::GetContentRegionAvail().x), colors::kDim,
-                        side.device->info().name);
+            const std::string name = side.device_name();
+            status_item(cut_to(name, ImGui::GetContentRegionAvail().x), colors::kDim, name);
         }
     }
     ImGui::End();

@@ -228,7 +228,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
     side.settings = settings;
     const auto begin = Clock::now();
     if (order.retrace)
-        side.stats = tracer.frames->trace(*ready.prepared, settings, view, order.sample, true, progress);
+        side.stats = tracer.frames->trace(ready.shared, settings, view, order.sample, true, progress);
     else if (last)
         side.stats = traced_part(last->stats);
     side.image.width = static_cast<unsigned>(settings.width);
@@ -249,14 +249,14 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
 }
 
 // The film has kernels of its own. If edited ones do not compile, the last good ones go on.
-void FrameThread::fit_tracer(Tracer& tracer, const std::shared_ptr<Device>& device, uint64_t kernel_revision) {
-    if (tracer.device != device) {
+void FrameThread::fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision) {
+    if (tracer.devices != devices) {
         tracer = {};
-        tracer.frames = std::make_unique<Frames>(device);
-        tracer.device = device;
+        tracer.frames = std::make_unique<MultiFrames>(devices);
+        tracer.devices = devices;
     } else if (tracer.kernel_revision != kernel_revision) {
         try {
-            tracer.frames = std::make_unique<Frames>(device);
+            tracer.frames = std::make_unique<MultiFrames>(devices);
         } catch (const Error& error) {
             const std::lock_guard<std::mutex> lock(mutex_);
             failure_ = error.what();
@@ -293,9 +293,9 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         return settings;
     };
     const bool two = job.other_settings && job.ready->other;
-    fit_tracer(tracers_[0], job.ready->main.device, job.ready->request.kernel_revision);
+    fit_tracer(tracers_[0], job.ready->main.devices, job.ready->request.kernel_revision);
     if (two)
-        fit_tracer(tracers_[1], job.ready->other->device, job.ready->request.kernel_revision);
+        fit_tracer(tracers_[1], job.ready->other->devices, job.ready->request.kernel_revision);
     else
         tracers_[1] = {};
     const Order order{sample, retrace, distance};

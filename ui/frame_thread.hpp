@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "render/false_colors.hpp"
-#include "render/renderer.hpp"
+#include "render/multi_frames.hpp"
 #include "ui/prepare_worker.hpp"
 
 namespace clarity {
@@ -84,8 +84,8 @@ class FrameThread {
     class StopProgress;
     // What traces one side; of the thread alone.
     struct Tracer {
-        std::shared_ptr<Device> device;
-        std::unique_ptr<Frames> frames;
+        Devices devices;
+        std::unique_ptr<MultiFrames> frames;
         uint64_t kernel_revision = 0;  // that the film's kernels are of
     };
     struct Times {
@@ -102,7 +102,7 @@ class FrameThread {
     static PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
                                   const Order& order, const PictureSide* last, Progress& progress);
     bool wants_work(unsigned& sample, bool& retrace) const;
-    void fit_tracer(Tracer& tracer, const std::shared_ptr<Device>& device, uint64_t kernel_revision);
+    void fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision);
     bool has_saving() const;
     void save_waiting();
     float moving_scale(const FrameJob& job) const;

@@ -40,7 +40,7 @@ void device_list(Session& session) {
             "devices` says what is missing.",
             colors::kAmber);
     for (const DeviceInfo& device : *devices) {
-        const auto uses = [&](const ReadySide& side) { return side.device->info().id() == device.id(); };
+        const auto uses = [&](const ReadySide& side) { return side.uses(device); };
         const bool used = ready && (uses(ready->main) || (ready->other && uses(*ready->other)));
         name_text(device.id(), std::string(device.gpu ? "GPU" : device.cpu ? "CPU" : "accelerator") + (used ? ", in use" : ""));
         wrapped_text(device.name);

@@ -59,19 +59,39 @@ const ReadySide* edited_ready(const Session& session) {
     return &ready->main;
 }
 
+// What `--device` would read: the devices in use and this one, or without it.
+std::string with_or_without(const ReadySide& ready, const DeviceInfo& device) {
+    std::string text;
+    for (const DeviceInfo& used : infos_of(ready.devices))
+        if (used.id() != device.id()) text += (text.empty() ? "" : ",") + used.id();
+    const bool used = ready.uses(device);
+    return used ? text : text + (text.empty() ? "" : ",") + device.id();
+}
+
 void device_row(Session& session) {
-    row_label("Device", "what computes the picture; all OpenCL devices of all platforms, best first");
+    row_label("Device", "what computes the picture, one or several together; all OpenCL devices of all platforms, best first");
     const auto devices = session.devices();
     const auto keep = session.ready();  // what `ready` points into
     const ReadySide* ready = edited_ready(session);
     std::string name = "looking for devices\u2026";
     if (devices && devices->empty()) name = "none found";
-    if (ready) name = ready->device->info().name;
+    if (ready) name = ready->device_name();
     if (ImGui::BeginCombo("##device", name.c_str())) {
-        for (const DeviceInfo& device : devices ? *devices : std::vector<DeviceInfo>()) {
-            const bool chosen = ready && ready->device->info().id() == device.id();
+        const std::vector<DeviceInfo> all = devices ? *devices : std::vector<DeviceInfo>();
+        for (const DeviceInfo& device : all) {
+            const bool chosen = ready && ready->devices_text() == device.id();
             if (option(device.id() + "  " + device.name, chosen)) session.edited().device = device.id();
             tooltip(device.platform + "\n" + device.version + "\ndriver " + device.driver);
+        }
+        if (all.size() > 1 && ready) {
+            ImGui::Separator();
+            dim_text("together, sharing each picture");
+            for (const DeviceInfo& device : all) {
+                bool used = ready->uses(device);
+                const std::string text = with_or_without(*ready, device);
+                if (ImGui::Checkbox((device.id() + "  " + device.name + "##together").c_str(), &used) && !text.empty())
+                    session.edited().device = text;
+            }
         }
         ImGui::EndCombo();
     }

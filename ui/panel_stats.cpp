@@ -98,11 +98,21 @@ void kernel_bars(const PictureSide& side, unsigned which) {
     }
 }
 
+// What each device of several had of the picture.
+void share_rows(const PictureSide& side) {
+    for (const DeviceShare& share : side.stats.devices) {
+        char text[96];
+        std::snprintf(text, sizeof text, "%.1f %%   %s", 100 * share.share, time_text(share.device_ms).c_str());
+        row_text(share.id.c_str(), text, share.name + "\nits share of the rows, and how long it traced them by its clock");
+    }
+}
+
 void kernel_rows(const std::vector<const PictureSide*>& sides) {
     for (unsigned i = 0; i < sides.size(); ++i) {
         if (sides.size() > 1) wrapped_text(std::string(1, "AB"[i]) + "  " + sides[i]->settings.accel, side_color(i));
         kernel_bars(*sides[i], i);
         row_text("Sum", time_text(sum_of(sides[i]->stats.kernels)), "of what is above");
+        share_rows(*sides[i]);
     }
 }
 
@@ -171,13 +181,15 @@ void preparation_rows(const LoadedScene& loaded, const Prepared& prepared) {
 }
 
 void device_rows(const ReadySide& side) {
-    const DeviceInfo& device = side.device->info();
-    row_text("Name", device.name);
-    row_text("Platform", device.platform);
-    row_text("Driver", device.driver);
-    row_text("Units", std::to_string(device.compute_units) + " at " + std::to_string(device.clock_mhz) + " MHz");
-    row_text("Memory", bytes_text(static_cast<double>(device.global_bytes)));
-    row_text("Lanes", std::to_string(side.prepared->settings.lanes));
+    for (const MultiPrepared::Part& part : side.shared->parts) {
+        const DeviceInfo& device = part.device->info();
+        row_text("Name", device.name);
+        row_text("Platform", device.platform);
+        row_text("Driver", device.driver);
+        row_text("Units", std::to_string(device.compute_units) + " at " + std::to_string(device.clock_mhz) + " MHz");
+        row_text("Memory", bytes_text(static_cast<double>(device.global_bytes)));
+        row_text("Lanes", std::to_string(part.prepared->settings.lanes));
+    }
 }
 
 void side_sections(const Ready& ready, const ReadySide& side, const std::string& prefix) {

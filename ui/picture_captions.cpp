@@ -54,9 +54,9 @@ Differences differing_settings(const Picture& picture) {
             add(plugin.params[i].label, number_text(a.accel_params[i]), number_text(b.accel_params[i]));
     }
     for (const Setting& row : settings_table()) add(row.label, row.get(a), row.get(b));
-    if (on_a.device != on_b.device) {
-        out.of[0].push_back(on_a.device->info().name);
-        out.of[1].push_back(on_b.device->info().name);
+    if (on_a.devices != on_b.devices) {
+        out.of[0].push_back(on_a.device_name());
+        out.of[1].push_back(on_b.device_name());
     }
     return out;
 }

@@ -1,5 +1,6 @@
 #include "ui/prepare_worker.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/error.hpp"
@@ -48,6 +49,12 @@ class PrepareWorker::StageProgress : public Progress {
     float fraction_ = -1;
     Clock::time_point woken_{};
 };
+
+bool ReadySide::uses(const DeviceInfo& info) const {
+    return std::any_of(devices.begin(), devices.end(), [&](const auto& device) {
+        return device->info().platform_index == info.platform_index && device->info().device_index == info.device_index;
+    });
+}
 
 PrepareWorker::PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake)
     : plugins_(plugins), import_(std::move(import)), tracers_(std::move(tracers)), wake_(std::move(wake)), thread_([this] {
@@ -159,7 +166,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     bool whole = true;
     const auto open = [&](const Side& side, Workshop& shop, const Workshop& neighbour) {
         try {
-            open_device(side.device, shop, neighbour, progress);
+            open_side(side.device, shop, neighbour, progress);
         } catch (const Error& error) {
             whole = false;
             publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
@@ -198,13 +205,13 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
 }
 
 void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress) {
-    ready.main = {main_.device, main_.preparer->prepare(visible_, request.main.settings, progress)};
+    ready.main = ReadySide(main_.devices, main_.preparer->prepare(visible_, request.main.settings, progress));
     ready.other.reset();
     if (!request.other || !other_.preparer) return;
     ready.request.other->device = other_.choice;
     // What the second side cannot have must not keep the first from changing.
     try {
-        ready.other = ReadySide{other_.device, other_.preparer->prepare(visible_, request.other->settings, progress)};
+        ready.other = ReadySide(other_.devices, other_.preparer->prepare(visible_, request.other->settings, progress));
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
@@ -222,13 +229,12 @@ bool PrepareWorker::worn() const {
 void PrepareWorker::renew_devices() {
     tracers_.release();
     const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
-    const bool shared = other_.device == main_.device;
-    if (other_.preparer) other_.preparer->close_device();
-    main_.device = std::make_shared<Device>(main_.preparer->close_device());
-    main_.preparer->open_device(main_.device);
+    if (other_.preparer) other_.preparer->close_devices();
+    main_.devices = open_devices(main_.preparer->close_devices());
+    main_.preparer->open_devices(main_.devices);
     if (!other_.preparer) return;
-    other_.device = shared ? main_.device : std::make_shared<Device>(other_.device->info());
-    other_.preparer->open_device(other_.device);
+    other_.devices = open_devices(infos_of(other_.devices), main_.devices);
+    other_.preparer->open_devices(other_.devices);
 }
 
 // The scene that is built: without what is hidden. Kept while neither changes, since a new one is built anew.
@@ -241,15 +247,12 @@ void PrepareWorker::hide(const PrepareRequest& request) {
     visible_ = hidden_.empty() ? loaded_->scene : std::make_shared<const Scene>(without_instances(*loaded_->scene, hidden_));
 }
 
-void PrepareWorker::open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress) {
-    if (shop.device && choice == shop.choice) return;
+void PrepareWorker::open_side(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress) {
+    if (!shop.devices.empty() && choice == shop.choice) return;
     progress.stage("opening the device");
-    DeviceInfo info = choose_device(choice);
-    // One context a device, so that both sides share what the driver keeps.
-    const bool shared = neighbour.device && neighbour.device->info().id() == info.id();
-    auto device = shared ? neighbour.device : std::make_shared<Device>(std::move(info));
-    shop.preparer = std::make_unique<Preparer>(plugins_, device);
-    shop.device = std::move(device);
+    Devices devices = open_devices(choose_devices(choice), neighbour.devices);
+    shop.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
+    shop.devices = std::move(devices);
     shop.choice = choice;
 }
 

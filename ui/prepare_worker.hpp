@@ -12,7 +12,7 @@
 #include "base/progress.hpp"
 #include "device/device.hpp"
 #include "import/import.hpp"
-#include "render/renderer.hpp"
+#include "render/multi_preparer.hpp"
 #include "ui/wish.hpp"
 
 namespace clarity {
@@ -41,8 +41,19 @@ struct LoadedScene {
 };
 
 struct ReadySide {
-    std::shared_ptr<Device> device;
-    std::shared_ptr<const Prepared> prepared;
+    ReadySide() = default;
+    ReadySide(Devices chosen, std::shared_ptr<const MultiPrepared> what)
+        : devices(std::move(chosen)),
+          shared(std::move(what)),
+          device(shared->parts.front().device),
+          prepared(shared->first()) {}
+    Devices devices;
+    std::shared_ptr<const MultiPrepared> shared;
+    std::shared_ptr<Device> device;                                                   // the first that takes part,
+    std::shared_ptr<const Prepared> prepared;                                         // and what it has
+    bool uses(const DeviceInfo& device) const;                                        // whole or in parts
+    std::string devices_text() const { return device_list_text(infos_of(devices)); }  // as --device reads it
+    std::string device_name() const { return devices_name(infos_of(devices)); }
 };
 
 struct Ready {
@@ -89,16 +100,16 @@ class PrepareWorker {
     class StageProgress;
     void run();
     void handle(const PrepareRequest& request, StageProgress& progress);
-    // One side's device and what was prepared on it.
+    // One side's devices and what was prepared on them.
     struct Workshop {
-        std::shared_ptr<Device> device;
+        Devices devices;
         std::string choice;
-        std::unique_ptr<Preparer> preparer;
+        std::unique_ptr<MultiPreparer> preparer;
     };
     void prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress);
     bool worn() const;
     void renew_devices();
-    void open_device(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress);
+    void open_side(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress);
     void import_files(const PrepareRequest& request, StageProgress& progress);
     void hide(const PrepareRequest& request);
     void list_all_devices();

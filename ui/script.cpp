@@ -311,7 +311,7 @@ std::string Script::state_text(App& app) const {
         const Settings& s = picture->main.settings;
         json["aov"] = s.aov;
         json["reduced"] = picture->reduced;
-        json["device"] = picture->job.ready->main.device->info().id();
+        json["device"] = picture->job.ready->main.devices_text();
         json["accel"] = s.accel;
         json["packet"] = std::to_string(s.packet_w) + "x" + std::to_string(s.packet_h);
         json["lanes"] = s.lanes;

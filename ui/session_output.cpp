@@ -59,7 +59,7 @@ std::string Session::render_command(const std::string& output) const {
     preset = wished_preset(make_view(*ready_->loaded->scene, static_cast<float>(width) / static_cast<float>(height)));
     preset.settings.width = width;
     preset.settings.height = height;
-    preset.device = ready_->main.device->info().id();
+    preset.device = ready_->main.devices_text();
     std::vector<std::string> files = ready_->loaded->files;
     for (std::string& file : files) file = std::filesystem::absolute(file).lexically_normal().string();
     return clarity::render_command(plugins_, preset, files, output);

@@ -14,7 +14,7 @@ struct ViewOptions {
     const PluginRegistry* plugins = nullptr;  // outlives ui_main
     std::vector<std::string> scenes;          // files that become one scene; empty: the window opens without one
     Settings settings;                        // with accel and accel_params as --accel chose them
-    std::string device;                       // as --device: "", "P:D", "cpu", "gpu" or part of a name
+    std::string device;                       // as --device: "", numbers, names, several with commas
     std::string camera;                       // as --camera: "", a name or "ex,ey,ez,tx,ty,tz[,fov_deg]"
     std::string light;                        // as --light: "" or "x,y,z"
     std::vector<Word> edits;                  // of the first scene's view

@@ -14,6 +14,7 @@
 #include "bench/bench.hpp"
 #include "bench/breakdown.hpp"
 #include "bench/machine.hpp"
+#include "bench/pictures.hpp"
 #include "bench/row.hpp"
 #include "bench/versus.hpp"
 #include "render/ray_blocks.hpp"
@@ -427,6 +428,7 @@ class Contest {
 
 std::vector<BenchRecord> run_case(Stand& stand, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
                                   const MeasureRules& rules, Progress& progress) {
+    if (c.measure == "picture") return measure_pictures(stand, plugins, request, c, rules, progress);
     return Contest(stand, plugins, request, c, rules, progress).run();
 }
 

@@ -17,6 +17,8 @@ BenchReport read_bench_json(const std::string& text);
 std::string bench_table(const BenchReport& report);
 // Of these, where the time of frames goes.
 std::string breakdown_table(const BenchReport& report);
+// Pictures by several devices, by those of one.
+std::string devices_table(const BenchReport& report);
 // And ours by the best of the peers.
 std::string versus_table(const BenchReport& report);
 

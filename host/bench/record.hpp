@@ -43,10 +43,10 @@ struct Versus {
 
 struct BenchRecord {
     // ---- what
-    std::string suite;      // thesis | packets | accel | scale | cpu | quick | breakdown
+    std::string suite;      // thesis | packets | accel | scale | cpu | devices | quick | breakdown
     std::string case_name;  // "bunny/primary"; rows of one case were measured A B A B, so they may be compared
     std::string scene;      // "bunny"
-    std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown
+    std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture
     std::string variant;    // tells the rows of a case apart on one device: "now", "then", "bvh2", "4x4, 16 lanes"
     std::string peer;       // "" for ours, else "embree packet16 high"
 

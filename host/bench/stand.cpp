@@ -67,6 +67,7 @@ void Stand::load(const SuiteScene& scene, int width, int height, Progress& progr
     peer_mesh_.reset();
     rays_.clear();
     held_.clear();
+    together_.reset();
     loaded_ = {};
     width_ = width;
     height_ = height;
@@ -89,6 +90,15 @@ const Stand::Held& Stand::prepare(size_t device, const Settings& settings, Progr
         held.frames = std::make_shared<Frames>(places_[device]->device);
     }
     return held;
+}
+
+std::shared_ptr<const MultiPrepared> Stand::prepare_all(const Settings& settings, Progress& progress) {
+    if (!together_) {
+        Devices devices;
+        for (const auto& place : places_) devices.push_back(place->device);
+        together_ = std::make_unique<MultiPreparer>(plugins_, devices);
+    }
+    return together_->prepare(loaded_.scene, settings, progress);
 }
 
 const RaySet& Stand::rays(const std::string& kind, const Held& held) {

@@ -8,7 +8,7 @@
 
 #include "bench/peer.hpp"
 #include "bench/suite.hpp"
-#include "render/renderer.hpp"
+#include "render/multi_frames.hpp"
 
 namespace clarity {
 
@@ -36,6 +36,9 @@ class Stand {
     // Kept until the next scene. Throws what Preparer::prepare throws.
     const Held& prepare(size_t device, const Settings& settings, Progress& progress);
 
+    // On all devices, which are to share pictures.
+    std::shared_ptr<const MultiPrepared> prepare_all(const Settings& settings, Progress& progress);
+
     // Made once a scene, from the hits that `held` finds.
     const RaySet& rays(const std::string& kind, const Held& held);
 
@@ -48,6 +51,7 @@ class Stand {
     const PluginRegistry& plugins_;
     const ImportOptions import_;
     std::vector<std::unique_ptr<Place>> places_;
+    std::unique_ptr<MultiPreparer> together_;
     LoadedScene loaded_;
     int width_ = 0, height_ = 0;
     std::map<std::string, Held> held_;

@@ -56,6 +56,7 @@ class Planner {
         if (name == "scale") return scale();
         if (name == "large") return large();
         if (name == "cpu") return cpu();
+        if (name == "devices") return devices();
         if (name == "quick") return quick();
         std::string known;
         for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
@@ -263,6 +264,26 @@ class Planner {
             }
     }
 
+    // One picture by one device, by two of them, and so on. The structure is what the devices are best at, unless it is named.
+    void devices() {
+        const auto usual = [&](Variant& variant, const char* key, const char* value) {
+            const auto is_key = [&](const auto& pair) { return pair.first == key; };
+            if (std::none_of(request_.settings.begin(), request_.settings.end(), is_key))
+                variant.settings.emplace_back(key, value);
+        };
+        const std::vector<size_t> scenes = chosen_or(catalog_.shared());
+        limit(90.0 * double(scenes.size()));
+        for (const size_t scene : scenes) {
+            BenchCase& c = add_case("devices", scene, "picture", "picture");
+            c.variants = {{"", "", {}, false}};
+            if (!request_.accels.empty()) c.variants = every_accel();
+            for (Variant& variant : c.variants) {
+                usual(variant, "size", "3840x2160");
+                usual(variant, "spp", "16");
+            }
+        }
+    }
+
     void quick() {
         limit(55);
         const auto frame_case = [&](size_t scene) {
@@ -300,7 +321,7 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "large", "cpu", "quick"};
+    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "large", "cpu", "devices", "quick"};
     return names;
 }
 

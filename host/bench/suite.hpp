@@ -11,7 +11,7 @@ namespace clarity {
 
 // What the command line asks for.
 struct BenchRequest {
-    std::vector<std::string> suites;                            // thesis | packets | accel | scale | large | cpu | quick
+    std::vector<std::string> suites;                            // as suite_names() has them
     std::vector<std::string> files;                             // scenes instead of a suite's own; without a suite: accel
     std::vector<std::string> accels;                            // ID[,key=value...]; empty: every one found
     std::vector<std::pair<std::string, std::string>> settings;  // key, value: for all cases, where they do not set it
@@ -39,7 +39,7 @@ enum class Timing { timed, counted_only };
 
 struct BenchCase {
     std::string suite, name;
-    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown
+    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture
     size_t scene = 0;     // of Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> peer_qualities;  // of peers, where they can trace the scene

@@ -18,7 +18,8 @@ bool ends_with(const std::string& text, const std::string& end) {
 
 double speed(const BenchRecord& record) {
     if (record.measure == "build") return record.mtris_per_s;
-    return record.measure == "frame" || record.measure == "whitted" ? record.fps : record.mrays_per_s;
+    const bool whole = record.measure == "frame" || record.measure == "whitted" || record.measure == "picture";
+    return whole ? record.fps : record.mrays_per_s;
 }
 
 void compare_with_peers(std::vector<BenchRecord>& rows) {

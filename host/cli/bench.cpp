@@ -40,7 +40,9 @@ BenchRequest make_request(const BenchCommand& command) {
     }
     request.settings.insert(request.settings.end(), command.settings.begin(), command.settings.end());
     for (const auto& [key, value] : request.settings) {
-        if (key == "spp" && value != "1") throw Error(Exit::usage, "--spp " + value + ": frames of one sample are timed");
+        const bool whole = request.suites == std::vector<std::string>{"devices"};
+        if (key == "spp" && value != "1" && !whole)
+            throw Error(Exit::usage, "--spp " + value + ": frames of one sample are timed");
         if (key == "aov" && value != "color") throw Error(Exit::usage, "--aov " + value + ": frames are timed in colour only");
     }
     request.only = command.only;
@@ -118,7 +120,8 @@ void write(const BenchCommand& command, const BenchReport& report) {
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command) {
     const BenchRequest request = make_request(command);
     if (request.suites.empty() && request.files.empty() && !request.breakdown && command.join_files.empty())
-        throw Error(Exit::usage, "bench: name a suite (thesis, packets, accel, scale, large, cpu, quick) or a scene file");
+        throw Error(Exit::usage,
+                    "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, quick) or a scene file");
     check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);
     if (command.list) {

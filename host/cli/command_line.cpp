@@ -92,7 +92,9 @@ void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>
 }
 
 void add_trace(CLI::App& app, TraceOptions& trace) {
-    single(app.add_option("--device", trace.device, "P:D as `clarity devices` lists them, cpu, gpu or part of a name"))
+    single(app.add_option("--device", trace.device,
+                          "Numbers as `clarity devices` lists them, P:D, cpu, gpu, part of a name; several share the picture: "
+                          "0,1 or gpus or all; cpu/2 is a CPU in two parts"))
         ->type_name("D");
     single(app.add_option("--accel", trace.accel, "Acceleration structure with its parameters (`clarity plugins` lists them)"))
         ->type_name("ID[,key=value...]")
@@ -131,8 +133,8 @@ void add_render(CLI::App& app, RenderOptions& render) {
 void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("what", bench.what,
                    "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M "
-                   "triangles), cpu (side by side with the "
-                   "best of each peer), quick (a minute); or scene files, with a suite: instead of its own")
+                   "triangles), cpu (side by side with the best of each peer), devices (one picture by one, two, ... of "
+                   "--device), quick (a minute); or scene files, with a suite: instead of its own")
         ->type_name("SUITE|SCENE");
     single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
         ->type_name("D[,D...]");

@@ -239,7 +239,8 @@ class RenderJob {
         double device_ms = 0, wall_ms = 0;
         const auto all = unsigned(settings_.spp);
         std::vector<DeviceShare> devices;
-        for (unsigned sample = 0, next = 1; sample < all; sample += std::exchange(next, batch(wall_ms, sample + next))) {
+        for (unsigned sample = 0, next = std::min(all, 2u); sample < all;
+             sample += std::exchange(next, batch(wall_ms, sample + next))) {
             const double at = from + share * sample / all;
             // A short sample is one launch and asks nobody.
             if (!progress.report(float(at))) return sample;

@@ -15,6 +15,14 @@ Device::Device(DeviceInfo info) : info_(std::move(info)) {
     }
 }
 
+Device::Device(DeviceInfo info, cl::Context context) : info_(std::move(info)), context_(std::move(context)) {
+    queue_ = cl::CommandQueue(context_, info_.cl_device, CL_QUEUE_PROFILING_ENABLE);
+}
+
+std::shared_ptr<Device> Device::with_own_queue() const {
+    return std::shared_ptr<Device>(new Device(info_, context_));
+}
+
 void Device::close() {
     open_ = false;
     queue_ = cl::CommandQueue();

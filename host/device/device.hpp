@@ -43,6 +43,8 @@ class Device {
     const DeviceInfo& info() const { return info_; }
     cl::Context& context() { return context_; }
     cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
+    // The same device and context with a queue of its own, so that kernels of both may run side by side.
+    std::shared_ptr<Device> with_own_queue() const;
     // Gives context and queue back; nothing may use them afterwards. info() stays.
     void close();
     bool is_open() const { return open_; }
@@ -50,6 +52,7 @@ class Device {
     unsigned preferred_lanes() const;
 
  private:
+    Device(DeviceInfo info, cl::Context context);
     DeviceInfo info_;
     cl::Context context_;
     cl::CommandQueue queue_;

@@ -108,9 +108,7 @@ void FilmKernels::show_rows(const cl::Buffer& film, unsigned width, unsigned hei
     device_->queue().finish();
     if (!times) return;
     times->push_back({"tone map", event_ms(mapped)});
-    const auto begin = reads.front().getProfilingInfo<CL_PROFILING_COMMAND_START>(),
-               end = reads.back().getProfilingInfo<CL_PROFILING_COMMAND_END>();
-    times->push_back({"read-back", 1e-6 * double(end - begin)});
+    times->push_back({"read-back", span_ms(reads.front(), reads.back())});
 }
 
 void FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba,

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "render/guarded.hpp"
+
 namespace clarity {
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
@@ -17,8 +19,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
         queue.finish();
         const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         times.wall_ms += wall;
-        times.device_ms += 1e-6 * double(piece.last.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                         piece.first.getProfilingInfo<CL_PROFILING_COMMAND_START>());
+        times.device_ms += span_ms(piece.first, piece.last, wall);
         first += count;
         ++times.launches;
         pace_.took(count, wall);

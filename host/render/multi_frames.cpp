@@ -41,11 +41,11 @@ struct MultiFrames::Impl {
     }
 };
 
-MultiFrames::MultiFrames(const Devices& devices) : impl_(std::make_unique<Impl>()) {
-    if (devices.size() == 1)
+MultiFrames::MultiFrames(const Devices& devices, unsigned queues) : impl_(std::make_unique<Impl>()) {
+    if (devices.size() == 1 && queues < 2)
         impl_->alone = std::make_unique<Frames>(devices[0]);
     else
-        impl_->shared = std::make_unique<SharedPicture>(devices);
+        impl_->shared = std::make_unique<SharedPicture>(devices, queues);
 }
 MultiFrames::~MultiFrames() = default;
 
@@ -111,7 +111,10 @@ FalseColorScale MultiFrames::read_display(const Settings& settings, uint8_t* rgb
         merge_times(stats->kernels, times[i]);
         for (DeviceShare& share : stats->devices)
             if (share.id == im.shared->device(i)->info().id())
-                for (const KernelTime& time : times[i]) (time.name == "tone map" ? share.tone_map_ms : share.read_ms) = time.ms;
+                for (const KernelTime& time : times[i]) {
+                    double& ms = time.name == "tone map" ? share.tone_map_ms : share.read_ms;
+                    ms = std::max(ms, time.ms);
+                }
     }
     return {};
 }

@@ -8,12 +8,14 @@
 
 namespace clarity {
 
-Devices open_devices(const std::vector<DeviceInfo>& infos) {
+Devices open_devices(const std::vector<DeviceInfo>& infos, const Devices& open) {
     Devices devices;
     std::vector<Error> failures;
     for (const DeviceInfo& info : infos) {
+        const auto same = [&](const auto& device) { return device->info().id() == info.id(); };
+        const auto found = std::find_if(open.begin(), open.end(), same);
         try {
-            devices.push_back(std::make_shared<Device>(info));
+            devices.push_back(found == open.end() ? std::make_shared<Device>(info) : *found);
         } catch (const Error& e) {
             failures.push_back(e);
         }

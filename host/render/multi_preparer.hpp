@@ -9,8 +9,9 @@ namespace clarity {
 
 using Devices = std::vector<std::shared_ptr<Device>>;
 
-// One that cannot be opened is a warning, as long as another can. Throws Error(no_device) of the first if none can.
-Devices open_devices(const std::vector<DeviceInfo>& infos);
+// One that cannot be opened is a warning, as long as another can. Throws Error(no_device) of the first if none can. open: those
+// among them are taken as they are, since one context a device is enough.
+Devices open_devices(const std::vector<DeviceInfo>& infos, const Devices& open = {});
 std::vector<DeviceInfo> infos_of(const Devices& devices);
 
 // "NVIDIA H200", or "2 x NVIDIA H200", "NVIDIA H200 + AMD EPYC"; parts of a CPU are not told apart.

@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "base/log.hpp"
+#include "render/guarded.hpp"
 #include "render/kernel_source.hpp"
 
 namespace clarity {
@@ -12,9 +13,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// From a GPU a strip is read back by a copy of its own, which costs a few microseconds: so many bytes take as long over PCIe.
-constexpr unsigned kStripBytes = 1u << 17;
-constexpr unsigned kStripsEach = 16;  // at least so many for each device, where the picture has them
+constexpr unsigned kMostStrips = 256;  // about so many: enough to balance devices, and few to keep account of
+
+// A GPU is not full while the slowest rays of a launch end, and idles while the host sees to the next one: a tenth of half a
+// sample of 2 ms. With two queues the other one's kernel runs meanwhile.
+unsigned queues_for(const DeviceInfo& info) {
+    return info.cpu ? 1 : 2;
+}
 
 double ms_since(Clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
@@ -63,21 +68,28 @@ void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& on
     }
 }
 
-SharedPicture::SharedPicture(const Devices& devices)
-    : members_(devices.size()), dealer_(devices.size()), threads_(devices.size()) {
+SharedPicture::SharedPicture(const Devices& devices, unsigned queues) {
     std::vector<Error> failures;
-    for (size_t i = 0; i < devices.size(); ++i) {
-        members_[i].device = devices[i];
+    for (const std::shared_ptr<Device>& device : devices) {
         try {
-            members_[i].frames = std::make_unique<Frames>(devices[i]);
+            std::vector<Member> own(queues > 0 ? queues : queues_for(device->info()));
+            for (size_t i = 0; i < own.size(); ++i) {
+                own[i].device = device;
+                own[i].first_queue = i == 0;
+                own[i].frames = std::make_unique<Frames>(
+                    i == 0 ? device : guarded(*device, "making a queue", [&] { return device->with_own_queue(); }));
+            }
+            for (Member& member : own) members_.push_back(std::move(member));
         } catch (const Error& error) {
             if (error.code() == Exit::kernel_build_failed) throw;
             failures.push_back(error);
         }
     }
-    if (failures.size() == devices.size()) throw failures.front();
+    if (members_.empty()) throw failures.front();
     for (const Error& error : failures)
         log(LogLevel::warning, std::string(error.what()) + "; the other devices go on without it");
+    dealer_ = std::make_unique<StripDealer>(members_.size());
+    threads_ = std::make_unique<DeviceThreads>(members_.size());
 }
 
 size_t SharedPicture::working() const {
@@ -91,19 +103,24 @@ unsigned SharedPicture::samples() const {
     return least == ~0u ? 0 : least;
 }
 
-void SharedPicture::fail(Member& member, const Error& error) {
+void SharedPicture::fail(const Device& device, const Error& error) {
     last_failure_ = error;
-    member.frames.reset();
-    member.strips.clear();
-    member.rows = {};
-    if (working() > 0)
-        log(LogLevel::warning, "device " + member.device->info().id() + " takes no further part: " + error.what() +
+    bool known = true;
+    for (Member& member : members_) {
+        if (member.device.get() != &device) continue;
+        known &= !member.frames;
+        member.frames.reset();
+        member.strips.clear();
+        member.rows = {};
+    }
+    if (working() > 0 && !known)
+        log(LogLevel::warning, "device " + device.info().id() + " takes no further part: " + error.what() +
                                    "; the other devices go on without it");
 }
 
 // work(i) on each device that takes part; one that fails is out. Throws Cancelled, and what is no device's failure.
 void SharedPicture::on_all(const std::function<void(size_t)>& work) {
-    const auto thrown = threads_.run([&](size_t i) {
+    const auto thrown = threads_->run([&](size_t i) {
         if (members_[i].works()) work(i);
     });
     bool cancelled = false;
@@ -115,10 +132,10 @@ void SharedPicture::on_all(const std::function<void(size_t)>& work) {
             cancelled = true;
         } catch (const Error& error) {
             if (error.code() != Exit::failed && error.code() != Exit::no_device) throw;
-            fail(members_[i], error);
+            fail(*members_[i].device, error);
         } catch (const cl::Error& error) {
-            fail(members_[i], Error(Exit::failed, members_[i].device->info().name + ": " + error.what() +
-                                                      " failed with OpenCL error " + std::to_string(error.err())));
+            fail(*members_[i].device, Error(Exit::failed, members_[i].device->info().name + ": " + error.what() +
+                                                              " failed with OpenCL error " + std::to_string(error.err())));
         }
     }
     if (cancelled) throw Cancelled();
@@ -138,14 +155,15 @@ void SharedPicture::read(const std::function<void(size_t, Frames&)>& work) {
 }
 
 // A new picture's strips. They begin where every device's rows of work-groups do.
-void SharedPicture::cut() {
-    unsigned unit = 1, taking = 0;
-    bool gpus = false, alike = true;
+void SharedPicture::cut(bool one_sample) {
+    unsigned unit = 1;
+    bool alike = true;
     const DeviceInfo* first = nullptr;
     std::vector<bool> takes_part;
     for (Member& member : members_) {
         const auto* own = prepared_->of(member.device);
-        member.prepared = own ? *own : nullptr;
+        // A second queue hides ends of launches behind the next sample's, so a picture of one sample has no use for it.
+        member.prepared = own && (member.first_queue || !one_sample) ? *own : nullptr;
         member.strips.clear();
         member.rows = {};
         member.samples = 0;
@@ -155,14 +173,11 @@ void SharedPicture::cut() {
         if (!first) first = &info;
         alike &= info.compute_units == first->compute_units && info.driver == first->driver && info.parts == first->parts &&
                  (info.parts > 0 || info.name == first->name);
-        gpus |= !info.cpu;
         unit = std::lcm(unit, row_height(*member.prepared, *member.device));
-        ++taking;
     }
-    if (taking == 0) throw last_failure_;
-    const auto height = unsigned(settings_.height), row_bytes = unsigned(settings_.width) * 4;
-    const unsigned units = gpus ? divided_up(kStripBytes, unit * row_bytes) : 1,
-                   most = std::max(1u, height / unit / (kStripsEach * taking)), strip_height = unit * std::min(units, most);
+    if (!first) throw last_failure_;
+    const auto height = unsigned(settings_.height);
+    const unsigned strip_height = unit * std::max(1u, height / unit / kMostStrips);
     strip_count_ = divided_up(height, strip_height);
     for (Member& member : members_) {
         if (!member.works()) continue;
@@ -170,7 +185,7 @@ void SharedPicture::cut() {
         member.rows_in_strip = strip_height / row;
         member.rows_in_picture = divided_up(height, row);
     }
-    dealer_.begin(strip_count_, takes_part, alike);
+    dealer_->begin(strip_count_, takes_part, alike);
 }
 
 // Whether what is in the films is of such a picture. A device that takes no part any more loses its strips.
@@ -210,13 +225,13 @@ void SharedPicture::trace_part(size_t index, unsigned sample, unsigned end, bool
     const auto begin = Clock::now();
     for (unsigned s = sample; s < end; ++s) {
         if (fresh && s == sample) {
-            for (auto strips = dealer_.next(index); !strips.empty(); strips = dealer_.next(index)) {
+            for (auto strips = dealer_->next(index); !strips.empty(); strips = dealer_->next(index)) {
                 give(member, strips);
-                dealer_.took(index, strips.size(), trace_rows(member, s, progress));
+                dealer_->took(index, strips.size(), trace_rows(member, s, progress));
             }
         } else {
             member.rows.begin = 0;
-            dealer_.took(index, member.strips.size(), trace_rows(member, s, progress));
+            dealer_->took(index, member.strips.size(), trace_rows(member, s, progress));
         }
         if (count_rays && !member.strips.empty()) {
             FrameStats counted;
@@ -240,7 +255,7 @@ FrameStats SharedPicture::trace(const std::shared_ptr<const MultiPrepared>& prep
     settings_ = settings;
     view_ = view;
     if (fresh)
-        cut();
+        cut(end - sample == 1);
     else
         recover(progress);
     for (Member& member : members_) {
@@ -261,7 +276,7 @@ std::vector<std::vector<unsigned>> SharedPicture::orphans() const {
     std::vector<double> owed(members_.size(), 0.0);
     for (unsigned strip = 0; strip < strip_count_; ++strip) {
         if (owned[strip]) continue;
-        for (size_t i = 0; i < members_.size(); ++i) owed[i] += members_[i].works() ? std::max(dealer_.share(i), 1e-6) : -1.0;
+        for (size_t i = 0; i < members_.size(); ++i) owed[i] += members_[i].works() ? std::max(dealer_->share(i), 1e-6) : -1.0;
         const size_t to = size_t(std::max_element(owed.begin(), owed.end()) - owed.begin());
         owed[to] -= 1;
         more[to].push_back(strip);
@@ -290,14 +305,13 @@ FrameStats SharedPicture::gathered(double wall_ms) const {
         add_rays(sum, one);
         sum.device_ms = std::max(sum.device_ms, one.device_ms);
         merge_times(sum.kernels, one.kernels);
-        DeviceShare share;
-        share.id = member.device->info().id();
-        share.name = member.device->info().name;
-        share.share = double(member.rows.rows.size()) / member.rows_in_picture;
-        share.device_ms = one.device_ms;
-        share.wall_ms = member.wall_ms;
-        share.launches = one.launches;
-        sum.devices.push_back(share);
+        const DeviceInfo& info = member.device->info();
+        if (sum.devices.empty() || sum.devices.back().id != info.id()) sum.devices.push_back({info.id(), info.name});
+        DeviceShare& share = sum.devices.back();
+        share.share += double(member.rows.rows.size()) / member.rows_in_picture;
+        share.device_ms = std::max(share.device_ms, one.device_ms);
+        share.wall_ms = std::max(share.wall_ms, member.wall_ms);
+        share.launches += one.launches;
     }
     sum.samples = samples();
     sum.wall_ms = wall_ms;

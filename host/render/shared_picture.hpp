@@ -14,8 +14,8 @@ namespace clarity {
 // Used from one thread. Devices that fail are out for good; functions throw when none is left.
 class SharedPicture {
  public:
-    // Throws what Frames throws, if no device can hold a film.
-    explicit SharedPicture(const Devices& devices);
+    // queues: of each device; 0: what suits it. Throws what Frames throws, if no device can hold a film.
+    SharedPicture(const Devices& devices, unsigned queues);
 
     // Samples [sample, end). See MultiFrames::trace().
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
@@ -25,14 +25,17 @@ class SharedPicture {
     // work(i, frames of device i) on each that has something of the picture, until all of it is done.
     void read(const std::function<void(size_t, Frames&)>& work);
 
+    // Queues of devices.
     size_t size() const { return members_.size(); }
     const std::shared_ptr<Device>& device(size_t i) const { return members_[i].device; }
     bool works(size_t i) const { return members_[i].works(); }
 
  private:
+    // A queue of a device, and what is traced in it.
     struct Member {
         std::shared_ptr<Device> device;
         std::unique_ptr<Frames> frames;            // null: it failed
+        bool first_queue = true;                   // of its device
         std::shared_ptr<const Prepared> prepared;  // null: it takes no part
         std::vector<unsigned> strips;
         SharedRows rows;  // of work-groups, of these strips
@@ -42,7 +45,7 @@ class SharedPicture {
         double wall_ms = 0;
         bool works() const { return frames && prepared; }
     };
-    void cut();
+    void cut(bool one_sample);
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& strips);
     double trace_rows(Member& member, unsigned sample, Progress& progress);
@@ -50,19 +53,19 @@ class SharedPicture {
     std::vector<std::vector<unsigned>> orphans() const;
     void recover(Progress& progress);
     void on_all(const std::function<void(size_t)>& work);
-    void fail(Member& member, const Error& error);
+    void fail(const Device& device, const Error& error);
     size_t working() const;
     FrameStats gathered(double wall_ms) const;
 
     std::vector<Member> members_;
-    StripDealer dealer_;
+    std::unique_ptr<StripDealer> dealer_;
     // What is in the films.
     std::shared_ptr<const MultiPrepared> prepared_;
     Settings settings_;
     View view_;
     unsigned strip_count_ = 0;
     Error last_failure_{Exit::failed, "no device takes part"};
-    DeviceThreads threads_;  // last: it goes first
+    std::unique_ptr<DeviceThreads> threads_;  // last: they go first
 };
 
 // Adds up what was traced one after the other; times of kernels by their names.

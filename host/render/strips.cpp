@@ -19,7 +19,7 @@ void StripDealer::begin(unsigned strip_count, const std::vector<bool>& takes_par
     left_.clear();
     const auto taking = static_cast<unsigned>(std::count(takes_part.begin(), takes_part.end(), true));
     // What is dealt by turns costs a launch each, what is set aside the wait for who had too much.
-    const unsigned few = taking < 2 ? 0 : !shares_.empty() ? strip_count / 32 : alike ? strip_count / 8 : strip_count;
+    const unsigned few = !shares_.empty() ? taking : alike ? strip_count / 16 : strip_count;
     set_aside(strip_count, taking < 2 ? 0 : std::min(strip_count, std::max(few, taking)));
 }
 

@@ -49,7 +49,7 @@ class BenchCommand : public testing::Test {
 TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
     RunOptions nothing;
     nothing.environment["CLARITY_DEVICE"] = "no such device";
-    for (const char* suite : {"thesis", "packets", "accel", "scale", "quick"}) {
+    for (const char* suite : {"thesis", "packets", "accel", "scale", "devices", "quick"}) {
         const ProgramResult result = bench({suite, "--list"}, nothing);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_NE(result.out.find(suite), std::string::npos) << result.out;
@@ -119,6 +119,28 @@ TEST_F(BenchCommand, PeersTakePartWhereTheSceneIsTriangles) {
     const ProgramResult alone = quick({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--json", file("b.json")});
     ASSERT_EQ(alone.exit_code, 0) << alone.err;
     for (const Json& record : records("b.json")) EXPECT_TRUE(record["peer"].is_null());
+}
+
+TEST_F(BenchCommand, DevicesShareAPicture) {
+    const ProgramResult result =
+        quick({"devices", file("tiny.scene"), "--device", "cpu/2", "--accel", "bvh2", "--spp", "2", "--json", file("a.json")});
+    if (result.exit_code == 3) GTEST_SKIP() << "NOT TESTED: " << result.err;
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    const Json list = records("a.json");
+    ASSERT_EQ(list.size(), 2u);
+    for (const Json& record : list) {
+        EXPECT_EQ(record["measure"], "picture");
+        ASSERT_EQ(record["status"], "ok") << record.dump();
+        EXPECT_EQ(record["rays"]["primary"], 64 * 48 * 2);
+        EXPECT_GT(record["fps"], 0);
+    }
+    EXPECT_EQ(list[0]["variant"], "bvh2, 1 device");
+    EXPECT_EQ(list[1]["variant"], "bvh2, 2 devices");
+    EXPECT_EQ(list[0]["rays"], list[1]["rays"]);
+    EXPECT_EQ(list[1]["threads"], list[0]["threads"].get<int>() * 2);
+    EXPECT_TRUE(list[0]["versus"].is_null());
+    EXPECT_GT(list[1]["versus"]["ratio"], 0) << "times as fast as one";
+    EXPECT_NE(result.out.find("x one device"), std::string::npos) << result.out;
 }
 
 TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {

@@ -59,13 +59,15 @@ Team *SharedPictures::one_ = nullptr, *SharedPictures::two_ = nullptr;
 TEST_F(SharedPictures, OfEveryPacketAndLanes) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const auto& [lanes, packet] : std::vector<std::pair<const char*, const char*>>{
-             {"auto", "auto"}, {"1", "1x1"}, {"4", "3x5"}, {"8", "8x8"}, {"16", "4x4"}, {"16", "16x16"}}) {
-        const Settings settings = make_settings({{"lanes", lanes}, {"packet", packet}, {"size", "240x181"}, {"tone", "agx"}});
+             {"auto", "auto"}, {"1", "1x1"}, {"4", "3x5"}, {"8", "8x8"}, {"16", "16x16"}}) {
+        const Settings settings =
+            make_settings({{"lanes", lanes}, {"packet", packet}, {"size", "240x181"}, {"tone", "agx"}, {"accel", "bvh2"}});
         expect_same(scene, settings, std::string(lanes) + " lanes, packet " + packet);
     }
     // As a GPU runs it, a work-item a pixel.
-    expect_same(scene, make_settings({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}}), "groups of 64");
-    expect_same(scene, make_settings({{"tracer", "wavefront"}, {"size", "160x120"}}), "wavefront", 2);
+    expect_same(scene, make_settings({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}, {"accel", "bvh2"}}),
+                "groups of 64");
+    expect_same(scene, make_settings({{"tracer", "wavefront"}, {"size", "160x120"}, {"accel", "bvh2"}}), "wavefront", 2);
 }
 
 TEST_F(SharedPictures, OfOddSizes) {
@@ -119,6 +121,32 @@ TEST_F(SharedPictures, OfUnlikeDevices) {
     for (int picture = 0; picture < 3; ++picture) {
         unlike.trace(scene, settings, view, 0, 2);
         EXPECT_EQ(differing(one_->frames.read_values().pixels, unlike.frames.read_values().pixels), 0u) << picture;
+    }
+}
+
+// As GPUs do it: several queues a device, and so several films.
+TEST_F(SharedPictures, InSeveralQueues) {
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    const Settings settings = make_settings({{"size", "160x230"}});
+    const View view = make_view(*scene, 160.0f / 230.0f);
+    for (const char* choice : {"cpu", "cpu/2"}) {
+        Team team(choice, 2);
+        for (int picture = 0; picture < 2; ++picture) {
+            one_->trace(scene, settings, view, 0, 3);
+            const FrameStats stats = team.trace(scene, settings, view, 0, 3);
+            ASSERT_EQ(stats.devices.size(), team.devices.size()) << "queues of one device are one share";
+            double whole = 0;
+            for (const DeviceShare& share : stats.devices) whole += share.share;
+            EXPECT_NEAR(whole, 1, 1e-9);
+            EXPECT_EQ(stats.primary, 160u * 230u * 3u);
+            EXPECT_GE(stats.launches, 6 * team.devices.size()) << "both queues take part";
+            EXPECT_EQ(differing(one_->frames.read_values().pixels, team.frames.read_values().pixels), 0u) << choice;
+            EXPECT_TRUE(one_->frames.read_display(settings).pixels == team.frames.read_display(settings).pixels) << choice;
+        }
+        // One sample is for one queue; those that follow stay there.
+        for (unsigned sample = 0; sample < 2; ++sample) team.trace(scene, settings, view, sample);
+        one_->trace(scene, settings, view, 0, 2);
+        EXPECT_EQ(differing(one_->frames.read_values().pixels, team.frames.read_values().pixels), 0u) << choice;
     }
 }
 

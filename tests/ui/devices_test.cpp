@@ -64,5 +64,33 @@ TEST_F(Devices, OneThatIsGoneCostsAMessage) {
     EXPECT_FALSE(window->state()["behind"]);
 }
 
+// A CPU in parts: two devices that share each picture, which stays what it was.
+TEST_F(Devices, SeveralShareAPicture) {
+    const auto window = open();
+    const std::string first = window->state()["device"];
+    const Pixels before = window->picture();
+    ASSERT_EQ(window->command("device " + first + "/2"), "");
+    window->settle();
+    if (window->state()["device"] == first) GTEST_SKIP() << "NOT TESTED: " << std::string(window->state()["message"]);
+    EXPECT_EQ(window->state()["message"], "");
+    EXPECT_EQ(window->state()["device"], first + "/2.0," + first + "/2.1");
+    EXPECT_EQ(difference(before, window->picture(), 0), 0);
+    // Moving, refining, quantities, a pixel's rays and an edit go on as with one.
+    window->key("Left");
+    window->settle();
+    EXPECT_GT(difference(before, window->picture()), 0.01);
+    const Pixels moved = window->picture();
+    for (const char* words : {"set aov t", "set aov color", "set spp 4", "set lanes 4", "set depth 2"}) {
+        ASSERT_EQ(window->command(words), "");
+        window->settle();
+        EXPECT_EQ(window->state()["message"], "") << words;
+    }
+    for (const char* words : {"set spp 1", "set lanes auto", "set depth 5"}) ASSERT_EQ(window->command(words), "");
+    ASSERT_EQ(window->command("device " + first), "");
+    window->settle();
+    EXPECT_EQ(window->state()["device"], first);
+    EXPECT_EQ(difference(moved, window->picture(), 0), 0);
+}
+
 }  // namespace
 }  // namespace clarity
