@@ -21,9 +21,9 @@ double since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-Settings resolve(const Settings& asked, const Device& device, const Scene& scene) {
+Settings resolve(const Settings& asked, const Device& device) {
     Settings s = asked;
-    if (s.tracer == "auto") s.tracer = !device.info().cpu && refracts(scene, {}) ? "wavefront" : "iterative";
+    if (s.tracer == "auto") s.tracer = "iterative";  // either wins on some scenes: docs/performance.md
     if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
     if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a bundle: cl/bundle.h
     return s;
@@ -140,7 +140,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
     const rt_plugin* plugin = &plugin_of(settings);
     auto next = std::make_shared<Prepared>();
     next->scene = scene;
-    next->settings = resolve(settings, *device_, *scene);
+    next->settings = resolve(settings, *device_);
     try {
         next->accel = built ? std::move(built) : build_or_last(scene, settings, progress);
         if (last_ && last_->scene == scene && last_->accel == next->accel) next->on_device = last_->on_device;
