@@ -67,6 +67,7 @@ TEST_F(SharedPictures, OfEveryPacketAndLanes) {
     // As a GPU runs it, a work-item a pixel.
     expect_same(scene, make_settings({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}, {"accel", "bvh2"}}),
                 "groups of 64");
+    expect_same(scene, make_settings({{"tracer", "wavefront"}, {"size", "160x120"}, {"accel", "bvh2"}}), "wavefront", 2);
 }
 
 TEST_F(SharedPictures, OfOddSizes) {
