@@ -80,6 +80,8 @@ void Stand::load(const SuiteScene& scene, int width, int height, Progress& progr
         throw Error(Exit::failed,
                     "its " + std::to_string(uint64_t(base)) + " triangles are more than " + std::to_string(scene.subdivide_to));
     check_memory(uint64_t(base * n * n));
+    progress.stage("splitting " + scene.source.name);
+    progress.report(-1);
     loaded_.scene = std::make_shared<const Scene>(subdivide(*loaded_.scene, unsigned(n)));
 }
 

@@ -10,8 +10,9 @@ namespace {
 
 constexpr uint64_t kPrimitivesPerNode = 12;
 
-const char kAdvice[] =
+constexpr const char* kAdvice =
     "; take fewer triangles, meshes placed several times instead of copies, or another device (`clarity devices`)";
+constexpr const char* kSmallerNodes = "; take a structure of smaller nodes (cwbvh has the smallest)";
 
 }  // namespace
 
@@ -54,7 +55,8 @@ void check_fits(const std::vector<MemoryPiece>& pieces, const DeviceInfo& device
     for (size_t i = 0; i < std::min<size_t>(largest.size(), 3) && largest[i].bytes > 0; ++i)
         parts += (parts.empty() ? "" : ", ") + largest[i].what + " " + memory_text(largest[i].bytes);
     throw Error(Exit::failed, "the scene does not fit: " + scene + " take at least " + memory_text(total) + " (" + parts +
-                                  "), and " + device.name + " has " + memory_text(device.global_bytes) + kAdvice);
+                                  "), and " + device.name + " has " + memory_text(device.global_bytes) +
+                                  (pieces.size() > 1 && pieces[0].bytes < device.global_bytes ? kSmallerNodes : "") + kAdvice);
 }
 
 }  // namespace clarity

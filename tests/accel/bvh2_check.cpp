@@ -4,9 +4,8 @@
 #include <cfloat>
 #include <cmath>
 #include <sstream>
-#include <unordered_map>
 
-#include "bounds.hpp"
+#include "leaf_tally.hpp"
 
 namespace accel_test {
 namespace {
@@ -23,9 +22,7 @@ class Checker {
           max_leaf_(max_leaf),
           larger_first_(larger_first),
           node_seen_(built.slot_counts[0]),
-          leaf_seen_(built.leaves.size()) {
-        for (uint32_t i = 0; i < input.prims.size(); ++i) prim_of_ref_[input.prims[i].ref] = i;
-    }
+          leaves_(input, built) {}
 
     std::string run() {
         if (built_.leaves.size() != input_.prims.size())
@@ -38,8 +35,7 @@ class Checker {
         if (!why_.str().empty()) return why_.str();
         for (size_t i = 0; i < node_seen_.size(); ++i)
             if (!node_seen_[i]) say() << "node " << i << " belongs to no tree";
-        for (size_t i = 0; i < leaf_seen_.size(); ++i)
-            if (!leaf_seen_[i]) say() << "position " << i << " is in no leaf";
+        if (const std::string missing = leaves_.missing(); !missing.empty()) say() << missing;
         const auto expect = [&](const char* label, double value) {
             const auto found = built_.stats.find(label);
             if (found == built_.stats.end() || found->second != value) say() << "stat " << label << " is not " << value;
@@ -95,21 +91,11 @@ class Checker {
             ++leaf_count_;
             const uint32_t first = BVH2_LEAF_FIRST(child), count = BVH2_LEAF_COUNT(child);
             if (count == 0 || count > max_leaf_) say() << "leaf of " << count << " below node " << index;
-            for (uint32_t i = first; i < first + count; ++i) {
-                if (i >= leaf_seen_.size() || leaf_seen_[i]) {
-                    say() << "position " << i << (i < leaf_seen_.size() ? " is in two leaves" : " is out of range");
-                    return;
-                }
-                leaf_seen_[i] = true;
-                const auto found = prim_of_ref_.find(built_.leaves[i]);
-                const rt_group& group = input_.groups[group_];
-                if (found == prim_of_ref_.end() || found->second < group.first || found->second >= group.first + group.count) {
-                    say() << "position " << i << " holds a ref of another group, or none";
-                    return;
-                }
-                const rt_prim& prim = input_.prims[found->second];
-                prim_of_ref_.erase(found);  // seen: a second one is an error
-                below.add(prim.lo, prim.hi);
+            std::string why;
+            below = leaves_.visit(first, count, group_, why);
+            if (!why.empty()) {
+                say() << why;
+                return;
             }
         } else if (child >= node_seen_.size()) {
             say() << "node " << index << " has child " << child;
@@ -132,8 +118,8 @@ class Checker {
     const bool larger_first_;
     uint32_t group_ = 0, depth_ = 0;
     double leaf_count_ = 0;
-    std::vector<bool> node_seen_, leaf_seen_;
-    std::unordered_map<rt_u32, uint32_t> prim_of_ref_;
+    std::vector<bool> node_seen_;
+    LeafTally leaves_;
     std::ostringstream why_;
 };
 

@@ -4,9 +4,8 @@
 #include <cfloat>
 #include <cmath>
 #include <sstream>
-#include <unordered_map>
 
-#include "bounds.hpp"
+#include "leaf_tally.hpp"
 
 namespace accel_test {
 namespace {
@@ -19,9 +18,7 @@ class Checker {
           max_leaf_(max_leaf),
           traversal_cost_(traversal_cost),
           intersection_cost_(intersection_cost),
-          leaf_seen_(built.leaves.size()) {
-        for (uint32_t i = 0; i < input.prims.size(); ++i) prim_of_ref_[input.prims[i].ref] = i;
-    }
+          leaves_(input, built) {}
 
     std::string run() {
         if (built_.leaves.size() != input_.prims.size())
@@ -39,8 +36,7 @@ class Checker {
         }
         if (!why_.str().empty()) return why_.str();
         if (next_ != built_.slot_counts[0]) say() << built_.slot_counts[0] - next_ << " nodes belong to no tree";
-        for (size_t i = 0; i < leaf_seen_.size(); ++i)
-            if (!leaf_seen_[i]) say() << "position " << i << " is in no leaf";
+        if (const std::string missing = leaves_.missing(); !missing.empty()) say() << missing;
         expect("nodes", static_cast<double>(next_));
         expect("leaves", leaf_count_);
         expect("depth", depth_);
@@ -126,26 +122,12 @@ class Checker {
     }
 
     Bounds visit_leaf(rt_u32 index, rt_u32 child) {
-        Bounds below;
         ++leaf_count_;
         const uint32_t first = BVH8_LEAF_FIRST(child), count = BVH8_LEAF_COUNT(child);
         if (count == 0 || count > max_leaf_) say() << "leaf of " << count << " below node " << index;
-        for (uint32_t i = first; i < first + count; ++i) {
-            if (i >= leaf_seen_.size() || leaf_seen_[i]) {
-                say() << "position " << i << (i < leaf_seen_.size() ? " is in two leaves" : " is out of range");
-                return below;
-            }
-            leaf_seen_[i] = true;
-            const auto found = prim_of_ref_.find(built_.leaves[i]);
-            const rt_group& group = input_.groups[group_];
-            if (found == prim_of_ref_.end() || found->second < group.first || found->second >= group.first + group.count) {
-                say() << "position " << i << " holds a ref of another group, or none";
-                return below;
-            }
-            const rt_prim& prim = input_.prims[found->second];
-            prim_of_ref_.erase(found);  // seen: a second one is an error
-            below.add(prim.lo, prim.hi);
-        }
+        std::string why;
+        const Bounds below = leaves_.visit(first, count, group_, why);
+        if (!why.empty()) say() << why;
         return below;
     }
 
@@ -156,8 +138,7 @@ class Checker {
     uint32_t group_ = 0, depth_ = 0, stack_ = 0;
     rt_u32 next_ = 0;  // node that should come next
     double leaf_count_ = 0, child_count_ = 0, area_cost_ = 0, cost_ = 0, weight_ = 0;
-    std::vector<bool> leaf_seen_;
-    std::unordered_map<rt_u32, uint32_t> prim_of_ref_;
+    LeafTally leaves_;
     std::ostringstream why_;
 };
 

@@ -4,9 +4,8 @@
 #include <bitset>
 #include <cmath>
 #include <sstream>
-#include <unordered_map>
 
-#include "bounds.hpp"
+#include "leaf_tally.hpp"
 
 namespace accel_test {
 namespace {
@@ -14,9 +13,7 @@ namespace {
 class Checker {
  public:
     Checker(const Input& input, const Built& built, uint32_t max_leaf)
-        : input_(input), built_(built), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaf_seen_(built.leaves.size()) {
-        for (uint32_t i = 0; i < input.prims.size(); ++i) prim_of_ref_[input.prims[i].ref] = i;
-    }
+        : input_(input), built_(built), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaves_(input, built) {}
 
     std::string run() {
         if (built_.leaves.size() != input_.prims.size())
@@ -25,8 +22,7 @@ class Checker {
         if (!why_.str().empty()) return why_.str();
         for (size_t i = 0; i < node_seen_.size(); ++i)
             if (!node_seen_[i]) say() << "node " << i << " belongs to no tree";
-        for (size_t i = 0; i < leaf_seen_.size(); ++i)
-            if (!leaf_seen_[i]) say() << "position " << i << " is in no leaf";
+        if (const std::string missing = leaves_.missing(); !missing.empty()) say() << missing;
         expect("nodes", static_cast<double>(node_seen_.size()));
         expect("leaves", leaf_count_);
         expect("depth", depth_);
@@ -125,23 +121,9 @@ class Checker {
     }
 
     Bounds visit_leaf(rt_u32 first, uint32_t count) {
-        Bounds below;
-        for (uint32_t i = first; i < first + count; ++i) {
-            if (i >= leaf_seen_.size() || leaf_seen_[i]) {
-                say() << "position " << i << (i < leaf_seen_.size() ? " is in two leaves" : " is out of range");
-                return below;
-            }
-            leaf_seen_[i] = true;
-            const auto found = prim_of_ref_.find(built_.leaves[i]);
-            const rt_group& group = input_.groups[group_];
-            if (found == prim_of_ref_.end() || found->second < group.first || found->second >= group.first + group.count) {
-                say() << "position " << i << " holds a ref of another group, or none";
-                return below;
-            }
-            const rt_prim& prim = input_.prims[found->second];
-            prim_of_ref_.erase(found);  // seen: a second one is an error
-            below.add(prim.lo, prim.hi);
-        }
+        std::string why;
+        const Bounds below = leaves_.visit(first, count, group_, why);
+        if (!why.empty()) say() << why;
         return below;
     }
 
@@ -150,8 +132,8 @@ class Checker {
     const uint32_t max_leaf_;
     uint32_t group_ = 0, depth_ = 0, stack_ = 0;
     double leaf_count_ = 0;
-    std::vector<bool> node_seen_, leaf_seen_;
-    std::unordered_map<rt_u32, uint32_t> prim_of_ref_;
+    std::vector<bool> node_seen_;
+    LeafTally leaves_;
     std::ostringstream why_;
 };
 

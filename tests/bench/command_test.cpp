@@ -49,7 +49,7 @@ class BenchCommand : public testing::Test {
 TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
     RunOptions nothing;
     nothing.environment["CLARITY_DEVICE"] = "no such device";
-    for (const char* suite : {"thesis", "packets", "accel", "scale", "devices", "quick"}) {
+    for (const char* suite : {"thesis", "packets", "accel", "scale", "large", "devices", "quick"}) {
         const ProgramResult result = bench({suite, "--list"}, nothing);
         EXPECT_EQ(result.exit_code, 0) << result.err;
         EXPECT_NE(result.out.find(suite), std::string::npos) << result.out;
@@ -58,6 +58,10 @@ TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
     const ProgramResult thesis = bench({"thesis", "--list"});
     for (const char* name : {"1_two_triangles/1 step ", "6_2406_triangles/4 steps", "now | then"})
         EXPECT_NE(thesis.out.find(name), std::string::npos) << thesis.out;
+    const ProgramResult large = bench({"large", "--list", "--max-triangles", "100000000"});
+    for (const char* name : {"near_1M/build", "near_10M/diffuse", "near_100M/frame", "bvh4 | cwbvh"})
+        EXPECT_NE(large.out.find(name), std::string::npos) << large.out;
+    EXPECT_EQ(bench({"large", "--list"}).out.find("near_100M/"), std::string::npos);
 }
 
 TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {

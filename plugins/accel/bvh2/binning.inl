@@ -12,16 +12,14 @@ void clear(Bins& bins, uint32_t bin_count) {
     std::memset(bins.count, 0, bin_count * sizeof bins.count[0]);
 }
 
-void bin(const Record* first, const Record* end, const Slices& slices, Bins& bins) {
-    for (const Record* r = first; r != end; ++r) {
-        const Box8 box = box_of(*r);
-        uint32_t b[3];
-        to_index(slices.position(centroid2(box)), b);
-        for (int axis = 0; axis < 3; ++axis) {
-            Bounds& at = bins.box[b[axis]][axis];
-            store_box(at, min(load_box(at), box));
-            ++bins.count[b[axis]][axis];
-        }
+inline void bin_one(const Record& record, const Slices& slices, Bins& bins) {
+    const Box8 box = box_of(record);
+    uint32_t b[3];
+    to_index(slices.position(centroid2(box)), b);
+    for (int axis = 0; axis < 3; ++axis) {
+        Bounds& at = bins.box[b[axis]][axis];
+        store_box(at, min(load_box(at), box));
+        ++bins.count[b[axis]][axis];
     }
 }
 
@@ -31,6 +29,24 @@ void merge(const Bins& from, uint32_t bin_count, Bins& to) {
             store_box(to.box[b][axis], min(load_box(to.box[b][axis]), load_box(from.box[b][axis])));
         store_counts(to.count[b], load_counts(to.count[b]) + load_counts(from.count[b]));
     }
+}
+
+// Neighbours often share a slice, and a box that was just written is waited for: in long ranges they go to two sets by turns.
+constexpr ptrdiff_t kTwoSets = 512;
+
+void bin(const Record* first, const Record* end, const Slices& slices, Bins& bins) {
+    const Slices place = slices;  // whatever is written, it stays in registers
+    const Record* r = first;
+    if (end - first >= kTwoSets) {
+        Bins others;
+        clear(others, place.count);
+        for (; end - r >= 2; r += 2) {
+            bin_one(r[0], place, bins);
+            bin_one(r[1], place, others);
+        }
+        merge(others, place.count, bins);
+    }
+    for (; r != end; ++r) bin_one(*r, place, bins);
 }
 
 void find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, uint32_t primitive_count, Split& split) {
@@ -88,10 +104,9 @@ void scatter(const Record* first, const Record* end, const Slices& slices, const
     char* to_left = reinterpret_cast<char*>(left);
     char* to_right = reinterpret_cast<char*>(right);
     for (const Record* at = first; at != end; ++at) {
-        const Vec4 middle = centroid2(box_of(*at));
+        const Box8 centroid = centroid2_box(box_of(*at));
         // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said.
-        const uint32_t goes_left = any(less(place.position(middle), plane));
-        const Box8 centroid = point(middle);
+        const uint32_t goes_left = any(less(place.position(low(centroid)), plane));
         l = min(l, choose(goes_left, centroid, no_box()));
         r = min(r, choose(goes_left, no_box(), centroid));
         copy(reinterpret_cast<Record*>(to_right + ((to_left - to_right) & -static_cast<ptrdiff_t>(goes_left))), *at);

@@ -57,6 +57,10 @@ inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
 inline Box8 no_box() {
     return {_mm256_set1_ps(FLT_MAX)};
 }
+// The point at twice a box's centroid, as a box.
+inline Box8 centroid2_box(Box8 a) {
+    return {_mm256_sub_ps(a.m, _mm256_permute2f128_ps(a.m, a.m, 1))};
+}
 // A record's, without the ref.
 inline Box8 box_of(const Record& r) {
     return {_mm256_and_ps(_mm256_loadu_ps(r.lo), _mm256_castsi256_ps(_mm256_setr_epi32(-1, -1, -1, 0, -1, -1, -1, -1)))};
@@ -115,6 +119,9 @@ inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
 }
 inline Box8 no_box() {
     return {splat(FLT_MAX), splat(FLT_MAX)};
+}
+inline Box8 centroid2_box(Box8 a) {
+    return {a.lo - a.neg_hi, a.neg_hi - a.lo};
 }
 inline Box8 box_of(const Record& r) {
     return {xyz(load(r.lo)), load(r.neg_hi)};

@@ -7,9 +7,12 @@
 namespace bvh2 {
 namespace {
 
-// 0.5 MiB of records stay in a core's own cache; small scenes are cut finer, so that all cores have some.
+// 0.5 MiB of records stay in a core's own cache; small scenes are cut finer, so that all cores have some to the end.
 uint32_t task_size_for(uint64_t primitive_count) {
-    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 8, 1024, 16384));
+    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 16384));
+}
+uint32_t chunk_size_for(uint64_t primitive_count) {
+    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 8, 1024, 8192));
 }
 
 float unit_scale(const Bounds& box) {
@@ -59,6 +62,7 @@ Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& 
       work_total_(2 * primitive_count + 1),
       share_(share),
       task_size_(task_size_for(primitive_count)),
+      chunk_size_(chunk_size_for(primitive_count)),
       kernels_(kernels()),
       records_{Scratch<Record>(room_), Scratch<Record>(room_)},
       nodes_(room_),
@@ -123,7 +127,7 @@ std::vector<Builder::Pending> Builder::load() {
         uint32_t at = pending.range.begin = pending.room_begin;
         pending.range.end = at + input_.groups[g].count;
         for (; at < pending.range.end; at = chunks.back().end)
-            chunks.push_back({g, at, std::min(at + kChunkSize, pending.range.end), 0, 0, {}, {}, {}, {}});
+            chunks.push_back({g, at, std::min(at + chunk_size_, pending.range.end), 0, 0, {}, {}, {}, {}});
         groups.push_back(pending);
     }
     parallel_for(chunks.size(), [&](uint32_t i) {
@@ -192,7 +196,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
         cuts[i].binned = may_bin(workspace_.rules, range);
         cuts[i].bin_count = bins_for(workspace_.rules, range.count());
         for (uint32_t at = range.begin; at < range.end; at = chunks.back().end)
-            chunks.push_back({i, at, std::min(at + kChunkSize, range.end), 0, 0, {}, {}, {}, {}});
+            chunks.push_back({i, at, std::min(at + chunk_size_, range.end), 0, 0, {}, {}, {}, {}});
         cuts[i].chunk_count = static_cast<uint32_t>(chunks.size()) - cuts[i].first_chunk;
     }
 

@@ -16,8 +16,6 @@
 
 namespace bvh2 {
 
-constexpr uint32_t kChunkSize = 8192;
-
 // A range that one thread builds, and its tree, whose nodes begin at first_node.
 struct Task {
     Range range;
@@ -95,7 +93,7 @@ class Builder {
     const rt_build_input& input_;
     const uint64_t primitive_count_, room_, work_total_;
     const float share_;
-    const uint32_t task_size_;
+    const uint32_t task_size_, chunk_size_;
     const Kernels& kernels_;
     Scratch<Record> records_[2];
     Scratch<bvh2_node> nodes_;

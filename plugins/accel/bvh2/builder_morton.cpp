@@ -12,11 +12,11 @@ void Builder::sort(const std::vector<Pending>& groups) {
     parallel_for(groups.size(), [&](uint32_t g) {
         const Range& group = groups[g].range;
         if (group.count() == 0) return;
-        const uint32_t chunks = (group.count() + kChunkSize - 1) / kChunkSize;
+        const uint32_t chunks = (group.count() + chunk_size_ - 1) / chunk_size_;
         const auto each = [&](auto&& do_chunk) {
             parallel_for(chunks, [&](uint32_t c) {
-                const uint32_t begin = group.begin + c * kChunkSize;
-                do_chunk(begin, std::min(begin + kChunkSize, group.end));
+                const uint32_t begin = group.begin + c * chunk_size_;
+                do_chunk(begin, std::min(begin + chunk_size_, group.end));
             });
         };
         each([&](uint32_t begin, uint32_t end) { make_keys(workspace_, group, begin, end, keys_->data()); });
