@@ -76,7 +76,8 @@ std::string packets_section(const BenchReport& report, const SeriesNames& names)
         paragraph(
             "How many pixels one work-item computes, and how many rays it traces side by side (lanes). The thesis found 4x4 "
             "best on its graphics cards, where every ray of a packet was traced on its own. Here a packet of 4x4 on 16 lanes "
-            "is one ray to the traversal: a node is fetched once for all. bvh8 takes as many such rays together as a packet holds, "
+            "is one ray to the traversal: a node is fetched once for all. bvh8 takes as many such rays together as a packet "
+            "holds, "
             "up to one for each lane.") +
         "<div class=\"grid\">\n";
     for (const auto& scene : scenes.all()) {
