@@ -18,10 +18,9 @@
 RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint capacity, uint count, const rt_point *p,
                         const rt_shade *m, rt_vec weight, vint pixel, rt_tally *tally)
 {
-    const rt_split split = rt_fresnel(p, m);
-    const vfloat least = rt_vfloat(frame->min_weight), heaviest = rt_largest(weight);
-    const uint mirror_bits = rt_bits(p->hits & RT_MASK(split.mirrored * heaviest > least));
-    const uint refract_bits = rt_bits(p->hits & RT_MASK(split.refracted * heaviest > least));
+    vmask mirrored, refracted;
+    const rt_split split = rt_follow(frame, p, m, weight, &mirrored, &refracted);
+    const uint mirror_bits = rt_bits(mirrored), refract_bits = rt_bits(refracted);
 #ifdef RT_INSPECT
     const uint any_mirror = rt_bits(p->hits & RT_MASK(split.mirrored > rt_vfloat(0.0f))),
                any_refract = rt_bits(p->hits & RT_MASK(split.refracted > rt_vfloat(0.0f)));

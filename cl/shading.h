@@ -152,6 +152,17 @@ RT_INLINE rt_split rt_fresnel(const rt_point *p, const rt_shade *m)
     return s;
 }
 
+/* The same, and in which lanes rays go on that weigh enough to be followed. */
+RT_INLINE rt_split rt_follow(const constant rt_frame *frame, const rt_point *p, const rt_shade *m, rt_vec weight, vmask *mirrored,
+                             vmask *refracted)
+{
+    const rt_split split = rt_fresnel(p, m);
+    const vfloat least = rt_vfloat(frame->min_weight), heaviest = rt_largest(weight);
+    *mirrored = p->hits & RT_MASK(split.mirrored * heaviest > least);
+    *refracted = p->hits & RT_MASK(split.refracted * heaviest > least);
+    return split;
+}
+
 RT_INLINE rt_vec rt_mirror_direction(const rt_point *p)
 {
     const rt_vec d = rt_along(p->cos_in * 2.0f, p->normal, p->incoming);

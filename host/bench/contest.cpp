@@ -140,32 +140,53 @@ class Contest {
         row.rays_dropped = stats.dropped;
     }
 
+    // Medians of a frame's parts, by name.
+    using Parts = std::map<std::string, std::vector<double>>;
+    static void put_parts(BenchRecord& row, const Parts& parts) {
+        for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, summarize(ms).median);
+    }
+
+    // A frame from the call to tone-mapped pixels in host memory: ms by the wall clock. What of it the device did nothing for
+    // this frame is `waiting`.
+    double show_frame(const Settings& settings, const Stand::Held& held, const View& view, FrameStats& stats, Parts& parts) {
+        const auto begin = Clock::now();
+        stats = held.frames->trace(*held.prepared, settings, view, 0, false, progress_);
+        held.frames->look_at_display(settings, &stats);
+        const double ms = ms_since(begin);
+        double busy = 0;
+        for (const KernelTime& kernel : stats.kernels) {
+            parts[kernel.name].push_back(kernel.ms);
+            busy += kernel.ms;
+        }
+        parts["waiting"].push_back(std::max(ms - busy, 0.0));
+        return ms;
+    }
+
     void add_frame(Entry& entry, const Settings& settings, const Stand::Held& held) {
-        const auto kernels = std::make_shared<std::map<std::string, std::vector<double>>>();
+        const auto parts = std::make_shared<Parts>();
         entry.once = [=] {
-            const auto begin = Clock::now();
-            FrameStats stats = held.frames->trace(*held.prepared, settings, stand_.view(), 0, false, progress_);
-            held.frames->look_at_display(settings, &stats);
-            const Take take{stats.device_ms, ms_since(begin)};
-            for (const KernelTime& kernel : stats.kernels) (*kernels)[kernel.name].push_back(kernel.ms);
-            return take;
+            FrameStats stats;
+            const double ms = show_frame(settings, held, stand_.view(), stats, *parts);
+            return Take{stats.device_ms, ms};
         };
         entry.finish = [=](BenchRecord& row) {
-            for (const auto& [name, ms] : *kernels) row.kernels_ms.emplace_back(name, summarize(ms).median);
+            put_parts(row, *parts);
             count_rays(row, settings, held, stand_.view());
         };
     }
 
-    // The frame that peers render too: into the film, by both clocks.
+    // The frame that peers render too: into the film, by both clocks, as they do; and shown, for its parts.
     void add_whitted(Entry& entry, const Settings& settings, const Stand::Held& held) {
         const View view = whitted_view(*stand_.scene(), stand_.view());
         whitted_ = whitted_scene(view, settings);
+        const auto parts = std::make_shared<Parts>();
         entry.once = [=] {
-            const auto begin = Clock::now();
-            const FrameStats stats = held.frames->trace(*held.prepared, settings, view, 0, false, progress_);
-            return Take{stats.device_ms, ms_since(begin)};
+            FrameStats stats;
+            show_frame(settings, held, view, stats, *parts);
+            return Take{stats.device_ms, stats.wall_ms};
         };
         entry.finish = [=](BenchRecord& row) {
+            put_parts(row, *parts);
             count_rays(row, settings, held, view);
             compare(row, held.frames->read_values());
         };

@@ -42,6 +42,7 @@ void describe(BenchRecord& row, const AccelData& accel) {
 }
 
 void describe(BenchRecord& row, const Prepared& prepared) {
+    row.tracer = prepared.settings.tracer;
     row.packet_w = prepared.settings.packet_w;
     row.packet_h = prepared.settings.packet_h;
     row.lanes = prepared.settings.lanes;

@@ -12,6 +12,7 @@
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 #include "render/view_buffers.hpp"
+#include "render/wavefront.hpp"
 
 namespace clarity {
 namespace {
@@ -50,11 +51,12 @@ void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const f
 }  // namespace
 
 struct Frames::Impl {
-    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), queries(d) {}
+    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), queries(d), wavefront(d) {}
 
     std::shared_ptr<Device> device;
     FilmKernels film_kernels;
     RayQueries queries;
+    Wavefront wavefront;
     ViewBuffers view;
     GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, counters{CL_MEM_READ_WRITE}, distances{CL_MEM_READ_WRITE};
     unsigned width = 0, height = 0;
@@ -127,21 +129,31 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         }
         im.view.write(queue, *prepared.scene, frame, view, table);
 
-        cl_uint at = 0;
-        im.kernel.setArg(at++, im.view.frame());
-        const cl_uint first_group = at++;
-        im.kernel.setArg(at++, im.film.fit(context, FilmKernels::room(pixels) * film_channels(im.aov) * sizeof(float)));
-        if (program.has_generations()) {
-            im.kernel.setArg(at++, im.counters.fit(context, size_t(packets) * 16));
-            im.kernel.setArg(at++, im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float)));
+        const auto go_on = [&] {
+            if (progress.cancelled()) throw Cancelled();
+        };
+        const cl::Buffer& film = im.film.fit(context, FilmKernels::room(pixels) * film_channels(im.aov) * sizeof(float));
+        if (program.has_generations()) im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float));
+        const unsigned groups = im.groups() - begin;
+        LaunchTimes times;
+        if (program.is_wavefront()) {
+            const auto depth = static_cast<unsigned>(settings.depth);
+            times = im.wavefront.trace(
+                queue, im.launcher,
+                {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film, im.distances.get()},
+                go_on);
+        } else {
+            cl_uint at = 0;
+            im.kernel.setArg(at++, im.view.frame());
+            const cl_uint first_group = at++;
+            im.kernel.setArg(at++, film);
+            if (program.has_generations()) {
+                im.kernel.setArg(at++, im.counters.fit(context, size_t(packets) * 16));
+                im.kernel.setArg(at++, im.distances.get());
+            }
+            im.view.bind(*prepared.on_device, im.kernel, at);
+            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on, begin);
         }
-        im.view.bind(*prepared.on_device, im.kernel, at);
-        const LaunchTimes times = im.launcher.run(
-            queue, im.kernel, first_group, im.groups() - begin, layout.local_size(),
-            [&] {
-                if (progress.cancelled()) throw Cancelled();
-            },
-            begin);
 
         FrameStats stats;
         stats.device_ms = times.device_ms;
@@ -160,8 +172,10 @@ void Frames::count(FrameStats& stats) {
     if (!im.program || !im.program->has_generations() || im.rows.empty()) return;
     guarded(*im.device, "counting rays", [&] {
         stats.kernels.emplace_back();
-        const RayCounts counts =
-            im.film_kernels.sum(im.counters.get(), im.groups() * im.layout.group_packets(), stats.kernels.back());
+        const bool wave = im.program->is_wavefront();
+        const RayCounts counts = im.film_kernels.sum(
+            wave ? im.wavefront.counters() : im.counters.get(),
+            wave ? im.wavefront.counter_count() : im.groups() * im.layout.group_packets(), stats.kernels.back());
         stats.shadow = counts.shadow;
         stats.secondary = counts.secondary;
         stats.dropped = counts.dropped;

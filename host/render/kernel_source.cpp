@@ -189,7 +189,9 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     switch (kind) {
         case KernelKind::generations:
             out << "#define RT_SHOW_GENERATIONS\n";
-            [[fallthrough]];
+            kernel_file = "tracers/iterative.cl";
+            source.entry = "trace_iterative";
+            break;
         case KernelKind::color:
             kernel_file = "tracers/" + settings.tracer + ".cl";
             source.entry = "trace_" + settings.tracer;
@@ -223,7 +225,8 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
             break;
     }
     const bool shades = kind == KernelKind::color || kind == KernelKind::generations || kind == KernelKind::inspect;
-    if (shades) define_int(out, "RT_RAY_SLOTS", settings.ray_slots);
+    const bool queues = shades && source.entry != kWavefrontEntry;  // a packet's own, in private memory
+    if (queues) define_int(out, "RT_RAY_SLOTS", settings.ray_slots);
     for (const auto& [name, value] : defines) define(out, name, value);
 
     const std::string folder = std::string("plugins/accel/") + accel.id + "/";
@@ -247,8 +250,10 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "surface.h");
     include(out, "camera.h");
     if (kind == KernelKind::rays || kind == KernelKind::counted_rays) include(out, "ray_blocks.h");
-    if (shades)
+    if (queues)
         for (const char* name : {"material.h", "ray_queue.h", "inspect.h", "shading.h", "generations.h"}) include(out, name);
+    else if (shades)
+        for (const char* name : {"material.h", "shading.h", "wave.h", "wave_rays.h"}) include(out, name);
     include(out, kernel_file);
 
     source.text = out.str();

@@ -43,6 +43,8 @@ struct Layout {
 // have.
 Layout make_layout(const Settings& settings, bool cpu);
 
+constexpr const char* kWavefrontEntry = "trace_wavefront";  // of its several kernels the one that traces
+
 struct KernelSource {
     std::string text, options, entry;  // entry: name of the kernel
 };

@@ -3,6 +3,8 @@
 #include <CL/opencl.hpp>
 #include <functional>
 
+#include "render/pace.hpp"
+
 namespace clarity {
 
 struct LaunchTimes {
@@ -10,18 +12,25 @@ struct LaunchTimes {
     unsigned launches = 0;
 };
 
-// Keeps the pace of one kernel from launch to launch.
+// Keeps the pace of one kernel, or of several that run one after the other, from launch to launch.
 class Launcher {
  public:
+    // What was enqueued for one piece: its first and its last kernel.
+    struct Piece {
+        cl::Event first, last;
+    };
+    // Runs groups [0, group_count) in pieces of `most` at most, each enqueued by `enqueue`. go_on is asked between pieces and
+    // stops by throwing.
+    LaunchTimes run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
+                    const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on);
     // Runs groups [begin, begin + group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of
-    // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others. go_on is asked between pieces
-    // and stops by throwing.
+    // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
                     unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0);
-    void forget() { groups_per_ms_ = 0; }
+    void forget() { pace_.forget(); }
 
  private:
-    double groups_per_ms_ = 0;  // 0: unknown
+    Pace pace_;
 };
 
 }  // namespace clarity

@@ -5,6 +5,7 @@
 #include "render/memory_plan.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
+#include "render/wavefront.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,6 +23,7 @@ double since(std::chrono::steady_clock::time_point start) {
 
 Settings resolve(const Settings& asked, const Device& device) {
     Settings s = asked;
+    if (s.tracer == "auto") s.tracer = "iterative";  // either wins on some scenes: docs/performance.md
     if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
     if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a bundle: cl/bundle.h
     return s;
@@ -29,7 +31,8 @@ Settings resolve(const Settings& asked, const Device& device) {
 
 // PoCL compiles when a kernel first runs with a work-group size, so the first frame would wait for it: one pixel is traced
 // here, with a queue of its own, while frames go on elsewhere.
-void warm_up(Device& device, const TraceProgram& program, const Prepared& prepared) {
+void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program, const Prepared& prepared) {
+    Device& device = *opened;
     Settings tiny = prepared.settings;
     tiny.width = tiny.height = 1;
     tiny.depth = 1;
@@ -37,7 +40,7 @@ void warm_up(Device& device, const TraceProgram& program, const Prepared& prepar
     view.camera.eye = {0, 0, 1e6f};
     const Layout layout = make_layout(tiny, device.info().cpu);
     const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
-    cl::CommandQueue queue(device.context(), device.info().cl_device);
+    cl::CommandQueue queue(device.context(), device.info().cl_device, CL_QUEUE_PROFILING_ENABLE);
     cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame,
                             const_cast<rt_frame*>(&frame));
     const unsigned size = layout.local_size();
@@ -45,6 +48,14 @@ void warm_up(Device& device, const TraceProgram& program, const Prepared& prepar
         counters(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * 16),
         distances(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * layout.rays() * sizeof(float)),
         lights(device.context(), CL_MEM_READ_ONLY, 256);
+    if (program.is_wavefront()) {
+        ViewBuffers view_buffers;
+        view_buffers.write(queue, *prepared.scene, frame, view);
+        Launcher launcher;
+        const WavefrontFrame pixel{prepared, view, view_buffers, layout, 1, 1, 0, 1, 1, 0, out, distances};
+        Wavefront(opened).trace(queue, launcher, pixel, [] {});
+        return;
+    }
     cl::Kernel kernel = program.kernel();
     cl_uint at = 0;
     kernel.setArg(at++, frame_buffer);
@@ -152,8 +163,8 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         bool fresh = false;
         const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
         auto program = programs_->get(source, kind, what, &fresh);
-        if (fresh) warm_up(*device_, *program, *next);
         next->program = program;
+        if (fresh) warm_up(device_, *program, *next);
         next->compile_ms = fresh ? since(start) : 0;
         next->compile_cached = !fresh;
     } catch (const cl::Error& e) {

@@ -128,8 +128,10 @@ Setting lanes_setting() {
 
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
-        choice("tracer", "Tracer", "how generations of rays are organised", {"iterative"}, Effect::recompile,
-               &Settings::tracer),
+        choice("tracer", "Tracer",
+               "iterative: each packet goes through its generations of rays by itself; wavefront: rays that part go on side by "
+               "side, by way of queues in the device's memory; auto: iterative",
+               {"auto", "iterative", "wavefront"}, Effect::recompile, &Settings::tracer),
         integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
         size("packet", "Packet",
              "pixels that one work-item computes; auto: 1x1 on a GPU, lanes x lanes but 4x4 at least on a CPU", 1, 32, true,

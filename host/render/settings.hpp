@@ -14,7 +14,7 @@ struct Settings {
     std::string accel = "bvh8";        // id of an accel plugin; see usual_accel()
     std::vector<double> accel_params;  // in the order its plugin declares; empty: defaults
     // How it is traced.
-    std::string tracer = "iterative";
+    std::string tracer = "auto";
     int depth = 5;                   // generations of rays, 1 = camera rays only
     int packet_w = 0, packet_h = 0;  // pixels of one work-item; 0: 1x1 on a GPU, on a CPU lanes x lanes, 4x4 at least
     int lanes = 0;                   // 1, 4, 8, 16; 0: what suits the device

@@ -19,6 +19,7 @@ class TraceProgram {
     double compile_ms = 0;
     // Whether it traces more than camera rays, and so takes buffers for counters and distances.
     bool has_generations() const { return kind == KernelKind::color || kind == KernelKind::generations; }
+    bool is_wavefront() const { return entry == kWavefrontEntry; }
     // Kernel objects hold arguments, so each user makes its own.
     cl::Kernel kernel() const { return cl::Kernel(program, entry.c_str()); }
 };

@@ -60,9 +60,12 @@ TEST_F(Oclgrind, EveryStructureIsClean) {
         const std::string id = plugin["id"];
         EXPECT_EQ(report({"--accel", id, "--lanes", "4"}).substr(0, 2000), "") << id;
         EXPECT_EQ(report({"--accel", id, "--lanes", "1", "--debug", "true"}).substr(0, 2000), "") << id;
+        EXPECT_EQ(report({"--accel", id, "--lanes", "1", "--portable", "true", "--tracer", "wavefront"}).substr(0, 2000), "")
+            << id;
         ++count;
     }
     EXPECT_GE(count, 3);
+    EXPECT_EQ(report({"--accel", "bvh2", "--lanes", "4", "--tracer", "wavefront"}).substr(0, 2000), "");
 }
 
 TEST_F(Oclgrind, WouldTell) {

@@ -8,6 +8,12 @@ using namespace clarity::test;
 
 namespace {
 
+// Of one structure, which is compiled quickly.
+Settings settings_of(std::vector<std::pair<std::string, std::string>> pairs) {
+    pairs.emplace_back("accel", "bvh2");
+    return make_settings(pairs);
+}
+
 class SharedPictures : public ::testing::Test {
  protected:
     static void SetUpTestSuite() {
@@ -60,24 +66,22 @@ TEST_F(SharedPictures, OfEveryPacketAndLanes) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const auto& [lanes, packet] : std::vector<std::pair<const char*, const char*>>{
              {"auto", "auto"}, {"1", "1x1"}, {"4", "3x5"}, {"8", "8x8"}, {"16", "16x16"}}) {
-        const Settings settings =
-            make_settings({{"lanes", lanes}, {"packet", packet}, {"size", "240x181"}, {"tone", "agx"}, {"accel", "bvh2"}});
+        const Settings settings = settings_of({{"lanes", lanes}, {"packet", packet}, {"size", "240x181"}, {"tone", "agx"}});
         expect_same(scene, settings, std::string(lanes) + " lanes, packet " + packet);
     }
     // As a GPU runs it, a work-item a pixel.
-    expect_same(scene, make_settings({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}, {"accel", "bvh2"}}),
-                "groups of 64");
+    expect_same(scene, settings_of({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}}), "groups of 64");
 }
 
 TEST_F(SharedPictures, OfOddSizes) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const char* size : {"1x1", "3x17", "17x3", "33x31", "40x33", "1x300"})
-        expect_same(scene, make_settings({{"size", size}}), size);
+        expect_same(scene, settings_of({{"size", size}}), size);
 }
 
 TEST_F(SharedPictures, OfManySamplesAtOnceOrOneByOne) {
-    const ScenePtr scene = load_scene(source_file("scenes/showpiece.scene"));
-    const Settings settings = make_settings({{"size", "160x120"}});
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    const Settings settings = settings_of({{"size", "160x120"}});
     expect_same(scene, settings, "5 at once", 5);
     const View view = make_view(*scene, 160.0f / 120.0f);
     for (unsigned sample = 0; sample < 5; ++sample) EXPECT_EQ(two_->trace(scene, settings, view, sample).samples, sample + 1);
@@ -90,18 +94,24 @@ TEST_F(SharedPictures, OfManySamplesAtOnceOrOneByOne) {
 TEST_F(SharedPictures, OfEveryQuantity) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const char* aov : {"t", "prim", "normal", "steps", "generations"})  // one of each form of film
-        expect_same(scene, make_settings({{"aov", aov}, {"size", "120x90"}, {"accel", "bvh2"}}), aov);
+        expect_same(scene, settings_of({{"aov", aov}, {"size", "120x90"}}), aov);
+}
+
+TEST_F(SharedPictures, OfEveryTracer) {
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    for (const std::string& tracer : find_setting("tracer")->choices)
+        expect_same(scene, settings_of({{"tracer", tracer}, {"size", "160x120"}}), tracer, 3);
 }
 
 TEST_F(SharedPictures, OfOneStructureBuiltOnce) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
-    const Settings settings;
+    const Settings settings = settings_of({});
     const auto prepared = two_->preparer.prepare(scene, settings, two_->progress);
     ASSERT_EQ(prepared->parts.size(), 2u);
     EXPECT_EQ(prepared->parts[0].prepared->accel, prepared->parts[1].prepared->accel);
     EXPECT_NE(prepared->parts[0].prepared->on_device, prepared->parts[1].prepared->on_device);
     // Nothing is done anew without need.
-    const auto again = two_->preparer.prepare(scene, make_settings({{"depth", "2"}}), two_->progress);
+    const auto again = two_->preparer.prepare(scene, settings_of({{"depth", "2"}}), two_->progress);
     for (size_t i = 0; i < 2; ++i) {
         EXPECT_EQ(again->parts[i].prepared->accel, prepared->parts[i].prepared->accel);
         EXPECT_EQ(again->parts[i].prepared->on_device, prepared->parts[i].prepared->on_device);
@@ -114,7 +124,7 @@ TEST_F(SharedPictures, OfUnlikeDevices) {
     Team unlike("cpu,cpu/2.0");
     ASSERT_EQ(unlike.devices.size(), 2u);
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
-    const Settings settings = make_settings({{"size", "240x180"}});
+    const Settings settings = settings_of({{"size", "240x180"}});
     const View view = make_view(*scene, 240.0f / 180.0f);
     one_->trace(scene, settings, view, 0, 2);
     for (int picture = 0; picture < 3; ++picture) {
@@ -126,7 +136,7 @@ TEST_F(SharedPictures, OfUnlikeDevices) {
 // As GPUs do it: several queues a device, and so several films.
 TEST_F(SharedPictures, InSeveralQueues) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
-    const Settings settings = make_settings({{"size", "160x230"}});
+    const Settings settings = settings_of({{"size", "160x230"}});
     const View view = make_view(*scene, 160.0f / 230.0f);
     for (const char* choice : {"cpu", "cpu/2"}) {
         Team team(choice, 2);
@@ -164,7 +174,7 @@ class StopAfter : public Progress {
 
 TEST_F(SharedPictures, ThatAreCancelledKeepWhatIsComplete) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
-    const Settings settings = make_settings({{"size", "160x120"}});
+    const Settings settings = settings_of({{"size", "160x120"}});
     const View view = make_view(*scene, 160.0f / 120.0f);
     const auto prepared = two_->preparer.prepare(scene, settings, two_->progress);
     StopAfter at_once(0.0f), later(0.19f);

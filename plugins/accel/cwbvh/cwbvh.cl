@@ -1,13 +1,14 @@
 /* cwbvh.cl -- one ray against eight boxes of a byte a plane (RT_LANES 1), or a packet of rays against one box after the other.
  *
- * Made for GPUs and trees that outgrow their caches: a node is 80 bytes, five loads of 16. A turn of the loop is one item of each
- * ray, a node or two triangles, fetched before anything is computed, as in bvh4. Triangles that were met come before nodes: bits
- * in a register, never on the stack. Of the nodes the nearest goes first, and what is left of the eight takes one place on the
- * stack together, with the least distance at which one of them is entered; they follow by the signs of the direction (Ylitie,
- * Karras, Laine 2017). By the signs alone a third more nodes are visited by camera rays, 8 % more by diffuse ones.
+ * Made for GPUs and trees that outgrow their caches: a node is 80 bytes, five loads of 16. A turn of the loop is one item of
+ * each ray, a node or two triangles, fetched before anything is computed, as in bvh4. Triangles that were met come before
+ * nodes: bits in a register, never on the stack. Of the nodes the nearest goes first, and what is left of the eight takes one
+ * place on the stack together, with the least distance at which one of them is entered; they follow by the signs of the
+ * direction (Ylitie, Karras, Laine 2017). By the signs alone a third more nodes are visited by camera rays, 8 % more by
+ * diffuse ones.
  *
- * 80 registers on an H200, so 24 warps a multiprocessor; 8 bytes of stack a level of the tree. Of bvh4's speed there it has 0.74 to
- * 0.86 with 871 k triangles and 0.82 to 0.93 with 102 M, for half the bytes fetched and 12 bytes a triangle less
+ * 80 registers on an H200, so 24 warps a multiprocessor; 8 bytes of stack a level of the tree. Of bvh4's speed there it has
+ * 0.74 to 0.86 with 871 k triangles and 0.82 to 0.93 with 102 M, for half the bytes fetched and 12 bytes a triangle less
  * (docs/performance.md): a node takes twice as long as one of four children. */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {

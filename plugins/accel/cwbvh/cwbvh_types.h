@@ -1,6 +1,6 @@
-/* cwbvh_types.h -- a tree of eight children a node whose boxes are rounded outwards to a grid of the node's own, a byte a plane
- * (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). Shared by builder and
- * traversal. */
+/* cwbvh_types.h -- a tree of eight children a node whose boxes are rounded outwards to a grid of the node's own, a byte a
+ * plane (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs Through Compressed Wide BVHs"). Shared by
+ * builder and traversal. */
 #ifndef CWBVH_TYPES_H
 #define CWBVH_TYPES_H
 
@@ -8,12 +8,13 @@
  *
  * A plane of byte q lies at origin + (CWBVH_BIAS + q) * 2^(e - 127), e being the axis's byte of `cells`: in real numbers, no
  * float is made of it. A kernel gets CWBVH_BIAS + q, as a float, by putting q into the upper mantissa of CWBVH_BIAS: one
- * permutation of bytes instead of a conversion, which is slow on a GPU. Planes lie CWBVH_MARGIN cells outside of what they bound,
- * at least: origin - the ray's origin is rounded by up to CWBVH_BIAS * 2^-24 of a cell, or 1/508, and on the far side twice.
+ * permutation of bytes instead of a conversion, which is slow on a GPU. Planes lie CWBVH_MARGIN cells outside of what they
+ * bound, at least: origin - the ray's origin is rounded by up to CWBVH_BIAS * 2^-24 of a cell, or 1/508, and on the far side
+ * twice.
  *
- * A node's child nodes stand in a row, and so do the primitives of its leaves, in the order of their slots. Slots lie as bvh8's
- * do: visiting slot i ^ s for i = 0..7, bits 0, 1, 2 of s being the signs of the direction in x, y, z, meets near children
- * before far ones, more or less. An empty slot has planes of 255 to 0, and neither child nor primitives. */
+ * A node's child nodes stand in a row, and so do the primitives of its leaves, in the order of their slots. Slots lie as
+ * bvh8's do: visiting slot i ^ s for i = 0..7, bits 0, 1, 2 of s being the signs of the direction in x, y, z, meets near
+ * children before far ones, more or less. An empty slot has planes of 255 to 0, and neither child nor primitives. */
 typedef struct cwbvh_node {
     rt_f32 origin[3];
     rt_u32 cells;       /* bits 0..7 exponent of the cell in x, 8..15 y, 16..23 z; 24..31: slots that are nodes */
@@ -21,7 +22,7 @@ typedef struct cwbvh_node {
     rt_u32 first_leaf;  /* position in leaf order of the first primitive of the lowest slot that has any */
     rt_u32 primitives;  /* bits 4 i .. 4 i + 3: as many of them, from the lowest on, as slot i has primitives */
     rt_u32 pad;
-    rt_u32 planes[3][4]; /* of x, y, z: lower ones of slots 0..3, of 4..7, upper ones of 0..3, of 4..7; the first in the low byte */
+    rt_u32 planes[3][4]; /* of x, y, z: lower ones of slots 0..3, 4..7, upper ones of 0..3, 4..7; the first in the low byte */
 } cwbvh_node;
 
 #define CWBVH_LEAF_MAX 4u
@@ -53,12 +54,12 @@ RT_INLINE float cwbvh_plane(uint word, uint selector)
 #if RT_LANES == 1
 
 #define CWBVH_DONE 0xFFFFFFFFu /* in place of a node: see what is on the stack */
-/* What is left of a node's children: `base` is the first of its nodes, `slots` has the slots left in bits 0..7, of all its nodes
- * in 8..15, and in 16..31 the upper half of the least distance at which one of those left is entered. */
+/* What is left of a node's children: `base` is the first of its nodes, `slots` has the slots left in bits 0..7, of all its
+ * nodes in 8..15, and in 16..31 the upper half of the least distance at which one of those left is entered. */
 #define CWBVH_LEFT(base, slots) ((ulong)(slots) << 32 | (base))
 
-/* Of floats, by the order of their bits: see bvh4_types.h. What is no number, as products of huge coordinates are, is greatest or
- * least there, and lets no child be missed. */
+/* Of floats, by the order of their bits: see bvh4_types.h. What is no number, as products of huge coordinates are, is greatest
+ * or least there, and lets no child be missed. */
 #define CWBVH_MAX(a, b) as_float4(max(as_int4(a), as_int4(b)))
 #define CWBVH_MIN(a, b) as_float4(min(as_int4(a), as_int4(b)))
 
@@ -76,9 +77,10 @@ RT_INLINE cwbvh_order cwbvh_order_of(const rt_rays *ray)
     return order;
 }
 
-/* Where planes are met is `near` or `far` plus steps. What RT_WIDE widens in other structures, 16 RT_EPS of the distance, is put
- * into `far` once a node, by the distance of byte 0: of the 255 steps from there it is 2^-12 of a cell, for which CWBVH_MARGIN has
- * room. Near and far planes then have the same steps, and a ray six numbers less: 80 registers instead of 96 on an H200. */
+/* Where planes are met is `near` or `far` plus steps. What RT_WIDE widens in other structures, 16 RT_EPS of the distance, is
+ * put into `far` once a node, by the distance of byte 0: of the 255 steps from there it is 2^-12 of a cell, for which
+ * CWBVH_MARGIN has room. Near and far planes then have the same steps, and a ray six numbers less: 80 registers instead of 96
+ * on an H200. */
 #define CWBVH_FAR(origin, inverse, ray_far, step, near)                                                                          \
     fma(fabs(fma(CWBVH_BIAS, step, near)), 16.0f * RT_EPS, fma(origin, inverse, ray_far))
 
@@ -98,12 +100,12 @@ RT_INLINE uint cwbvh_enter(const rt_rays *ray, float t, float4 head, float4 x, f
     uint met = 0;
 #define CWBVH_FOUR(near, far, in, bit)                                                                                           \
     {                                                                                                                            \
-        const float4 ax = fma(CWBVH_PLANES(px.near), (float4)(step_x), (float4)(near_x));                                                            \
-        const float4 ay = fma(CWBVH_PLANES(py.near), (float4)(step_y), (float4)(near_y));                                                            \
-        const float4 az = fma(CWBVH_PLANES(pz.near), (float4)(step_z), (float4)(near_z));                                                            \
-        const float4 bx = fma(CWBVH_PLANES(px.far), (float4)(step_x), (float4)(far_x));                                                              \
-        const float4 by = fma(CWBVH_PLANES(py.far), (float4)(step_y), (float4)(far_y));                                                              \
-        const float4 bz = fma(CWBVH_PLANES(pz.far), (float4)(step_z), (float4)(far_z));                                                              \
+        const float4 ax = fma(CWBVH_PLANES(px.near), (float4)(step_x), (float4)(near_x));                                        \
+        const float4 ay = fma(CWBVH_PLANES(py.near), (float4)(step_y), (float4)(near_y));                                        \
+        const float4 az = fma(CWBVH_PLANES(pz.near), (float4)(step_z), (float4)(near_z));                                        \
+        const float4 bx = fma(CWBVH_PLANES(px.far), (float4)(step_x), (float4)(far_x));                                          \
+        const float4 by = fma(CWBVH_PLANES(py.far), (float4)(step_y), (float4)(far_y));                                          \
+        const float4 bz = fma(CWBVH_PLANES(pz.far), (float4)(step_z), (float4)(far_z));                                          \
         *in = CWBVH_MAX(CWBVH_MAX(ax, ay), CWBVH_MAX(az, (float4)(ray->t_min)));                                                 \
         const float4 out = CWBVH_MIN(CWBVH_MIN(bx, by), CWBVH_MIN(bz, (float4)(t)));                                             \
         met |= (in->s0 > out.s0 ? 0u : (bit)) | (in->s1 > out.s1 ? 0u : 2u * (bit)) | (in->s2 > out.s2 ? 0u : 4u * (bit)) |      \

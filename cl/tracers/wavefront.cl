@@ -1,0 +1,211 @@
+/* wavefront.cl -- rays that part go on side by side: of a ray that is both mirrored and refracted, what is
+ * mirrored stays with its work-item, the other waits in a queue of the whole picture for one that has nothing to do.
+ * After Purcell, Buck, Mark, Hanrahan 2002, Ray Tracing on Programmable Graphics Hardware; queues as in Laine, Karras, Aila 2013,
+ * Megakernels Considered Harmful: Wavefront Path Tracing on GPUs.
+ *
+ * Level 0 follows camera rays, level n the rays that were put aside at level n - 1; a level is a launch. The host enqueues all at
+ * once: how many rays a level has is known to the device alone, so as many work-items as run side by side take chunks of
+ * RT_WAVE * RT_LANES rays until none is left. Without glass there is one level, and no ray ever leaves its registers. With it a
+ * pixel of 2^n rays is the work of 2^n work-items, where iterative.cl has one that holds up its warp.
+ *
+ * A pixel's first way is a sum of its own, in the order of generations; what other ways add to it is summed as fixed-point
+ * numbers, of which the order does not matter. So a picture does not depend on who was first, and where nothing parts it has the
+ * same bits as the iterative tracer's.
+ *
+ * Costs: 48 B written and read and 6 atomics a ray put aside; no private arrays. */
+
+/* control: for each level RT_CONTROL uints: rays (may be beyond `room`), tickets given out. Zeroes to begin with. */
+#define RT_CONTROL 2u
+#define RT_CONTROLS (17u * RT_CONTROL) /* 16 generations, and one that never comes */
+
+/* Light of ways put aside, for each pixel and channel: 64 bits in two's complement, low half first, in units of 2^-36. */
+#define RT_SHARE 6u
+#define RT_SHARE_UNIT 68719476736.0f
+#define RT_SHARE_MOST 1e8f
+
+RT_INLINE void rt_add_share(volatile global uint *cell, float value)
+{
+    const long fixed = convert_long_rte(clamp(value, -RT_SHARE_MOST, RT_SHARE_MOST) * RT_SHARE_UNIT);
+    const uint low = (uint)fixed, before = atomic_add(cell, low);
+    const uint high = (uint)(fixed >> 32) + (before + low < before ? 1u : 0u);
+    if (high != 0u) atomic_add(cell + 1, high);
+}
+
+RT_INLINE float rt_share(const global uint *cell)
+{
+    return convert_float((long)((ulong)cell[0] | (ulong)cell[1] << 32)) * (1.0f / RT_SHARE_UNIT);
+}
+
+/* One level. sums: of each pixel's first way, w = 1. shares: see above; of no use unless `parting`. counters: shadow, secondary,
+ * dropped rays and full stacks, of each work-group; begun anew with `fresh`. distances: as iterative.cl has them. rays: of this
+ * level; next: of the coming one, `room` at most. idle_control: that of the pictures after this, of whom nobody is under way. */
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+trace_wavefront(const constant rt_frame *frame, const uint first_group, const uint group_count, const uint level, const uint fresh,
+                const uint room, const uint parting, global float4 *sums, global uint *shares, global uint4 *counters,
+                global float *distances, const global float4 *rays, global float4 *next, global uint *control,
+                global uint *idle_control, RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    local uint scratch[RT_WAVE_SCRATCH];
+    const uint group_packets = RT_GROUP_PACKETS(frame);
+    const uint count = level == 0u ? group_count * group_packets * RT_BLOCKS(frame) * RT_LANES
+                                   : min(control[level * RT_CONTROL], room);
+    const uint units = (count + RT_LANES - 1u) / RT_LANES, chunks = (units + RT_WAVE - 1u) / RT_WAVE;
+    if (chunks == 0u && fresh == 0u) return;
+    rt_tally tally = {0, 0, 0, 0};
+    if (level == 0u && get_global_id(0) == 0)
+        for (uint i = 0; i < RT_CONTROLS; ++i) idle_control[i] = 0u;
+    RT_FOR_CHUNKS(chunk, chunks, control + level * RT_CONTROL + 1u, scratch)
+    {
+        const uint unit = chunk * RT_WAVE + rt_wave_item();
+        rt_rays ray;
+        rt_vec weight = rt_splat(1.0f, 1.0f, 1.0f), sum = rt_splat(0.0f, 0.0f, 0.0f);
+        vint pixel = rt_vint(0), generation = rt_vint(0);
+        vmask active = rt_vint(0);
+        if (unit < units) {
+            if (level == 0u) {
+                const uint packet = unit / RT_BLOCKS(frame);
+                const uint2 origin = rt_packet_origin(frame, first_group + packet / group_packets, packet % group_packets);
+                vint x, y;
+                active = rt_block_pixels(frame, origin, unit % RT_BLOCKS(frame), &x, &y);
+                x += rt_vint((int)origin.x);
+                y += rt_vint((int)origin.y);
+                pixel = y * rt_vint((int)frame->width) + x;
+                rt_camera_rays(frame, x, y, &ray);
+            } else {
+                active = rt_fetch_wave_rays(rays, unit * RT_LANES, count, &ray, &weight, &pixel, &generation);
+            }
+        }
+        const uint mine = rt_bits(active);
+
+        for (uint step = 0; step < frame->depth; ++step) {
+            const uint bits = rt_bits(active);
+            RT_WAVE_BREAK_UNLESS(bits != 0u)
+            rt_vec aside_origin, aside_direction, aside_weight;
+            uint parted = 0u;
+            if (bits != 0u) {
+                rt_hits hit;
+                rt_prepare(&ray, bits);
+                rt_clear_hits(&hit, active);
+                rt_trace_closest(&ctx, frame, &ray, &hit);
+#ifdef RT_DEBUG
+                tally.overflow += hit.overflow;
+#endif
+                if (level == 0u && step == 0u && frame->sample == 0u)
+                    rt_store(hit.t, distances + ((size_t)first_group * group_packets * RT_BLOCKS(frame) + unit) * RT_LANES);
+                const rt_surface surface = rt_resolve(&ctx, &ray, &hit, bits);
+                const vmask hits = surface.hit & active;
+                const uint hit_bits = rt_bits(hits);
+                rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]), passed = weight;
+                vmask going = rt_vint(0);
+                if (hit_bits != 0u) {
+                    const rt_point point = rt_point_of(&ray, hit.t, &surface, hits);
+                    const rt_shade material = rt_load_materials(&ctx, &surface, hit_bits, point.at);
+                    const vmask last = RT_MASK(generation + 1 >= rt_vint((int)frame->depth));
+                    vmask mirrored, refracted;
+                    const rt_split split = rt_follow(frame, &point, &material, weight, &mirrored, &refracted);
+                    mirrored &= ~last;
+                    refracted &= ~last;
+                    going = mirrored | refracted;
+                    parted = rt_bits(mirrored & refracted);
+                    rt_vec bounced = point.incoming, bent = bounced;
+                    if (rt_any(mirrored)) bounced = rt_mirror_direction(&point);
+                    if (rt_any(refracted)) bent = rt_refracted_direction(&point, &split);
+                    const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, weight));
+                    if (parted != 0u) {
+                        aside_origin = rt_along(-point.offset, point.geometric, point.at);
+                        aside_direction = bent;
+                        aside_weight = through;
+                    }
+                    /* The ray itself has served: the next is made in its place, before the shadow rays. */
+                    const vfloat side = rt_select(mirrored, point.offset, -point.offset);
+                    const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(mirrored, bounced, bent);
+                    ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
+                    ray.dx = along.x, ray.dy = along.y, ray.dz = along.z;
+                    passed = rt_choose(mirrored, rt_scale(split.mirrored, weight), through);
+                    rt_rays shadow;
+                    rt_vec sent;
+                    rt_direct_light(&ctx, frame, &point, &material, 1u, &shadow, &hit, &sent, &tally);
+                    light = rt_choose(hits, sent, light);
+                }
+                const rt_vec more = rt_mul(weight, light), none = rt_splat(0.0f, 0.0f, 0.0f);
+                sum = rt_add(sum, rt_choose(active, more, none));
+                weight = passed;
+                active = going;
+                generation += 1;
+                tally.secondary += popcount(rt_bits(going));
+            }
+
+            uint wanted;
+            const uint before = rt_wave_before(popcount(parted), &wanted, scratch);
+            const uint first = rt_wave_claim(control + (level + 1u) * RT_CONTROL, wanted, scratch);
+            if (rt_wave_item() == 0u) {
+                const uint taken = min(wanted, room - min(first, room));
+                tally.secondary += taken;
+                tally.dropped += wanted - taken;
+            }
+            if (parted != 0u)
+                rt_put_wave_rays(next, room, first + before, parted, aside_origin, aside_direction, aside_weight, pixel, generation);
+        }
+
+        if (mine != 0u) {
+            float red[RT_LANES], green[RT_LANES], blue[RT_LANES];
+            int at[RT_LANES];
+            rt_store(sum.x, red);
+            rt_store(sum.y, green);
+            rt_store(sum.z, blue);
+            rt_store(pixel, at);
+            for (uint l = 0; l < RT_LANES; ++l) {
+                if ((mine >> l & 1u) == 0u) continue;
+                global uint *share = shares + RT_SHARE * (size_t)at[l];
+                if (level == 0u) {
+                    sums[at[l]] = (float4)(red[l], green[l], blue[l], 1.0f);
+                    if (parting)
+                        for (uint i = 0; i < RT_SHARE; ++i) share[i] = 0u;
+                } else {
+                    rt_add_share(share, red[l]);
+                    rt_add_share(share + 2, green[l]);
+                    rt_add_share(share + 4, blue[l]);
+                }
+            }
+        }
+    }
+
+#if RT_CPU
+    const uint4 all = (uint4)(tally.shadow, tally.secondary, tally.dropped, tally.overflow);
+#else
+    local uint group_tally[4];
+    if (get_local_id(0) < 4) group_tally[get_local_id(0)] = 0u;
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (tally.shadow != 0u) atomic_add(group_tally, tally.shadow);
+    if (tally.secondary != 0u) atomic_add(group_tally + 1, tally.secondary);
+    if (tally.dropped != 0u) atomic_add(group_tally + 2, tally.dropped);
+    if (tally.overflow != 0u) atomic_add(group_tally + 3, tally.overflow);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    const uint4 all = (uint4)(group_tally[0], group_tally[1], group_tally[2], group_tally[3]);
+#endif
+    if (get_local_id(0) == 0) counters[get_group_id(0)] = fresh != 0u ? all : counters[get_group_id(0)] + all;
+}
+
+/* A sample into the film: the first one in place of what was there. */
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+add_sample(const constant rt_frame *frame, const uint first_group, global float4 *film, const global float4 *sums,
+           const global uint *shares, const uint parting)
+{
+    const uint group = first_group + (uint)get_group_id(0), packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame);
+    RT_FOR_PACKETS(frame, packet)
+    {
+        const uint2 origin = rt_packet_origin(frame, group, packet);
+        for (uint i = 0; i < pixels; ++i) {
+            const uint x = origin.x + i % packet_w, y = origin.y + i / packet_w;
+            if (x >= frame->width || y >= frame->height) continue;
+            const uint at = y * frame->width + x;
+            float4 sample = sums[at];
+            if (parting) {
+                const global uint *share = shares + RT_SHARE * (size_t)at;
+                sample.xyz += (float3)(rt_share(share), rt_share(share + 2), rt_share(share + 4));
+            }
+            film[at] = frame->sample != 0u ? film[at] + sample : sample;
+        }
+    }
+}

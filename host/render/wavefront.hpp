@@ -1,0 +1,58 @@
+// wavefront.hpp -- the host's side of cl/tracers/wavefront.cl: queues on the device, and which kernel follows which.
+#pragma once
+#include <memory>
+
+#include "render/growing_buffer.hpp"
+#include "render/kernel_source.hpp"
+#include "render/launch.hpp"
+#include "render/renderer.hpp"
+#include "render/view_buffers.hpp"
+
+namespace clarity {
+
+// One picture's, or of work-groups [begin, begin + groups) of it. The buffers are the caller's; film and distances are as
+// trace_iterative has them.
+struct WavefrontFrame {
+    const Prepared& prepared;
+    const View& view;
+    const ViewBuffers& view_buffers;
+    Layout layout;
+    unsigned width, height, begin, groups, depth, sample;
+    const cl::Buffer &film, &distances;
+};
+
+// Whether a ray may part in two: any of a view's materials, or of the scene's where the view has none, is transparent.
+bool refracts(const Scene& scene, const std::vector<rt_material>& materials);
+
+class Wavefront {
+ public:
+    explicit Wavefront(std::shared_ptr<Device> device) : device_(std::move(device)) {}
+    // A sample of these pixels. go_on is asked between pieces and stops by throwing.
+    LaunchTimes trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
+                      const std::function<void()>& go_on);
+    // Of the last sample: shadow, secondary, dropped rays and full stacks of each work-group.
+    const cl::Buffer& counters() const { return counters_.get(); }
+    unsigned counter_count() const { return work_groups_; }
+
+ private:
+    // How many rays may be put aside at each level, and for how many groups of pixels that is meant.
+    struct Room {
+        unsigned rays, groups;
+        bool parting;  // rays may part at all
+    };
+    Room room_for(const WavefrontFrame& frame) const;
+    void bind(const WavefrontFrame& frame, const Room& room);
+    Launcher::Piece enqueue(cl::CommandQueue& queue, const WavefrontFrame& frame, const Room& room, unsigned first,
+                            unsigned count);
+
+    std::shared_ptr<Device> device_;
+    std::shared_ptr<const TraceProgram> program_;  // whose kernels these are
+    cl::Kernel trace_, add_;
+    GrowingBuffer rays_[2] = {GrowingBuffer(CL_MEM_READ_WRITE), GrowingBuffer(CL_MEM_READ_WRITE)};
+    GrowingBuffer sums_{CL_MEM_READ_WRITE}, shares_{CL_MEM_READ_WRITE}, counters_{CL_MEM_READ_WRITE};
+    cl::Buffer control_[2];  // by turns: a picture's first kernel clears the other one
+    unsigned turn_ = 0, work_groups_ = 0;
+    bool clean_ = false;  // control_[turn_] is zeroes
+};
+
+}  // namespace clarity

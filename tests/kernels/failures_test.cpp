@@ -1,0 +1,132 @@
+// failures_test.cpp -- a device that has no room left or refuses to work costs a message; what comes after is as if nothing had
+// happened. This program puts its own entry points before the driver's.
+#include <CL/cl.h>
+#include <dlfcn.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "base/error.hpp"
+#include "support/scenes.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+struct Faults {
+    size_t largest_buffer = ~size_t(0);
+    int launches_left = -1;  // negative: no end of them
+} faults;
+
+template <class Function>
+Function* driver(const char* name) {
+    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
+}
+
+}  // namespace
+
+extern "C" cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
+    static const auto real = driver<decltype(clCreateBuffer)>("clCreateBuffer");
+    if (size <= faults.largest_buffer) return real(context, flags, size, host, error);
+    if (error) *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
+    return nullptr;
+}
+
+extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
+                                         const size_t* global, const size_t* local, cl_uint count, const cl_event* after,
+                                         cl_event* event) {
+    static const auto real = driver<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
+    if (faults.launches_left == 0) return CL_OUT_OF_RESOURCES;
+    if (faults.launches_left > 0) --faults.launches_left;
+    return real(queue, kernel, dimensions, offset, global, local, count, after, event);
+}
+
+namespace {
+
+class Failures : public ::testing::TestWithParam<const char*> {
+ protected:
+    void SetUp() override {
+        scene_ = load_scene(source_file("scenes/primitives.scene"));
+        view_ = make_view(*scene_, 4.0f / 3);
+        small_ = make_settings({{"accel", "bvh2"}, {"size", "80x60"}, {"lanes", "8"}, {"tracer", GetParam()}});
+        large_ = small_;
+        large_.width = 1600;
+        large_.height = 1200;
+        prepared_ = preparer_.prepare(scene_, small_, progress_);
+        frames_.trace(*prepared_, small_, view_, 0, true, progress_);
+        truth_ = frames_.read_values().pixels;
+    }
+    void TearDown() override { faults = {}; }
+
+    // The message of the error that `work` is to end with.
+    template <class Work>
+    static std::string message(Work&& work) {
+        try {
+            work();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), Exit::failed) << error.what();
+            return error.what();
+        }
+        ADD_FAILURE() << "it did not fail";
+        return {};
+    }
+    void expect_all_is_well(const std::string& after) {
+        faults = {};
+        for (int picture = 0; picture < 2; ++picture) {
+            frames_.trace(*prepared_, small_, view_, 0, true, progress_);
+            const std::vector<float> pixels = frames_.read_values().pixels;
+            ASSERT_EQ(pixels.size(), truth_.size()) << after;
+            EXPECT_EQ(std::memcmp(pixels.data(), truth_.data(), truth_.size() * sizeof(float)), 0) << after;
+        }
+    }
+
+    std::shared_ptr<Device> device_ = std::make_shared<Device>(choose_device(""));
+    Preparer preparer_{Workbench::get().plugins(), device_};
+    Frames frames_{device_};
+    Progress progress_;
+    ScenePtr scene_;
+    View view_;
+    Settings small_, large_;
+    std::shared_ptr<const Prepared> prepared_;
+    std::vector<float> truth_;
+};
+
+TEST_P(Failures, NoRoomForAPicture) {
+    faults.largest_buffer = 1 << 20;
+    const std::string said = message([&] { frames_.trace(*prepared_, large_, view_, 0, false, progress_); });
+    EXPECT_NE(said.find(device_->info().name), std::string::npos) << said;
+    EXPECT_NE(said.find("out of memory"), std::string::npos) << said;
+    expect_all_is_well("no room for a picture");
+}
+
+TEST_P(Failures, NoRoomForASceneLeavesTheLastOne) {
+    faults.largest_buffer = 0;
+    const ScenePtr other = load_scene(source_file("scenes/cornell.scene"));
+    const std::string said = message([&] { preparer_.prepare(other, small_, progress_); });
+    EXPECT_NE(said.find("no room on " + device_->info().name), std::string::npos) << said;
+    EXPECT_NE(said.find("MiB"), std::string::npos) << said;
+    expect_all_is_well("no room for a scene");
+    EXPECT_NO_THROW(preparer_.prepare(scene_, small_, progress_));
+}
+
+// At every launch of a picture: tracing, sums over counters, tones.
+TEST_P(Failures, ALaunchThatIsRefused) {
+    for (int launch = 0; launch < 12; ++launch) {
+        faults.launches_left = launch;
+        try {
+            FrameStats stats = frames_.trace(*prepared_, small_, view_, 0, true, progress_);
+            frames_.look_at_display(small_, &stats);
+            EXPECT_GT(launch, 2) << "a picture of so few launches?";
+            return;  // this one needed no more
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), Exit::failed) << error.what();
+            EXPECT_NE(std::string(error.what()).find(device_->info().name), std::string::npos) << error.what();
+        }
+        expect_all_is_well("launch " + std::to_string(launch) + " was refused");
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tracers, Failures, ::testing::Values("iterative", "wavefront"));
+
+}  // namespace
