@@ -91,7 +91,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
             rt_vec weights[RT_BUNDLE], light[RT_BUNDLE];
             vint pixels_of[RT_BUNDLE];
             vmask active[RT_BUNDLE];
-            for (uint b = 0; b < bundle; ++b) {
+            RT_FOR_EACH(b, bundle) {
                 const uint base = (first + b) * RT_LANES;
                 weights[b] = rt_splat(1.0f, 1.0f, 1.0f);
                 if (generation == 0u) {
@@ -119,7 +119,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
             rt_shade materials[RT_BUNDLE];
             uint any_hit = 0;
             const rt_vec behind = rt_splat(frame->background[0], frame->background[1], frame->background[2]);
-            for (uint b = 0; b < bundle; ++b) {
+            RT_FOR_EACH(b, bundle) {
                 const rt_hits *hit = hits + b;
                 const uint bits = rt_bits(active[b]), hit_bits = rt_bits(active[b] & RT_MASK(hit->prim >= rt_vint(0)));
 #ifdef RT_DEBUG
@@ -153,7 +153,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
 #ifndef RT_SHOW_GENERATIONS
             if (any_hit != 0u) rt_direct_light(ctx, frame, points, materials, bundle, rays, hits, light, tally);
 #endif
-            for (uint b = 0; b < bundle; ++b) {
+            RT_FOR_EACH(b, bundle) {
                 const uint bits = rt_bits(active[b]);
                 if (bits == 0u) continue;
                 if (rt_any(points[b].hits) && generation + 1u < frame->depth)

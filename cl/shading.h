@@ -50,7 +50,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
     rt_vec diffuse[RT_BUNDLE], shine[RT_BUNDLE];
-    for (uint b = 0; b < count; ++b) {
+    RT_FOR_EACH(b, count) {
         diffuse[b] = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]);
         shine[b] = rt_splat(0.0f, 0.0f, 0.0f);
     }
@@ -61,7 +61,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
 #ifdef RT_INSPECT
         vfloat distances[RT_BUNDLE];
 #endif
-        for (uint b = 0; b < count; ++b) {
+        RT_FOR_EACH(b, count) {
             const rt_point *p = points + b;
             rt_rays *shadow = rays + b;
             asked[b] = 0u;
@@ -99,14 +99,14 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
         if (any_asked == 0u) continue;
         if (frame->shadows != 0u) {
             rt_trace_bundle_any(ctx, frame, rays, hits, count);
-            for (uint b = 0; b < count; ++b) {
+            RT_FOR_EACH(b, count) {
                 tally->shadow += popcount(asked[b]);
 #ifdef RT_DEBUG
                 tally->overflow += hits[b].overflow;
 #endif
             }
         }
-        for (uint b = 0; b < count; ++b) {
+        RT_FOR_EACH(b, count) {
             if (asked[b] == 0u) continue;
             const rt_point *p = points + b;
             const rt_shade *m = materials + b;
@@ -125,7 +125,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
 #endif
         }
     }
-    for (uint b = 0; b < count; ++b)
+    RT_FOR_EACH(b, count)
         if (rt_any(points[b].hits)) sent[b] = rt_add(materials[b].emission, rt_reflected_light(materials + b, diffuse[b], shine[b]));
 }
 

@@ -50,12 +50,12 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
     RT_CTX_INIT(ctx);
     const uint blocks = RT_BLOCKS(frame);
     RT_FOR_PACKETS(frame, packet)
-    for (uint base = 0; base < blocks; base += RT_BUNDLE) {
+    RT_FOR_BUNDLES(base, 0u, blocks) {
         const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0), packet);
         const uint count = RT_BUNDLE_OF(blocks - base);
         rt_rays rays[RT_BUNDLE];
         rt_hits hits[RT_BUNDLE];
-        for (uint b = 0; b < count; ++b) {
+        RT_FOR_EACH(b, count) {
             vint in_x, in_y;
             const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
             rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b);
@@ -63,7 +63,7 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
             rt_clear_hits(hits + b, active);
         }
         rt_trace_bundle_closest(&ctx, frame, rays, hits, count);
-        for (uint b = 0; b < count; ++b) {
+        RT_FOR_EACH(b, count) {
             vint in_x, in_y;
             const uint bits = rt_bits(rt_block_pixels(frame, origin, base + b, &in_x, &in_y));
             if (bits != 0u) rt_store_aov(&ctx, frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b, hits + b, bits, out);

@@ -13,12 +13,12 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
         for (uint i = 0; i < pixels; ++i) red[i] = green[i] = blue[i] = 0.0f;
-        for (uint base = 0; base < blocks; base += RT_BUNDLE) {
+        RT_FOR_BUNDLES(base, 0u, blocks) {
             const uint count = RT_BUNDLE_OF(blocks - base);
             rt_rays rays[RT_BUNDLE];
             rt_hits hits[RT_BUNDLE];
 #if RT_PART >= 1
-            for (uint b = 0; b < count; ++b) {
+            RT_FOR_EACH(b, count) {
                 vint in_x, in_y;
                 const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
                 rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b);
@@ -29,7 +29,7 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
 #if RT_PART >= 2
             rt_trace_bundle_closest(&ctx, frame, rays, hits, count);
 #endif
-            for (uint b = 0; b < count; ++b) {
+            RT_FOR_EACH(b, count) {
                 vint in_x, in_y;
                 const uint bits = rt_bits(rt_block_pixels(frame, origin, base + b, &in_x, &in_y));
                 rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]);

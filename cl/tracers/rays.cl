@@ -8,12 +8,12 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
     RT_FOR_PACKETS(frame, packet)
     {
         const uint first = (group * RT_GROUP_PACKETS(frame) + packet) * packet_blocks, end = min(first + packet_blocks, blocks);
-        for (uint base = first; base < end; base += RT_BUNDLE) {
+        RT_FOR_BUNDLES(base, first, end) {
             const uint count = RT_BUNDLE_OF(end - base);
             rt_rays ray[RT_BUNDLE];
             rt_hits hit[RT_BUNDLE];
             vmask active[RT_BUNDLE];
-            for (uint b = 0; b < count; ++b) {
+            RT_FOR_EACH(b, count) {
                 rt_fetch_ray_block(rays, min(base + b + RT_BUNDLE, blocks - 1u), RT_BUNDLE, blocks - 1u);
                 vfloat t_max;
 #if RT_LANES == 1 /* one fetch has it all */
@@ -35,7 +35,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 rt_trace_bundle_any(&ctx, frame, ray, hit, count);
             else
                 rt_trace_bundle_closest(&ctx, frame, ray, hit, count);
-            for (uint b = 0; b < count; ++b) {
+            RT_FOR_EACH(b, count) {
                 if (any_hit)
                     hit[b].t = rt_select(active[b] & RT_MASK(hit[b].t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
                 else
