@@ -17,7 +17,7 @@
 #else
 #define RT_BUNDLE 1
 #define RT_BUNDLE_OF(blocks_left) 1u
-/* `b` is plainly 0, so that no compiler takes an array of one for something to index: an H200 spent a seventh of a frame on that. */
+/* `b` is plainly 0, so that no compiler takes an array of one for something to index: an H200 took 5 to 8 % longer for rays from memory. */
 #define RT_FOR_EACH(b, count) for (uint b = 0, b##_once = 1; b##_once; b##_once = 0)
 #endif
 
