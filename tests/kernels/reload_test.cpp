@@ -55,11 +55,11 @@ class Author {
     }
     // The picture's first value after an edit that multiplies distances by `number`.
     float distance_times(int number) {
-        const std::string store = "RT_FOR_LANES_STORE(out, at, hit.t, bits)";
+        const std::string store = "RT_FOR_LANES_STORE(out, at, hit->t, bits)";
         std::string text = sound_;
         const size_t at = text.find(store);
         if (at == std::string::npos) throw std::runtime_error("aov.cl no longer has the line that this test edits: " + store);
-        text.replace(at, store.size(), "RT_FOR_LANES_STORE(out, at, hit.t * " + std::to_string(number) + ".0f, bits)");
+        text.replace(at, store.size(), "RT_FOR_LANES_STORE(out, at, hit->t * " + std::to_string(number) + ".0f, bits)");
         scratch_.write("cl/tracers/aov.cl", text);
         const std::shared_ptr<const AccelData> accel = prepared_ ? prepared_->accel : nullptr;
         if (preparer_->worn()) renew_device();

@@ -123,7 +123,7 @@ TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
     window->settle();
     const Pixels before = window->picture();
     const fs::path aov = folder.path() + "/cl/tracers/aov.cl";
-    const std::string plain = text_of(aov), from = "hit.t, bits", to = "hit.t * hit.t, bits";
+    const std::string plain = text_of(aov), from = "hit->t, bits", to = "hit->t * hit->t, bits";
     ASSERT_NE(plain.find(from), std::string::npos) << "cl/tracers/aov.cl has changed: edit something else of it here";
     std::string squared = plain;
     squared.replace(squared.find(from), from.size(), to);
