@@ -22,9 +22,9 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 t_max = rt_load_reach(rays, base + b);
 #endif
                 active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
-                rt_clear_hits(hit + b, active[b]);
-                hit[b].t = rt_select(active[b], t_max, hit[b].t);
                 const uint bits = rt_bits(active[b]);
+                if (RT_BUNDLE == 1 || bits != 0u) rt_clear_hits(hit + b, active[b]);
+                hit[b].t = rt_select(active[b], t_max, rt_vfloat(-1.0f));
                 if (bits == 0u) continue;
 #if RT_LANES > 1
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
@@ -36,6 +36,13 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
             else
                 rt_trace_bundle_closest(&ctx, frame, ray, hit, count);
             RT_FOR_EACH(b, count) {
+                if (RT_BUNDLE > 1 && !rt_any(active[b])) { /* mostly so where little of a picture is hit */
+                    rt_hits none;
+                    rt_clear_hits(&none, active[b]);
+                    none.t = RT_INFINITY;
+                    rt_store_hit_block(answers, base + b, fields, &none);
+                    continue;
+                }
                 if (any_hit)
                     hit[b].t = rt_select(active[b] & RT_MASK(hit[b].t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
                 else

@@ -393,7 +393,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     const vint octants = bvh8_octants(ray);
     const vfloat t = hit->t;
-    uint rest = bvh8_which_octants(octants, t);
+    uint rest = bvh8_which_octants(ray, octants, t);
     if (popcount(rest) > BVH8_SPLIT) {
         BVH8_APART(ctx, root, ray, hit);
         return;
@@ -560,7 +560,7 @@ void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hi
 {
     uint with[8] = {0, 0, 0, 0, 0, 0, 0, 0}, apart = 0, mixed = 0;
     for (uint p = 0; p < count; ++p) {
-        uint rest = bvh8_which_octants(bvh8_octants(rays + p), hits[p].t);
+        uint rest = bvh8_which_octants(rays + p, bvh8_octants(rays + p), hits[p].t);
         if (popcount(rest) > BVH8_SPLIT) {
             apart |= 1u << p;
             continue;

@@ -19,7 +19,7 @@ constexpr rt_cl_file kFiles[] = {
 };
 constexpr rt_slot kSlots[] = {rt::slot<bvh8_node>("bvh8_nodes", "bvh8_node")};
 static_assert(sizeof(bvh8_node) == 224, "rows are aligned vectors");
-constexpr const char *kId = "bvh8", *kName = "8-wide BVH (binned SAH, collapsed)", *kStack = "BVH8_STACK";
+constexpr const char *kId = "bvh8", *kName = "8-wide BVH (binned SAH)", *kStack = "BVH8_STACK";
 constexpr rt_cl_file kTypes = rt::file(kFiles, "bvh8_types.h"), kTraversal = rt::file(kFiles, "bvh8.cl");
 
 // How a CPU traces packets whose rays part.

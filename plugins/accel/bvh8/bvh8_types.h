@@ -84,9 +84,11 @@ RT_INLINE vint bvh8_octants(const rt_rays *ray)
     return (ray->neg_x & rt_vint(1)) | (ray->neg_y & rt_vint(2)) | (ray->neg_z & rt_vint(4));
 }
 /* Octants that active lanes have, as bits. */
-RT_INLINE uint bvh8_which_octants(vint octants, vfloat t)
+RT_INLINE uint bvh8_which_octants(const rt_rays *ray, vint octants, vfloat t)
 {
     const vmask alive = RT_MASK(t >= rt_vfloat(0.0f));
+    if (!rt_any(alive)) return 0u;
+    if (ray->coherent) return 1u << ((ray->lo_x != 0u ? 1u : 0u) | (ray->lo_y != 1u ? 2u : 0u) | (ray->lo_z != 2u ? 4u : 0u));
     uint which = 0;
     for (int i = 0; i < 8; ++i) which |= (rt_any(alive & RT_MASK(octants == rt_vint(i))) ? 1u : 0u) << i;
     return which;
