@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <sstream>
 
+#include "findings.hpp"
 #include "leaf_tally.hpp"
 
 namespace accel_test {
@@ -14,11 +14,11 @@ bool is_nothing(rt_u32 child) {
     return child == BVH2_MAKE_LEAF(0u, 0u);
 }
 
-class Checker {
+class Checker : Findings {
  public:
     Checker(const Input& input, const Built& built, uint32_t max_leaf, bool larger_first)
-        : input_(input),
-          built_(built),
+        : Findings(built),
+          input_(input),
           max_leaf_(max_leaf),
           larger_first_(larger_first),
           node_seen_(built.slot_counts[0]),
@@ -27,12 +27,12 @@ class Checker {
     std::string run() {
         if (built_.leaves.size() != input_.prims.size())
             say() << built_.leaves.size() << " leaves for " << input_.prims.size() << " primitives";
-        for (uint32_t g = 0; g < input_.groups.size() && why_.str().empty(); ++g) {
+        for (uint32_t g = 0; g < input_.groups.size() && none(); ++g) {
             group_ = g;
             if (built_.roots[g] >= node_seen_.size()) return "root out of range";
             visit(built_.roots[g], 1);
         }
-        if (!why_.str().empty()) return why_.str();
+        if (!none()) return all();
         for (size_t i = 0; i < node_seen_.size(); ++i)
             if (!node_seen_[i]) say() << "node " << i << " belongs to no tree";
         if (const std::string missing = leaves_.missing(); !missing.empty()) say() << missing;
@@ -47,18 +47,13 @@ class Checker {
         if (stack < depth_ + 1 || stack % 8 != 0 || stack > depth_ + 8)
             say() << "stack of " << stack << " for depth " << depth_;
         if (depth_ > 64) say() << "depth " << depth_;
-        return why_.str();
+        return all();
     }
 
  private:
-    std::ostream& say() {
-        if (!why_.str().empty()) why_ << "; ";
-        return why_;
-    }
-
     Bounds visit(rt_u32 index, uint32_t depth) {
         Bounds both;
-        if (!why_.str().empty()) return both;
+        if (!none()) return both;
         if (node_seen_[index]) {
             say() << "node " << index << " has two parents";
             return both;
@@ -79,7 +74,7 @@ class Checker {
     }
 
     void visit_child(rt_u32 index, const float* box, rt_u32 child, uint32_t depth, Bounds& both) {
-        if (!why_.str().empty()) return;
+        if (!none()) return;
         if (is_nothing(child)) {
             if (depth > 1 || input_.groups[group_].count > max_leaf_) say() << "node " << index << " lacks a child";
             for (int i = 0; i < 6; ++i)
@@ -113,14 +108,12 @@ class Checker {
     }
 
     const Input& input_;
-    const Built& built_;
     const uint32_t max_leaf_;
     const bool larger_first_;
     uint32_t group_ = 0, depth_ = 0;
     double leaf_count_ = 0;
     std::vector<bool> node_seen_;
     LeafTally leaves_;
-    std::ostringstream why_;
 };
 
 }  // namespace

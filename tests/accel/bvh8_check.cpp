@@ -3,18 +3,18 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <sstream>
 
+#include "findings.hpp"
 #include "leaf_tally.hpp"
 
 namespace accel_test {
 namespace {
 
-class Checker {
+class Checker : Findings {
  public:
     Checker(const Input& input, const Built& built, uint32_t max_leaf, double traversal_cost, double intersection_cost)
-        : input_(input),
-          built_(built),
+        : Findings(built),
+          input_(input),
           max_leaf_(max_leaf),
           traversal_cost_(traversal_cost),
           intersection_cost_(intersection_cost),
@@ -23,7 +23,7 @@ class Checker {
     std::string run() {
         if (built_.leaves.size() != input_.prims.size())
             say() << built_.leaves.size() << " leaves for " << input_.prims.size() << " primitives";
-        for (uint32_t g = 0; g < input_.groups.size() && why_.str().empty(); ++g) {
+        for (uint32_t g = 0; g < input_.groups.size() && none(); ++g) {
             group_ = g;
             area_cost_ = 0;
             if (built_.roots[g] != next_) say() << "the root of group " << g << " is not behind the last group";
@@ -34,7 +34,7 @@ class Checker {
                 weight_ += input_.groups[g].count;
             }
         }
-        if (!why_.str().empty()) return why_.str();
+        if (!none()) return all();
         if (next_ != built_.slot_counts[0]) say() << built_.slot_counts[0] - next_ << " nodes belong to no tree";
         if (const std::string missing = leaves_.missing(); !missing.empty()) say() << missing;
         expect("nodes", static_cast<double>(next_));
@@ -47,7 +47,7 @@ class Checker {
         const rt_u32 least = (stack_ + 1 + 15) / 16 * 16;
         if (stack != (least % 64 == 0 ? least + 16 : least)) say() << "stack of " << stack << " for " << stack_;
         if (depth_ > 64) say() << "depth " << depth_;
-        return why_.str();
+        return all();
     }
 
  private:
@@ -56,20 +56,9 @@ class Checker {
         uint32_t stack = 0;  // children put off at most, this node's included
     };
 
-    std::ostream& say() {
-        if (!why_.str().empty()) why_ << "; ";
-        return why_;
-    }
-
-    void expect(const char* label, double value) {
-        const auto found = built_.stats.find(label);
-        if (found == built_.stats.end() || std::fabs(found->second - value) > 1e-6 * std::fabs(value))
-            say() << "stat " << label << " is not " << value;
-    }
-
     Visited visit(rt_u32 index, uint32_t depth) {
         Visited result;
-        if (!why_.str().empty()) return result;
+        if (!none()) return result;
         if (index != next_ || index >= built_.slot_counts[0]) {
             say() << "node " << index << " stands where " << next_ << " should";
             return result;
@@ -117,7 +106,7 @@ class Checker {
 
     void expect_box(rt_u32 index, const float box[6], const Bounds& below) {
         for (int a = 0; a < 3; ++a)
-            if (why_.str().empty() && (box[a] != below.lo[a] || box[3 + a] != below.hi[a]))
+            if (none() && (box[a] != below.lo[a] || box[3 + a] != below.hi[a]))
                 say() << "a box of node " << index << " is not that of what is below";
     }
 
@@ -132,14 +121,12 @@ class Checker {
     }
 
     const Input& input_;
-    const Built& built_;
     const uint32_t max_leaf_;
     const double traversal_cost_, intersection_cost_;
     uint32_t group_ = 0, depth_ = 0, stack_ = 0;
     rt_u32 next_ = 0;  // node that should come next
     double leaf_count_ = 0, child_count_ = 0, area_cost_ = 0, cost_ = 0, weight_ = 0;
     LeafTally leaves_;
-    std::ostringstream why_;
 };
 
 }  // namespace

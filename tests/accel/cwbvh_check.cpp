@@ -3,23 +3,23 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
-#include <sstream>
 
+#include "findings.hpp"
 #include "leaf_tally.hpp"
 
 namespace accel_test {
 namespace {
 
-class Checker {
+class Checker : Findings {
  public:
     Checker(const Input& input, const Built& built, uint32_t max_leaf)
-        : input_(input), built_(built), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaves_(input, built) {}
+        : Findings(built), input_(input), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaves_(input, built) {}
 
     std::string run() {
         if (built_.leaves.size() != input_.prims.size())
             say() << built_.leaves.size() << " leaves for " << input_.prims.size() << " primitives";
-        for (group_ = 0; group_ < input_.groups.size() && why_.str().empty(); ++group_) visit(built_.roots[group_], 1);
-        if (!why_.str().empty()) return why_.str();
+        for (group_ = 0; group_ < input_.groups.size() && none(); ++group_) visit(built_.roots[group_], 1);
+        if (!none()) return all();
         for (size_t i = 0; i < node_seen_.size(); ++i)
             if (!node_seen_[i]) say() << "node " << i << " belongs to no tree";
         if (const std::string missing = leaves_.missing(); !missing.empty()) say() << missing;
@@ -29,7 +29,7 @@ class Checker {
         expect("node_bytes", 80.0 * static_cast<double>(node_seen_.size()));
         expect_stack("CWBVH_STACK", stack_);
         expect_stack("CWBVH_DEPTH", depth_);
-        return why_.str();
+        return all();
     }
 
  private:
@@ -38,16 +38,6 @@ class Checker {
         uint32_t stack = 0;  // children put off at most, this node's included
     };
 
-    std::ostream& say() {
-        if (!why_.str().empty()) why_ << "; ";
-        return why_;
-    }
-
-    void expect(const char* label, double value) {
-        const auto found = built_.stats.find(label);
-        if (found == built_.stats.end() || std::fabs(found->second - value) > 1e-6 * std::fabs(value))
-            say() << "stat " << label << " is not " << value;
-    }
     void expect_stack(const char* name, uint32_t entries) {
         const rt_u32 stack = built_.defines.at(name);
         if (stack < entries + 1 || stack % 16 != 0 || stack > entries + 32)
@@ -56,7 +46,7 @@ class Checker {
 
     Visited visit(rt_u32 index, uint32_t depth) {
         Visited result;
-        if (!why_.str().empty()) return result;
+        if (!none()) return result;
         if (index >= node_seen_.size() || node_seen_[index]) {
             say() << "node " << index << (index < node_seen_.size() ? " is in two places" : " is out of range");
             return result;
@@ -90,7 +80,7 @@ class Checker {
                 next_leaf += count;
                 ++leaf_count_;
             }
-            if (!why_.str().empty()) return result;
+            if (!none()) return result;
             expect_around(index, node, slot, there);
             for (int a = 0; a < 3; ++a) {
                 result.bounds.lo[a] = std::min(result.bounds.lo[a], there.lo[a]);
@@ -128,13 +118,11 @@ class Checker {
     }
 
     const Input& input_;
-    const Built& built_;
     const uint32_t max_leaf_;
     uint32_t group_ = 0, depth_ = 0, stack_ = 0;
     double leaf_count_ = 0;
     std::vector<bool> node_seen_;
     LeafTally leaves_;
-    std::ostringstream why_;
 };
 
 }  // namespace
