@@ -15,16 +15,16 @@ RT_INLINE vfloat rt_load_reach(const global float *blocks, uint block)
     return ((const global vfloat *)blocks)[RT_RAY_FIELDS * (size_t)block + 7u];
 }
 
-/* Asks for the fields of a block that has rays, and for the t_max of the block `ahead` of it, of which the last is `last`: a CPU
- * waits for memory else, a sixth of bunny's camera rays' time. */
-RT_INLINE void rt_fetch_ray_block(const global float *blocks, uint block, uint ahead, uint last)
+/* While a block is read, asks for what will be: the fields of the block a bundle ahead, if it has rays, and the t_max of that two
+ * bundles ahead. `last`: the last block. A CPU waits for memory else, a sixth of bunny's camera rays' time. */
+RT_INLINE void rt_fetch_ahead(const global float *blocks, uint block, uint last)
 {
 #if RT_CPU && RT_LANES > 1 && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
-    const ulong from = (ulong)((const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)block);
-    if (rt_any(RT_MASK(rt_load_reach(blocks, block) >= rt_vfloat(0.0f))))
-        for (uint i = 0; i < 7u; ++i) __builtin_prefetch((const void *)(from + i * sizeof(vfloat)));
-    const uint far = min(block + ahead, last);
-    __builtin_prefetch((const void *)(ulong)((const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)far + 7u));
+    const uint next = min(block + RT_BUNDLE, last), after = min(next + RT_BUNDLE, last);
+    const global vfloat *fields = (const global vfloat *)blocks;
+    if (rt_any(RT_MASK(rt_load_reach(blocks, next) >= rt_vfloat(0.0f))))
+        for (uint i = 0; i < 7u; ++i) __builtin_prefetch((const void *)(ulong)(fields + RT_RAY_FIELDS * (size_t)next + i));
+    __builtin_prefetch((const void *)(ulong)(fields + RT_RAY_FIELDS * (size_t)after + 7u));
 #endif
 }
 

@@ -14,7 +14,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
             rt_hits hit[RT_BUNDLE];
             vmask active[RT_BUNDLE];
             RT_FOR_EACH(b, count) {
-                rt_fetch_ray_block(rays, min(base + b + RT_BUNDLE, blocks - 1u), RT_BUNDLE, blocks - 1u);
+                rt_fetch_ahead(rays, base + b, blocks - 1u);
                 vfloat t_max;
 #if RT_LANES == 1 /* one fetch has it all */
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);

@@ -45,7 +45,7 @@ std::vector<RayBlock> pack(const RaySet& set) {
     return blocks;
 }
 
-// Asks for the rays of the next block, where it has any, as rt_fetch_ray_block() does for ours.
+// Asks for the rays of the next block, where it has any, as rt_fetch_ahead() does for ours.
 void fetch_ahead(const std::vector<RayBlock>& blocks, size_t block) {
 #if defined(__SSE2__)
     const size_t last = blocks.size() - 1;
