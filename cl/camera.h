@@ -3,8 +3,8 @@
  * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels, of
  * which RT_BUNDLE are traced together (bundle.h). A work-group is several packets, so that neighbours in the picture run close
  * in time. On a CPU (RT_CPU) it is one work-item that does these packets in turn: PoCL would keep the private arrays of all
- * work-items of a group side by side, and they would fall out of the cache. There a group is at least 16 pixels wide and high
- * and at most four packets, so that many cores have enough groups to share. The packet's size is no define but a number of the
+ * work-items of a group side by side, and they would fall out of the cache. There a group is as many packets as 16 pixels hold
+ * either way, one at least and four at most, so that many cores have enough groups to share. The packet's size is no define but a number of the
  * frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
@@ -19,7 +19,7 @@
 #define RT_BLOCKS(frame) ((frame)->blocks_x * (frame)->blocks_y)
 #endif
 
-/* Packets of a group side by side, RT_GROUP_SIDE at most: as Layout::group_w() of the host. */
+/* Packets of a group side by side, RT_GROUP_SIDE at most: Layout::group_w and group_h of the host. */
 #if RT_CPU
 #define RT_IN_GROUP(packet_side) clamp(16u / (packet_side), 1u, (uint)RT_GROUP_SIDE)
 #define RT_GROUP_W(frame) RT_IN_GROUP(RT_PACKET_W(frame))

@@ -11,7 +11,7 @@ namespace clarity {
 void choose_accel(const PluginRegistry& plugins, const std::string& text, Settings& settings);
 
 // What a device traces fastest over all scenes that were measured (docs/performance.md). device: as --device has it; where it
-// names none or several, or the plugin is missing, the default of Settings.
+// names none, or CPUs alone, or the plugin is missing, the default of Settings.
 std::string usual_accel(const PluginRegistry& plugins, const std::string& device);
 
 }  // namespace clarity

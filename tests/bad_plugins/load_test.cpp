@@ -48,17 +48,17 @@ class Scratch {
 };
 
 struct Refusal {
-    const char* library;
+    const char* file;
     std::vector<const char*> says;
 };
 void PrintTo(const Refusal& refusal, std::ostream* out) {
-    *out << refusal.library;
+    *out << refusal.file;
 }
 
 class BadPlugin : public testing::TestWithParam<Refusal> {};
 
 TEST_P(BadPlugin, IsRefusedAndSaysWhy) {
-    const std::string path = library(GetParam().library);
+    const std::string path = library(GetParam().file);
     ASSERT_TRUE(fs::exists(path)) << path;
     const clarity::PluginRecord record = clarity::load_plugin(path);
     EXPECT_EQ(record.plugin, nullptr);
@@ -96,7 +96,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"param_of_unknown_kind", {"'leaf'", "kind 9"}}, Refusal{"param_without_help", {"'leaf'", "help is missing"}},
         Refusal{"enum_without_choices", {"'split'", "choices"}},
         Refusal{"enum_of_wrong_range", {"'split'", "range must be 0..1"}}, Refusal{"null_params", {"params is NULL"}}),
-    [](const testing::TestParamInfo<Refusal>& info) { return info.param.library; });
+    [](const testing::TestParamInfo<Refusal>& info) { return info.param.file; });
 
 // The same parts without a defect are taken: it is the defect that is refused above.
 TEST(GoodPlugin, IsTaken) {
