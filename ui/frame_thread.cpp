@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "ui/picture_difference.hpp"
 #include "ui/thread_priority.hpp"
@@ -235,7 +236,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
     side.image.height = static_cast<unsigned>(settings.height);
     side.image.pixels.resize(size_t(side.image.width) * side.image.height * 4);
     side.scale = tracer.frames->read_display(settings, side.image.pixels.data(), &side.stats);
-    side.frame_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    side.frame_ms = ms_since(begin);
     if (side.scale.map != FalseColorScale::Map::none)
         side.values = std::make_shared<const FloatImage>(tracer.frames->read_values());
     if (!order.retrace && last) side.frame_ms = last->frame_ms;

@@ -7,6 +7,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "base/elapsed.hpp"
 #include "ui/camera_control.hpp"
 #include "ui/picture_captions.hpp"
 #include "ui/ray_lines.hpp"
@@ -185,7 +186,7 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     LinesBehind behind;
     if (known) behind = {&distances_[side], distance.get(), overlay.hides_behind() ? 0.0f : kBehind};
     lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, behind);
-    lines_ms_ = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    lines_ms_ = ms_since(begin);
 }
 
 void PicturePane::draw_lines(ImDrawList& list, const VolumeOverlay& overlay, bool moving) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "ui/thread_priority.hpp"
@@ -264,7 +265,7 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     const auto begin = Clock::now();
     auto loaded = std::make_shared<LoadedScene>();
     loaded->scene = std::make_shared<const Scene>(import_scene(plugins_, request.files, import_, progress));
-    loaded->import_ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    loaded->import_ms = ms_since(begin);
     loaded->files = request.files;
     loaded->files_revision = request.files_revision;
     loaded->bounds = loaded->scene->bounds();

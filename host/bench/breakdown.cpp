@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/row.hpp"
 
@@ -70,17 +71,16 @@ void measure_breakdown(BenchRecord& row, Stand& stand, size_t device, const Sett
         const auto prepared = programs.prepare(*held.prepared, kPrograms[i]);
         const auto frames = std::make_shared<Frames>(stand.opened(device));
         frames->trace(*prepared, reduced, view, 0, false, progress);  // compiles, which is no part of the time limit's share
-        contenders.push_back(
-            {kNames[i], [=, &view, &progress, &shown, &pixels] {
-                 const auto begin = std::chrono::steady_clock::now();
-                 FrameStats stats = frames->trace(*prepared, reduced, view, 0, false, progress);
-                 Take take{stats.device_ms, 0};
-                 if (probe != Probe::whole) return take;
-                 frames->read_display(reduced, pixels.data(), &stats);
-                 take.wall_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-                 shown.insert(shown.end(), stats.kernels.begin(), stats.kernels.end());
-                 return take;
-             }});
+        contenders.push_back({kNames[i], [=, &view, &progress, &shown, &pixels] {
+                                  const auto begin = std::chrono::steady_clock::now();
+                                  FrameStats stats = frames->trace(*prepared, reduced, view, 0, false, progress);
+                                  Take take{stats.device_ms, 0};
+                                  if (probe != Probe::whole) return take;
+                                  frames->read_display(reduced, pixels.data(), &stats);
+                                  take.wall_ms = ms_since(begin);
+                                  shown.insert(shown.end(), stats.kernels.begin(), stats.kernels.end());
+                                  return take;
+                              }});
     }
     const std::vector<Measured> measured = measure_in_turns(contenders, rules, progress);
     double ms[kProbes], error = 0;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <thread>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/analysis.hpp"
 #include "bench/bench.hpp"
@@ -31,10 +32,6 @@ constexpr double kMayDiffer = 1e-3;
 // And pixels of pictures, where five generations of mirrors enlarge every difference.
 constexpr double kPixelsMayDiffer = 1e-2;
 constexpr float kPixelMayDiffer = 0.02f;
-
-double ms_since(Clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
 
 class Contest {
  public:

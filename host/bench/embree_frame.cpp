@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/elapsed.hpp"
 #include "plugin/host_services.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
@@ -314,7 +315,7 @@ double embree_frame(RTCScene scene, const PeerMesh& mesh, const WhittedScene& wh
         _mm_setcsr(saved);
 #endif
     });
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    const double ms = ms_since(begin);
     counts = {};
     for (const Tile& tile : scratch) {
         counts.primary += tile.counts.primary;

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/embree_frame.hpp"
 #include "plugin/host_services.hpp"
@@ -23,10 +24,6 @@ namespace {
 constexpr size_t kBlock = 16;        // rays of the flat arrays' blocks
 constexpr size_t kTaskBlocks = 256;  // blocks that a thread takes at a time
 static_assert(sizeof(rt_ray) == 32, "eight floats a ray");
-
-double ms_since(std::chrono::steady_clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
-}
 
 // 16 rays side by side, as packets read them.
 struct RayBlock {

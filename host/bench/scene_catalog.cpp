@@ -8,6 +8,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/gunzip.hpp"
 
@@ -186,7 +187,7 @@ LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, f
     LoadedScene loaded;
     const auto begin = std::chrono::steady_clock::now();
     loaded.scene = std::make_shared<const Scene>(import_scene(plugins, files, options, progress));
-    loaded.import_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+    loaded.import_ms = ms_since(begin);
     loaded.view = make_view(*loaded.scene, aspect, scene.camera, scene.light);
     return loaded;
 }

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <utility>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/file_watch.hpp"
 #include "base/log.hpp"
@@ -26,10 +27,6 @@ namespace clarity {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-double ms_since(Clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
-}
 
 // A part of the bar: report(f) of the part is report(from + f * share) of the whole.
 class PartOf : public Progress {

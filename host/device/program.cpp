@@ -4,6 +4,7 @@
 #include <regex>
 #include <sstream>
 
+#include "base/elapsed.hpp"
 #include "device/kernel_files.hpp"
 
 namespace clarity {
@@ -95,7 +96,7 @@ BuildResult build_program(Device& device, const std::string& source, const std::
             message += "; " + std::to_string(log.errors - 1) + (log.errors == 2 ? " more error" : " more errors");
         throw Error(Exit::kernel_build_failed, message + ")", log.text, first);
     }
-    result.ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    result.ms = ms_since(start);
     return result;
 }
 

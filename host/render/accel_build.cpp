@@ -9,6 +9,7 @@
 #include <mutex>
 
 #include "base/default_floats.hpp"
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/plugin_check.hpp"
@@ -17,10 +18,6 @@ namespace clarity {
 namespace {
 
 constexpr uint64_t kSlotLimit = uint64_t(1) << 40;
-
-double since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 // What the plugin's calls write into.
 struct Output {
@@ -175,7 +172,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     data.params = params;
     auto start = std::chrono::steady_clock::now();
     data.scene = make_build_scene(scene, progress);
-    data.pack_ms = since(start);
+    data.pack_ms = ms_since(start);
 
     HostServices services(std::string("accel ") + plugin.id, progress);
     Output out(*plugin.accel, data, services, static_cast<rt_u32>(data.scene.groups.size()));
@@ -207,7 +204,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
         const DefaultFloats floats;
         return plugin.accel->build(services.host(), &input, &output_table);
     });
-    data.build_ms = since(start);
+    data.build_ms = ms_since(start);
     data.scene.prims = {};  // what is no longer needed goes as soon as may be: large scenes fill memory with it
 
     start = std::chrono::steady_clock::now();
@@ -221,7 +218,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
     data.bytes = data.leaf_count * sizeof(rt_leaf) + data.instances.size() * sizeof(rt_instance);
     for (rt_u32 s = 0; s < plugin.accel->slot_count; ++s) data.bytes += data.slots[s].count * plugin.accel->slots[s].elem_bytes;
-    data.pack_ms += since(start);
+    data.pack_ms += ms_since(start);
     return data;
 }
 

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <map>
 
+#include "base/elapsed.hpp"
 #include "device/kernel_files.hpp"
 #include "device/program.hpp"
 #include "render/bands.hpp"
@@ -35,7 +36,7 @@ FalseColorScale show_values(const std::function<FloatImage()>& read, const std::
     false_colors(values, aov, scale, rgba);
     if (stats) {
         stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(done - begin).count()});
-        stats->kernels.push_back({"false colours", std::chrono::duration<double, std::milli>(Clock::now() - done).count()});
+        stats->kernels.push_back({"false colours", ms_since(done)});
     }
     return scale;
 }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "base/elapsed.hpp"
 #include "render/guarded.hpp"
 
 namespace clarity {
@@ -17,7 +18,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
         const auto start = std::chrono::steady_clock::now();
         const Piece piece = enqueue(first, count);
         queue.finish();
-        const double wall = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        const double wall = ms_since(start);
         times.wall_ms += wall;
         times.device_ms += span_ms(piece.first, piece.last, wall);
         first += count;

@@ -1,4 +1,5 @@
 // preparer.cpp -- what is slow between settings and frames, and what of it can be kept.
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "render/device_scene.hpp"
 #include "render/frame_constants.hpp"
@@ -16,10 +17,6 @@
 
 namespace clarity {
 namespace {
-
-double since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-}
 
 Settings resolve(const Settings& asked, const Device& device) {
     Settings s = asked;
@@ -148,7 +145,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
             progress.stage("uploading the scene");
             const auto start = std::chrono::steady_clock::now();
             next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel, progress);
-            next->upload_ms = since(start);
+            next->upload_ms = ms_since(start);
         }
         if (progress.cancelled()) throw Cancelled();
         progress.stage("compiling kernels");
@@ -165,7 +162,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         auto program = programs_->get(source, kind, what, &fresh);
         next->program = program;
         if (fresh) warm_up(device_, *program, *next);
-        next->compile_ms = fresh ? since(start) : 0;
+        next->compile_ms = fresh ? ms_since(start) : 0;
         next->compile_cached = !fresh;
     } catch (const cl::Error& e) {
         throw Error(Exit::failed, std::string("preparing ") + plugin->id + " on " + device_->info().name + ": " + e.what() +

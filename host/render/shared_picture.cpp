@@ -4,6 +4,7 @@
 #include <chrono>
 #include <numeric>
 
+#include "base/elapsed.hpp"
 #include "base/log.hpp"
 #include "render/guarded.hpp"
 #include "render/kernel_source.hpp"
@@ -19,10 +20,6 @@ constexpr unsigned kMostStrips = 256;  // about so many: enough to balance devic
 // sample of 2 ms. With two queues the other one's kernel runs meanwhile.
 unsigned queues_for(const DeviceInfo& info) {
     return info.cpu ? 1 : 2;
-}
-
-double ms_since(Clock::time_point begin) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
 }
 
 unsigned divided_up(unsigned a, unsigned b) {

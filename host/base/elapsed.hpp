@@ -1,0 +1,11 @@
+// elapsed.hpp -- time that has gone by.
+#pragma once
+#include <chrono>
+
+namespace clarity {
+
+inline double ms_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+}  // namespace clarity
