@@ -81,7 +81,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
         for (uint step = 0; step < frame->depth; ++step) {
             const uint bits = rt_bits(active);
             RT_WAVE_BREAK_UNLESS(bits != 0u)
-            rt_vec aside_origin, aside_direction, aside_weight;
+            rt_aside aside;
             uint parted = 0u;
             if (bits != 0u) {
                 rt_hits hit;
@@ -93,44 +93,10 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
 #endif
                 if (level == 0u && step == 0u && frame->sample == 0u)
                     rt_store(hit.t, distances + ((size_t)first_group * group_packets * RT_BLOCKS(frame) + unit) * RT_LANES);
-                const rt_surface surface = rt_resolve(&ctx, &ray, &hit, bits);
-                const vmask hits = surface.hit & active;
-                const uint hit_bits = rt_bits(hits);
-                rt_vec light = rt_splat(frame->background[0], frame->background[1], frame->background[2]), passed = weight;
-                vmask going = rt_vint(0);
-                if (hit_bits != 0u) {
-                    const rt_point point = rt_point_of(&ray, hit.t, &surface, hits);
-                    const rt_shade material = rt_load_materials(&ctx, &surface, hit_bits, point.at);
-                    const vmask last = RT_MASK(generation + 1 >= rt_vint((int)frame->depth));
-                    vmask mirrored, refracted;
-                    const rt_split split = rt_follow(frame, &point, &material, weight, &mirrored, &refracted);
-                    mirrored &= ~last;
-                    refracted &= ~last;
-                    going = mirrored | refracted;
-                    parted = rt_bits(mirrored & refracted);
-                    rt_vec bounced = point.incoming, bent = bounced;
-                    if (rt_any(mirrored)) bounced = rt_mirror_direction(&point);
-                    if (rt_any(refracted)) bent = rt_refracted_direction(&point, &split);
-                    const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, weight));
-                    if (parted != 0u) {
-                        aside_origin = rt_along(-point.offset, point.geometric, point.at);
-                        aside_direction = bent;
-                        aside_weight = through;
-                    }
-                    /* The ray itself has served: the next is made in its place, before the shadow rays. */
-                    const vfloat side = rt_select(mirrored, point.offset, -point.offset);
-                    const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(mirrored, bounced, bent);
-                    ray.ox = from.x, ray.oy = from.y, ray.oz = from.z;
-                    ray.dx = along.x, ray.dy = along.y, ray.dz = along.z;
-                    passed = rt_choose(mirrored, rt_scale(split.mirrored, weight), through);
-                    rt_rays shadow;
-                    rt_vec sent;
-                    rt_direct_light(&ctx, frame, &point, &material, 1u, &shadow, &hit, &sent, &tally);
-                    light = rt_choose(hits, sent, light);
-                }
-                const rt_vec more = rt_mul(weight, light), none = rt_splat(0.0f, 0.0f, 0.0f);
-                sum = rt_add(sum, rt_choose(active, more, none));
-                weight = passed;
+                const vmask last = RT_MASK(generation + 1 >= rt_vint((int)frame->depth));
+                rt_vec light;
+                const vmask going = rt_step(&ctx, frame, active, last, &ray, &hit, &weight, &light, &aside, &parted, &tally);
+                sum = rt_add(sum, rt_choose(active, light, rt_splat(0.0f, 0.0f, 0.0f)));
                 active = going;
                 generation += 1;
                 tally.secondary += popcount(rt_bits(going));
@@ -145,7 +111,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 tally.dropped += wanted - taken;
             }
             if (parted != 0u)
-                rt_put_wave_rays(next, room, first + before, parted, aside_origin, aside_direction, aside_weight, pixel, generation);
+                rt_put_wave_rays(next, room, first + before, parted, aside.origin, aside.direction, aside.weight, pixel, generation);
         }
 
         if (mine != 0u) {

@@ -250,10 +250,18 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "surface.h");
     include(out, "camera.h");
     if (kind == KernelKind::rays || kind == KernelKind::counted_rays) include(out, "ray_blocks.h");
+    if (shades) include(out, "material.h");
     if (queues)
-        for (const char* name : {"material.h", "ray_queue.h", "inspect.h", "shading.h", "generations.h"}) include(out, name);
+        for (const char* name : {"ray_queue.h", "inspect.h"}) include(out, name);
+    if (shades) include(out, "shading.h");
+    // Where packets are single pixels, which only GPUs have. Rays are written down, and generations counted, in the other.
+    const bool one_pixel =
+        layout.max_pixels == 1 && layout.lanes == 1 && kind == KernelKind::color && source.entry == "trace_iterative";
+    if (shades && (one_pixel || !queues)) include(out, "ray_step.h");
+    if (queues)
+        include(out, one_pixel ? "one_pixel.h" : "generations.h");
     else if (shades)
-        for (const char* name : {"material.h", "shading.h", "wave.h", "wave_rays.h"}) include(out, name);
+        for (const char* name : {"wave.h", "wave_rays.h"}) include(out, name);
     include(out, kernel_file);
 
     source.text = out.str();
