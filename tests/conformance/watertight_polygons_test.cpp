@@ -3,6 +3,7 @@
 // its edges.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -209,6 +210,29 @@ TEST(WatertightPolygons, TrianglesAmongThem) {
     std::mt19937 random(36);
     expect_tight("room with triangles", room(), rotation(random), 1, {0, 0, 0}, 100000, 2);
     expect_tight("globe with triangles", globe(48, 24), rotation(random), 1, {0, 0, 0}, 200000, 3);
+}
+
+// Where walls meet, rounding puts what camera rays hit on either side of the other wall: none of it may lie in that wall's
+// shadow.
+TEST(WatertightPolygons, EdgesAreNotInShadow) {
+    // As high as wide: a picture's diagonals lie on the edges from the back to the front.
+    const ScenePtr scene = scene_of(prism({{-0.75, -1}, {-0.75, 1}, {0.75, 1}, {0.75, -1}}), 0);
+    size_t dark = 0;
+    for (const float z : {0.95f, 0.7f, 0.3f}) {
+        View view = view_from({0, 0, z}, {0, 0, -1}, 75);
+        view.ambient = {0.1f, 0.1f, 0.1f};
+        view.lights = {{{0.1f, 0.65f, 0.1f}, RT_LIGHT_POINT, {1, 1, 1}, 0}};
+        const FloatImage image =
+            Workbench::get().values(scene, make_settings({{"accel", "bvh8"}, {"size", "600x600"}, {"depth", "1"}}), view);
+        for (unsigned y = 0; y < image.height; ++y)
+            for (unsigned x = 1; x + 1 < image.width; ++x) {
+                const float *at = &image.pixels[image.channels * (size_t(y) * image.width + x)], *left = at - image.channels,
+                            *right = at + image.channels;
+                ASSERT_GT(*at, 0.0f) << "black at " << x << ", " << y;
+                dark += *at < 0.6f * std::min(*left, *right) ? 1 : 0;
+            }
+    }
+    EXPECT_EQ(dark, 0u);
 }
 
 }  // namespace
