@@ -9,7 +9,7 @@ typedef float rt_film;
 typedef float4 rt_film;
 #endif
 
-kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+RT_PICTURE_KERNEL
 trace_iterative(const constant rt_frame *frame, const uint first_group, global rt_film *film, global uint4 *counters,
                 global float *distances, RT_CTX_PARAMS)
 {

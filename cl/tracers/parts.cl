@@ -1,6 +1,6 @@
 /* parts.cl -- the beginning of a frame, for `clarity bench --breakdown`: 0 the film alone, 1 camera rays too, 2 their nearest hits
  * too. Arguments and order of work are those of iterative.cl. What a part finds goes into the picture, so none of it is saved. */
-kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+RT_PICTURE_KERNEL
 trace_parts(const constant rt_frame *frame, const uint first_group, global float4 *film, global uint4 *counters,
             global float *distances, RT_CTX_PARAMS)
 {

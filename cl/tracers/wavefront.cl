@@ -36,10 +36,10 @@ RT_INLINE float rt_share(const global uint *cell)
     return convert_float((long)((ulong)cell[0] | (ulong)cell[1] << 32)) * (1.0f / RT_SHARE_UNIT);
 }
 
-/* One level. sums: of each pixel's first way, w = 1. shares: see above; of no use unless `parting`. counters: shadow, secondary,
+/* One level. sums: of each pixel's first way, w = 1; where nothing parts, the film. shares: see above; of no use unless `parting`. counters: shadow, secondary,
  * dropped rays and full stacks, of each work-group; begun anew with `fresh`. distances: as iterative.cl has them. rays: of this
  * level; next: of the coming one, `room` at most. idle_control: that of the pictures after this, of whom nobody is under way. */
-kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+RT_PICTURE_KERNEL
 trace_wavefront(const constant rt_frame *frame, const uint first_group, const uint group_count, const uint level, const uint fresh,
                 const uint room, const uint parting, global float4 *sums, global uint *shares, global uint4 *counters,
                 global float *distances, const global float4 *rays, global float4 *next, global uint *control,
@@ -125,7 +125,8 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 if ((mine >> l & 1u) == 0u) continue;
                 global uint *share = shares + RT_SHARE * (size_t)at[l];
                 if (level == 0u) {
-                    sums[at[l]] = (float4)(red[l], green[l], blue[l], 1.0f);
+                    const float4 sample = (float4)(red[l], green[l], blue[l], 1.0f);
+                    sums[at[l]] = parting == 0u && frame->sample != 0u ? sums[at[l]] + sample : sample;
                     if (parting)
                         for (uint i = 0; i < RT_SHARE; ++i) share[i] = 0u;
                 } else {
@@ -154,7 +155,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
 }
 
 /* A sample into the film: the first one in place of what was there. */
-kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+RT_PICTURE_KERNEL
 add_sample(const constant rt_frame *frame, const uint first_group, global float4 *film, const global float4 *sums,
            const global uint *shares, const uint parting)
 {

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <map>
+#include <utility>
 
 #include "base/elapsed.hpp"
 #include "device/kernel_files.hpp"
@@ -120,8 +121,21 @@ void FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& se
     add_times(times, mapped, read);
 }
 
+cl::Event FilmKernels::begin_to_show(const cl::Buffer& film, size_t pixels, const Settings& settings) {
+    Begun begun{pixels, settings.exposure, settings.tone, map_tones(film, pixels, settings), {}, nullptr};
+    begun.rgba = picture_.begin(display_.get(), pixels * 4, &begun.read);
+    begun_ = std::move(begun);
+    return begun_.read;
+}
+
 const uint8_t* FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings,
                                  std::vector<KernelTime>* times) {
+    const Begun begun = std::exchange(begun_, {});
+    if (begun.rgba && begun.pixels == pixels && begun.exposure == settings.exposure && begun.tone == settings.tone) {
+        begun.read.wait();
+        add_times(times, begun.mapped, begun.read);
+        return begun.rgba;
+    }
     const cl::Event mapped = map_tones(film, pixels, settings);
     cl::Event read;
     const uint8_t* rgba = picture_.fetch(display_.get(), pixels * 4, &read);

@@ -41,10 +41,22 @@ class FilmKernels {
     // Of some rows of work-groups alone, `row_height` pixels high, each to its place in the picture.
     void show_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
                    unsigned row_height, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
-    // The same in memory of the device's own, which stays until the next call of either.
+    // The same in memory of the device's own, which stays until the next call of either or of begin_to_show().
     const uint8_t* show(const cl::Buffer& film, size_t pixels, const Settings& settings, std::vector<KernelTime>* times);
+    // Enqueues what the last show() does, behind what is queued; a show() of the same film with the same settings then finds it
+    // done. Returns its last event. Not for a CPU.
+    cl::Event begin_to_show(const cl::Buffer& film, size_t pixels, const Settings& settings);
+    // The film is about to be another.
+    void forget_shown() { begun_ = {}; }
 
  private:
+    struct Begun {
+        size_t pixels = 0;
+        double exposure = 0;
+        std::string tone;
+        cl::Event mapped, read;
+        const uint8_t* rgba = nullptr;  // null: nothing is begun
+    };
     cl::Event map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings);
     // Arguments that both kernels have. Returns the display.
     const cl::Buffer& set_map(cl::Kernel& kernel, const cl::Buffer& film, size_t pixels, const Settings& settings);
@@ -56,6 +68,7 @@ class FilmKernels {
     GrowingBuffer display_{CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR}, sums_{CL_MEM_READ_WRITE}, rows_{CL_MEM_READ_ONLY};
     std::vector<rt_u32> rows_written_;
     HostPicture picture_;  // goes before what it shows
+    Begun begun_;
 };
 
 }  // namespace clarity

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstring>
 #include <numeric>
+#include <utility>
 
 #include "render/bands.hpp"
 #include "render/film.hpp"
@@ -67,6 +68,7 @@ struct Frames::Impl {
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
     Launcher launcher;
+    bool looked_at = false;  // the picture before: then this one will be
     std::vector<uint8_t> false_picture;
     std::vector<float> scratch;  // kept: fresh pages cost more than what is done with them
 
@@ -135,13 +137,18 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         const cl::Buffer& film = im.film.fit(context, FilmKernels::room(pixels) * film_channels(im.aov) * sizeof(float));
         if (program.has_generations()) im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float));
         const unsigned groups = im.groups() - begin;
+        // Who looked at the last picture gets this one by a single wait, not by one for the trace and one for the copy.
+        Behind behind;
+        im.film_kernels.forget_shown();
+        if (std::exchange(im.looked_at, false) && im.aov == "color" && !shared && !im.device->info().cpu)
+            behind = [&] { return im.film_kernels.begin_to_show(film, pixels, settings); };
         LaunchTimes times;
         if (program.is_wavefront()) {
             const auto depth = static_cast<unsigned>(settings.depth);
             times = im.wavefront.trace(
                 queue, im.launcher,
-                {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film, im.distances.get()},
-                go_on);
+                {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film, im.distances.get()}, go_on,
+                behind);
         } else {
             cl_uint at = 0;
             im.kernel.setArg(at++, im.view.frame());
@@ -152,7 +159,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
                 im.kernel.setArg(at++, im.distances.get());
             }
             im.view.bind(*prepared.on_device, im.kernel, at);
-            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on, begin);
+            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on, begin, behind);
         }
 
         FrameStats stats;
@@ -272,6 +279,7 @@ const uint8_t* Frames::look_at_display(const Settings& settings, FrameStats* sta
         return im.false_picture.data();
     }
     if (scale) *scale = {};
+    im.looked_at = true;
     return guarded(*im.device, "reading the picture",
                    [&] { return im.film_kernels.show(im.film.get(), pixels, settings, stats ? &stats->kernels : nullptr); });
 }

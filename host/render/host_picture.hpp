@@ -17,9 +17,11 @@ class HostPicture {
 
     // Gives back what was taken of `source` before; then it may be written to, or go.
     void release();
-    // The first `bytes` of a buffer, when all that is queued is done; stays until the next release() or fetch(). `done` is the
-    // copy's event, or none.
+    // The first `bytes` of a buffer, when all that is queued is done; stays until the next release(), fetch() or begin().
+    // `done` is the copy's event, or none.
     const uint8_t* fetch(const cl::Buffer& source, size_t bytes, cl::Event* done);
+    // The same without waiting: what is returned is there once `done` is. Not for a CPU.
+    const uint8_t* begin(const cl::Buffer& source, size_t bytes, cl::Event* done);
     // So many bytes of pinned memory, which stay where they are until more are wanted. Not for a CPU.
     uint8_t* pinned(size_t bytes);
 

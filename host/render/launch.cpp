@@ -1,5 +1,6 @@
 #include "render/launch.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "base/elapsed.hpp"
@@ -9,7 +10,7 @@ namespace clarity {
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
                           const std::function<Piece(unsigned first, unsigned count)>& enqueue,
-                          const std::function<void()>& go_on) {
+                          const std::function<void()>& go_on, const Behind& behind) {
     LaunchTimes times;
     pace_.begin_picture();
     for (unsigned first = 0; first < group_count;) {
@@ -17,11 +18,15 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
         const unsigned count = pace_.next(group_count - first, most);
         const auto start = std::chrono::steady_clock::now();
         const Piece piece = enqueue(first, count);
-        queue.finish();
-        const double wall = ms_since(start);
-        times.wall_ms += wall;
-        times.device_ms += span_ms(piece.first, piece.last, wall);
         first += count;
+        cl::Event last;
+        if (behind && first == group_count) last = behind();
+        queue.finish();
+        double wall = ms_since(start);
+        const double device = span_ms(piece.first, piece.last, wall);
+        if (last()) wall = std::max(device, wall - std::max(0.0, span_ms(piece.first, last, device) - device));
+        times.wall_ms += wall;
+        times.device_ms += device;
         ++times.launches;
         pace_.took(count, wall);
     }
@@ -30,7 +35,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
 }
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                          unsigned group_size, const std::function<void()>& go_on, unsigned begin) {
+                          unsigned group_size, const std::function<void()>& go_on, unsigned begin, const Behind& behind) {
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;
         kernel.setArg(first_argument, begin + first);
@@ -38,7 +43,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint f
                                    nullptr, &event);
         return Piece{event, event};
     };
-    return run(queue, group_count, group_count, enqueue, go_on);
+    return run(queue, group_count, group_count, enqueue, go_on, behind);
 }
 
 }  // namespace clarity

@@ -12,6 +12,9 @@ struct LaunchTimes {
     unsigned launches = 0;
 };
 
+// Enqueues what is to be done behind a picture's last kernel, and returns its last event; or nothing.
+using Behind = std::function<cl::Event()>;
+
 // Keeps the pace of one kernel, or of several that run one after the other, from launch to launch.
 class Launcher {
  public:
@@ -20,13 +23,14 @@ class Launcher {
         cl::Event first, last;
     };
     // Runs groups [0, group_count) in pieces of `most` at most, each enqueued by `enqueue`. go_on is asked between pieces and
-    // stops by throwing.
+    // stops by throwing. What is done behind is waited for with the last piece, and counts in none of the times.
     LaunchTimes run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
-                    const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on);
+                    const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
+                    const Behind& behind = {});
     // Runs groups [begin, begin + group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of
     // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0);
+                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0, const Behind& behind = {});
     void forget() { pace_.forget(); }
 
  private:

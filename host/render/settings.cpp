@@ -130,7 +130,7 @@ const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
         choice("tracer", "Tracer",
                "iterative: each packet goes through its generations of rays by itself; wavefront: rays that part go on side by "
-               "side, by way of queues in the device's memory; auto: iterative",
+               "side, by way of queues in the device's memory; auto: wavefront on a GPU if nothing refracts, else iterative",
                {"auto", "iterative", "wavefront"}, Effect::recompile, &Settings::tracer),
         integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
         size("packet", "Packet",

@@ -71,14 +71,14 @@ void Wavefront::bind(const WavefrontFrame& frame, const Room& room) {
     counters_.fit(context, size_t(work_groups_) * 16);
     for (GrowingBuffer& rays : rays_) rays.fit(context, room.rays * kRayBytes);
     shares_.fit(context, room.parting ? pixels * kShareBytes : 0);
-    sums_.fit(context, frame.sample > 0 ? pixels * sizeof(cl_float4) : 0);
+    sums_.fit(context, room.parting && frame.sample > 0 ? pixels * sizeof(cl_float4) : 0);
 }
 
 Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame& frame, const Room& room, unsigned first,
                                    unsigned count) {
     const size_t local = frame.layout.local_size(), global = work_groups_ * local;
     const cl::Buffer &control = control_[turn_], &idle = control_[turn_ ^ 1],
-                     &sums = frame.sample > 0 ? sums_.get() : frame.film;
+                     &sums = room.parting && frame.sample > 0 ? sums_.get() : frame.film;
     first += frame.begin;
     if (!clean_) queue.enqueueFillBuffer(control, cl_uint(0), 0, kControlBytes);
     clean_ = false;  // unless all goes well
@@ -93,7 +93,7 @@ Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame
         queue.enqueueNDRangeKernel(trace_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr, &piece.last);
         if (level == 0) piece.first = piece.last;
     }
-    if (room.parting || frame.sample > 0) {
+    if (room.parting) {
         Arguments(add_) << frame.view_buffers.frame() << cl_uint(first) << frame.film << sums << shares_.get()
                         << cl_uint(room.parting);
         queue.enqueueNDRangeKernel(add_, cl::NullRange, cl::NDRange(count * local), cl::NDRange(local), nullptr, &piece.last);
@@ -104,11 +104,11 @@ Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame
 }
 
 LaunchTimes Wavefront::trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
-                             const std::function<void()>& go_on) {
+                             const std::function<void()>& go_on, const Behind& behind) {
     const Room room = room_for(frame);
     bind(frame, room);
     const auto piece = [&](unsigned first, unsigned count) { return enqueue(queue, frame, room, first, count); };
-    return launcher.run(queue, frame.groups, room.groups, piece, go_on);
+    return launcher.run(queue, frame.groups, room.groups, piece, go_on, behind);
 }
 
 }  // namespace clarity
