@@ -7,9 +7,9 @@
 #define RT_LANES_H
 
 #define RT_INLINE static inline __attribute__((always_inline))
-/* A tracer of pictures. NVIDIA's compiler may be told how many registers to use, which these need (host/render/trace_program.cpp), but
- * does not listen where the size of work-groups is laid down. */
-#ifdef __NV_CL_C_VERSION
+/* A kernel that makes pictures. NVIDIA's compiler may be told how many registers to use (RT_FEWER_REGISTERS), but listens only where
+ * the size of work-groups is not laid down. */
+#if defined(RT_FEWER_REGISTERS) && defined(__NV_CL_C_VERSION)
 #define RT_PICTURE_KERNEL kernel void
 #else
 #define RT_PICTURE_KERNEL kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void

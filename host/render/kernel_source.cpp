@@ -185,6 +185,9 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     if (settings.portable) out << "#define RT_PORTABLE\n";
     if (settings.debug) out << "#define RT_DEBUG\n";
     KernelSource source;
+    // With instances there are four traversals, and what would have to be put aside costs more; with polygons as much.
+    source.fewer_registers = kind == KernelKind::color && !layout.cpu && !features.instances && !features.polygons;
+    if (source.fewer_registers) out << "#define RT_FEWER_REGISTERS\n";
     std::string kernel_file;
     switch (kind) {
         case KernelKind::generations:

@@ -47,6 +47,7 @@ constexpr const char* kWavefrontEntry = "trace_wavefront";  // of its several ke
 
 struct KernelSource {
     std::string text, options, entry;  // entry: name of the kernel
+    bool fewer_registers = false;      // it gains by more warps side by side than its registers would let be
 };
 KernelSource assemble_kernel(const Settings& settings, const Layout& layout, KernelKind kind, const SceneFeatures& features,
                              const rt_plugin& accel, const std::map<std::string, rt_u32>& defines,

@@ -7,9 +7,9 @@ namespace clarity {
 namespace {
 
 // A picture's kernel holds two traversals and shading, and would take 145 to 160 registers of a work-item, so that 12 warps
-// share one of an H200's multiprocessors. With 128 there are 16, and 1.02 to 1.13 times the frames; what 96 spill costs more.
-std::string registers_option(const DeviceInfo& info, KernelKind kind) {
-    return kind == KernelKind::color && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "";
+// share one of an H200's multiprocessors. With 128 there are 16, and 1.02 to 1.16 times the frames; 112 and 144 are worse.
+std::string options_for(const DeviceInfo& info, const KernelSource& source) {
+    return source.options + (source.fewer_registers && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "");
 }
 
 }  // namespace
@@ -29,8 +29,7 @@ std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, Kern
             return it->program;
         }
     ++compiled_;
-    const BuildResult built =
-        build_program(*device_, source.text, source.options + registers_option(device_->info(), kind), what);
+    const BuildResult built = build_program(*device_, source.text, options_for(device_->info(), source), what);
     auto program = std::make_shared<TraceProgram>();
     program->program = built.program;
     program->entry = source.entry;
