@@ -44,39 +44,36 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
 
 #ifdef RT_SHOW_GENERATIONS
 /* The picture is the number of generations that each pixel has. */
-RT_INLINE void rt_mark_pixels(float value, vint pixel, uint bits, float *marks)
+RT_INLINE void rt_mark_pixels(float value, vint pixel, uint bits, float4 *marks)
 {
     int at[RT_LANES];
     rt_store(pixel, at);
     for (uint l = 0; l < RT_LANES; ++l)
-        if (bits >> l & 1u) marks[at[l]] = value;
+        if (bits >> l & 1u) marks[at[l]].x = value;
 }
 #endif
 
 /* Adds each lane's light to its pixel, one by one: two lanes may belong to the same. */
-RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float *red, float *green, float *blue)
+RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float4 *sums)
 {
-    float r[RT_LANES], g[RT_LANES], b[RT_LANES];
+    float4 lanes[RT_LANES];
     int at[RT_LANES];
-    rt_store(light.x, r);
-    rt_store(light.y, g);
-    rt_store(light.z, b);
+    rt_store_lanes(light, lanes);
     rt_store(pixel, at);
-    for (uint l = 0; l < RT_LANES; ++l) {
-        if ((bits >> l & 1u) == 0u) continue;
-        red[at[l]] += r[l];
-        green[at[l]] += g[l];
-        blue[at[l]] += b[l];
-    }
+    if (bits == RT_ALL_LANES)
+        for (uint l = 0; l < RT_LANES; ++l) sums[at[l]] += lanes[l];
+    else
+        for (uint l = 0; l < RT_LANES; ++l)
+            if (bits >> l & 1u) sums[at[l]] += lanes[l];
 }
 
-/* All rays of the packet whose first pixel is `origin`. red, green, blue: sums, a number a pixel. distance: of the camera rays,
- * in the order in which they are traced; written with sample 0. */
-RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float *red,
-                                    float *green, float *blue, global float *distance, rt_tally *tally)
+/* All rays of the packet whose first pixel is `origin`. sums: of each pixel's light, row by row, and 1. distance: of the camera
+ * rays, in the order in which they are traced; written with sample 0. */
+RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float4 *sums,
+                                    global float *distance, rt_tally *tally)
 {
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), capacity = pixels * RT_RAY_SLOTS;
-    for (uint i = 0; i < pixels; ++i) red[i] = green[i] = blue[i] = 0.0f;
+    for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
 
     uint count = RT_BLOCKS(frame) * RT_LANES; /* the first generation is made, not stored */
     for (uint generation = 0; generation < frame->depth && count != 0u; ++generation) {
@@ -159,10 +156,10 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                 if (rt_any(points[b].hits) && generation + 1u < frame->depth)
                     next_count = rt_spawn(frame, next, capacity, next_count, points + b, materials + b, weights[b], pixels_of[b], tally);
 #ifdef RT_SHOW_GENERATIONS
-                rt_mark_pixels((float)(generation + 1u), pixels_of[b], bits, red);
+                rt_mark_pixels((float)(generation + 1u), pixels_of[b], bits, sums);
 #else
                 const rt_vec seen = rt_any(points[b].hits) ? rt_choose(points[b].hits, light[b], behind) : behind;
-                rt_add_to_pixels(rt_mul(weights[b], seen), pixels_of[b], bits, red, green, blue);
+                rt_add_to_pixels(rt_mul(weights[b], seen), pixels_of[b], bits, sums);
 #endif
             }
         }

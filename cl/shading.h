@@ -112,8 +112,11 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             const rt_shade *m = materials + b;
             const vmask lit = RT_MASK(hits[b].t >= zero);
             const rt_vec towards = rt_vec_of(rays[b].dx, rays[b].dy, rays[b].dz);
-            const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
-            const vfloat highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
+            vfloat highlight = zero;
+            if (rt_any(p->hits & RT_MASK(rt_largest(m->specular) > zero))) {
+                const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
+                highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
+            }
             const rt_vec color = rt_spread(light->color);
             diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
             shine[b] = rt_along(rt_select(lit, highlight, zero), color, shine[b]);
