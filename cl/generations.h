@@ -14,6 +14,12 @@
 #define RT_RECORD_SPAWN(kind, bits, followed)
 #endif
 
+#ifdef RT_PARTS_SCATTERED
+#define RT_KEEP_AREA(bits) if (count != first) rt_store(rt_compress(p->area, bits), next->area + first);
+#else
+#define RT_KEEP_AREA(bits) (void)first;
+#endif
+
 /* Appends the rays that go on from the points p. */
 RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint capacity, uint count, const rt_point *p,
                         const rt_shade *m, rt_vec weight, vint pixel, rt_tally *tally)
@@ -31,13 +37,17 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
         const rt_vec origin = rt_along(p->offset, p->geometric, p->at), direction = rt_mirror_direction(p),
                      passed = rt_scale(split.mirrored, weight);
         RT_RECORD_SPAWN(RT_RAY_MIRROR, any_mirror, mirror_bits)
+        const uint first = count;
         count = rt_append(next, capacity, count, mirror_bits, origin, direction, passed, pixel, &tally->dropped);
+        RT_KEEP_AREA(mirror_bits)
     }
     if (any_refract != 0u) {
         const rt_vec origin = rt_along(-p->offset, p->geometric, p->at), direction = rt_refracted_direction(p, &split),
                      passed = rt_scale(split.refracted, rt_mul(m->color, weight));
         RT_RECORD_SPAWN(RT_RAY_REFRACTED, any_refract, refract_bits)
+        const uint first = count;
         count = rt_append(next, capacity, count, refract_bits, origin, direction, passed, pixel, &tally->dropped);
+        RT_KEEP_AREA(refract_bits)
     }
     return count;
 }
@@ -101,6 +111,9 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                     rt_take(current, base, rays + b, weights + b, pixels_of + b);
                 }
                 rt_prepare(rays + b, rt_bits(active[b]));
+#ifdef RT_PARTS_SCATTERED
+                if (generation != 0u) rays[b].scattered = rt_scattered(rays + b, rt_load(current->area + base), rt_bits(active[b]));
+#endif
                 rt_clear_hits(hits + b, active[b]);
 #ifdef RT_INSPECT
                 tally->recorder.generation = generation + 1u;

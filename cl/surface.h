@@ -18,6 +18,9 @@ typedef struct rt_surface {
     rt_vec geometric;    /* unit normal, world, on the side that the primitive has it */
     rt_vec normal;       /* for shading: interpolated where there are vertex normals; unit, on the geometric one's side */
     vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
+#ifdef RT_PARTS_SCATTERED
+    vfloat area;         /* twice the triangle's; infinite for other kinds */
+#endif
     vint prim;           /* -1: nothing hit */
     vint material;
 } rt_surface;
@@ -51,6 +54,10 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     uint round = 0;
 #endif
 
+#ifdef RT_PARTS_SCATTERED
+    s.area = sqrt(rt_dot(s.geometric, s.geometric));
+#endif
+
     int leaf_at[RT_LANES];
     rt_store(hit->leaf, leaf_at);
     for (uint left = bits & rt_bits(RT_MASK(hit->leaf != rt_vint(-1))); left != 0u;) {
@@ -60,6 +67,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_PLANES
         if (at < -1) {
             s.material = rt_select(mine, rt_vint((int)ctx->planes[-2 - at].material), s.material);
+#ifdef RT_PARTS_SCATTERED
+            s.area = rt_select(mine, RT_INFINITY, s.area);
+#endif
 #if RT_HAS_TEXTURES
             planar |= mine;
 #endif
@@ -69,6 +79,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         const global rt_leaf *leaf = ctx->leaves + at;
         const uint kind = RT_REF_KIND(leaf->ref);
         s.material = rt_select(mine, rt_vint((int)leaf->material), s.material);
+#ifdef RT_PARTS_SCATTERED
+        if (kind != RT_REF_TRIANGLE) s.area = rt_select(mine, RT_INFINITY, s.area);
+#endif
 #if RT_HAS_TEXTURES
         if (kind == RT_REF_POLYGON) planar |= mine;
         if (kind == RT_REF_SPHERE) round |= rt_bits(mine) & bits;
