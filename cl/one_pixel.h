@@ -12,8 +12,8 @@ RT_INLINE uint rt_put_ray(rt_queue *next, uint count, rt_vec origin, rt_vec dire
     return rt_append(next, RT_RAY_SLOTS, count, 1u, origin, direction, weight, 0, &tally->dropped);
 }
 
-RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float *red,
-                                    float *green, float *blue, global float *distance, rt_tally *tally)
+RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float4 *sums,
+                                    global float *distance, rt_tally *tally)
 {
     rt_vec sum = rt_splat(0.0f, 0.0f, 0.0f), weight = rt_splat(1.0f, 1.0f, 1.0f);
     rt_rays ray;
@@ -58,9 +58,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
             rt_take(queues + (generation & 1u), at, &ray, &weight, &pixel);
         }
     }
-    *red = sum.x;
-    *green = sum.y;
-    *blue = sum.z;
+    *sums = (float4)(sum.x, sum.y, sum.z, 1.0f);
 }
 
 #endif
