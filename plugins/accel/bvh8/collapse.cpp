@@ -6,7 +6,6 @@
 namespace bvh8 {
 namespace {
 
-static_assert(sizeof(RootCosts) == sizeof(bvh2::Record), "costs take the places of records");
 static_assert(bvh2::kRoots >= BVH8_WIDTH, "roots become children");
 
 bool is_leaf(rt_u32 code) {
@@ -44,7 +43,7 @@ void Collapse::decide_tops(const bvh2::BinaryTree& tree) const {
 }
 
 void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
-    bvh2_node& node = nodes()[binary];
+    bvh2_node& node = nodes_[binary];
     float left[bvh2::kRoots] = {}, right[2 * bvh2::kRoots] = {};  // beyond BVH8_WIDTH nobody looks
     uint32_t count = 0;
     rt_u32 first = RT_NONE;
@@ -57,11 +56,11 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
             count += below;
             first = std::min(first, BVH2_LEAF_FIRST(code));
         } else {
-            const uint32_t below = Decision::count(nodes()[code].pad1);
-            std::copy_n(costs_of(code).cost, BVH8_WIDTH, cost);
+            const uint32_t below = Decision::count(nodes_[code].pad1);
+            std::copy_n(root_costs_[code].cost, BVH8_WIDTH, cost);
             count += below;
             may_be_leaf = may_be_leaf && below > 0;
-            first = std::min(first, nodes()[code].pad0);
+            first = std::min(first, nodes_[code].pad0);
         }
     };
     look(node.box0, node.child0, left);
@@ -76,7 +75,7 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     const float as_leaf = area * costs_.primitive * static_cast<float>(count);
     const bool leaf = may_be_leaf && as_leaf <= as_node;
     rt_u32 bits = more_bits | (may_be_leaf ? count << 21 : 0u) | (leaf ? Decision::kIsLeaf : 0u);
-    float* const cost = costs_of(binary).cost;
+    float* const cost = root_costs_[binary].cost;
     cost[0] = leaf ? as_leaf : as_node;
     for (uint32_t i = 1; i + 1 < BVH8_WIDTH; ++i) {
         const bool better = shared.cost[i] < cost[i - 1];
@@ -89,7 +88,7 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
 }
 
 uint32_t Collapse::children(rt_u32 binary, Slot slots[BVH8_WIDTH]) const {
-    const bvh2_node& node = nodes()[binary];
+    const bvh2_node& node = nodes_[binary];
     const uint32_t left = Decision::left_of(node.pad1, BVH8_WIDTH);
     Slot* next = slots;
     gather(node.box0, node.child0, left, next);
@@ -102,7 +101,7 @@ void Collapse::gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next
         *next++ = {box, BVH8_MAKE_LEAF(BVH2_LEAF_FIRST(code), BVH2_LEAF_COUNT(code)), 0};
         return;
     }
-    const bvh2_node& node = nodes()[code];
+    const bvh2_node& node = nodes_[code];
     while (roots > 1 && Decision::left_of(node.pad1, roots) == 0) --roots;
     if (roots == 1) {
         const bool leaf = node.pad1 & Decision::kIsLeaf;
