@@ -68,7 +68,12 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     may_be_leaf = may_be_leaf && count <= costs_.max_leaf;
 
     bvh2::SharedRoots shared;
-    kernels_.share_roots(left, right, shared);
+    if (is_leaf(node.child0) && is_leaf(node.child1)) {  // two roots, however many there may be
+        std::fill_n(shared.cost, bvh2::kRoots, left[0] + right[bvh2::kRoots]);
+        std::fill_n(shared.left, bvh2::kRoots, 1.0f);
+    } else {
+        kernels_.share_roots(left, right, shared);
+    }
 
     const float area = half_area(node, scale);
     const float as_node = area * costs_.node + shared.cost[BVH8_WIDTH - 1];
