@@ -90,6 +90,7 @@ Output& output(void* ctx) {
 }
 
 constexpr uint64_t kLeafChunk = 1u << 12;  // leaves that one task copies
+constexpr uint64_t kLeavesAhead = 24;      // that are fetched before their turn
 
 bool is_known(rt_u32 ref, const BuildScene& scene) {
     const rt_u32 index = RT_REF_INDEX(ref);
@@ -125,11 +126,16 @@ std::string pack_leaves(const Output& out, AccelData& data) {
     data.leaves = AlignedBytes((data.leaf_count + kLeafPadding) * sizeof(rt_leaf), false);
     const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
     rt_leaf* leaves = static_cast<rt_leaf*>(data.leaves.data());
+    const rt_leaf* const triangles = data.scene.triangles.data();
     std::memset(leaves + data.leaf_count, 0, kLeafPadding * sizeof(rt_leaf));
     constexpr uint64_t none = ~uint64_t(0);
     std::atomic<uint64_t> first_unknown{none};
     parallel_for(static_cast<uint32_t>((data.leaf_count + kLeafChunk - 1) / kLeafChunk), [&](uint32_t c) {
-        for (uint64_t i = c * kLeafChunk; i < std::min<uint64_t>(data.leaf_count, (c + 1) * kLeafChunk); ++i) {
+        const uint64_t end = std::min<uint64_t>(data.leaf_count, (c + 1) * kLeafChunk);
+        for (uint64_t i = c * kLeafChunk; i < end; ++i) {
+            // Leaves lie next to each other in the scene, and anywhere in memory.
+            const rt_u32 ahead = refs[std::min(i + kLeavesAhead, end - 1)];
+            if (RT_REF_KIND(ahead) == RT_REF_TRIANGLE) __builtin_prefetch(triangles + RT_REF_INDEX(ahead));
             if (!is_known(refs[i], data.scene)) {
                 uint64_t first = first_unknown;
                 while (i < first && !first_unknown.compare_exchange_weak(first, i)) {
@@ -139,7 +145,7 @@ std::string pack_leaves(const Output& out, AccelData& data) {
             const rt_u32 index = RT_REF_INDEX(refs[i]);
             switch (RT_REF_KIND(refs[i])) {
                 case RT_REF_TRIANGLE:
-                    leaves[i] = data.scene.triangles[index];
+                    leaves[i] = triangles[index];
                     break;
                 case RT_REF_SPHERE:
                     leaves[i] = data.scene.spheres[index];
