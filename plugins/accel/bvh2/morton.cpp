@@ -13,7 +13,7 @@ using Counts = std::array<uint32_t, kDigits>;
 
 // Keys, boxes and nodes of a run stay in a core's own cache; small scenes are cut finer, so that all cores have some to the end.
 uint32_t run_size_for(uint64_t primitive_count) {
-    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 512, 8192));
+    return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 8192));
 }
 uint32_t chunk_size_for(uint32_t count) {
     return std::clamp(count / 8, 1024u, 1u << 15);
@@ -174,10 +174,9 @@ struct MortonOrder::Builder {
                 store(half_centroids.lo, min(load(half_centroids.lo), centroid(i)));
                 store(half_centroids.neg_hi, min(load(half_centroids.neg_hi), splat(0.0f) - centroid(i)));
             }
-            bool extends = false;
-            for (int a = 0; a < 3; ++a) extends = extends || half_centroids.lo[a] < half_centroids.hi(a);
-            if (extends) {
-                const Curve curve(half_centroids, end - begin);
+            const Curve curve(half_centroids, end - begin);
+            const Vec4 most = splat(0.0f) - load(half_centroids.neg_hi);
+            if (curve.place(xyz(load(half_centroids.lo))) != curve.place(xyz(most))) {  // else all are alike, or nearly
                 each_chunk(begin, end, [&](rt_u32, uint32_t first, uint32_t last) {
                     for (uint32_t i = first; i < last; ++i)
                         keys(buffer)[i] = curve.place(centroid(i)) << kPositionBits | position(keys(buffer)[i]);

@@ -15,21 +15,23 @@ bool is_leaf(rt_u32 code) {
 // Added to each side, so that lines and points do not cost nothing: too little to matter to what has an area.
 constexpr float kLeast = 1e-12f;
 
+using bvh2::Vec4;
+
 // Halves first: no length overflows.
-float side(float lo, float hi, float scale) {
-    return kLeast + scale * (0.5f * hi - 0.5f * lo);
+float half_area(Vec4 lo, Vec4 hi, float scale) {
+    const Vec4 half = bvh2::splat(0.5f);
+    alignas(16) float e[4];
+    bvh2::store(e, bvh2::splat(kLeast) + bvh2::splat(scale) * (half * bvh2::xyz(hi) - half * bvh2::xyz(lo)));
+    return e[0] * e[1] + e[2] * (e[0] + e[1]);
 }
 // Of the box around both.
 float half_area(const bvh2_node& node, float scale) {
-    float e[3];
-    for (int a = 0; a < 3; ++a)
-        e[a] = side(std::min(node.box0[a], node.box1[a]), std::max(node.box0[3 + a], node.box1[3 + a]), scale);
-    return e[0] * e[1] + e[2] * (e[0] + e[1]);
+    return half_area(bvh2::min(bvh2::load_any(node.box1), bvh2::load_any(node.box0)),
+                     bvh2::max(bvh2::load_any(node.box1 + 3), bvh2::load_any(node.box0 + 3)), scale);
 }
+// A seventh number is read.
 float half_area(const float box[6], float scale) {
-    float e[3];
-    for (int a = 0; a < 3; ++a) e[a] = side(box[a], box[3 + a], scale);
-    return e[0] * e[1] + e[2] * (e[0] + e[1]);
+    return half_area(bvh2::load_any(box), bvh2::load_any(box + 3), scale);
 }
 
 }  // namespace

@@ -21,6 +21,7 @@ class MortonTree : public Subtrees {
     const Collapse& collapse() const { return *collapse_; }
     const std::vector<bvh2::Root>& roots() const { return roots_; }
     Extent measure(rt_u32 binary) const override { return of_binary(binary).extent; }
+    bool measured() const override { return true; }
     void write(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const override;
 
  private:

@@ -47,10 +47,14 @@ void WideTree::write(const rt_build_output* out) {
     for (rt_u32 g = 0; g < group_count; ++g) codes.push_back(expand_root(g));
 
     std::vector<Extent> extents(jobs_.size());
-    rt::parallel_for(host_, static_cast<rt_u32>(jobs_.size()), [&](rt_u32 j) {
+    const auto measure = [&](rt_u32 j) {
         extents[j] = subtrees_.measure(jobs_[j].binary);
         jobs_[j].nodes = extents[j].nodes;
-    });
+    };
+    if (subtrees_.measured())
+        for (rt_u32 j = 0; j < jobs_.size(); ++j) measure(j);
+    else
+        rt::parallel_for(host_, static_cast<rt_u32>(jobs_.size()), measure);
     for (const rt_u32 code : codes) {
         const Extent whole = measure_top(code, extents);
         depth_ = std::max(depth_, whole.depth);

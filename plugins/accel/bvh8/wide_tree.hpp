@@ -35,6 +35,7 @@ class Subtrees {
  public:
     virtual ~Subtrees() = default;
     virtual Extent measure(rt_u32 binary) const = 0;
+    virtual bool measured() const { return false; }  // no work is left in that
     // Depth-first, from nodes[at] on; adds up what is written.
     virtual void write(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const = 0;
 };
