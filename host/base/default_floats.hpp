@@ -14,7 +14,8 @@ class DefaultFloats {
     DefaultFloats(const DefaultFloats&) = delete;
     DefaultFloats& operator=(const DefaultFloats&) = delete;
 #ifdef __SSE2__
-    // One register holds the rules, and as a rule they are the usual ones; fesetenv() would take 50 ns, in every body of a loop.
+    // One register holds the rules, and as a rule they are the usual ones; fesetenv() would take 50 ns, in every body of a
+    // loop.
     DefaultFloats() : before_(_mm_getcsr()) {
         if ((before_ & kRules) != kUsual) _mm_setcsr(kUsual);
     }
@@ -30,7 +31,9 @@ class DefaultFloats {
         std::fegetenv(&before_);
         std::fesetenv(FE_DFL_ENV);
     }
-    ~DefaultFloats() { std::fesetenv(&before_); }
+    ~DefaultFloats() {
+        std::fesetenv(&before_);
+    }
 
  private:
     std::fenv_t before_;

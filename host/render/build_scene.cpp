@@ -61,8 +61,8 @@ void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt
         rt_u32* const sources = out.attribute_triangle.data() + first_ref + begin;
         for (rt_u32 i = 0; i < end - begin; ++i) {
             // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
-            const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i),
-                                    material != RT_NONE ? material : materials[i], first_prim + begin + i};
+            const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i), material != RT_NONE ? material : materials[i],
+                                    first_prim + begin + i};
             Row corner[3];
             for (int c = 0; c < 3; ++c) {
                 const float* const position = positions + 3 * size_t(vertices[3 * size_t(i) + c]);

@@ -53,8 +53,8 @@ TEST(Versus, ABuildIsByTheMediumOneAndHasBytes) {
 }
 
 TEST(Versus, ABuildIsByAPeersOfItsKind) {
-    std::vector<BenchRecord> rows = {row("a", "build", "sorted", "", 30),      row("a", "build", "cut", "", 3),
-                                     row("a", "build", "usual", "", 4),        row("a", "build", "", "embree low", 20),
+    std::vector<BenchRecord> rows = {row("a", "build", "sorted", "", 30),       row("a", "build", "cut", "", 3),
+                                     row("a", "build", "usual", "", 4),         row("a", "build", "", "embree low", 20),
                                      row("a", "build", "", "embree medium", 8), row("a", "build", "", "embree high", 2)};
     rows[0].accel_params = "max_leaf=7,builder=morton";
     rows[1].accel_params = "max_leaf=7,builder=spatial";

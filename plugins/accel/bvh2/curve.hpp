@@ -69,9 +69,7 @@ class Curve {
  private:
     static constexpr unsigned kAxisBits = 15, kLowBits = 8, kFiner = 3;
 
-    uint64_t on_axis(int a, uint32_t cell) const {
-        return low_[a][cell % (1u << kLowBits)] | high_[a][cell >> kLowBits];
-    }
+    uint64_t on_axis(int a, uint32_t cell) const { return low_[a][cell % (1u << kLowBits)] | high_[a][cell >> kLowBits]; }
 
     Vec4 base_, scale_, last_;
     unsigned bits_;

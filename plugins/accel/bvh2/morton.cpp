@@ -11,7 +11,8 @@ namespace {
 constexpr unsigned kDigitBits = 9, kDigits = 1u << kDigitBits;  // of a pass on all cores
 using Counts = std::array<uint32_t, kDigits>;
 
-// Keys, boxes and nodes of a run stay in a core's own cache; small scenes are cut finer, so that all cores have some to the end.
+// Keys, boxes and nodes of a run stay in a core's own cache; small scenes are cut finer, so that all cores have some to the
+// end.
 uint32_t run_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 8192));
 }
@@ -150,9 +151,7 @@ struct MortonOrder::Builder {
         if (end - begin <= order.run_size_) return add_run(begin, end, unsorted + log2_ceil(last - first), buffer, depth);
         if (half == 0) return part(begin, end, unsorted, buffer, depth);
         const uint32_t middle = begins[first + half];
-        const auto left = [&](uint32_t below) {
-            return part_digits(begins, first, first + half, unsorted, buffer, below);
-        };
+        const auto left = [&](uint32_t below) { return part_digits(begins, first, first + half, unsorted, buffer, below); };
         const auto right = [&](uint32_t below) { return part_digits(begins, first + half, last, unsorted, buffer, below); };
         if (middle == end) return left(depth);
         if (middle == begin) return right(depth);
@@ -160,8 +159,8 @@ struct MortonOrder::Builder {
             middle, [&] { return left(depth + 1); }, [&] { return right(depth + 1); });
     }
 
-    // Parts what lies in one cell of the curve: along one of its own, as long as leaves do not get too deep (a curve's bits, and
-    // what halves still take), else into halves.
+    // Parts what lies in one cell of the curve: along one of its own, as long as leaves do not get too deep (a curve's bits,
+    // and what halves still take), else into halves.
     rt_u32 part_cell(uint32_t begin, uint32_t end, int buffer, uint32_t depth) {
         if (depth + Curve::kMaxBits + log2_ceil(end - begin) < kMaxDepth) {
             Bounds half_centroids;

@@ -188,8 +188,7 @@ void MortonTree::join(const MortonOrder& order, const Costs& costs) {
     }
     nodes_.resize(first_part_ + parts_.size());  // parts: no leaf, and never more than one root
     root_costs_.resize(nodes_.size());
-    for (size_t p = 0; p < parts_.size(); ++p)
-        std::fill_n(root_costs_[first_part_ + p].cost, bvh2::kRoots, parts_[p].cost);
+    for (size_t p = 0; p < parts_.size(); ++p) std::fill_n(root_costs_[first_part_ + p].cost, bvh2::kRoots, parts_[p].cost);
 
     std::vector<bvh2::Bounds> boxes(top_count);
     const auto code_of = [&](rt_u32 code) { return code & MortonOrder::kRun ? code_of_run[code & ~MortonOrder::kRun] : code; };
