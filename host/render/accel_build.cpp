@@ -89,7 +89,7 @@ Output& output(void* ctx) {
     return *static_cast<Output*>(ctx);
 }
 
-constexpr uint64_t kLeafChunk = 1u << 12;  // leaves that one task copies
+constexpr uint64_t kLeafChunk = 1u << 10;  // leaves that one task copies
 constexpr uint64_t kLeavesAhead = 24;      // that are fetched before their turn
 
 bool is_known(rt_u32 ref, const BuildScene& scene) {

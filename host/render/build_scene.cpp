@@ -11,7 +11,7 @@
 namespace clarity {
 namespace {
 
-constexpr uint32_t kChunk = 1u << 12;  // triangles that one task copies
+constexpr uint32_t kChunk = 1u << 10;  // triangles that one task copies
 
 rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
     rt_prim prim;
