@@ -30,7 +30,7 @@ typedef float rt_f32;
 /* One primitive as the leaf tests read it, packed by the host in the leaf order that the builder chose. 48 B.
  *   triangle   a, b, c = corners in the group's space
  *   sphere     a = centre, b[0] = radius
- *   polygon    a = unit normal, b[0] = dot(normal, x) of its plane; corners in rt_polygon
+ *   polygon    a = unit normal, b = a point of its plane; corners in rt_polygon
  *   instance   a, b, c unused */
 typedef struct rt_leaf {
     rt_f32 a[3];
@@ -46,10 +46,9 @@ typedef struct rt_triangle {
     rt_u32 v[3];
 } rt_triangle;
 
-/* Corners of a planar polygon, projected along the dominant axis of its normal: corner i is
- * polygon_corners[2 * (first + i) .. + 1]. `axis` is the dropped axis, (axis+1)%3 and (axis+2)%3 are kept. 16 B. */
+/* Corners of a planar polygon: corner i is polygon_corners[3 * (first + i) .. + 2]. 8 B. */
 typedef struct rt_polygon {
-    rt_u32 first, count, axis, pad;
+    rt_u32 first, count;
 } rt_polygon;
 
 /* Unbounded, so outside every tree: dot(normal, x) = offset. normal has unit length. 32 B. */

@@ -88,7 +88,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             shadow->dx = towards.x;
             shadow->dy = towards.y;
             shadow->dz = towards.z;
-            shadow->t_min = zero;
+            shadow->t_min = p->offset; /* where surfaces meet, rounding may have put the point behind the other one */
             rt_clear_hits(hits + b, lit);
             hits[b].t = rt_select(lit, distance, rt_vfloat(-1.0f));
             if (frame->shadows != 0u && asked[b] != 0u) rt_prepare(shadow, asked[b]);

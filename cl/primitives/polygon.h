@@ -1,34 +1,60 @@
-/* polygon.h -- ray/planar polygon on lanes, convex or not, as the thesis has it: the hit with the plane is projected along the
- * dominant axis of the normal, and edge crossings of a half line are counted (even-odd rule). */
+/* polygon.h -- watertight ray/polygon test on lanes, for planar polygons, convex or not.
+ *
+ * Corners are projected across the ray as triangle.h does it, by the same arithmetic, and the edges that a half line from the ray
+ * crosses there are counted (even-odd rule). Whether an edge is crossed follows from its two corners alone and is the same in
+ * either direction: the polygons at an edge agree on it, whatever rounding did, so a ray that passes from the one to the other
+ * meets an odd number of them. The product of one corner with the other decides only where the corners lie on different sides of
+ * the half line's axis, and its sign is right or it is zero, as that of triangle.h is; a zero is no crossing, for both. */
+RT_INLINE void RT_FN(rt_corner_across)(const global float *corner, const rt_rays *r, vfloat *x, vfloat *y, vfloat *z)
+{
+#pragma OPENCL FP_CONTRACT OFF
+#if RT_CPU
+    if (r->same_axis) {
+        *z = r->pz - rt_vfloat(corner[r->kz]);
+        *x = fma(r->sx, *z, r->px - rt_vfloat(corner[r->kx]));
+        *y = fma(r->sy, *z, r->py - rt_vfloat(corner[r->ky]));
+        return;
+    }
+#endif
+    const vfloat from_x = r->ox - rt_vfloat(corner[0]), from_y = r->oy - rt_vfloat(corner[1]), from_z = r->oz - rt_vfloat(corner[2]);
+    *z = rt_select(r->is_z, from_z, rt_select(r->is_y, from_y, from_x));
+    *x = fma(r->sx, *z, rt_select(r->is_z, from_x, rt_select(r->is_y, from_z, from_y)));
+    *y = fma(r->sy, *z, rt_select(r->is_z, from_y, rt_select(r->is_y, from_x, from_z)));
+}
+
 RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
-    const float nx = leaf->a[0], ny = leaf->a[1], nz = leaf->a[2];
-    const vfloat zero = rt_vfloat(0.0f);
-    const vfloat facing = fma(rt_vfloat(nx), r->dx, fma(rt_vfloat(ny), r->dy, rt_vfloat(nz) * r->dz));
-    const vfloat height = rt_vfloat(leaf->b[0]) - fma(rt_vfloat(nx), r->ox, fma(rt_vfloat(ny), r->oy, rt_vfloat(nz) * r->oz));
-    const vfloat t = height / facing;
-    vmask closer = RT_MASK(facing != zero) & RT_MASK(h->t >= zero) & rt_closer(r, h, t, leaf->prim);
-    if (!rt_any(closer)) return;
-
     const rt_polygon polygon = ctx->polygons[RT_REF_INDEX(leaf->ref)];
-    const vfloat x = fma(t, r->dx, r->ox), y = fma(t, r->dy, r->oy), z = fma(t, r->dz, r->oz);
-    const vfloat px = polygon.axis == 0u ? y : polygon.axis == 1u ? z : x;
-    const vfloat py = polygon.axis == 0u ? z : polygon.axis == 1u ? x : y;
-    const global float *corners = ctx->polygon_corners + 2u * polygon.first;
-    vmask inside = RT_MASK(zero != zero);
-    float x0 = corners[2u * polygon.count - 2u], y0 = corners[2u * polygon.count - 1u];
+    const global float *corners = ctx->polygon_corners + 3ul * polygon.first;
+    const vfloat zero = rt_vfloat(0.0f);
+    vfloat x0, y0, z0;
+    RT_FN(rt_corner_across)(corners + 3u * (polygon.count - 1u), r, &x0, &y0, &z0);
+    vfloat nearest = z0, farthest = z0;
+    vmask above0 = RT_MASK(y0 > zero), inside = RT_MASK(zero != zero);
     for (uint i = 0; i < polygon.count; ++i) {
-        const float x1 = corners[2u * i], y1 = corners[2u * i + 1u];
-        /* An edge is crossed where its ends lie on different sides of the half line; half-open, so a corner counts once. */
-        const vmask straddles = RT_MASK(rt_vfloat(y0) > py) ^ RT_MASK(rt_vfloat(y1) > py);
-        const float slope = y1 != y0 ? (x1 - x0) / (y1 - y0) : 0.0f;
-        const vmask left = RT_MASK(px < fma(py - rt_vfloat(y0), rt_vfloat(slope), rt_vfloat(x0)));
-        inside ^= straddles & left;
+        vfloat x1, y1, z1;
+        RT_FN(rt_corner_across)(corners + 3u * i, r, &x1, &y1, &z1);
+        const vmask above1 = RT_MASK(y1 > zero); /* half-open, so a corner counts once */
+        const vfloat edge = x0 * y1 - x1 * y0;
+        inside ^= (above0 ^ above1) & rt_select(above1, RT_MASK(edge > zero), RT_MASK(edge < zero));
+        nearest = rt_min(nearest, z1);
+        farthest = rt_max(farthest, z1);
         x0 = x1;
         y0 = y1;
+        above0 = above1;
     }
-    closer &= inside;
+    inside &= RT_MASK(h->t >= zero);
+    if (!rt_any(inside)) return;
+
+    /* Seen edge-on the plane says nothing, so t is kept within the corners'. */
+    const float nx = leaf->a[0], ny = leaf->a[1], nz = leaf->a[2];
+    const vfloat facing = fma(rt_vfloat(nx), r->dx, fma(rt_vfloat(ny), r->dy, rt_vfloat(nz) * r->dz));
+    const vfloat height = fma(rt_vfloat(nx), rt_vfloat(leaf->b[0]) - r->ox,
+                              fma(rt_vfloat(ny), rt_vfloat(leaf->b[1]) - r->oy, rt_vfloat(nz) * (rt_vfloat(leaf->b[2]) - r->oz)));
+    const vfloat ta = -nearest * r->sz, tb = -farthest * r->sz;
+    const vfloat t = rt_min(rt_max(height / facing, rt_min(ta, tb)), rt_max(ta, tb));
+    const vmask closer = inside & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
     RT_FN(rt_record)(h, closer, t, zero, zero, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, leaf->prim);
 }

@@ -28,7 +28,7 @@ struct BuildScene {
     std::vector<uint32_t> flattened;               // instances of the Scene that stand in the world's group, moved
     std::vector<rt_leaf> spheres, polygons;        // by ref index
     std::vector<rt_polygon> polygon_table;
-    std::vector<float> polygon_corners;  // 2 per corner
+    std::vector<float> polygon_corners;  // 3 per corner
     std::vector<rt_plane> planes;
 };
 BuildScene make_build_scene(const Scene& scene, Progress& progress);

@@ -115,25 +115,17 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
         }
         const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
         rt_leaf leaf{};
-        double offset = 0;
         for (int k = 0; k < 3; ++k) {
-            const double n = length > 0 ? normal[k] / length : (k == 1);
-            leaf.a[k] = static_cast<float>(n);
-            offset += n * centroid[k] / polygon.corner_count;
+            leaf.a[k] = static_cast<float>(length > 0 ? normal[k] / length : (k == 1));
+            leaf.b[k] = static_cast<float>(centroid[k] / polygon.corner_count);
         }
-        leaf.b[0] = static_cast<float>(offset);
         leaf.ref = RT_REF_POLYGON | static_cast<rt_u32>(i);
         leaf.material = polygon.material;
         leaf.prim = next_prim++;
-        const float x = std::fabs(leaf.a[0]), y = std::fabs(leaf.a[1]), z = std::fabs(leaf.a[2]);
-        const rt_u32 axis = z >= x && z >= y ? 2 : y >= x ? 1 : 0;
-        out.polygon_table.push_back({static_cast<rt_u32>(out.polygon_corners.size() / 2), polygon.corner_count, axis, 0});
+        out.polygon_table.push_back({static_cast<rt_u32>(out.polygon_corners.size() / 3), polygon.corner_count});
+        out.polygon_corners.insert(out.polygon_corners.end(), corners, corners + 3 * size_t(polygon.corner_count));
         rt_prim prim = empty_prim(leaf.ref, run);
-        for (rt_u32 c = 0; c < polygon.corner_count; ++c) {
-            grow(prim, corners + 3 * c);
-            out.polygon_corners.push_back(corners[3 * c + (axis + 1) % 3]);
-            out.polygon_corners.push_back(corners[3 * c + (axis + 2) % 3]);
-        }
+        for (rt_u32 c = 0; c < polygon.corner_count; ++c) grow(prim, corners + 3 * c);
         widen(prim, 1e-6f);
         out.polygons.push_back(leaf);
         out.prims[at++] = prim;

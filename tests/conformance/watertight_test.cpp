@@ -2,10 +2,7 @@
 // whatever its size. (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection, has the reasons.)
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <random>
-
+#include "leaks.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 
@@ -14,85 +11,17 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr size_t kBatch = 1000000;
-
-Workbench& bench() {
-    return Workbench::get();
-}
-
-struct Leaks {
-    size_t count = 0;
-    std::string first;
-};
-
-void count_leaks(const ScenePtr& scene, const Settings& settings, const std::vector<rt_ray>& rays, Leaks& leaks) {
-    const std::vector<rt_hit> hits = bench().rays(scene, settings, rays, false);
-    for (size_t i = 0; i < rays.size(); ++i)
-        if (!std::isfinite(hits[i].t) && leaks.count++ == 0) {
-            char text[160];
-            const rt_ray& r = rays[i];
-            std::snprintf(text, sizeof text, "from %.9g %.9g %.9g along %.9g %.9g %.9g", r.origin[0], r.origin[1], r.origin[2],
-                          r.direction[0], r.direction[1], r.direction[2]);
-            leaks.first = text;
-        }
-}
-
-// Directions all over the sphere from points near `inside`.
-Leaks random_leaks(const ScenePtr& scene, const Point& inside, float spread, const Settings& settings, size_t count) {
-    std::mt19937 random(11);
-    std::normal_distribution<float> normal;
-    std::uniform_real_distribution<float> around(-spread, spread);
-    Leaks leaks;
-    std::vector<rt_ray> rays;
-    for (size_t done = 0; done < count; done += rays.size()) {
-        rays.resize(std::min(kBatch, count - done));
-        for (rt_ray& ray : rays) {
-            for (int k = 0; k < 3; ++k) {
-                ray.origin[k] = inside[k] + around(random);
-                ray.direction[k] = normal(random);
-            }
-            ray.t_min = 0;
-            ray.t_max = INFINITY;
-        }
-        count_leaks(scene, settings, rays, leaks);
-    }
-    return leaks;
-}
-
-// Straight at every corner and at the middle and a random point of every edge.
-Leaks aimed_leaks(const ScenePtr& scene, const Point& inside, const Settings& settings) {
-    std::mt19937 random(12);
-    std::uniform_real_distribution<float> any(0, 1);
-    std::vector<rt_ray> rays;
-    const auto aim = [&](const float* a, const float* b, float s) {
-        rt_ray ray{{inside[0], inside[1], inside[2]}, 0, {}, INFINITY};
-        for (int k = 0; k < 3; ++k) ray.direction[k] = a[k] + s * (b[k] - a[k]) - inside[k];
-        rays.push_back(ray);
-    };
-    for (size_t i = 0; i < scene->triangles.size(); ++i) {
-        const size_t next = i % 3 == 2 ? i - 2 : i + 1;
-        const float *a = &scene->positions[3 * size_t(scene->triangles[i])],
-                    *b = &scene->positions[3 * size_t(scene->triangles[next])];
-        aim(a, b, 0);
-        aim(a, b, 0.5f);
-        aim(a, b, any(random));
-    }
-    Leaks leaks;
-    count_leaks(scene, settings, rays, leaks);
-    return leaks;
-}
-
 void expect_tight(const std::string& name, const TriangleMesh& mesh, const Point& inside, float spread, size_t count,
                   size_t fewer) {
     ASSERT_TRUE(mesh.is_closed()) << name << ": not a closed mesh, it proves nothing";
     const ScenePtr scene = shared_scene(scene_of(mesh));
-    for (const std::string& accel : bench().fast_accels())
+    for (const std::string& accel : Workbench::get().fast_accels())
         for (const int lanes : {16, 1}) {
             Settings settings;
             settings.accel = accel;
             settings.lanes = lanes;
             const Leaks random = random_leaks(scene, inside, spread, settings, accel == "bvh2" && lanes == 16 ? count : fewer),
-                        aimed = aimed_leaks(scene, inside, settings);
+                        aimed = leaks_among(scene, settings, aimed_at(edges_of(mesh), {inside}));
             const std::string what = name + ", " + accel + ", " + std::to_string(lanes) + " lanes: ";
             EXPECT_EQ(random.count, 0u) << what << random.first;
             EXPECT_EQ(aimed.count, 0u) << what << "aimed at edges and corners: " << aimed.first;
