@@ -13,6 +13,13 @@
             if ((bits) >> store_l & 1u) buffer[store_index[store_l]] = store_values[store_l];                                    \
     }
 
+/* Arcs of spheres that nobody looks at were an eighth of a frame. */
+#ifdef RT_AOV
+#define RT_USES_UV(ctx, number) 1
+#else
+#define RT_USES_UV(ctx, number) ((ctx)->materials[number].texture != RT_NONE)
+#endif
+
 typedef struct rt_surface {
     vmask hit;
     rt_vec geometric;    /* unit normal, world, on the side that the primitive has it */
@@ -89,7 +96,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
             }
 #endif
 #if RT_HAS_SPHERES && RT_HAS_TEXTURES
-            if (kind == RT_REF_SPHERE) { /* longitude and latitude, poles on Y */
+            if (kind == RT_REF_SPHERE && RT_USES_UV(ctx, leaf->material)) { /* longitude and latitude, poles on Y */
                 const float length = rsqrt(max(nx[l] * nx[l] + ny[l] * ny[l] + nz[l] * nz[l], 1e-36f));
                 tex_u[l] = 0.5f + atan2(nx[l], nz[l]) * 0.15915494f;
                 tex_v[l] = 0.5f + asin(clamp(ny[l] * length, -1.0f, 1.0f)) * 0.31830989f;
