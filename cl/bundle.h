@@ -15,6 +15,7 @@
 #define RT_BUNDLE_OF(blocks_left) min(blocks_left, (uint)RT_LANES)
 #define RT_FOR_EACH(b, count) for (uint b = 0; b < (count); ++b)
 #else
+#undef RT_PARTS_SCATTERED
 #define RT_BUNDLE 1
 #define RT_BUNDLE_OF(blocks_left) 1u
 /* `b` is plainly 0, so that no compiler takes an array of one for something to index: an H200 took 5 to 8 % longer for rays from memory. */

@@ -87,6 +87,22 @@ RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt
     r->t_min = rt_vfloat(0.0f);
 }
 
+/* What a packet's pixels, row by row, add to the film. */
+RT_INLINE void rt_put_pixels(const constant rt_frame *frame, uint2 origin, const float4 *sums, global float4 *film)
+{
+    const uint packet_w = RT_PACKET_W(frame);
+    if (origin.x >= frame->width || origin.y >= frame->height) return;
+    const uint columns = min(packet_w, frame->width - origin.x), rows = min(RT_PACKET_H(frame), frame->height - origin.y);
+    for (uint y = 0; y < rows; ++y) {
+        global float4 *const to = film + (size_t)(origin.y + y) * frame->width + origin.x;
+        const float4 *const from = sums + y * packet_w;
+        if (frame->sample == 0u)
+            for (uint x = 0; x < columns; ++x) to[x] = from[x];
+        else
+            for (uint x = 0; x < columns; ++x) to[x] += from[x];
+    }
+}
+
 RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
 {
     h->t = rt_select(active, RT_INFINITY, rt_vfloat(-1.0f));

@@ -14,6 +14,12 @@
 #define RT_RECORD_SPAWN(kind, bits, followed)
 #endif
 
+#ifdef RT_PARTS_SCATTERED
+#define RT_KEEP_AREA(bits) if (count != first) rt_store(rt_compress(p->area, bits), next->area + first);
+#else
+#define RT_KEEP_AREA(bits) (void)first;
+#endif
+
 /* Appends the rays that go on from the points p. */
 RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint capacity, uint count, const rt_point *p,
                         const rt_shade *m, rt_vec weight, vint pixel, rt_tally *tally)
@@ -31,52 +37,53 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
         const rt_vec origin = rt_along(p->offset, p->geometric, p->at), direction = rt_mirror_direction(p),
                      passed = rt_scale(split.mirrored, weight);
         RT_RECORD_SPAWN(RT_RAY_MIRROR, any_mirror, mirror_bits)
+        const uint first = count;
         count = rt_append(next, capacity, count, mirror_bits, origin, direction, passed, pixel, &tally->dropped);
+        RT_KEEP_AREA(mirror_bits)
     }
     if (any_refract != 0u) {
         const rt_vec origin = rt_along(-p->offset, p->geometric, p->at), direction = rt_refracted_direction(p, &split),
                      passed = rt_scale(split.refracted, rt_mul(m->color, weight));
         RT_RECORD_SPAWN(RT_RAY_REFRACTED, any_refract, refract_bits)
+        const uint first = count;
         count = rt_append(next, capacity, count, refract_bits, origin, direction, passed, pixel, &tally->dropped);
+        RT_KEEP_AREA(refract_bits)
     }
     return count;
 }
 
 #ifdef RT_SHOW_GENERATIONS
 /* The picture is the number of generations that each pixel has. */
-RT_INLINE void rt_mark_pixels(float value, vint pixel, uint bits, float *marks)
+RT_INLINE void rt_mark_pixels(float value, vint pixel, uint bits, float4 *marks)
 {
     int at[RT_LANES];
     rt_store(pixel, at);
     for (uint l = 0; l < RT_LANES; ++l)
-        if (bits >> l & 1u) marks[at[l]] = value;
+        if (bits >> l & 1u) marks[at[l]].x = value;
 }
 #endif
 
 /* Adds each lane's light to its pixel, one by one: two lanes may belong to the same. */
-RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float *red, float *green, float *blue)
+RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float4 *sums)
 {
-    float r[RT_LANES], g[RT_LANES], b[RT_LANES];
+    float4 lanes[RT_LANES];
     int at[RT_LANES];
-    rt_store(light.x, r);
-    rt_store(light.y, g);
-    rt_store(light.z, b);
+    rt_store_lanes(light, lanes);
     rt_store(pixel, at);
-    for (uint l = 0; l < RT_LANES; ++l) {
-        if ((bits >> l & 1u) == 0u) continue;
-        red[at[l]] += r[l];
-        green[at[l]] += g[l];
-        blue[at[l]] += b[l];
-    }
+    if (bits == RT_ALL_LANES)
+        for (uint l = 0; l < RT_LANES; ++l) sums[at[l]] += lanes[l];
+    else
+        for (uint l = 0; l < RT_LANES; ++l)
+            if (bits >> l & 1u) sums[at[l]] += lanes[l];
 }
 
-/* All rays of the packet whose first pixel is `origin`. red, green, blue: sums, a number a pixel. distance: of the camera rays,
- * in the order in which they are traced; written with sample 0. */
-RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float *red,
-                                    float *green, float *blue, global float *distance, rt_tally *tally)
+/* All rays of the packet whose first pixel is `origin`. sums: of each pixel's light, row by row, and 1. distance: of the camera
+ * rays, in the order in which they are traced; written with sample 0. */
+RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float4 *sums,
+                                    global float *distance, rt_tally *tally)
 {
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), capacity = pixels * RT_RAY_SLOTS;
-    for (uint i = 0; i < pixels; ++i) red[i] = green[i] = blue[i] = 0.0f;
+    for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
 
     uint count = RT_BLOCKS(frame) * RT_LANES; /* the first generation is made, not stored */
     for (uint generation = 0; generation < frame->depth && count != 0u; ++generation) {
@@ -104,6 +111,9 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                     rt_take(current, base, rays + b, weights + b, pixels_of + b);
                 }
                 rt_prepare(rays + b, rt_bits(active[b]));
+#ifdef RT_PARTS_SCATTERED
+                if (generation != 0u) rays[b].scattered = rt_scattered(rays + b, rt_load(current->area + base), rt_bits(active[b]));
+#endif
                 rt_clear_hits(hits + b, active[b]);
 #ifdef RT_INSPECT
                 tally->recorder.generation = generation + 1u;
@@ -159,10 +169,10 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                 if (rt_any(points[b].hits) && generation + 1u < frame->depth)
                     next_count = rt_spawn(frame, next, capacity, next_count, points + b, materials + b, weights[b], pixels_of[b], tally);
 #ifdef RT_SHOW_GENERATIONS
-                rt_mark_pixels((float)(generation + 1u), pixels_of[b], bits, red);
+                rt_mark_pixels((float)(generation + 1u), pixels_of[b], bits, sums);
 #else
                 const rt_vec seen = rt_any(points[b].hits) ? rt_choose(points[b].hits, light[b], behind) : behind;
-                rt_add_to_pixels(rt_mul(weights[b], seen), pixels_of[b], bits, red, green, blue);
+                rt_add_to_pixels(rt_mul(weights[b], seen), pixels_of[b], bits, sums);
 #endif
             }
         }

@@ -42,8 +42,7 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
     rt_store(s->material, material);
     uint left = bits;
     while (left != 0u) {
-        const uint first = 31u - clz(left & (0u - left));
-        const int id = material[first];
+        const int id = material[rt_lowest(left)];
         const vmask mine = RT_MASK(s->material == rt_vint(id));
         left &= ~rt_bits(mine);
         const global rt_material *m = ctx->materials + id;

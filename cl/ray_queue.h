@@ -7,6 +7,9 @@
 typedef struct rt_queue {
     float field[9][RT_QUEUE_ROOM]; /* origin, direction, weight */
     int pixel[RT_QUEUE_ROOM];      /* within the packet */
+#ifdef RT_PARTS_SCATTERED
+    float area[RT_QUEUE_ROOM];     /* of where it starts: rt_surface.area */
+#endif
 #ifdef RT_INSPECT
     int record[RT_QUEUE_ROOM];
 #endif

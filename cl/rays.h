@@ -12,6 +12,7 @@ typedef struct rt_rays {
     vmask neg_x, neg_y, neg_z;     /* where the direction's component is negative */
     int coherent;                  /* all active lanes have the same signs: then */
     uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
+    int scattered;                 /* they start far apart, as rt_scattered() has it: few nodes will be shared */
     int same_axis;                 /* all active lanes have the same dominant axis: then */
     uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
     vmask is_y, is_z;              /* it differs by lane */
@@ -63,6 +64,7 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     /* The planes of a box are crossed at (plane - origin) * (1 / d). Computed as fma(1 / d, plane, -origin / d) that has an
      * absolute error of about half an ulp of origin / d and a relative one of a few ulp. Widening every interval by that much
      * keeps traversal watertight (Ize 2013, Robust BVH Ray Traversal) at no cost per node. */
+    r->scattered = 0;
     r->ix = rt_safe_reciprocal(r->dx);
     r->iy = rt_safe_reciprocal(r->dy);
     r->iz = rt_safe_reciprocal(r->dz);
@@ -107,6 +109,22 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->sx = shear_p;
     r->sy = shear_q;
     r->sz = along;
+}
+
+/* Whether half of the rays of a packet start more than four triangles away from the first, by the size of those that they start on.
+ * area: twice that of each ray's. */
+#define RT_SCATTERED 16.0f
+RT_INLINE int rt_scattered(const rt_rays *r, vfloat area, uint bits)
+{
+#if RT_LANES == 1
+    return 0;
+#else
+    const uint first = rt_lowest(bits);
+    const vfloat x = r->ox - rt_vfloat(((const float *)&r->ox)[first]), y = r->oy - rt_vfloat(((const float *)&r->oy)[first]),
+                 z = r->oz - rt_vfloat(((const float *)&r->oz)[first]);
+    const vmask away = RT_MASK(fma(x, x, fma(y, y, z * z)) > rt_vfloat(RT_SCATTERED) * area);
+    return 2u * popcount(rt_bits(away) & bits) >= popcount(bits);
+#endif
 }
 
 /* Lanes in which a primitive at t beats what was hit so far. */

@@ -21,6 +21,9 @@ typedef struct rt_point {
     rt_vec geometric; /* unit normals, towards where the ray comes from */
     rt_vec normal;
     vfloat cos_in;    /* of incoming and normal, positive */
+#ifdef RT_PARTS_SCATTERED
+    vfloat area;      /* rt_surface.area */
+#endif
     vfloat offset;    /* how far from the surface rays start: rounding of `at` grows with its coordinates and the ray's length */
 } rt_point;
 
@@ -30,6 +33,9 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, vfloat distance, const rt_sur
     const vfloat t = rt_select(hits, distance, zero);
     rt_point p;
     p.hits = hits;
+#ifdef RT_PARTS_SCATTERED
+    p.area = s->area;
+#endif
     p.incoming = rt_vec_of(ray->dx, ray->dy, ray->dz);
     p.at = rt_along(t, p.incoming, rt_vec_of(ray->ox, ray->oy, ray->oz));
     p.leaving = RT_MASK(rt_dot(s->geometric, p.incoming) > zero);
@@ -91,7 +97,12 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             shadow->t_min = p->offset; /* where surfaces meet, rounding may have put the point behind the other one */
             rt_clear_hits(hits + b, lit);
             hits[b].t = rt_select(lit, distance, rt_vfloat(-1.0f));
-            if (frame->shadows != 0u && asked[b] != 0u) rt_prepare(shadow, asked[b]);
+            if (frame->shadows != 0u && asked[b] != 0u) {
+                rt_prepare(shadow, asked[b]);
+#ifdef RT_PARTS_SCATTERED
+                shadow->scattered = rt_scattered(shadow, p->area, asked[b]);
+#endif
+            }
 #ifdef RT_INSPECT
             distances[b] = distance;
 #endif
@@ -112,8 +123,11 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             const rt_shade *m = materials + b;
             const vmask lit = RT_MASK(hits[b].t >= zero);
             const rt_vec towards = rt_vec_of(rays[b].dx, rays[b].dy, rays[b].dz);
-            const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
-            const vfloat highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
+            vfloat highlight = zero;
+            if (rt_any(p->hits & RT_MASK(rt_largest(m->specular) > zero))) {
+                const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
+                highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
+            }
             const rt_vec color = rt_spread(light->color);
             diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
             shine[b] = rt_along(rt_select(lit, highlight, zero), color, shine[b]);

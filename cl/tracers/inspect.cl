@@ -8,7 +8,7 @@ trace_inspect(const constant rt_frame *frame, const uint group, const uint packe
 {
     RT_CTX_INIT(ctx);
     rt_queue queues[2];
-    float red[RT_MAX_PIXELS], green[RT_MAX_PIXELS], blue[RT_MAX_PIXELS];
+    float4 sums[RT_MAX_PIXELS];
     RT_FOR_PACKETS(frame, packet)
     {
         if (packet != packet_wanted) continue;
@@ -18,10 +18,10 @@ trace_inspect(const constant rt_frame *frame, const uint group, const uint packe
         tally.recorder.capacity = capacity;
         tally.recorder.pixel = (int)pixel;
         tally.recorder.too_deep = 0;
-        rt_trace_generations(&ctx, frame, rt_packet_origin(frame, group, packet), queues, red, green, blue, distances, &tally);
+        rt_trace_generations(&ctx, frame, rt_packet_origin(frame, group, packet), queues, sums, distances, &tally);
         summary[0] = tally.recorder.count;
-        summary[1] = as_uint(red[pixel]);
-        summary[2] = as_uint(green[pixel]);
-        summary[3] = as_uint(blue[pixel]);
+        summary[1] = as_uint(sums[pixel].x);
+        summary[2] = as_uint(sums[pixel].y);
+        summary[3] = as_uint(sums[pixel].z);
     }
 }

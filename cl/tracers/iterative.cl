@@ -15,27 +15,25 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global r
 {
     RT_CTX_INIT(ctx);
     const uint group = first_group + (uint)get_group_id(0);
-    const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), rays = RT_BLOCKS(frame) * RT_LANES;
+    const uint rays = RT_BLOCKS(frame) * RT_LANES;
     rt_queue queues[2];
-    float red[RT_MAX_PIXELS], green[RT_MAX_PIXELS], blue[RT_MAX_PIXELS];
+    float4 sums[RT_MAX_PIXELS];
     RT_FOR_PACKETS(frame, packet)
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
         rt_tally tally = {0, 0, 0, 0};
-        rt_trace_generations(&ctx, frame, origin, queues, red, green, blue, distances + (size_t)number * rays, &tally);
+        rt_trace_generations(&ctx, frame, origin, queues, sums, distances + (size_t)number * rays, &tally);
 
-        for (uint i = 0; i < pixels; ++i) {
-            const uint x = origin.x + i % packet_w, y = origin.y + i / packet_w;
-            if (x >= frame->width || y >= frame->height) continue;
-            const uint at = y * frame->width + x;
 #ifdef RT_SHOW_GENERATIONS
-            film[at] = red[i];
-#else
-            const float4 sample = (float4)(red[i], green[i], blue[i], 1.0f);
-            film[at] = frame->sample != 0u ? film[at] + sample : sample;
-#endif
+        const uint packet_w = RT_PACKET_W(frame);
+        for (uint i = 0; i < packet_w * RT_PACKET_H(frame); ++i) {
+            const uint x = origin.x + i % packet_w, y = origin.y + i / packet_w;
+            if (x < frame->width && y < frame->height) film[y * frame->width + x] = sums[i].x;
         }
+#else
+        rt_put_pixels(frame, origin, sums, film);
+#endif
         counters[number] = (uint4)(tally.shadow, tally.secondary, tally.dropped, tally.overflow);
     }
 }

@@ -7,12 +7,12 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
     RT_CTX_INIT(ctx);
     const uint group = first_group + (uint)get_group_id(0);
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), blocks = RT_BLOCKS(frame);
-    float red[RT_MAX_PIXELS], green[RT_MAX_PIXELS], blue[RT_MAX_PIXELS];
+    float4 sums[RT_MAX_PIXELS];
     RT_FOR_PACKETS(frame, packet)
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
-        for (uint i = 0; i < pixels; ++i) red[i] = green[i] = blue[i] = 0.0f;
+        for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
         RT_FOR_BUNDLES(base, 0u, blocks) {
             const uint count = RT_BUNDLE_OF(blocks - base);
             rt_rays rays[RT_BUNDLE];
@@ -50,16 +50,10 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
                 light.y += hit->v;
 #endif
 #endif
-                rt_add_to_pixels(light, in_y * rt_vint((int)packet_w) + in_x, bits, red, green, blue);
+                rt_add_to_pixels(light, in_y * rt_vint((int)packet_w) + in_x, bits, sums);
             }
         }
-        for (uint i = 0; i < pixels; ++i) {
-            const uint x = origin.x + i % packet_w, y = origin.y + i / packet_w;
-            if (x >= frame->width || y >= frame->height) continue;
-            const uint at = y * frame->width + x;
-            const float4 sample = (float4)(red[i], green[i], blue[i], 1.0f);
-            film[at] = frame->sample != 0u ? film[at] + sample : sample;
-        }
+        rt_put_pixels(frame, origin, sums, film);
         counters[number] = (uint4)(0u);
     }
 }

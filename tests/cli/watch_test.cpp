@@ -99,8 +99,8 @@ constexpr const char* kWaiting = "waiting for a change";
 
 TEST_F(Watch, EditMistakeRepairAndEnd) {
     const std::string kernel = "cl/tracers/iterative.cl", sound = scratch_.read(kernel);
-    const std::string store = "(float4)(red[i], green[i], blue[i], 1.0f)",
-                      swapped = "(float4)(blue[i], green[i], red[i], 1.0f)";
+    const std::string store = "rt_put_pixels(frame, origin, sums, film);",
+                      swapped = "for (uint i = 0; i < RT_MAX_PIXELS; ++i) sums[i] = sums[i].zyxw;\n" + store;
     ASSERT_NE(sound.find(store), std::string::npos) << "the line that this test edits";
     Watcher watcher(words(), scratch_.path("cl"), scratch_.path("said"));
     ASSERT_TRUE(watcher.says(kWaiting)) << watcher.said();

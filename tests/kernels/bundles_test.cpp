@@ -1,11 +1,13 @@
 // bundles_test.cpp -- packets that go down a tree together find bit for bit what each finds alone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
 
+#include "render/accel_choice.hpp"
 #include "support/generated.hpp"
 
 using namespace clarity;
@@ -148,4 +150,39 @@ TEST(Bundles, VisitNoMoreThanAlone) {
     for (const rt_hit& hit : trace(rubble(), 16, true, false, rays, counted)) together += hit.steps;
     EXPECT_GT(together, alone * 9 / 10);
     EXPECT_LT(together, alone * 11 / 10);
+}
+
+// Triangles smaller than pixels, all half mirrors: mirrored and shadow rays start far apart by their size, and packets that
+// would go together part. No digit of the picture may show it.
+TEST(Bundles, ScatteredRaysPartUnseen) {
+    Scene scene = scene_of(torus(1, 0.4, 200, 100));
+    const ScenePtr shared = shared_scene(std::move(scene));
+    View view = view_from({1, 3, 2}, {0, 0, 0}, 40);
+    rt_light light{};
+    light.position[0] = 3, light.position[1] = 0.5f, light.position[2] = -1;
+    light.color[0] = light.color[1] = light.color[2] = 1;
+    view.lights = {light};
+    rt_material half = diffuse(0.8f, 0.8f, 0.8f);
+    half.reflect = 0.5f;
+    view.materials.assign(shared->materials.size(), half);
+    FloatImage reference;
+    for (const char* accel : {"bvh8,incoherent=packets", "bvh8,incoherent=single"})
+        for (const int lanes : {16, 8}) {
+            Settings settings = make_settings({{"size", "48x36"}, {"depth", "4"}});
+            choose_accel(Workbench::get().plugins(), accel, settings);
+            settings.lanes = lanes;
+            settings.packet_w = settings.packet_h = lanes;
+            FrameStats stats;
+            const FloatImage image = Workbench::get().values(shared, settings, view, &stats);
+            if (reference.pixels.empty()) {
+                reference = image;
+                EXPECT_GT(stats.secondary, 500u);
+                EXPECT_GT(stats.shadow, 300u);
+                EXPECT_GT(*std::max_element(image.pixels.begin(), image.pixels.end()), 0.2f);
+                continue;
+            }
+            ASSERT_EQ(image.pixels.size(), reference.pixels.size());
+            EXPECT_EQ(std::memcmp(image.pixels.data(), reference.pixels.data(), image.pixels.size() * sizeof(float)), 0)
+                << accel << ", " << lanes << " lanes";
+        }
 }

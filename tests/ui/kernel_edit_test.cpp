@@ -36,7 +36,8 @@ class KernelEdit : public WindowTest {
     void write(const std::string& text) const { write(kernel, text); }
     // An edit that one sees: red and blue change places.
     std::string swapped() const {
-        const std::string from = " : sample;", to = " : sample.zyxw;";
+        const std::string from = "rt_put_pixels(frame, origin, sums, film);",
+                          to = "for (uint i = 0; i < RT_MAX_PIXELS; ++i) sums[i] = sums[i].zyxw; " + from;
         std::string text = good;
         const size_t at = text.find(from);
         EXPECT_NE(at, std::string::npos) << "cl/tracers/iterative.cl has changed: edit something else of it here";

@@ -560,7 +560,7 @@ void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hi
     uint with[8] = {0, 0, 0, 0, 0, 0, 0, 0}, apart = 0, mixed = 0;
     for (uint p = 0; p < count; ++p) {
         uint rest = bvh8_which_octants(rays + p, bvh8_octants(rays + p), hits[p].t);
-        if (popcount(rest) > BVH8_SPLIT) {
+        if (popcount(rest) > BVH8_SPLIT || BVH8_SCATTERED(rays + p, rest)) {
             apart |= 1u << p;
             continue;
         }

@@ -76,6 +76,13 @@ RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf
 #endif
 }
 #if RT_LANES > 1
+/* Whether a packet whose rays start far apart is parted. Where rays that part go together it gains nothing. */
+#if BVH8_SINGLE
+#define RT_PARTS_SCATTERED
+#define BVH8_SCATTERED(ray, rest) ((rest) != 0u && (ray)->scattered)
+#else
+#define BVH8_SCATTERED(ray, rest) 0
+#endif
 /* Octants of directions that a packet may be split into: where it has more, its rays have too little in common. */
 #define BVH8_SPLIT 2
 /* Bits 0, 1, 2: the direction's component is negative. */
