@@ -154,8 +154,7 @@ std::string pack_leaves(const Output& out, AccelData& data) {
                     leaves[i] = data.scene.polygons[index];
                     break;
                 default:
-                    leaves[i] = rt_leaf{};
-                    leaves[i].ref = refs[i];
+                    leaves[i] = data.scene.instance_leaves[index];
             }
         }
     });

@@ -233,8 +233,7 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
 }
 #undef BVH8_PLACE
 
-/* Where there are instances, a traversal of their meshes hangs on each of a world's leaf tests, and is compiled as often: there
- * the packet stays together. */
+/* The world of a scene with instances is left together: a ray alone would hold up the others while it is in a mesh. */
 #if BVH8_SINGLE && !(RT_LONE_MIXED && RT_HAS_INSTANCES)
 
 /* The rays of `lanes` from `at` down, each on its own way but all by turns: while one waits, for memory as much as for arithmetic,
