@@ -14,6 +14,7 @@
 #else
 #define RT_PICTURE_KERNEL kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 #endif
+#define RT_NOINLINE static __attribute__((noinline))
 #define RT_CAT_(a, b) a##b
 #define RT_CAT(a, b) RT_CAT_(a, b)
 
