@@ -245,7 +245,13 @@ class Planner {
                     for (Variant& variant : c.variants) variant.settings.emplace_back("depth", "5");
                 if (!request_.peers) continue;
                 c.peer_qualities = {"medium"};
-                if (c.measure != "build") c.peer_qualities.push_back("high");
+                const auto builds = [&](const char* builder) {
+                    return std::any_of(c.variants.begin(), c.variants.end(), [&](const Variant& variant) {
+                        return variant.accel.find(builder) != std::string::npos;
+                    });
+                };
+                if (c.measure != "build" || builds("builder=spatial")) c.peer_qualities.push_back("high");
+                if (c.measure == "build" && builds("builder=morton")) c.peer_qualities.push_back("low");
             }
     }
 

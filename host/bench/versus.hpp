@@ -10,8 +10,8 @@ namespace clarity {
 // What a row is fast by: triangles (build), frames or rays a second. 0: it was not measured.
 double speed(const BenchRecord& record);
 
-// Fills in `versus` of our rows of one case. A build is compared with the peers' builds of medium quality, which are as good as
-// ours, everything else with the fastest row of any peer.
+// Fills in `versus` of our rows of one case. A build is compared with the peers' builds of its kind (builder=morton: low
+// quality, spatial: high, else medium), everything else with the fastest row of any peer.
 void compare_with_peers(std::vector<BenchRecord>& rows);
 
 // Of one structure on one device, over the scenes of a suite.

@@ -78,9 +78,8 @@ std::string versus_table(const BenchReport& report) {
         add_mean(table, means, *structure, "GEOMETRIC MEAN", &VersusMean::mean);
         add_mean(table, means, *structure, "LEAST", &VersusMean::least);
     }
-    return "cpu: how many times as fast as the fastest peer in the same case (build: as the medium one), medians; bytes: as "
-           "many "
-           "times\n" +
+    return "cpu: how many times as fast as the fastest peer in the same case (build: as the medium one, "
+           "builder=morton: low, spatial: high), medians; bytes: as many times\n" +
            table.text(26) + "\n";
 }
 

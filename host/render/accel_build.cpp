@@ -89,7 +89,8 @@ Output& output(void* ctx) {
     return *static_cast<Output*>(ctx);
 }
 
-constexpr uint64_t kLeafChunk = 1u << 13;  // leaves that one task looks at
+constexpr uint64_t kLeafChunk = 1u << 12;  // leaves that one task copies
+constexpr uint64_t kLeavesAhead = 24;      // that are fetched before their turn
 
 bool is_known(rt_u32 ref, const BuildScene& scene) {
     const rt_u32 index = RT_REF_INDEX(ref);
@@ -106,8 +107,8 @@ bool is_known(rt_u32 ref, const BuildScene& scene) {
     return false;
 }
 
-// Everything that a builder may get wrong, said in its terms.
-std::string contract_breach(const Output& out, const BuildScene& scene) {
+// What a builder may get wrong, but for refs, said in its terms.
+std::string contract_breach(const Output& out) {
     for (rt_u32 s = 0; s < out.accel.slot_count; ++s)
         if (!out.allocated[s]) return std::string("never allocated slot ") + out.accel.slots[s].name;
     if (!out.leaves_given) return "never asked for the leaves";
@@ -117,32 +118,34 @@ std::string contract_breach(const Output& out, const BuildScene& scene) {
             return "reported root " + std::to_string(out.data.roots[g]) + " for group " + std::to_string(g) + ", but slot " +
                    out.accel.slots[0].name + " has " + std::to_string(out.data.slots[0].count) + " elements";
     }
-    const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
-    constexpr uint64_t none = ~uint64_t(0);
-    std::atomic<uint64_t> first_unknown{none};
-    parallel_for(static_cast<uint32_t>((out.data.leaf_count + kLeafChunk - 1) / kLeafChunk), [&](uint32_t c) {
-        uint64_t i = c * kLeafChunk;
-        const uint64_t end = std::min<uint64_t>(out.data.leaf_count, i + kLeafChunk);
-        while (i < end && is_known(refs[i], scene)) ++i;
-        uint64_t first = first_unknown;
-        while (i < end && i < first && !first_unknown.compare_exchange_weak(first, i)) {
-        }
-    });
-    if (first_unknown != none) return "put a ref at leaf " + std::to_string(first_unknown) + " that it was not given";
     return {};
 }
 
-void pack_leaves(const Output& out, AccelData& data) {
+// In leaf order. Returns what is wrong with the refs; empty: nothing.
+std::string pack_leaves(const Output& out, AccelData& data) {
     data.leaves = AlignedBytes((data.leaf_count + kLeafPadding) * sizeof(rt_leaf), false);
     const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
     rt_leaf* leaves = static_cast<rt_leaf*>(data.leaves.data());
+    const rt_leaf* const triangles = data.scene.triangles.data();
     std::memset(leaves + data.leaf_count, 0, kLeafPadding * sizeof(rt_leaf));
+    constexpr uint64_t none = ~uint64_t(0);
+    std::atomic<uint64_t> first_unknown{none};
     parallel_for(static_cast<uint32_t>((data.leaf_count + kLeafChunk - 1) / kLeafChunk), [&](uint32_t c) {
-        for (uint64_t i = c * kLeafChunk; i < std::min<uint64_t>(data.leaf_count, (c + 1) * kLeafChunk); ++i) {
+        const uint64_t end = std::min<uint64_t>(data.leaf_count, (c + 1) * kLeafChunk);
+        for (uint64_t i = c * kLeafChunk; i < end; ++i) {
+            // Leaves lie next to each other in the scene, and anywhere in memory.
+            const rt_u32 ahead = refs[std::min(i + kLeavesAhead, end - 1)];
+            if (RT_REF_KIND(ahead) == RT_REF_TRIANGLE) __builtin_prefetch(triangles + RT_REF_INDEX(ahead));
+            if (!is_known(refs[i], data.scene)) {
+                uint64_t first = first_unknown;
+                while (i < first && !first_unknown.compare_exchange_weak(first, i)) {
+                }
+                return;
+            }
             const rt_u32 index = RT_REF_INDEX(refs[i]);
             switch (RT_REF_KIND(refs[i])) {
                 case RT_REF_TRIANGLE:
-                    leaves[i] = data.scene.triangles[index];
+                    leaves[i] = triangles[index];
                     break;
                 case RT_REF_SPHERE:
                     leaves[i] = data.scene.spheres[index];
@@ -156,6 +159,7 @@ void pack_leaves(const Output& out, AccelData& data) {
             }
         }
     });
+    return first_unknown == none ? "" : "put a ref at leaf " + std::to_string(first_unknown) + " that it was not given";
 }
 
 }  // namespace
@@ -208,10 +212,11 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     data.scene.prims = {};  // what is no longer needed goes as soon as may be: large scenes fill memory with it
 
     start = std::chrono::steady_clock::now();
-    if (const std::string why = contract_breach(out, data.scene); !why.empty())
+    std::string why = contract_breach(out);
+    if (why.empty()) why = pack_leaves(out, data);
+    if (!why.empty())
         throw Error(Exit::failed,
                     std::string("accel ") + plugin.id + ": the builder " + why + "; this is a fault of the plugin");
-    pack_leaves(out, data);
     out.refs = {};
     data.scene.triangles = {};
     data.instances = data.scene.instances;

@@ -40,6 +40,13 @@ void widen(rt_prim& prim, float relative) {
     }
 }
 
+// Four numbers of a leaf or prim, in a register: three coordinates, and bits that name something.
+using Row = float __attribute__((vector_size(16)));
+using Bits = rt_u32 __attribute__((vector_size(16)));
+Row named(Row point, rt_u32 name) {
+    return reinterpret_cast<Row>(reinterpret_cast<Bits>(point) | Bits{0, 0, 0, name});
+}
+
 // Writes the triangles of one mesh as refs first.., transformed unless world is nullptr.
 void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim,
                    rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
@@ -54,26 +61,26 @@ void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt
         rt_u32* const sources = out.attribute_triangle.data() + first_ref + begin;
         for (rt_u32 i = 0; i < end - begin; ++i) {
             // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
-            rt_leaf leaf;
-            const auto corner = [&](int c, float* to) {
+            const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i), material != RT_NONE ? material : materials[i],
+                                    first_prim + begin + i};
+            Row corner[3];
+            for (int c = 0; c < 3; ++c) {
                 const float* const position = positions + 3 * size_t(vertices[3 * size_t(i) + c]);
                 if (world) {
                     const auto p = transform_point(*world, position);
-                    std::copy(p.begin(), p.end(), to);
+                    corner[c] = Row{p[0], p[1], p[2], 0};
                 } else {
-                    std::copy_n(position, 3, to);
+                    corner[c] = Row{position[0], position[1], position[2], 0};
                 }
-            };
-            corner(0, leaf.a);
-            corner(1, leaf.b);
-            corner(2, leaf.c);
-            leaf.ref = RT_REF_TRIANGLE | (first_ref + begin + i);
-            leaf.material = material != RT_NONE ? material : materials[i];
-            leaf.prim = first_prim + begin + i;
-            rt_prim prim = empty_prim(leaf.ref, run);
-            for (const float* p : {leaf.a, leaf.b, leaf.c}) grow(prim, p);
-            leaves[i] = leaf;
-            prims[i] = prim;
+            }
+            static_assert(sizeof(rt_leaf) == 3 * sizeof(Row) && sizeof(rt_prim) == 2 * sizeof(Row), "rows of four numbers");
+            Row lo = corner[1] < corner[0] ? corner[1] : corner[0], hi = corner[0] < corner[1] ? corner[1] : corner[0];
+            lo = corner[2] < lo ? corner[2] : lo;
+            hi = hi < corner[2] ? corner[2] : hi;
+            const Row leaf[3] = {named(corner[0], meta[0]), named(corner[1], meta[1]), named(corner[2], meta[2])},
+                      prim[2] = {named(lo, meta[0]), named(hi, run)};
+            std::memcpy(&leaves[i], leaf, sizeof leaf);
+            std::memcpy(&prims[i], prim, sizeof prim);
             sources[i] = mesh.first_triangle + begin + i;
         }
     });

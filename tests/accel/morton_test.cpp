@@ -74,6 +74,65 @@ TEST(Morton, LeavesFollowTheCurve) {
     for (rt_u32 i = 0; i < 512; ++i) EXPECT_EQ(octant(built.leaves[i]), i / 64) << "position " << i;
 }
 
+TEST(Morton, TheLongestSideOfACellIsCutFirst) {
+    // 32 cubes in a row, 4 x 4 rows: three cuts across the rows come first, then each eighth is all there is for a while.
+    std::vector<rt_prim> prims;
+    for (rt_u32 i = 0; i < 512; ++i) {
+        const float lo[3] = {static_cast<float>(i / 32 % 4), static_cast<float>(i % 32), static_cast<float>(i / 128)},
+                    hi[3] = {lo[0] + 0.5f, lo[1] + 0.5f, lo[2] + 0.5f};
+        prims.push_back(box_prim(lo, hi, i));
+    }
+    Input input;
+    input.add_group(prims);
+    const Built built = build(load("bvh2"), input, fast(1));
+    for (rt_u32 i = 0; i < 512; ++i) EXPECT_EQ(built.leaves[i] % 32 / 4, i / 64) << "position " << i;
+}
+
+TEST(Morton, WhatIsSmallInALargeSceneIsPartedToo) {
+    // A sphere in one cell of the curve of all: its leaves must be as small as if it were alone.
+    const std::vector<rt_prim> sphere = bumpy_sphere(60000);
+    std::vector<rt_prim> stadium = sphere;
+    for (const float at : {-3e6f, 5e6f}) {
+        const float p[3] = {at, at, at};
+        stadium.push_back(box_prim(p, p, static_cast<rt_u32>(stadium.size())));
+    }
+    const auto sides_of_leaves = [&](const std::vector<rt_prim>& prims) {
+        Input input;
+        input.add_group(prims);
+        const Built built = build(load("bvh2"), input, fast());
+        EXPECT_EQ(check_bvh2(input, built, 4, false), "");
+        std::vector<rt_u32> refs;
+        for (const rt_u32 ref : built.leaves)
+            if (ref < sphere.size()) refs.push_back(ref);
+        double sum = 0;
+        for (size_t i = 0; i + 4 <= refs.size(); i += 4)
+            for (int a = 0; a < 3; ++a) {
+                float lo = INFINITY, hi = -INFINITY;
+                for (size_t k = i; k < i + 4; ++k) {
+                    lo = std::min(lo, prims[refs[k]].lo[a]);
+                    hi = std::max(hi, prims[refs[k]].hi[a]);
+                }
+                sum += hi - lo;
+            }
+        return sum;
+    };
+    EXPECT_LT(sides_of_leaves(stadium), 1.2 * sides_of_leaves(sphere));
+}
+
+TEST(Morton, IsNeverTooDeep) {
+    // Clusters in clusters, each in one cell of the last one's curve.
+    std::vector<rt_prim> prims;
+    for (int level = 0; level < 30; ++level)
+        for (rt_prim prim : scattered(5000, std::pow(16.0f, static_cast<float>(-level)), 0, static_cast<uint32_t>(level))) {
+            prim.ref = static_cast<rt_u32>(prims.size());
+            prims.push_back(prim);
+        }
+    expect_sound(prims);
+    Input input;
+    input.add_group(prims);
+    EXPECT_LE(build(load("bvh2"), input, fast()).stats.at("depth"), 64);
+}
+
 TEST(Morton, BuildsManyGroups) {
     Input input;
     for (uint32_t g = 0; g < 3000; ++g) input.add_group(scattered(g % 50, 1, static_cast<float>(g), g));

@@ -52,6 +52,22 @@ TEST(Versus, ABuildIsByTheMediumOneAndHasBytes) {
     EXPECT_DOUBLE_EQ(rows[0].versus.bytes_ratio, 0.5);
 }
 
+TEST(Versus, ABuildIsByAPeersOfItsKind) {
+    std::vector<BenchRecord> rows = {row("a", "build", "sorted", "", 30),       row("a", "build", "cut", "", 3),
+                                     row("a", "build", "usual", "", 4),         row("a", "build", "", "embree low", 20),
+                                     row("a", "build", "", "embree medium", 8), row("a", "build", "", "embree high", 2)};
+    rows[0].accel_params = "max_leaf=7,builder=morton";
+    rows[1].accel_params = "max_leaf=7,builder=spatial";
+    rows[2].accel_params = "max_leaf=7,builder=sah";
+    compare_with_peers(rows);
+    EXPECT_EQ(rows[0].versus.peer, "embree low");
+    EXPECT_DOUBLE_EQ(rows[0].versus.ratio, 1.5);
+    EXPECT_EQ(rows[1].versus.peer, "embree high");
+    EXPECT_DOUBLE_EQ(rows[1].versus.ratio, 1.5);
+    EXPECT_EQ(rows[2].versus.peer, "embree medium");
+    EXPECT_DOUBLE_EQ(rows[2].versus.ratio, 0.5);
+}
+
 TEST(Versus, WithoutPeersThereIsNone) {
     std::vector<BenchRecord> rows = {row("a", "shadow", "bvh2", "", 30)};
     rows.push_back(row("a", "shadow", "", "embree single high", 5));

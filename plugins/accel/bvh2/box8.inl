@@ -65,6 +65,19 @@ inline Box8 centroid2_box(Box8 a) {
 inline Box8 box_of(const Record& r) {
     return {_mm256_and_ps(_mm256_loadu_ps(r.lo), _mm256_castsi256_ps(_mm256_setr_epi32(-1, -1, -1, 0, -1, -1, -1, -1)))};
 }
+inline Box8 max(Box8 a, Box8 b) {
+    return {_mm256_max_ps(a.m, b.m)};
+}
+// The greatest of eight numbers, in all lanes.
+inline Box8 highest(Box8 a) {
+    __m256 m = _mm256_max_ps(a.m, _mm256_permute2f128_ps(a.m, a.m, 1));
+    m = _mm256_max_ps(m, _mm256_permute_ps(m, _MM_SHUFFLE(1, 0, 3, 2)));
+    return {_mm256_max_ps(m, _mm256_permute_ps(m, _MM_SHUFFLE(2, 3, 0, 1)))};
+}
+// a < b ? x : y, per lane.
+inline Box8 where_less(Box8 a, Box8 b, Box8 x, Box8 y) {
+    return {_mm256_blendv_ps(y.m, x.m, _mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ))};
+}
 // which ? a : b.
 inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
     return {_mm256_blendv_ps(b.m, a.m, _mm256_castsi256_ps(_mm256_set1_epi32(-static_cast<int>(which))))};
@@ -125,6 +138,17 @@ inline Box8 centroid2_box(Box8 a) {
 }
 inline Box8 box_of(const Record& r) {
     return {xyz(load(r.lo)), load(r.neg_hi)};
+}
+inline Box8 max(Box8 a, Box8 b) {
+    return {bvh2::max(a.lo, b.lo), bvh2::max(a.neg_hi, b.neg_hi)};
+}
+inline Box8 highest(Box8 a) {
+    alignas(16) float v[4];
+    store(v, bvh2::max(a.lo, a.neg_hi));
+    return all_eight(std::max(std::max(v[0], v[1]), std::max(v[2], v[3])));
+}
+inline Box8 where_less(Box8 a, Box8 b, Box8 x, Box8 y) {
+    return {select(less(a.lo, b.lo), x.lo, y.lo), select(less(a.neg_hi, b.neg_hi), x.neg_hi, y.neg_hi)};
 }
 inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
     const Vec4 mask = all_lanes(which);

@@ -11,17 +11,21 @@ namespace {
 uint32_t task_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 16384));
 }
+// What is sorted along a curve needs none.
+uint64_t record_count(const Rules& rules, uint64_t room) {
+    return rules.method == Method::morton ? 0 : room;
+}
 uint32_t chunk_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 8, 1024, 8192));
 }
+
+}  // namespace
 
 float unit_scale(const Bounds& box) {
     double longest = 0;
     for (int a = 0; a < 3; ++a) longest = std::max(longest, double{box.hi(a)} - box.lo[a]);
     return longest > 2.0 / FLT_MAX ? static_cast<float>(2 / longest) : FLT_MAX;
 }
-
-}  // namespace
 
 // Part of a range that one thread takes.
 struct Builder::Chunk {
@@ -48,9 +52,8 @@ uint64_t Builder::room(const Rules& rules, uint64_t primitive_count) {
 }
 
 uint64_t Builder::bytes(const Rules& rules, uint64_t primitive_count) {
-    const size_t more = rules.method == Method::morton    ? 2 * sizeof(MortonKey)
-                        : rules.method == Method::spatial ? sizeof(rt_u32)
-                                                          : 0;
+    if (rules.method == Method::morton) return primitive_count * sizeof(bvh2_node) + MortonOrder::bytes(primitive_count);
+    const size_t more = rules.method == Method::spatial ? sizeof(rt_u32) : 0;
     return room(rules, primitive_count) * (2 * sizeof(Record) + sizeof(bvh2_node) + more);
 }
 
@@ -64,7 +67,7 @@ Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& 
       task_size_(task_size_for(primitive_count)),
       chunk_size_(chunk_size_for(primitive_count)),
       kernels_(kernels()),
-      records_{Scratch<Record>(room_), Scratch<Record>(room_)},
+      records_{Scratch<Record>(record_count(rules, room_)), Scratch<Record>(record_count(rules, room_))},
       nodes_(room_),
       workspace_{rules, {records_[0].data(), records_[1].data()}, nodes_.data(), nullptr} {
     tree_.nodes = nodes_.data();
@@ -81,22 +84,13 @@ BinaryTree Builder::run(const rt_build_output* out, const std::function<void(con
     const bool spatial = workspace_.rules.method == Method::spatial;
     if (!spatial) workspace_.leaves = rt::leaves(out, primitive_count_);
     tree_.leaf_count = primitive_count_;
-    const std::vector<Pending> groups = load();
-    if (spatial) {
-        split_space(groups, out);
+    if (workspace_.rules.method == Method::morton) {
+        build_sorted(after);
+    } else if (spatial) {
+        split_space(load(), out);
         parallel_for(tree_.tasks.size(), [&](uint32_t t) { after(tree_.tasks[t]); });
-    } else if (workspace_.rules.method == Method::morton) {
-        sort(groups);
-        cut_sorted(groups);
-        run_tasks([&](uint32_t t) {
-            Task& task = tree_.tasks[t];
-            task.tree = build_sorted(workspace_, keys_->data(), task.range);
-            put(task_place_[t], task.tree.root);
-            after(task);
-        });
-        bound_tops();
     } else {
-        split_top(groups);
+        split_top(load());
         run_tasks([&](uint32_t t) {
             Task& task = tree_.tasks[t];
             task.tree = kernels_.build_subtree(workspace_, task.range, task.first_node, task.range.begin);
@@ -133,14 +127,12 @@ std::vector<Builder::Pending> Builder::load() {
     parallel_for(chunks.size(), [&](uint32_t i) {
         Chunk& chunk = chunks[i];
         const rt_prim* prim = input_.prims + input_.groups[chunk.owner].first + (chunk.begin - groups[chunk.owner].range.begin);
-        const Vec4 least = splat(-FLT_MAX), most = splat(FLT_MAX);
         Record* const records = records_[0].data();
         for (uint32_t r = chunk.begin; r < chunk.end; ++r, ++prim) {
-            // A bound that is no number becomes the farthest one (MINPS and MAXPS give their second operand), and bounds in the
-            // wrong order are put right: whatever comes in, the box is sound and nothing is lost.
-            const Vec4 lo = min(max(xyz(load_any(prim->lo)), least), most), hi = max(min(xyz(load_any(prim->hi)), most), least);
-            store(records[r].lo, min(lo, hi));
-            store(records[r].neg_hi, splat(0.0f) - max(lo, hi));
+            Vec4 lo, neg_hi;
+            sound_box(*prim, lo, neg_hi);
+            store(records[r].lo, lo);
+            store(records[r].neg_hi, neg_hi);
             records[r].set_ref(prim->ref);
         }
         bound(records + chunk.begin, records + chunk.end, chunk.box, chunk.centroids2);

@@ -43,6 +43,9 @@ struct BinaryTree {
     uint32_t depth = 1;       // nodes from a root to the deepest leaf
 };
 
+// By which half a length becomes that length where the longest side of a group's box is 1.
+float unit_scale(const Bounds& box);
+
 class Builder {
  public:
     // Positions in leaf order are 28 bits, as refs are.
@@ -75,9 +78,7 @@ class Builder {
     std::vector<Pending> part_tasks(const std::vector<Pending>& level);
     void split_top(std::vector<Pending> level);
     std::vector<Pending> split_level(const std::vector<Pending>& level);
-    void sort(const std::vector<Pending>& groups);
-    void cut_sorted(const std::vector<Pending>& groups);
-    void bound_tops();
+    void build_sorted(const std::function<void(const Task&)>& after);
     void split_space(std::vector<Pending> level, const rt_build_output* out);
     void close_gaps(const std::vector<uint32_t>& counts, const rt_build_output* out);
     void run_tasks(const std::function<void(uint32_t)>& run_task);
@@ -100,9 +101,7 @@ class Builder {
     Workspace workspace_;
     BinaryTree tree_;
     std::vector<Pending> task_place_;  // of tasks, without their ranges
-    std::vector<Pending> top_place_;   // of tops, likewise; of sorted primitives only
     std::vector<float> scales_;        // of groups
-    std::unique_ptr<Scratch<MortonKey>> keys_;
     std::atomic<uint64_t> work_done_{0};
 };
 

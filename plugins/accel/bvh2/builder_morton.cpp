@@ -1,71 +1,78 @@
-// builder_morton.cpp -- the builder's steps for primitives that are sorted along a curve.
+// builder_morton.cpp -- the binary tree of primitives that are sorted along a curve.
 #include <unordered_map>
 
 #include "builder.hpp"
+#include "sorted_run.hpp"
 
 namespace bvh2 {
+namespace {
 
-// Groups stay apart: the keys of each are sorted for themselves.
-void Builder::sort(const std::vector<Pending>& groups) {
-    keys_ = std::make_unique<Scratch<MortonKey>>(primitive_count_);
-    const Scratch<MortonKey> other(primitive_count_);
-    parallel_for(groups.size(), [&](uint32_t g) {
-        const Range& group = groups[g].range;
-        if (group.count() == 0) return;
-        const uint32_t chunks = (group.count() + chunk_size_ - 1) / chunk_size_;
-        const auto each = [&](auto&& do_chunk) {
-            parallel_for(chunks, [&](uint32_t c) {
-                const uint32_t begin = group.begin + c * chunk_size_;
-                do_chunk(begin, std::min(begin + chunk_size_, group.end));
-            });
-        };
-        each([&](uint32_t begin, uint32_t end) { make_keys(workspace_, group, begin, end, keys_->data()); });
-        sort_keys(host_, keys_->data() + group.begin, other.data() + group.begin, group.count());
-        each([&](uint32_t begin, uint32_t end) { gather(workspace_, keys_->data(), begin, end); });
-    });
-    report(primitive_count_ / 2);
+// From children first to depth-first order. Returns the next free place.
+rt_u32 write_depth_first(const bvh2_node* from, rt_u32 node, bvh2_node* to, rt_u32 at) {
+    rt_u32 next = at + 1;
+    to[at] = from[node];
+    for (rt_u32* child : {&to[at].child0, &to[at].child1}) {
+        if (*child & BVH2_LEAF) continue;
+        const rt_u32 below = *child;
+        *child = next;
+        next = write_depth_first(from, below, to, next);
+    }
+    return next;
 }
 
-void Builder::cut_sorted(const std::vector<Pending>& groups) {
-    std::vector<Pending> open = groups;
-    while (!open.empty()) {
-        Pending at = open.back();
-        open.pop_back();
-        at.range.buffer = 1;
-        if (at.range.count() <= task_size_) {
-            if (at.range.count() > 0) add_task(at);
-            continue;
+}  // namespace
+
+void Builder::build_sorted(const std::function<void(const Task&)>& after) {
+    const MortonOrder order(host_, input_, primitive_count_);
+    for (const MortonOrder::Group& group : order.groups()) {
+        tree_.roots[scales_.size()].box = group.box;
+        scales_.push_back(unit_scale(group.box));
+    }
+    report(primitive_count_);
+    for (const MortonOrder::Run& run : order.runs()) {
+        Range range;
+        range.begin = run.begin;
+        range.end = run.end;
+        range.depth = run.depth;
+        tree_.tasks.push_back({range, run.begin, scales_[run.group], {}});
+    }
+    run_tasks([&](uint32_t t) {
+        Task& task = tree_.tasks[t];
+        const MortonOrder::Run& run = order.runs()[t];
+        const Scratch<bvh2_node> nodes(run.count());
+        const SortedSubtree root =
+            sweep(order.sort(run), run.count(), order.prims(run.group), run.begin, workspace_.rules.max_leaf,
+                  workspace_.leaves + run.begin, nodes.data(), task.tree.nodes);
+        task.tree.root = root.code;
+        if (task.tree.nodes > 0) {
+            write_depth_first(nodes.data(), root.code, workspace_.nodes, run.begin);
+            task.tree.root = run.begin;
         }
-        const uint32_t middle = morton_middle(keys_->data(), at.range.begin, at.range.end);
-        const rt_u32 node = middle - 1;  // see Workspace::nodes
-        put(at, node);
-        tree_.tops.push_back({node, scales_[at.group]});
-        top_place_.push_back(at);
-        ++at.range.depth;
-        Pending left = at, right = at;
-        left.range.end = right.range.begin = right.room_begin = middle;
-        left.parent = right.parent = node;
-        left.which = 0;
-        right.which = 1;
-        open.push_back(right);
-        open.push_back(left);
-    }
-}
+        task.tree.depth = run.depth + root.depth;
+        store(task.range.box.lo, root.lo);
+        store(task.range.box.neg_hi, root.neg_hi);
+        after(task);
+    });
 
-// From the tasks up.
-void Builder::bound_tops() {
-    std::unordered_map<rt_u32, Bounds> boxes;
-    const auto put_box = [&](const Pending& place, const Bounds& box) {
-        if (place.parent == RT_NONE) return;
-        bvh2_node& parent = nodes_.data()[place.parent];
-        set_child(parent, static_cast<int>(place.which), box, place.which == 0 ? parent.child0 : parent.child1);
-        boxes[place.parent].add(box);
+    // What lies above, from the runs up.
+    std::vector<Bounds> boxes(order.tops().size());
+    const auto node_of = [&](rt_u32 code) {
+        return code & MortonOrder::kRun ? tree_.tasks[code & ~MortonOrder::kRun].tree.root
+                                        : order.tops()[code].middle - 1;  // see Workspace::nodes
     };
-    for (size_t t = 0; t < tree_.tasks.size(); ++t) put_box(task_place_[t], tree_.tasks[t].range.box);
-    for (size_t i = tree_.tops.size(); i-- > 0;) {
-        const rt_u32 node = tree_.tops[i].node;
-        put_box(top_place_[i], boxes[node]);
+    const auto box_of = [&](rt_u32 code) -> const Bounds& {
+        return code & MortonOrder::kRun ? tree_.tasks[code & ~MortonOrder::kRun].range.box : boxes[code];
+    };
+    for (size_t t = order.tops().size(); t-- > 0;) {
+        const MortonOrder::Top& top = order.tops()[t];
+        for (int c = 0; c < 2; ++c) {
+            set_child(nodes_.data()[top.middle - 1], c, box_of(top.child[c]), node_of(top.child[c]));
+            boxes[t].add(box_of(top.child[c]));
+        }
     }
+    for (const MortonOrder::Top& top : order.tops()) tree_.tops.push_back({top.middle - 1, scales_[top.group]});
+    for (size_t g = 0; g < tree_.roots.size(); ++g)
+        if (const rt_u32 code = order.groups()[g].code; code != RT_NONE) tree_.roots[g].code = node_of(code);
 }
 
 }  // namespace bvh2

@@ -37,6 +37,12 @@ struct alignas(16) SharedRoots {
     float left[kRoots];  // how many go there
 };
 
+// Numbers of eight things that are to go to eight places, in pairs: how well each suits place 0..7.
+constexpr uint32_t kPlaces = 8;
+struct alignas(32) Suits {
+    float place[kPlaces];
+};
+
 struct Kernels {
     void (*clear)(Bins& bins, uint32_t bin_count);
     void (*bin)(const Record* first, const Record* end, const Slices& slices, Bins& bins);
@@ -49,6 +55,9 @@ struct Kernels {
     // Builds the tree of one range on one thread, without allocating; nodes and leaves are put from the given places on.
     Subtree (*build_subtree)(const Workspace& workspace, const Range& range, uint32_t first_node, uint32_t first_leaf);
     void (*share_roots)(const float left[kRoots], const float right[2 * kRoots], SharedRoots& shared);
+    // Gives things to places: of all pairs left over the best one goes together. suits[i] carry the tag kPlaces i + place, so
+    // no two are equal; they are lost.
+    void (*assign_places)(Suits suits[], uint32_t count, uint32_t place_of[]);
 };
 
 namespace generic {

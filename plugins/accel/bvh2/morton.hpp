@@ -1,27 +1,70 @@
-// morton.hpp -- the fast builder: primitives are sorted along a space-filling curve, and nodes are parted where the highest bit
-// of their places on it changes (Lauterbach, Garland, Sengupta, Luebke, Manocha 2009, "Fast BVH Construction on GPUs").
+// morton.hpp -- primitives along a space-filling curve, for the fast builder: nodes are parted where the highest bit of their
+// places on it changes (Lauterbach, Garland, Sengupta, Luebke, Manocha 2009, "Fast BVH Construction on GPUs").
+//
+// The highest digits of the places part each group on all cores, until ranges are one thread's work: runs. A run is sorted, and
+// its tree made, while a core's own cache holds it.
 #pragma once
-#include "kernels.hpp"
+#include <vector>
+
+#include "curve.hpp"
+#include "scratch.hpp"
 
 namespace bvh2 {
 
-// A primitive's place on the curve (36 bits, 12 an axis, x highest) above its position (28 bits): sorting keys sorts both.
+// A primitive's place on the curve above its number in its group (28 bits): sorting keys sorts both.
 using MortonKey = uint64_t;
 constexpr unsigned kPositionBits = 28;
+inline uint32_t position(MortonKey key) {
+    return static_cast<uint32_t>(key & ((MortonKey{1} << kPositionBits) - 1));
+}
 
-// For records [range.begin, range.end) of buffer 0: keys[begin..end).
-void make_keys(const Workspace& workspace, const Range& group, uint32_t begin, uint32_t end, MortonKey* keys);
+class MortonOrder {
+ public:
+    // Codes of what is below a group or a top node: the index of one, or with this bit of a run.
+    static constexpr rt_u32 kRun = 0x80000000u;
+    // A part of a group: all that lies on one stretch of the curve, [begin, end) in leaf order.
+    struct Run {
+        rt_u32 group;
+        uint32_t begin, end;
+        uint32_t depth;     // nodes above it
+        unsigned unsorted;  // low bits of the places by which keys are yet to be sorted
+        int buffer;         // that holds the keys
+        uint32_t count() const { return end - begin; }
+    };
+    // A node above the runs.
+    struct Top {
+        rt_u32 group, child[2];
+        uint32_t middle;  // first position of the right part
+    };
+    struct Group {
+        Bounds box;
+        rt_u32 code = RT_NONE;  // RT_NONE: it is empty
+        uint32_t begin = 0;     // in leaf order
+    };
 
-// Sorts by place, equals as they came. What comes out is in `keys` again.
-void sort_keys(const rt_host* host, MortonKey* keys, MortonKey* other, uint64_t count);
+    static uint64_t bytes(uint64_t primitive_count) { return 2 * primitive_count * sizeof(MortonKey); }
 
-// Copies records [begin, end) in the order of their keys from buffer 0 to buffer 1.
-void gather(const Workspace& workspace, const MortonKey* keys, uint32_t begin, uint32_t end);
+    // The input must live as long as this.
+    MortonOrder(const rt_host* host, const rt_build_input& input, uint64_t primitive_count);
 
-// Where a sorted range of at least two is parted: the first position of the right part.
-uint32_t morton_middle(const MortonKey* keys, uint32_t begin, uint32_t end);
+    const std::vector<Group>& groups() const { return groups_; }
+    const std::vector<Top>& tops() const { return tops_; }  // parents before children
+    const std::vector<Run>& runs() const { return runs_; }  // in leaf order
+    const rt_prim* prims(rt_u32 group) const { return input_.prims + input_.groups[group].first; }
 
-// The tree of a sorted range in buffer 1, whose box it sets.
-Subtree build_sorted(const Workspace& workspace, const MortonKey* keys, Range& range);
+    // Sorts the keys of a run, equal places as they came, and returns them. By any thread.
+    const MortonKey* sort(const Run& run) const;
+
+ private:
+    struct Builder;
+
+    const rt_host* const host_;
+    const rt_build_input& input_;
+    const uint32_t run_size_;
+    Scratch<MortonKey> keys_[2];
+    std::vector<Group> groups_;
+    std::vector<Top> tops_;
+    std::vector<Run> runs_;
+};
 
 }  // namespace bvh2

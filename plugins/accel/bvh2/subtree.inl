@@ -152,9 +152,30 @@ void share_roots(const float left[kRoots], const float right[2 * kRoots], Shared
     store_box(shared.left, lefts);
 }
 
+void assign_places(Suits suits[], uint32_t count, uint32_t place_of[]) {
+    Box8 open = all_eight(FLT_MAX);  // what nothing exceeds; least for places that are taken
+    for (uint32_t left = count; left > 0; --left) {
+        Box8 even = load_box(suits[0].place), odd = all_eight(-FLT_MAX);
+        for (uint32_t i = 1; i + 1 < count; i += 2) {
+            odd = max(odd, load_box(suits[i].place));
+            even = max(even, load_box(suits[i + 1].place));
+        }
+        if (count % 2 == 0) odd = max(odd, load_box(suits[count - 1].place));
+        const Box8 best_of_place = min(max(even, odd), open), best = highest(best_of_place);
+        uint32_t tag;
+        alignas(32) float values[kPlaces];
+        store_box(values, best);
+        std::memcpy(&tag, values, sizeof tag);
+        tag %= kTags;
+        place_of[tag / kPlaces] = tag % kPlaces;
+        open = where_less(best_of_place, best, open, all_eight(-FLT_MAX));
+        store_box(suits[tag / kPlaces].place, all_eight(-FLT_MAX));
+    }
+}
+
 }  // namespace
 
-const Kernels kernels = {clear, bin, merge, find_split, scatter, build_subtree, share_roots};
+const Kernels kernels = {clear, bin, merge, find_split, scatter, build_subtree, share_roots, assign_places};
 
 }  // namespace BVH2_ISA
 }  // namespace bvh2

@@ -6,7 +6,6 @@
 namespace bvh8 {
 namespace {
 
-static_assert(sizeof(RootCosts) == sizeof(bvh2::Record), "costs take the places of records");
 static_assert(bvh2::kRoots >= BVH8_WIDTH, "roots become children");
 
 bool is_leaf(rt_u32 code) {
@@ -16,21 +15,23 @@ bool is_leaf(rt_u32 code) {
 // Added to each side, so that lines and points do not cost nothing: too little to matter to what has an area.
 constexpr float kLeast = 1e-12f;
 
+using bvh2::Vec4;
+
 // Halves first: no length overflows.
-float side(float lo, float hi, float scale) {
-    return kLeast + scale * (0.5f * hi - 0.5f * lo);
+float half_area(Vec4 lo, Vec4 hi, float scale) {
+    const Vec4 half = bvh2::splat(0.5f);
+    alignas(16) float e[4];
+    bvh2::store(e, bvh2::splat(kLeast) + bvh2::splat(scale) * (half * bvh2::xyz(hi) - half * bvh2::xyz(lo)));
+    return e[0] * e[1] + e[2] * (e[0] + e[1]);
 }
 // Of the box around both.
 float half_area(const bvh2_node& node, float scale) {
-    float e[3];
-    for (int a = 0; a < 3; ++a)
-        e[a] = side(std::min(node.box0[a], node.box1[a]), std::max(node.box0[3 + a], node.box1[3 + a]), scale);
-    return e[0] * e[1] + e[2] * (e[0] + e[1]);
+    return half_area(bvh2::min(bvh2::load_any(node.box1), bvh2::load_any(node.box0)),
+                     bvh2::max(bvh2::load_any(node.box1 + 3), bvh2::load_any(node.box0 + 3)), scale);
 }
+// A seventh number is read.
 float half_area(const float box[6], float scale) {
-    float e[3];
-    for (int a = 0; a < 3; ++a) e[a] = side(box[a], box[3 + a], scale);
-    return e[0] * e[1] + e[2] * (e[0] + e[1]);
+    return half_area(bvh2::load_any(box), bvh2::load_any(box + 3), scale);
 }
 
 }  // namespace
@@ -44,7 +45,7 @@ void Collapse::decide_tops(const bvh2::BinaryTree& tree) const {
 }
 
 void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
-    bvh2_node& node = nodes()[binary];
+    bvh2_node& node = nodes_[binary];
     float left[bvh2::kRoots] = {}, right[2 * bvh2::kRoots] = {};  // beyond BVH8_WIDTH nobody looks
     uint32_t count = 0;
     rt_u32 first = RT_NONE;
@@ -57,11 +58,11 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
             count += below;
             first = std::min(first, BVH2_LEAF_FIRST(code));
         } else {
-            const uint32_t below = Decision::count(nodes()[code].pad1);
-            std::copy_n(costs_of(code).cost, BVH8_WIDTH, cost);
+            const uint32_t below = Decision::count(nodes_[code].pad1);
+            std::copy_n(root_costs_[code].cost, BVH8_WIDTH, cost);
             count += below;
             may_be_leaf = may_be_leaf && below > 0;
-            first = std::min(first, nodes()[code].pad0);
+            first = std::min(first, nodes_[code].pad0);
         }
     };
     look(node.box0, node.child0, left);
@@ -69,14 +70,19 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     may_be_leaf = may_be_leaf && count <= costs_.max_leaf;
 
     bvh2::SharedRoots shared;
-    kernels_.share_roots(left, right, shared);
+    if (is_leaf(node.child0) && is_leaf(node.child1)) {  // two roots, however many there may be
+        std::fill_n(shared.cost, bvh2::kRoots, left[0] + right[bvh2::kRoots]);
+        std::fill_n(shared.left, bvh2::kRoots, 1.0f);
+    } else {
+        kernels_.share_roots(left, right, shared);
+    }
 
     const float area = half_area(node, scale);
     const float as_node = area * costs_.node + shared.cost[BVH8_WIDTH - 1];
     const float as_leaf = area * costs_.primitive * static_cast<float>(count);
     const bool leaf = may_be_leaf && as_leaf <= as_node;
     rt_u32 bits = more_bits | (may_be_leaf ? count << 21 : 0u) | (leaf ? Decision::kIsLeaf : 0u);
-    float* const cost = costs_of(binary).cost;
+    float* const cost = root_costs_[binary].cost;
     cost[0] = leaf ? as_leaf : as_node;
     for (uint32_t i = 1; i + 1 < BVH8_WIDTH; ++i) {
         const bool better = shared.cost[i] < cost[i - 1];
@@ -89,7 +95,7 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
 }
 
 uint32_t Collapse::children(rt_u32 binary, Slot slots[BVH8_WIDTH]) const {
-    const bvh2_node& node = nodes()[binary];
+    const bvh2_node& node = nodes_[binary];
     const uint32_t left = Decision::left_of(node.pad1, BVH8_WIDTH);
     Slot* next = slots;
     gather(node.box0, node.child0, left, next);
@@ -102,7 +108,7 @@ void Collapse::gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next
         *next++ = {box, BVH8_MAKE_LEAF(BVH2_LEAF_FIRST(code), BVH2_LEAF_COUNT(code)), 0};
         return;
     }
-    const bvh2_node& node = nodes()[code];
+    const bvh2_node& node = nodes_[code];
     while (roots > 1 && Decision::left_of(node.pad1, roots) == 0) --roots;
     if (roots == 1) {
         const bool leaf = node.pad1 & Decision::kIsLeaf;

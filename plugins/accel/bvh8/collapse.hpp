@@ -40,25 +40,26 @@ struct RootCosts {
 
 class Collapse {
  public:
-    Collapse(const bvh2::Builder& builder, const Costs& costs) : builder_(builder), kernels_(bvh2::kernels()), costs_(costs) {}
+    // Of trees whose nodes and their costs stand at the same places.
+    Collapse(bvh2_node* nodes, RootCosts* root_costs, const Costs& costs)
+        : nodes_(nodes), root_costs_(root_costs), kernels_(bvh2::kernels()), costs_(costs) {}
 
     // For every task as soon as it is built, on any thread.
     void decide_task(const bvh2::Task& task) const;
     // Then for what is above them.
     void decide_tops(const bvh2::BinaryTree& tree) const;
+    // For one node, after its children. scale: see bvh2::Task.
+    void decide(rt_u32 binary, float scale, rt_u32 more_bits) const;
 
     // The children of the wide node that a binary node becomes; returns how many.
     uint32_t children(rt_u32 binary, Slot slots[BVH8_WIDTH]) const;
-    bool is_above_tasks(rt_u32 binary) const { return nodes()[binary].pad1 & Decision::kIsTop; }
+    bool is_above_tasks(rt_u32 binary) const { return nodes_[binary].pad1 & Decision::kIsTop; }
 
  private:
-    bvh2_node* nodes() const { return builder_.workspace().nodes; }
-    // In the builder's records, which have done their duty.
-    RootCosts& costs_of(rt_u32 binary) const { return reinterpret_cast<RootCosts*>(builder_.workspace().records[0])[binary]; }
-    void decide(rt_u32 binary, float scale, rt_u32 more_bits) const;
     void gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next) const;
 
-    const bvh2::Builder& builder_;
+    bvh2_node* const nodes_;
+    RootCosts* const root_costs_;
     const bvh2::Kernels& kernels_;
     const Costs costs_;
 };

@@ -2,6 +2,8 @@
 
 #include <cstdio>
 
+#include "morton_tree.hpp"
+
 namespace bvh8 {
 namespace {
 
@@ -27,20 +29,32 @@ WideBuild build_wide(const rt_host* host, const rt_build_input* input, const rt_
     const bvh2::Rules rules{
         costs.max_leaf,  static_cast<uint32_t>(input->params[kBins]),        costs.node / (BVH8_WIDTH - 1),
         costs.primitive, static_cast<bvh2::Method>(input->params[kBuilder]), static_cast<float>(input->params[kDuplicates])};
-    result.build_bytes = bvh2::Builder::bytes(rules, count);
-    try {
-        bvh2::Builder builder(host, *input, rules, count, kBinaryShare);
-        const Collapse collapse(builder, costs);
-        const bvh2::BinaryTree binary = builder.run(out, [&](const bvh2::Task& task) { collapse.decide_task(task); });
-        collapse.decide_tops(binary);
-        rt::progress(host, (1 + kBinaryShare) / 2);
-        WideTree wide(host, collapse, binary, costs);
+    const bool sorted = rules.method == bvh2::Method::morton;
+    result.build_bytes = sorted ? MortonTree::bytes(count) : bvh2::Builder::bytes(rules, count);
+    const auto write = [&](const Collapse& collapse, const Subtrees& subtrees, const std::vector<bvh2::Root>& roots) {
+        WideTree wide(host, collapse, subtrees, roots, costs);
         wide.write(out);
-        result.references = binary.leaf_count;
         result.nodes = wide.node_count();
         result.depth = wide.depth();
         result.stack = wide.stack();
         result.statistics = wide.statistics(input->groups);
+    };
+    try {
+        if (sorted) {
+            const MortonTree tree(host, *input, out, costs, count, kBinaryShare);
+            result.references = count;
+            write(tree.collapse(), tree, tree.roots());
+            return result;
+        }
+        bvh2::Builder builder(host, *input, rules, count, kBinaryShare);
+        // Costs stand in the builder's records, which have done their duty.
+        static_assert(sizeof(RootCosts) == sizeof(bvh2::Record), "costs take the places of records");
+        const Collapse collapse(builder.workspace().nodes, reinterpret_cast<RootCosts*>(builder.workspace().records[0]), costs);
+        const bvh2::BinaryTree binary = builder.run(out, [&](const bvh2::Task& task) { collapse.decide_task(task); });
+        collapse.decide_tops(binary);
+        rt::progress(host, (1 + kBinaryShare) / 2);
+        result.references = binary.leaf_count;
+        write(collapse, CollapsedSubtrees(collapse), binary.roots);
         return result;
     } catch (const std::bad_alloc&) {
         std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",

@@ -15,7 +15,7 @@ double area(const float box[6]) {
 
 }  // namespace
 
-void WideTree::Sums::add(const Slot* slots, uint32_t count) {
+void Sums::add(const Slot* slots, uint32_t count) {
     children += count;
     for (uint32_t i = 0; i < count; ++i) {
         if (slots[i].leaf == BVH8_NOTHING) {
@@ -27,23 +27,34 @@ void WideTree::Sums::add(const Slot* slots, uint32_t count) {
     }
 }
 
-void WideTree::Extent::add(const Extent& child, uint32_t siblings) {
+void Sums::add(const Sums& other) {
+    leaves += other.leaves;
+    children += other.children;
+    node_area += other.node_area;
+    primitive_area += other.primitive_area;
+}
+
+void Extent::add(const Extent& child, uint32_t siblings) {
     nodes += child.nodes;
     depth = std::max(depth, child.depth + 1);
     stack = std::max(stack, child.stack + siblings);
 }
 
 void WideTree::write(const rt_build_output* out) {
-    const auto group_count = static_cast<rt_u32>(tree_.roots.size());
+    const auto group_count = static_cast<rt_u32>(groups_.size());
     std::vector<rt_u32> codes, roots;
     root_boxes_.resize(group_count);
     for (rt_u32 g = 0; g < group_count; ++g) codes.push_back(expand_root(g));
 
     std::vector<Extent> extents(jobs_.size());
-    rt::parallel_for(host_, static_cast<rt_u32>(jobs_.size()), [&](rt_u32 j) {
-        extents[j] = measure(jobs_[j].binary);
+    const auto measure = [&](rt_u32 j) {
+        extents[j] = subtrees_.measure(jobs_[j].binary);
         jobs_[j].nodes = extents[j].nodes;
-    });
+    };
+    if (subtrees_.measured())
+        for (rt_u32 j = 0; j < jobs_.size(); ++j) measure(j);
+    else
+        rt::parallel_for(host_, static_cast<rt_u32>(jobs_.size()), measure);
     for (const rt_u32 code : codes) {
         const Extent whole = measure_top(code, extents);
         depth_ = std::max(depth_, whole.depth);
@@ -53,7 +64,7 @@ void WideTree::write(const rt_build_output* out) {
     }
     nodes_ = rt::alloc<bvh8_node>(out, 0, node_count_);
     rt::parallel_for(host_, static_cast<rt_u32>(jobs_.size()),
-                     [&](rt_u32 j) { write_subtree(jobs_[j].binary, jobs_[j].place, jobs_[j].sums); });
+                     [&](rt_u32 j) { subtrees_.write(jobs_[j].binary, nodes_, jobs_[j].place, jobs_[j].sums); });
     for (const Top& top : tops_) {
         rt_u32 below[BVH8_WIDTH];
         for (uint32_t i = 0; i < top.count; ++i)
@@ -64,7 +75,7 @@ void WideTree::write(const rt_build_output* out) {
 }
 
 rt_u32 WideTree::expand_root(rt_u32 group) {
-    const bvh2::Root& root = tree_.roots[group];
+    const bvh2::Root& root = groups_[group];
     if (root.code != RT_NONE && !(root.code & BVH2_LEAF)) return expand(root.code, group);
     Top top;
     top.group = group;
@@ -97,7 +108,7 @@ rt_u32 WideTree::expand(rt_u32 binary, rt_u32 group) {
     return index;
 }
 
-WideTree::Extent WideTree::measure(rt_u32 binary) const {
+Extent CollapsedSubtrees::measure(rt_u32 binary) const {
     Slot slots[BVH8_WIDTH];
     const uint32_t count = collapse_.children(binary, slots);
     Extent extent;
@@ -107,7 +118,7 @@ WideTree::Extent WideTree::measure(rt_u32 binary) const {
     return extent;
 }
 
-WideTree::Extent WideTree::measure_top(rt_u32 code, const std::vector<Extent>& jobs) const {
+Extent WideTree::measure_top(rt_u32 code, const std::vector<Extent>& jobs) const {
     if (code & kJob) return jobs[code & ~kJob];
     const Top& top = tops_[code];
     Extent extent;
@@ -131,40 +142,34 @@ rt_u32 WideTree::place(rt_u32 code, rt_u32 next) {
 }
 
 // Depth-first; returns the next free place.
-rt_u32 WideTree::write_subtree(rt_u32 binary, rt_u32 at, Sums& sums) const {
+rt_u32 CollapsedSubtrees::write_subtree(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const {
     Slot slots[BVH8_WIDTH];
     const uint32_t count = collapse_.children(binary, slots);
     sums.add(slots, count);
     rt_u32 below[BVH8_WIDTH], next = at + 1;
     for (uint32_t i = 0; i < count; ++i) {
         below[i] = slots[i].leaf != BVH8_NOTHING ? slots[i].leaf : next;
-        if (slots[i].leaf == BVH8_NOTHING) next = write_subtree(slots[i].binary, next, sums);
+        if (slots[i].leaf == BVH8_NOTHING) next = write_subtree(slots[i].binary, nodes, next, sums);
     }
-    write_node(nodes_[at], slots, below, count);
+    write_node(nodes[at], slots, below, count);
     return next;
 }
 
 Statistics WideTree::statistics(const rt_group* groups) const {
-    std::vector<Sums> of_group(tree_.roots.size());
-    const auto add = [&](rt_u32 group, const Sums& sums) {
-        of_group[group].leaves += sums.leaves;
-        of_group[group].children += sums.children;
-        of_group[group].node_area += sums.node_area;
-        of_group[group].primitive_area += sums.primitive_area;
-    };
+    std::vector<Sums> of_group(groups_.size());
     for (const Top& top : tops_) {
         Sums sums;
         sums.add(top.slots, top.count);
-        add(top.group, sums);
+        of_group[top.group].add(sums);
     }
-    for (const Job& job : jobs_) add(job.group, job.sums);
+    for (const Job& job : jobs_) of_group[job.group].add(job.sums);
     Statistics result;
     double cost = 0, primitives = 0;
     for (size_t g = 0; g < of_group.size(); ++g) {
         result.leaves += of_group[g].leaves;
         result.children += of_group[g].children;
-        if (tree_.roots[g].code == RT_NONE) continue;
-        const bvh2::Bounds& box = tree_.roots[g].box;
+        if (groups_[g].code == RT_NONE) continue;
+        const bvh2::Bounds& box = groups_[g].box;
         const float whole_box[6] = {box.lo[0], box.lo[1], box.lo[2], box.hi(0), box.hi(1), box.hi(2)};
         const double whole = area(whole_box);
         if (!(whole > 0)) continue;  // no ray meets a point or a line

@@ -15,10 +15,51 @@ struct Statistics {
     double sah_cost = 0;
 };
 
+// Over some nodes: their children.
+struct Sums {
+    uint64_t leaves = 0, children = 0;
+    double node_area = 0, primitive_area = 0;
+    void add(const Slot* slots, uint32_t count);
+    void add(const Sums& other);
+};
+
+// Of a subtree.
+struct Extent {
+    rt_u32 nodes = 1;
+    uint32_t depth = 1, stack = 0;
+    void add(const Extent& child, uint32_t siblings);
+};
+
+// What one thread counts and writes: subtrees of the wide tree, named by the binary nodes that they stand for. By any thread.
+class Subtrees {
+ public:
+    virtual ~Subtrees() = default;
+    virtual Extent measure(rt_u32 binary) const = 0;
+    virtual bool measured() const { return false; }  // no work is left in that
+    // Depth-first, from nodes[at] on; adds up what is written.
+    virtual void write(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const = 0;
+};
+
+// Made of a binary tree that is still there.
+class CollapsedSubtrees : public Subtrees {
+ public:
+    explicit CollapsedSubtrees(const Collapse& collapse) : collapse_(collapse) {}
+    Extent measure(rt_u32 binary) const override;
+    void write(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const override {
+        write_subtree(binary, nodes, at, sums);
+    }
+
+ private:
+    rt_u32 write_subtree(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const;
+    const Collapse& collapse_;
+};
+
 class WideTree {
  public:
-    WideTree(const rt_host* host, const Collapse& collapse, const bvh2::BinaryTree& tree, const Costs& costs)
-        : host_(host), collapse_(collapse), tree_(tree), costs_(costs) {}
+    // What is above tasks is taken from `collapse`, what is below from `subtrees`.
+    WideTree(const rt_host* host, const Collapse& collapse, const Subtrees& subtrees, const std::vector<bvh2::Root>& groups,
+             const Costs& costs)
+        : host_(host), collapse_(collapse), subtrees_(subtrees), groups_(groups), costs_(costs) {}
 
     // Allocates slot 0 and reports the groups' roots.
     void write(const rt_build_output* out);
@@ -30,12 +71,6 @@ class WideTree {
     Statistics statistics(const rt_group* groups) const;
 
  private:
-    // Over some nodes: their children.
-    struct Sums {
-        uint64_t leaves = 0, children = 0;
-        double node_area = 0, primitive_area = 0;
-        void add(const Slot* slots, uint32_t count);
-    };
     // A subtree that one thread counts and writes.
     struct Job {
         rt_u32 binary, group;
@@ -51,23 +86,17 @@ class WideTree {
         rt_u32 place = 0;
     };
     static constexpr rt_u32 kJob = 0x80000000u;
-    struct Extent {
-        rt_u32 nodes = 1;
-        uint32_t depth = 1, stack = 0;
-        void add(const Extent& child, uint32_t siblings);
-    };
 
     rt_u32 expand_root(rt_u32 group);
     rt_u32 expand(rt_u32 binary, rt_u32 group);
-    Extent measure(rt_u32 binary) const;
     Extent measure_top(rt_u32 code, const std::vector<Extent>& jobs) const;
     rt_u32 place(rt_u32 code, rt_u32 next);
     rt_u32 place_of(rt_u32 code) const { return code & kJob ? jobs_[code & ~kJob].place : tops_[code].place; }
-    rt_u32 write_subtree(rt_u32 binary, rt_u32 at, Sums& sums) const;
 
     const rt_host* const host_;
     const Collapse& collapse_;
-    const bvh2::BinaryTree& tree_;
+    const Subtrees& subtrees_;
+    const std::vector<bvh2::Root>& groups_;
     const Costs costs_;
     std::vector<Job> jobs_;
     std::vector<Top> tops_;

@@ -1,0 +1,78 @@
+// sorted_run.hpp -- the binary tree of primitives that are sorted along a curve, in one sweep.
+#pragma once
+#include "morton.hpp"
+
+namespace bvh2 {
+
+// What is below a node that is not yet made.
+struct SortedSubtree {
+    Vec4 lo, neg_hi;
+    rt_u32 code;     // of a child; RT_NONE: so few primitives that they are one leaf
+    uint32_t begin;  // first primitive
+    uint32_t depth;  // nodes to the deepest leaf
+};
+
+inline void set_child(bvh2_node& node, int which, Vec4 lo, Vec4 neg_hi, rt_u32 code) {
+    float* const out = which == 0 ? node.box0 : node.box1;
+    alignas(16) float hi[4];
+    store(hi, splat(0.0f) - neg_hi);
+    store_any(out, lo);
+    std::memcpy(out + 3, hi, 3 * sizeof hi[0]);
+    (which == 0 ? node.child0 : node.child1) = code;
+    (which == 0 ? node.pad0 : node.pad1) = 0;
+}
+
+// Writes the refs of a run, and its nodes from nodes[0] on, children before parents; a leaf holds what fits into one. Returns
+// the root and counts nodes.
+//
+// A key lies between two nodes where it differs from its neighbours most: subtrees wait on a stack, each with where the key
+// behind it differs from its last one, until something differs in a higher bit (the tree is the Cartesian one of these
+// differences). Equal places differ by the numbers of primitives in the run, so they are parted about evenly.
+inline SortedSubtree sweep(const MortonKey* keys, uint32_t count, const rt_prim* prims, uint32_t first_leaf, uint32_t max_leaf,
+                           rt_u32* refs, bvh2_node* nodes, uint32_t& node_count) {
+    constexpr uint32_t kAhead = 16;
+    struct Waiting {
+        SortedSubtree tree;
+        uint64_t differs;  // from what comes behind
+    } stack[Curve::kMaxBits + kPositionBits + 2];
+    uint32_t height = 0, made = 0;
+    const auto finish = [&](SortedSubtree& tree, uint32_t end) {
+        if (tree.code != RT_NONE) return;
+        tree.code = BVH2_MAKE_LEAF(first_leaf + tree.begin, end - tree.begin);
+        tree.depth = 0;
+    };
+    SortedSubtree at{};
+    for (uint32_t i = 0; i < count; ++i) {
+#ifdef __GNUC__
+        __builtin_prefetch(prims + position(keys[std::min(i + kAhead, count - 1)]));
+#endif
+        const rt_prim& prim = prims[position(keys[i])];
+        refs[i] = prim.ref;
+        sound_box(prim, at.lo, at.neg_hi);
+        at.code = RT_NONE;
+        at.begin = i;
+        uint64_t differs = ~uint64_t{0};
+        if (i + 1 < count) differs = (keys[i] ^ keys[i + 1]) >> kPositionBits << kPositionBits | (i ^ (i + 1));
+        while (height > 0 && stack[height - 1].differs < differs) {
+            SortedSubtree& left = stack[--height].tree;
+            const Vec4 lo = min(left.lo, at.lo), neg_hi = min(left.neg_hi, at.neg_hi);
+            if (i + 1 - left.begin > max_leaf) {
+                finish(left, at.begin);
+                finish(at, i + 1);
+                set_child(nodes[made], 0, left.lo, left.neg_hi, left.code);
+                set_child(nodes[made], 1, at.lo, at.neg_hi, at.code);
+                at.code = made++;
+                at.depth = std::max(left.depth, at.depth) + 1;
+            }
+            at.begin = left.begin;
+            at.lo = lo;
+            at.neg_hi = neg_hi;
+        }
+        stack[height++] = {at, differs};
+    }
+    finish(at, count);
+    node_count = made;
+    return at;
+}
+
+}  // namespace bvh2
