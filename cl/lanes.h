@@ -7,6 +7,7 @@
 #define RT_LANES_H
 
 #define RT_INLINE static inline __attribute__((always_inline))
+#define RT_NOINLINE static __attribute__((noinline))
 #define RT_CAT_(a, b) a##b
 #define RT_CAT(a, b) RT_CAT_(a, b)
 

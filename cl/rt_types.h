@@ -31,7 +31,7 @@ typedef float rt_f32;
  *   triangle   a, b, c = corners in the group's space
  *   sphere     a = centre, b[0] = radius
  *   polygon    a = unit normal, b = a point of its plane; corners in rt_polygon
- *   instance   a, b, c unused */
+ *   instance   a, b = lower and upper bounds in the world */
 typedef struct rt_leaf {
     rt_f32 a[3];
     rt_u32 ref;

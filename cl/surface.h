@@ -13,6 +13,13 @@
             if ((bits) >> store_l & 1u) buffer[store_index[store_l]] = store_values[store_l];                                    \
     }
 
+/* Arcs of spheres that nobody looks at were a twelfth of a frame. */
+#ifdef RT_AOV
+#define RT_USES_UV(ctx, number) 1
+#else
+#define RT_USES_UV(ctx, number) ((ctx)->materials[number].texture != RT_NONE)
+#endif
+
 typedef struct rt_surface {
     vmask hit;
     rt_vec geometric;    /* unit normal, world, on the side that the primitive has it */
@@ -84,7 +91,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #if RT_HAS_TEXTURES
         if (kind == RT_REF_POLYGON) planar |= mine;
-        if (kind == RT_REF_SPHERE) round |= rt_bits(mine) & bits;
+        if (kind == RT_REF_SPHERE && RT_USES_UV(ctx, leaf->material)) round |= rt_bits(mine) & bits;
 #endif
 #if RT_HAS_ATTRIBUTES
         if (kind == RT_REF_TRIANGLE) {

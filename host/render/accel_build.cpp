@@ -89,7 +89,7 @@ Output& output(void* ctx) {
     return *static_cast<Output*>(ctx);
 }
 
-constexpr uint64_t kLeafChunk = 1u << 12;  // leaves that one task copies
+constexpr uint64_t kLeafChunk = 1u << 10;  // leaves that one task copies
 constexpr uint64_t kLeavesAhead = 24;      // that are fetched before their turn
 
 bool is_known(rt_u32 ref, const BuildScene& scene) {
@@ -154,8 +154,7 @@ std::string pack_leaves(const Output& out, AccelData& data) {
                     leaves[i] = data.scene.polygons[index];
                     break;
                 default:
-                    leaves[i] = rt_leaf{};
-                    leaves[i].ref = refs[i];
+                    leaves[i] = data.scene.instance_leaves[index];
             }
         }
     });

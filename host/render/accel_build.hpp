@@ -23,10 +23,10 @@ struct BuildScene {
     UnclearedVector<rt_leaf> triangles;  // by ref index, in the space of its group
     std::vector<rt_instance> instances;  // roots unset
     std::vector<uint32_t> group_of_instance;
-    std::vector<Affine> world_from_object;         // per instance
-    UnclearedVector<uint32_t> attribute_triangle;  // triangle ref -> triangle of the Scene
-    std::vector<uint32_t> flattened;               // instances of the Scene that stand in the world's group, moved
-    std::vector<rt_leaf> spheres, polygons;        // by ref index
+    std::vector<Affine> world_from_object;                    // per instance
+    UnclearedVector<uint32_t> attribute_triangle;             // triangle ref -> triangle of the Scene
+    std::vector<uint32_t> flattened;                          // instances of the Scene that stand in the world's group, moved
+    std::vector<rt_leaf> instance_leaves, spheres, polygons;  // by ref index
     std::vector<rt_polygon> polygon_table;
     std::vector<float> polygon_corners;  // 3 per corner
     std::vector<rt_plane> planes;

@@ -11,7 +11,7 @@
 namespace clarity {
 namespace {
 
-constexpr uint32_t kChunk = 1u << 12;  // triangles that one task copies
+constexpr uint32_t kChunk = 1u << 10;  // triangles that one task copies
 
 rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
     rt_prim prim;
@@ -270,6 +270,11 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             rt_prim prim = instance_prim(out, group, instance.world_from_object, index);
             prim.mesh = static_cast<rt_u32>(i);
             instance_prims.push_back(prim);
+            rt_leaf leaf{};
+            std::copy_n(prim.lo, 3, leaf.a);
+            std::copy_n(prim.hi, 3, leaf.b);
+            leaf.ref = prim.ref;
+            out.instance_leaves.push_back(leaf);
             out.instances.push_back(placed);
             out.group_of_instance.push_back(group);
             out.world_from_object.push_back(instance.world_from_object);

@@ -65,6 +65,30 @@ std::vector<rt_ray> all_beams() {
     return beams.rays;
 }
 
+// Rubble among which stand copies of some of it, turned, stretched and in each other, and balls.
+ScenePtr instanced_rubble() {
+    Scene scene = *rubble();
+    const Instance whole = scene.instances.at(0);
+    Mesh part = scene.meshes.at(whole.mesh);
+    part.triangle_count = 200;
+    scene.meshes.push_back(part);
+    std::mt19937 random(23);
+    std::uniform_real_distribution<float> at(-1, 1);
+    for (int i = 0; i < 40; ++i) {
+        Instance copy = whole;
+        copy.mesh = static_cast<rt_u32>(scene.meshes.size() - 1);
+        for (int k = 0; k < 12; ++k) copy.world_from_object[k] = k % 4 == 3 ? 1.5f * at(random) : 0.4f * at(random);
+        scene.instances.push_back(copy);
+    }
+    for (int i = 0; i < 5; ++i) {
+        Sphere ball;
+        ball.center = {at(random), at(random), at(random)};
+        ball.radius = 0.3f;
+        scene.spheres.push_back(ball);
+    }
+    return shared_scene(std::move(scene));
+}
+
 void expect_as_alone(const ScenePtr& scene, const std::vector<rt_ray>& rays, size_t least_hits,
                      const std::vector<int>& lane_counts) {
     for (const int lanes : lane_counts)
@@ -87,6 +111,11 @@ void expect_as_alone(const ScenePtr& scene, const std::vector<rt_ray>& rays, siz
 
 TEST(Bundles, BeamsOfAllWidths) {
     expect_as_alone(rubble(), all_beams(), 10000, {4, 8, 16});
+}
+
+// Those of a bundle that come to an instance enter it one after the other.
+TEST(Bundles, AmongInstances) {
+    expect_as_alone(instanced_rubble(), all_beams(), 10000, {16});
 }
 
 // Lanes and whole packets without rays, and rays that begin late and end soon.

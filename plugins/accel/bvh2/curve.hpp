@@ -31,7 +31,8 @@ class Curve {
     Curve(const Bounds& half_centroids, uint32_t primitive_count) : base_(xyz(load(half_centroids.lo))) {
         alignas(16) float extent[4], scale[4] = {}, last[4] = {};
         store(extent, splat(0.0f) - (base_ + xyz(load(half_centroids.neg_hi))));
-        // Cells a few times finer than primitives are on a surface; all bits for a thousand of them and more an axis.
+        // Cells are about four times finer than primitives spread over a surface; finer ones gained nothing, and are sorted in
+        // more passes.
         bits_ = std::min(kMaxBits, 3 * (kFiner + (log2_ceil(primitive_count) + 1) / 2));
         uint64_t value[3][kAxisBits];
         unsigned count[3] = {};
@@ -67,7 +68,7 @@ class Curve {
     unsigned bits() const { return bits_; }
 
  private:
-    static constexpr unsigned kAxisBits = 15, kLowBits = 8, kFiner = 3;
+    static constexpr unsigned kAxisBits = 15, kLowBits = 8, kFiner = 2;
 
     uint64_t on_axis(int a, uint32_t cell) const { return low_[a][cell % (1u << kLowBits)] | high_[a][cell >> kLowBits]; }
 

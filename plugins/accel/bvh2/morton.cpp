@@ -17,7 +17,7 @@ uint32_t run_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 8192));
 }
 uint32_t chunk_size_for(uint32_t count) {
-    return std::clamp(count / 8, 1024u, 1u << 15);
+    return std::clamp(count / 8, 512u, 1u << 15);
 }
 
 void insertion_sort(MortonKey* keys, uint32_t count) {

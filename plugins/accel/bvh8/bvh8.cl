@@ -233,8 +233,7 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
 }
 #undef BVH8_PLACE
 
-/* Where there are instances, a traversal of their meshes hangs on each of a world's leaf tests, and is compiled as often: there
- * the packet stays together. */
+/* The world of a scene with instances is left together: a ray alone would hold up the others while it is in a mesh. */
 #if BVH8_SINGLE && !(RT_LONE_MIXED && RT_HAS_INSTANCES)
 
 /* The rays of `lanes` from `at` down, each on its own way but all by turns: while one waits, for memory as much as for arithmetic,
@@ -461,14 +460,22 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
     BVH8_STORE(z, 8)
 #undef BVH8_STORE
 
-    /* Put off: the entry distance of one of the packets in the upper half of a key, node and slot in the lower; which packets enter;
-     * and the depth at which all their entry distances are, for each slot of the node. */
-    vfloat entries[BVH8_WIDTH * BVH8_DEPTH];
-    ulong stack[BVH8_STACK];
-    uint packets[BVH8_STACK], depths[BVH8_STACK];
-    const global char *node = (const global char *)(ctx->bvh8_nodes + at);
-    uint top = 0, slot = 0, depth = 0, inside = members;
+    /* What is asked for when its parent is read is on its way for as long as a node takes, or several: a tree larger than the
+     * caches kept waiting a third of the time that it was traced. */
+    bvh8_waiting waiting;
+    uint place = 0, inside = members;
+    bool is_root = true;
+#if RT_ANY_HIT
+    /* Order is worth little, so there is a queue between the stack and its reader. */
+    uint top = 0, coming[BVH8_AHEAD], coming_packets[BVH8_AHEAD], first_coming = 0, ahead = 0;
+#else
+    /* Nodes keep their order, but their leaves are tested after the next node: lists of now and of then. */
+    uint top = BVH8_LISTS, list = 0, list_end = 0, fresh = BVH8_WIDTH, fresh_end = BVH8_WIDTH;
+#endif
     for (;;) {
+        const uint slot = place % BVH8_WIDTH;
+        const global char *node = (const global char *)(ctx->bvh8_nodes + place / BVH8_WIDTH);
+        if (!is_root) at = ((const global uint *)(node + 192))[slot];
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
             for (; inside != 0u; inside &= inside - 1u) {
@@ -479,14 +486,14 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                 t_far = rt_select(RT_MASK(rt_lane_index() == rt_vint((int)p)), rt_vfloat(few_t_far[p]), t_far);
             }
         } else {
-            for (uint doubt = depth != 0u ? inside & wide : 0u; doubt != 0u; doubt &= doubt - 1u) {
+            for (uint doubt = is_root ? 0u : inside & wide; doubt != 0u; doubt &= doubt - 1u) {
                 const uint p = BVH8_LOWEST(doubt);
                 if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) == 0u) inside &= ~(1u << p);
             }
+            is_root = false;
             BVH8_COUNT_VISITS(hits, inside)
             node = (const global char *)(ctx->bvh8_nodes + at);
-            at *= BVH8_WIDTH;
-            vfloat *const entry = entries + depth * BVH8_WIDTH;
+            vfloat entry[BVH8_WIDTH];
             uint enters[BVH8_WIDTH], found = 0;
             if ((inside & (inside - 1u)) == 0u && inside != 0u) { /* one packet is left: all children at once */
                 const uint p = BVH8_LOWEST(inside);
@@ -519,40 +526,48 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                     found |= (enters[i] != 0u ? 1u : 0u) << i;
                 }
             }
-            if (found != 0u) {
-                const global uint *child = (const global uint *)(node + 192);
-                const float *one = (const float *)entry + BVH8_LOWEST(inside);
-#define BVH8_PLACE(i) ((ulong)as_uint(one[(i) * RT_LANES]) << 32 | (at + (i)))
-                slot = BVH8_LOWEST(found);
-                bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[slot]);
-                ulong nearest = BVH8_PLACE(slot);
-                for (found &= found - 1u; found != 0u; found &= found - 1u) {
-                    slot = BVH8_LOWEST(found);
-                    bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[slot]);
-                    const ulong place = BVH8_PLACE(slot), farther = max(place, nearest);
-                    nearest = min(place, nearest);
-                    stack[top] = farther;
-                    packets[top] = enters[(uint)farther % BVH8_WIDTH];
-                    depths[top] = depth;
-                    if (RT_STACK_OK(top + 1u, BVH8_STACK, hits)) ++top;
-                }
-#undef BVH8_PLACE
-                slot = (uint)nearest % BVH8_WIDTH;
-                at = child[slot];
-                inside = enters[slot];
-                ++depth;
+#define BVH8_PUT_BY(to, some) bvh8_put_by(&waiting, to, ctx->bvh8_nodes, ctx->leaves, at, some, entry, enters, BVH8_LOWEST(inside))
+#if RT_ANY_HIT
+            const uint stacked = found;
+#else
+            const uint leaves = found & BVH8_BITS(*(const global int8 *)(node + 192) < (int8)(0)); /* BVH8_LEAF */
+            const uint stacked = found ^ leaves;
+            if (leaves != 0u) fresh_end = BVH8_PUT_BY(fresh, leaves);
+#endif
+            if (stacked != 0u) {
+                const uint end = BVH8_PUT_BY(top, stacked);
+                if (RT_STACK_OK(end, BVH8_PLACES + 1u, hits)) top = end;
+            }
+#undef BVH8_PUT_BY
+        }
+
+#if RT_ANY_HIT
+        while (ahead < (top < BVH8_STACK ? BVH8_AHEAD : 1u) && top > 0u) {
+            --top;
+            const uint last = (first_coming + ahead) % BVH8_AHEAD;
+            coming[last] = waiting.place[top];
+            coming_packets[last] = BVH8_STILL(top);
+            ahead += coming_packets[last] != 0u ? 1u : 0u;
+        }
+        if (ahead == 0u) return;
+        place = coming[first_coming], inside = coming_packets[first_coming];
+        first_coming = (first_coming + 1u) % BVH8_AHEAD, --ahead;
+#else
+        for (inside = 0; inside == 0u;) {
+            if (list_end > list) {
+                --list_end;
+                place = waiting.place[list_end], inside = BVH8_STILL(list_end);
                 continue;
             }
+            const uint done = list;
+            list = fresh, list_end = fresh_end, fresh = fresh_end = done;
+            while (inside == 0u && top > BVH8_LISTS) {
+                --top;
+                place = waiting.place[top], inside = BVH8_STILL(top);
+            }
+            if (inside == 0u && list_end == list) return;
         }
-        do {
-            if (top == 0u) return;
-            --top;
-            slot = (uint)stack[top] % BVH8_WIDTH;
-            inside = packets[top] & rt_bits(RT_MASK(entries[depths[top] * BVH8_WIDTH + slot] <= t_far));
-        } while (inside == 0u);
-        depth = depths[top] + 1u;
-        node = (const global char *)(ctx->bvh8_nodes + (uint)stack[top] / BVH8_WIDTH);
-        at = ((const global uint *)(node + 192))[slot];
+#endif
     }
 }
 

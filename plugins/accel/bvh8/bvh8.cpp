@@ -58,7 +58,6 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     report(out, wide, uint64_t{wide.nodes} * sizeof(bvh8_node));
     rt::define(out, kStack, stack_places(wide.stack));
 #if BVH8_WIDTH == 8
-    rt::define(out, "BVH8_DEPTH", (wide.depth + 15) / 16 * 16);
     const auto incoherent = static_cast<Incoherent>(input->params[kIncoherent]);
     rt::define(out, "BVH8_SINGLE", incoherent == kSingle || (incoherent == kAuto && wide.primitives > kTogether));
 #endif

@@ -102,6 +102,55 @@ RT_INLINE uint bvh8_which_octants(const rt_rays *ray, vint octants, vfloat t)
 }
 /* Row of near planes of an axis, in bytes from the node's begin. */
 #define BVH8_NEAR(octant, axis) ((octant) >> (axis) & 1u ? 96ul + 32ul * (axis) : 32ul * (axis))
+/* What the packets of a bundle have put off: node * 8 + slot, from which a child and its box are found again; the packets that
+ * enter it; and where they do. Nearest hits: two lists of leaves, each of one node, then a stack of nodes. Any hits: a stack of
+ * both. Below BVH8_STACK entries BVH8_AHEAD ways are gone at once, each of which may put off eight more, then one way only; and
+ * eight are written before room is looked for. BVH8_STACK is a multiple of 16, so that the arrays are no multiple of a page,
+ * which is slow. */
+#define BVH8_LISTS (2u * BVH8_WIDTH)
+#define BVH8_AHEAD 4u
+#define BVH8_PLACES (2u * BVH8_STACK + BVH8_AHEAD * BVH8_WIDTH)
+typedef struct bvh8_waiting {
+    vfloat entry[BVH8_PLACES + BVH8_WIDTH];
+    uint place[BVH8_PLACES + BVH8_WIDTH], packets[BVH8_PLACES + BVH8_WIDTH];
+} bvh8_waiting;
+/* Of the packets that entry `i` was put off with, those that have hit nothing nearer since. */
+#define BVH8_STILL(i) (waiting.packets[i] & rt_bits(RT_MASK(waiting.entry[i] <= t_far)))
+
+/* Children `some` of the node `at`, one or more, are put off from entry `top` on, the nearest to packet `guide` last, so that it
+ * is the first to be taken, and are asked for. Returns where they end. */
+RT_INLINE uint bvh8_put_by(bvh8_waiting *waiting, uint top, const global bvh8_node *nodes, const global rt_leaf *leaves, uint at,
+                           uint some, const vfloat *entry, const uint *enters, uint guide)
+{
+    const global uint *child = nodes[at].child;
+    const float *distance = (const float *)entry + guide;
+#define BVH8_NEXT(key)                                                                                                           \
+    const uint slot = BVH8_LOWEST(some);                                                                                         \
+    some &= some - 1u;                                                                                                           \
+    bvh8_prefetch(nodes, leaves, child[slot]);                                                                                   \
+    const ulong key = (ulong)as_uint(distance[slot * RT_LANES]) << 32 | (at * BVH8_WIDTH + slot);
+#define BVH8_WAIT(key)                                                                                                           \
+    {                                                                                                                            \
+        const uint which = (uint)(key) % BVH8_WIDTH;                                                                             \
+        waiting->place[top] = (uint)(key);                                                                                       \
+        waiting->packets[top] = enters[which];                                                                                   \
+        waiting->entry[top] = entry[which];                                                                                      \
+        ++top;                                                                                                                   \
+    }
+    BVH8_NEXT(first)
+    ulong nearest = first;
+    while (some != 0u) {
+        BVH8_NEXT(next)
+        const ulong farther = max(next, nearest);
+        nearest = min(next, nearest);
+        BVH8_WAIT(farther)
+    }
+    BVH8_WAIT(nearest)
+#undef BVH8_WAIT
+#undef BVH8_NEXT
+    return top;
+}
+
 /* Rays of a packet that go their own ways, and what each has put off: children in the order in which they were met, the next one
  * on top, and where the ray enters them. Below each stack lie entries that end every search in it. 60 KB at most. */
 #define BVH8_BELOW 8u
