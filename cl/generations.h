@@ -160,6 +160,12 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                     rt_spawn(frame, next, 0u, 0u, points + b, materials + b, weights[b], pixels_of[b], tally);
 #endif
             }
+#if RT_BUNDLE > 1 && !defined(RT_SHOW_GENERATIONS)
+            if (any_hit == 0u && blocks <= RT_BUNDLE && generation == 0u) { /* nothing but background */
+                for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(frame->background[0], frame->background[1], frame->background[2], 1.0f);
+                break;
+            }
+#endif
 #ifndef RT_SHOW_GENERATIONS
             if (any_hit != 0u) rt_direct_light(ctx, frame, points, materials, bundle, rays, hits, light, tally);
 #endif
