@@ -65,7 +65,12 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
         prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress)}};
         return prepared;
     }
-    const std::shared_ptr<const AccelData> built = preparers_[0]->build(scene, settings, progress);
+    // The roomiest decides whether the scene is built at all: one that it is too large for says so when its turn comes.
+    const auto roomiest = std::max_element(devices_.begin(), devices_.end(), [](const auto& a, const auto& b) {
+        return a->info().global_memory < b->info().global_memory;
+    });
+    const std::shared_ptr<const AccelData> built =
+        preparers_[size_t(roomiest - devices_.begin())]->build(scene, settings, progress);
     std::vector<Error> failures;
     for (size_t i = 0; i < preparers_.size(); ++i) {
         try {
