@@ -67,7 +67,7 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
     }
     // The roomiest decides whether the scene is built at all: one that it is too large for says so when its turn comes.
     const auto roomiest = std::max_element(devices_.begin(), devices_.end(), [](const auto& a, const auto& b) {
-        return a->info().global_memory < b->info().global_memory;
+        return a->info().global_bytes < b->info().global_bytes;
     });
     const std::shared_ptr<const AccelData> built =
         preparers_[size_t(roomiest - devices_.begin())]->build(scene, settings, progress);

@@ -79,9 +79,13 @@ TEST(Counters, EveryKindOfPrimitive) {
     scene.planes.push_back({{0, 1, 0}, -9, 0});
     scene.polygons.push_back({0, 3, 0});
     scene.polygon_corners = {0, 5, 0, 1, 5, 0, 0, 6, 0};
-    const std::vector<rt_hit> hits = counted(shared_scene(scene), "linear", 1, {ray_of({0, -5, 3}, {0, 0, 1})});
-    EXPECT_EQ(hits[0].steps, 3u) << "the world's list and each instance's";
-    EXPECT_EQ(hits[0].leaf_tests, 2u * 12 + 2);
+    // The second ray meets the farther of the two first, as the list has them, and so enters both.
+    const std::vector<rt_hit> hits =
+        counted(shared_scene(scene), "linear", 1, {ray_of({0, -5, 3}, {0, 0, 1}), ray_of({9, 0, 0}, {-1, 0, 0})});
+    EXPECT_EQ(hits[0].steps, 1u) << "the world's list; outside of their bounds, no instance's";
+    EXPECT_EQ(hits[0].leaf_tests, 2u);
+    EXPECT_EQ(hits[1].steps, 3u) << "the world's list and each instance's";
+    EXPECT_EQ(hits[1].leaf_tests, 2u * 12 + 2);
 }
 
 TEST(Counters, LanesOfANode) {

@@ -351,28 +351,22 @@ RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hit
         } else {
             RT_COUNT_VISIT(hit, inside);
             const global bvh8_node *node = ctx->bvh8_nodes + at;
+            vfloat entry[BVH8_WIDTH];
+            uint found = 0;
+            __attribute__((opencl_unroll_hint(BVH8_WIDTH)))
             for (uint i = 0; i < BVH8_WIDTH; ++i) {
-                const uint slot = i ^ far_first, child = node->child[slot];
-                if (child == BVH8_NOTHING) continue;
-                vfloat entry;
-                vmask in;
-                if (ray->coherent) {
-                    const vfloat ax = fma(ray->ix, rt_vfloat(node->plane[ray->lo_x][slot]), ray->near_x);
-                    const vfloat ay = fma(ray->iy, rt_vfloat(node->plane[ray->lo_y][slot]), ray->near_y);
-                    const vfloat az = fma(ray->iz, rt_vfloat(node->plane[ray->lo_z][slot]), ray->near_z);
-                    const vfloat bx = fma(ray->ix, rt_vfloat(node->plane[3u - ray->lo_x][slot]), ray->far_x);
-                    const vfloat by = fma(ray->iy, rt_vfloat(node->plane[5u - ray->lo_y][slot]), ray->far_y);
-                    const vfloat bz = fma(ray->iz, rt_vfloat(node->plane[7u - ray->lo_z][slot]), ray->far_z);
-                    entry = rt_max(rt_max(ax, ay), rt_max(az, ray->t_min));
-                    in = RT_MASK(entry <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t));
-                } else {
-                    in = rt_enter_bounds(rt_vfloat(node->plane[0][slot]), rt_vfloat(node->plane[1][slot]),
-                                         rt_vfloat(node->plane[2][slot]), rt_vfloat(node->plane[3][slot]),
-                                         rt_vfloat(node->plane[4][slot]), rt_vfloat(node->plane[5][slot]), ray, hit, &entry);
-                }
-                if (!rt_any(in)) continue;
+                const uint slot = i ^ far_first;
+                const vmask in = rt_enter_bounds(rt_vfloat(node->plane[0][slot]), rt_vfloat(node->plane[1][slot]),
+                                                 rt_vfloat(node->plane[2][slot]), rt_vfloat(node->plane[3][slot]),
+                                                 rt_vfloat(node->plane[4][slot]), rt_vfloat(node->plane[5][slot]), ray, hit, entry + i);
+                entry[i] = rt_select(in, entry[i], RT_INFINITY);
+                found |= (rt_any(in) ? 1u : 0u) << i;
+            }
+            for (; found != 0u; found &= found - 1u) {
+                const uint i = BVH8_LOWEST(found), child = node->child[i ^ far_first];
+                bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child);
                 stack_node[top] = child;
-                stack_t[top] = rt_select(in, entry, RT_INFINITY);
+                stack_t[top] = entry[i];
                 if (RT_STACK_OK(top + 1u, BVH8_STACK, hit)) ++top;
             }
         }
@@ -495,7 +489,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
             node = (const global char *)(ctx->bvh8_nodes + at);
             vfloat entry[BVH8_WIDTH];
             uint enters[BVH8_WIDTH], found = 0;
-            if ((inside & (inside - 1u)) == 0u && inside != 0u) { /* one packet is left: all children at once */
+            if (popcount(inside) == 1u) { /* one packet is left: all children at once */
                 const uint p = BVH8_LOWEST(inside);
 #define BVH8_FEW(i) ((float8)(few[i][p]))
                 const float8 ax = fma(BVH8_FEW(0), BVH8_ROW(node, near_x), BVH8_FEW(1));
@@ -593,7 +587,7 @@ void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hi
             others[p] = hits[p].t;
             hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, rt_vfloat(-1.0f));
         }
-        if (members & (members - 1u))
+        if (popcount(members) > 1u)
             BVH8_TOGETHER(ctx, root, octant, rays, hits, members);
         else
             BVH8_BOUNDED(ctx, root, octant, rays + BVH8_LOWEST(members), hits + BVH8_LOWEST(members));
