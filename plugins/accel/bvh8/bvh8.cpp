@@ -26,8 +26,9 @@ constexpr rt_cl_file kTypes = rt::file(kFiles, "bvh8_types.h"), kTraversal = rt:
 constexpr int kIncoherent = kOwnParams;
 enum Incoherent { kAuto, kPackets, kSingle };
 constexpr const char* kIncoherentWays[] = {"auto", "packets", "single", nullptr};
-// Measured with diffuse rays and frames on a CPU of 1 MiB L2 (docs/performance.md): of fourteen models the twelve of up to 100
-// 000 triangles are traced as fast or faster together, one of 300 000 either way, those of a million alone, up to 1.5 times.
+// Measured with diffuse rays and frames on a CPU of 1 MiB L2 (docs/performance.md): of fourteen models the twelve of up to
+// 100'000 triangles are traced as fast or faster together, one of 300'000 either way, those of a million alone, up to 1.5
+// times as fast.
 constexpr uint64_t kTogether = 200'000;  // primitives
 // Leaves of the kernels' own measure: four triangles are tested by one ray at the price of one, and a packet's bounds spare it
 // most leaves. Against leaves of four at a cost of 1, measured over the twelve views of the suite `cpu`: diffuse rays 1.05
