@@ -574,7 +574,7 @@ void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hi
             apart |= 1u << p;
             continue;
         }
-        mixed |= (rest & (rest - 1u) ? 1u : 0u) << p;
+        mixed |= (popcount(rest) > 1u ? 1u : 0u) << p;
         for (; rest != 0u; rest &= rest - 1u) with[BVH8_LOWEST(rest)] |= 1u << p;
     }
     for (; apart != 0u; apart &= apart - 1u) BVH8_APART(ctx, root, rays + BVH8_LOWEST(apart), hits + BVH8_LOWEST(apart));
