@@ -98,7 +98,7 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #endif
 
-#define rt_lowest(bits) (31u - clz((bits) & (0u - (bits)))) /* index of the lowest bit that is set */
+#define rt_lowest(bits) popcount(~(bits) & ((bits)-1u)) /* index of the lowest bit that is set */
 #define RT_ALL_LANES ((1u << RT_LANES) - 1u)
 
 /* One instruction each. On a CPU fmin and fmax have to look for NaN and take three; a GPU has them as one, but a comparison and

@@ -19,7 +19,7 @@ RT_INLINE void RT_LONE_TEST(const rt_ctx *ctx, uint first, uint bits, const rt_l
                             const rt_rays *ray, rt_hits *hit)
 {
     for (; bits != 0u; bits &= bits - 1u) {
-        const uint at = first + popcount(~bits & (bits - 1u));
+        const uint at = first + rt_lowest(bits);
 #if RT_LONE_MIXED
         if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) {
 #if RT_LANES == 1

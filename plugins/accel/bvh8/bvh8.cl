@@ -65,11 +65,11 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
             if (bits != 0u) {
                 const global uint *child = (const global uint *)(node + 192);
 #if RT_ANY_HIT
-                at = child[BVH8_LOWEST(bits)];
-                for (bits &= bits - 1u; bits != 0u; bits &= bits - 1u) BVH8_PUSH(child[BVH8_LOWEST(bits)])
+                at = child[rt_lowest(bits)];
+                for (bits &= bits - 1u; bits != 0u; bits &= bits - 1u) BVH8_PUSH(child[rt_lowest(bits)])
                 continue;
 #else
-                uint i = BVH8_LOWEST(bits);
+                uint i = rt_lowest(bits);
                 bits &= bits - 1u;
                 if (bits == 0u) {
                     at = child[i];
@@ -78,12 +78,12 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                 float entry[BVH8_WIDTH];
                 vstore8(in, 0, entry);
                 ulong key = BVH8_KEY(entry, child, i);
-                i = BVH8_LOWEST(bits);
+                i = rt_lowest(bits);
                 bits &= bits - 1u;
                 ulong other = BVH8_KEY(entry, child, i);
                 ulong nearest = min(key, other), second = max(key, other);
                 if (bits != 0u) {
-                    i = BVH8_LOWEST(bits);
+                    i = rt_lowest(bits);
                     bits &= bits - 1u;
                     key = BVH8_KEY(entry, child, i);
                     other = min(key, second);
@@ -93,7 +93,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
                     nearest = min(other, nearest);
                     for (; bits != 0u; bits &= bits - 1u) {
                         /* The farther ones go where they belong: between `base` and the top the farthest is lowest. */
-                        key = BVH8_KEY(entry, child, BVH8_LOWEST(bits));
+                        key = BVH8_KEY(entry, child, rt_lowest(bits));
                         other = max(key, second);
                         key = min(key, second);
                         uint to = top;
@@ -197,7 +197,7 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
             uint bits = BVH8_BITS(in <= out);
             if (bits != 0u) {
                 const global uint *child = (const global uint *)(node + 192);
-                slot = BVH8_LOWEST(bits);
+                slot = rt_lowest(bits);
                 bits &= bits - 1u;
                 if (bits == 0u) {
                     at = child[slot];
@@ -209,7 +209,7 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
                 bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[slot]);
                 ulong nearest = BVH8_PLACE(slot);
                 for (; bits != 0u; bits &= bits - 1u) {
-                    const uint i = BVH8_LOWEST(bits);
+                    const uint i = rt_lowest(bits);
                     bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[i]);
                     const ulong place = BVH8_PLACE(i);
                     stack[top] = max(place, nearest);
@@ -264,7 +264,7 @@ RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint at, uint lanes, 
     }
     uint *next_nodes = nodes[0], *next_leaves = leaves[0];
     for (uint bits = lanes; bits != 0u; bits &= bits - 1u) {
-        const uint l = BVH8_LOWEST(bits);
+        const uint l = rt_lowest(bits);
         BVH8_GO_ON(l, at, 1u)
     }
     for (uint turn = 0; node_count + leaf_count != 0u; ++turn) {
@@ -363,7 +363,7 @@ RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hit
                 found |= (rt_any(in) ? 1u : 0u) << i;
             }
             for (; found != 0u; found &= found - 1u) {
-                const uint i = BVH8_LOWEST(found), child = node->child[i ^ far_first];
+                const uint i = rt_lowest(found), child = node->child[i ^ far_first];
                 bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child);
                 stack_node[top] = child;
                 stack_t[top] = entry[i];
@@ -392,7 +392,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         return;
     }
     for (; rest != 0u; rest &= rest - 1u) {
-        const uint octant = BVH8_LOWEST(rest);
+        const uint octant = rt_lowest(rest);
         const vmask mine = RT_MASK(octants == rt_vint((int)octant));
         const vfloat others = hit->t;
         hit->t = rt_select(mine, hit->t, rt_vfloat(-1.0f));
@@ -412,7 +412,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
     slow_x = slow_y = slow_z = fast_x = fast_y = fast_z = in_x = in_y = in_z = out_x = out_y = out_z = rt_vfloat(0.0f);
     uint wide = 0;
     for (uint rest = members; rest != 0u; rest &= rest - 1u) {
-        const uint p = BVH8_LOWEST(rest);
+        const uint p = rt_lowest(rest);
         const rt_rays *ray = rays + p;
         const vmask alive = RT_MASK(hits[p].t >= rt_vfloat(0.0f)), lane = RT_MASK(rt_lane_index() == rt_vint((int)p));
         uint is_wide = 0;
@@ -473,7 +473,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
             for (; inside != 0u; inside &= inside - 1u) {
-                const uint p = BVH8_LOWEST(inside);
+                const uint p = rt_lowest(inside);
                 if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) == 0u) continue;
                 for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, rays + p, hits + p);
                 few_t_far[p] = rt_greatest(hits[p].t);
@@ -481,7 +481,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
             }
         } else {
             for (uint doubt = is_root ? 0u : inside & wide; doubt != 0u; doubt &= doubt - 1u) {
-                const uint p = BVH8_LOWEST(doubt);
+                const uint p = rt_lowest(doubt);
                 if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) == 0u) inside &= ~(1u << p);
             }
             is_root = false;
@@ -490,7 +490,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
             vfloat entry[BVH8_WIDTH];
             uint enters[BVH8_WIDTH], found = 0;
             if (popcount(inside) == 1u) { /* one packet is left: all children at once */
-                const uint p = BVH8_LOWEST(inside);
+                const uint p = rt_lowest(inside);
 #define BVH8_FEW(i) ((float8)(few[i][p]))
                 const float8 ax = fma(BVH8_FEW(0), BVH8_ROW(node, near_x), BVH8_FEW(1));
                 const float8 bx = fma(BVH8_FEW(2), BVH8_ROW(node, 96u - near_x), BVH8_FEW(3));
@@ -504,7 +504,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                 float ins[BVH8_WIDTH];
                 vstore8(in, 0, ins);
                 for (uint rest = found; rest != 0u; rest &= rest - 1u) {
-                    const uint i = BVH8_LOWEST(rest);
+                    const uint i = rt_lowest(rest);
                     ((float *)(entry + i))[p] = ins[i];
                     enters[i] = inside;
                 }
@@ -520,7 +520,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                     found |= (enters[i] != 0u ? 1u : 0u) << i;
                 }
             }
-#define BVH8_PUT_BY(to, some) bvh8_put_by(&waiting, to, ctx->bvh8_nodes, ctx->leaves, at, some, entry, enters, BVH8_LOWEST(inside))
+#define BVH8_PUT_BY(to, some) bvh8_put_by(&waiting, to, ctx->bvh8_nodes, ctx->leaves, at, some, entry, enters, rt_lowest(inside))
 #if RT_ANY_HIT
             const uint stacked = found;
 #else
@@ -575,24 +575,24 @@ void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hi
             continue;
         }
         mixed |= (popcount(rest) > 1u ? 1u : 0u) << p;
-        for (; rest != 0u; rest &= rest - 1u) with[BVH8_LOWEST(rest)] |= 1u << p;
+        for (; rest != 0u; rest &= rest - 1u) with[rt_lowest(rest)] |= 1u << p;
     }
-    for (; apart != 0u; apart &= apart - 1u) BVH8_APART(ctx, root, rays + BVH8_LOWEST(apart), hits + BVH8_LOWEST(apart));
+    for (; apart != 0u; apart &= apart - 1u) BVH8_APART(ctx, root, rays + rt_lowest(apart), hits + rt_lowest(apart));
     for (uint octant = 0; octant < 8u; ++octant) {
         const uint members = with[octant];
         if (members == 0u) continue;
         vfloat others[RT_BUNDLE];
         for (uint some = members & mixed; some != 0u; some &= some - 1u) {
-            const uint p = BVH8_LOWEST(some);
+            const uint p = rt_lowest(some);
             others[p] = hits[p].t;
             hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, rt_vfloat(-1.0f));
         }
         if (popcount(members) > 1u)
             BVH8_TOGETHER(ctx, root, octant, rays, hits, members);
         else
-            BVH8_BOUNDED(ctx, root, octant, rays + BVH8_LOWEST(members), hits + BVH8_LOWEST(members));
+            BVH8_BOUNDED(ctx, root, octant, rays + rt_lowest(members), hits + rt_lowest(members));
         for (uint some = members & mixed; some != 0u; some &= some - 1u) {
-            const uint p = BVH8_LOWEST(some);
+            const uint p = rt_lowest(some);
             hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, others[p]);
         }
     }

@@ -48,7 +48,6 @@ RT_INLINE uint bvh8_bits(int8 m)
 }
 #define BVH8_BITS(m) bvh8_bits(m)
 #endif
-#define BVH8_LOWEST(bits) popcount(~(bits) & ((bits)-1u)) /* index of the lowest bit that is set */
 /* Rows of a node by their distance from its begin in bytes: kept in registers, where an index would be multiplied anew. */
 #define BVH8_ROW(node, bytes) (*(const global float8 *)((node) + (bytes)))
 /* One number of one child, `box` being its slot's place in the first row. */
@@ -60,7 +59,7 @@ RT_INLINE uint bvh8_bits(int8 m)
 #define BVH8_WIDE(o_lo, o_hi, i_lo, i_hi) ((o_lo) != (o_hi) || (i_hi) - (i_lo) > 0.25f * fabs(i_lo))
 #ifdef RT_COUNT_STEPS
 #define BVH8_COUNT_VISITS(hits, inside)                                                                                          \
-    for (uint count_in = inside; count_in != 0u; count_in &= count_in - 1u) RT_COUNT_STEP((hits) + BVH8_LOWEST(count_in));
+    for (uint count_in = inside; count_in != 0u; count_in &= count_in - 1u) RT_COUNT_STEP((hits) + rt_lowest(count_in));
 #else
 #define BVH8_COUNT_VISITS(hits, inside)
 #endif
@@ -125,7 +124,7 @@ RT_INLINE uint bvh8_put_by(bvh8_waiting *waiting, uint top, const global bvh8_no
     const global uint *child = nodes[at].child;
     const float *distance = (const float *)entry + guide;
 #define BVH8_NEXT(key)                                                                                                           \
-    const uint slot = BVH8_LOWEST(some);                                                                                         \
+    const uint slot = rt_lowest(some);                                                                                         \
     some &= some - 1u;                                                                                                           \
     bvh8_prefetch(nodes, leaves, child[slot]);                                                                                   \
     const ulong key = (ulong)as_uint(distance[slot * RT_LANES]) << 32 | (at * BVH8_WIDTH + slot);
