@@ -115,24 +115,22 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
         }
 
         if (mine != 0u) {
-            float red[RT_LANES], green[RT_LANES], blue[RT_LANES];
+            float4 light[RT_LANES];
             int at[RT_LANES];
-            rt_store(sum.x, red);
-            rt_store(sum.y, green);
-            rt_store(sum.z, blue);
+            rt_store_lanes(sum, light);
             rt_store(pixel, at);
             for (uint l = 0; l < RT_LANES; ++l) {
                 if ((mine >> l & 1u) == 0u) continue;
                 global uint *share = shares + RT_SHARE * (size_t)at[l];
                 if (level == 0u) {
-                    const float4 sample = (float4)(red[l], green[l], blue[l], 1.0f);
+                    const float4 sample = (float4)(light[l].xyz, 1.0f);
                     sums[at[l]] = parting == 0u && frame->sample != 0u ? sums[at[l]] + sample : sample;
                     if (parting)
                         for (uint i = 0; i < RT_SHARE; ++i) share[i] = 0u;
                 } else {
-                    rt_add_share(share, red[l]);
-                    rt_add_share(share + 2, green[l]);
-                    rt_add_share(share + 4, blue[l]);
+                    rt_add_share(share, light[l].x);
+                    rt_add_share(share + 2, light[l].y);
+                    rt_add_share(share + 4, light[l].z);
                 }
             }
         }
@@ -154,10 +152,10 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
     if (get_local_id(0) == 0) counters[get_group_id(0)] = fresh != 0u ? all : counters[get_group_id(0)] + all;
 }
 
-/* A sample into the film: the first one in place of what was there. */
+/* Where rays part, a sample into the film: the first one in place of what was there. */
 RT_PICTURE_KERNEL
 add_sample(const constant rt_frame *frame, const uint first_group, global float4 *film, const global float4 *sums,
-           const global uint *shares, const uint parting)
+           const global uint *shares)
 {
     const uint group = first_group + (uint)get_group_id(0), packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame);
     RT_FOR_PACKETS(frame, packet)
@@ -168,10 +166,8 @@ add_sample(const constant rt_frame *frame, const uint first_group, global float4
             if (x >= frame->width || y >= frame->height) continue;
             const uint at = y * frame->width + x;
             float4 sample = sums[at];
-            if (parting) {
-                const global uint *share = shares + RT_SHARE * (size_t)at;
-                sample.xyz += (float3)(rt_share(share), rt_share(share + 2), rt_share(share + 4));
-            }
+            const global uint *share = shares + RT_SHARE * (size_t)at;
+            sample.xyz += (float3)(rt_share(share), rt_share(share + 2), rt_share(share + 4));
             film[at] = frame->sample != 0u ? film[at] + sample : sample;
         }
     }

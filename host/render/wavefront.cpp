@@ -94,8 +94,7 @@ Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame
         if (level == 0) piece.first = piece.last;
     }
     if (room.parting) {
-        Arguments(add_) << frame.view_buffers.frame() << cl_uint(first) << frame.film << sums << shares_.get()
-                        << cl_uint(room.parting);
+        Arguments(add_) << frame.view_buffers.frame() << cl_uint(first) << frame.film << sums << shares_.get();
         queue.enqueueNDRangeKernel(add_, cl::NullRange, cl::NDRange(count * local), cl::NDRange(local), nullptr, &piece.last);
     }
     turn_ ^= 1;
