@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "base/error.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -244,14 +245,16 @@ class Planner {
                 if (c.measure == "whitted")
                     for (Variant& variant : c.variants) variant.settings.emplace_back("depth", "5");
                 if (!request_.peers) continue;
-                c.peer_qualities = {"medium"};
-                const auto builds = [&](const char* builder) {
-                    return std::any_of(c.variants.begin(), c.variants.end(), [&](const Variant& variant) {
-                        return variant.accel.find(builder) != std::string::npos;
-                    });
-                };
-                if (c.measure != "build" || builds("builder=spatial")) c.peer_qualities.push_back("high");
-                if (c.measure == "build" && builds("builder=morton")) c.peer_qualities.push_back("low");
+                std::vector<std::string>& qualities = c.peer_qualities;
+                qualities = {"medium"};
+                if (c.measure != "build") {
+                    qualities.push_back("high");
+                    continue;
+                }
+                for (const Variant& variant : c.variants)
+                    if (const std::string like = like_quality(variant.accel);
+                        std::find(qualities.begin(), qualities.end(), like) == qualities.end())
+                        qualities.push_back(like);
             }
     }
 

@@ -14,24 +14,23 @@ bool ends_with(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// A peer's build that is as quick or as thorough as ours: by a curve, by the heuristic, or with spatial splits.
-std::string quality_of(const BenchRecord& build) {
-    if (build.accel_params.find("builder=morton") != std::string::npos) return "low";
-    return build.accel_params.find("builder=spatial") != std::string::npos ? "high" : "medium";
-}
-
 // The fastest row of a peer; of builds, of one quality. nullptr: none was measured.
 const BenchRecord* best_peer(const std::vector<BenchRecord>& rows, const BenchRecord& ours) {
     const BenchRecord* best = nullptr;
     for (const BenchRecord& row : rows) {
         if (row.peer.empty() || !measured(row)) continue;
-        if (row.measure == "build" && !ends_with(row.peer, " " + quality_of(ours))) continue;
+        if (row.measure == "build" && !ends_with(row.peer, " " + like_quality(ours.accel_params))) continue;
         if (!best || speed(row) > speed(*best)) best = &row;
     }
     return best;
 }
 
 }  // namespace
+
+std::string like_quality(const std::string& accel) {
+    if (accel.find("builder=morton") != std::string::npos) return "low";
+    return accel.find("builder=spatial") != std::string::npos ? "high" : "medium";
+}
 
 double speed(const BenchRecord& record) {
     if (record.measure == "build") return record.mtris_per_s;

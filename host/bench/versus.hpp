@@ -7,6 +7,10 @@
 
 namespace clarity {
 
+// The quality of a peer's build that is as quick or as thorough as ours: by a curve, by the heuristic, or with spatial splits.
+// accel: "bvh8,builder=morton", or the parameters alone.
+std::string like_quality(const std::string& accel);
+
 // What a row is fast by: triangles (build), frames or rays a second. 0: it was not measured.
 double speed(const BenchRecord& record);
 

@@ -1,6 +1,4 @@
 // builder_morton.cpp -- the binary tree of primitives that are sorted along a curve.
-#include <unordered_map>
-
 #include "builder.hpp"
 #include "sorted_run.hpp"
 
