@@ -1,6 +1,20 @@
-/* leaf_mesh.h -- RT_LEAF within a mesh: triangles only. A template, see CONTRACT.md. */
+/* leaf_mesh.h -- RT_LEAF within a mesh: triangles only; and its two halves, for who asks about many before it tests those that
+ * answered. A template, see CONTRACT.md. */
 RT_INLINE void RT_FN(rt_leaf_mesh)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
     RT_COUNT_LEAF(hit);
     RT_FN(rt_hit_triangle)(ctx->leaves + at, at, ray, hit);
 }
+
+#if RT_CPU
+RT_INLINE uint RT_FN(rt_leaf_mesh_candidate)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_COUNT_LEAF(hit);
+    return RT_FN(rt_maybe_triangle)(ctx->leaves + at, ray, hit);
+}
+
+RT_INLINE void RT_FN(rt_leaf_mesh_test)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_FN(rt_hit_triangle)(ctx->leaves + at, at, ray, hit);
+}
+#endif

@@ -1,5 +1,5 @@
-/* leaf_scene.h -- RT_LEAF in world space: any kind of primitive, and instances, which start a traversal of their mesh's tree
- * with the ray in object space. Kinds that the scene does not hold are compiled out. A template, see CONTRACT.md. */
+/* leaf_scene.h -- RT_LEAF in world space, whole and in two halves: any kind of primitive, and instances, which start a traversal of
+ * their mesh's tree with the ray in object space. Kinds that the scene does not hold are compiled out. A template, see CONTRACT.md. */
 #if RT_HAS_INSTANCES
 /* Only lanes that come to the instance's bounds go into its mesh's tree; the others are done there. Where packets go by bundles, the
  * tree of the scene has leaf tests in several places, and a mesh's tree would be compiled as often. */
@@ -40,32 +40,52 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
 }
 #endif
 
-RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+RT_INLINE void RT_FN(rt_leaf_scene_test)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
     const global rt_leaf *leaf = ctx->leaves + at;
-#if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_INSTANCES
-    const uint kind = RT_REF_KIND(leaf->ref);
 #if RT_HAS_INSTANCES
-    if (kind == RT_REF_INSTANCE) {
+    if (RT_REF_KIND(leaf->ref) == RT_REF_INSTANCE) {
         RT_FN(rt_hit_instance)(ctx, at, ray, hit);
         return;
     }
 #endif
-    RT_COUNT_LEAF(hit);
 #if RT_HAS_SPHERES
-    if (kind == RT_REF_SPHERE) {
+    if (RT_REF_KIND(leaf->ref) == RT_REF_SPHERE) {
         RT_FN(rt_hit_sphere)(leaf, at, ray, hit);
         return;
     }
 #endif
 #if RT_HAS_POLYGONS
-    if (kind == RT_REF_POLYGON) {
+    if (RT_REF_KIND(leaf->ref) == RT_REF_POLYGON) {
         RT_FN(rt_hit_polygon)(ctx, leaf, at, ray, hit);
         return;
     }
 #endif
-#else
-    RT_COUNT_LEAF(hit);
-#endif
     RT_FN(rt_hit_triangle)(leaf, at, ray, hit);
 }
+
+/* An instance is no primitive: what is in it counts. */
+RT_INLINE void RT_FN(rt_count_leaf_scene)(const rt_ctx *ctx, uint at, rt_hits *hit)
+{
+#if RT_HAS_INSTANCES
+    if (RT_REF_KIND(ctx->leaves[at].ref) == RT_REF_INSTANCE) return;
+#endif
+    RT_COUNT_LEAF(hit);
+}
+
+RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+    RT_FN(rt_leaf_scene_test)(ctx, at, ray, hit);
+}
+
+#if RT_CPU
+RT_INLINE uint RT_FN(rt_leaf_scene_candidate)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+#if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_INSTANCES
+    if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) return 1u;
+#endif
+    return RT_FN(rt_maybe_triangle)(ctx->leaves + at, ray, hit);
+}
+#endif

@@ -16,6 +16,17 @@ RT_INLINE void RT_LEAF(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *
 }
 
 #ifdef RT_LONE_TEST_ONCE
+RT_INLINE uint RT_LEAF_CANDIDATE(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    return RT_LEAF_CANDIDATE_ONCE(ctx, at, ray, hit) & RT_LEAF_CANDIDATE_ONCE(ctx, RT_SAME_PLACE(ctx, at), ray, hit);
+}
+
+RT_INLINE void RT_LEAF_TEST(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_LEAF_TEST_ONCE(ctx, at, ray, hit);
+    if (RT_AGAIN(ctx, at)) RT_LEAF_TEST_ONCE(ctx, RT_SAME_PLACE(ctx, at), ray, hit);
+}
+
 RT_INLINE uint RT_LONE_CANDIDATES(const rt_ctx *ctx, uint first, uint count, const rt_lone_rays *lone, uint l)
 {
     return RT_LONE_CANDIDATES_ONCE(ctx, first, count, lone, l) &

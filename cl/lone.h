@@ -33,10 +33,6 @@ typedef struct rt_lone_hits {
 
 RT_INLINE void rt_spread_rays(const rt_rays *from, rt_lone_rays *to)
 {
-    vmask is_y = from->is_y, is_z = from->is_z;
-    RT_OPAQUE(is_y);
-    RT_OPAQUE(is_z);
-    const vint zero = rt_vint(0), one = rt_vint(1), two = rt_vint(2);
     rt_store(from->ox, to->ox), rt_store(from->oy, to->oy), rt_store(from->oz, to->oz);
     rt_store(from->dx, to->dx), rt_store(from->dy, to->dy), rt_store(from->dz, to->dz);
     rt_store(from->t_min, to->t_min);
@@ -45,9 +41,9 @@ RT_INLINE void rt_spread_rays(const rt_rays *from, rt_lone_rays *to)
     rt_store(from->far_x, to->far_x), rt_store(from->far_y, to->far_y), rt_store(from->far_z, to->far_z);
     rt_store(from->px, to->px), rt_store(from->py, to->py), rt_store(from->pz, to->pz);
     rt_store(from->sx, to->sx), rt_store(from->sy, to->sy), rt_store(from->sz, to->sz);
-    rt_store(rt_select(is_z, zero, rt_select(is_y, two, one)), to->kx);
-    rt_store(rt_select(is_z, one, rt_select(is_y, zero, two)), to->ky);
-    rt_store(rt_select(is_z, two, rt_select(is_y, one, zero)), to->kz);
+    rt_store(from->same_axis ? rt_vint((int)from->kx) : from->axis_x, to->kx);
+    rt_store(from->same_axis ? rt_vint((int)from->ky) : from->axis_y, to->ky);
+    rt_store(from->same_axis ? rt_vint((int)from->kz) : from->axis_z, to->kz);
 }
 
 RT_INLINE void rt_spread_hits(const rt_hits *from, rt_lone_hits *to)

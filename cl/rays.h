@@ -9,13 +9,12 @@ typedef struct rt_rays {
     vfloat ix, iy, iz;             /* 1 / direction, finite: components are clamped away from zero */
     vfloat near_x, near_y, near_z; /* -origin / direction, rounded down */
     vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up */
-    vmask neg_x, neg_y, neg_z;     /* where the direction's component is negative */
     int coherent;                  /* all active lanes have the same signs: then */
     uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
     int scattered;                 /* they start far apart, as rt_scattered() has it: few nodes will be shared */
     int same_axis;                 /* all active lanes have the same dominant axis: then */
     uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
-    vmask is_y, is_z;              /* it differs by lane */
+    vint axis_x, axis_y, axis_z;   /* they differ by lane, and only then are these filled in */
     vfloat px, py, pz;             /* origin: pz along the dominant axis, px and py on the other two */
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
 } rt_rays;
@@ -51,6 +50,9 @@ typedef struct rt_hits {
 #define RT_EPS 5.9604645e-8f /* 2^-24, half an ulp of 1 */
 #define RT_WIDE (1.0f + 16.0f * RT_EPS)
 
+/* Where a component of the direction, or its reciprocal, is negative. */
+#define rt_negative(v) RT_MASK((v) < rt_vfloat(0.0f))
+
 RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
 {
     const vfloat tiny = rt_vfloat(1e-18f);
@@ -76,9 +78,6 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->far_x = fma(fabs(nx), slack, nx);
     r->far_y = fma(fabs(ny), slack, ny);
     r->far_z = fma(fabs(nz), slack, nz);
-    r->neg_x = RT_MASK(r->ix < rt_vfloat(0.0f));
-    r->neg_y = RT_MASK(r->iy < rt_vfloat(0.0f));
-    r->neg_z = RT_MASK(r->iz < rt_vfloat(0.0f));
 
     /* Triangles are tested in a plane across the ray: the two axes other than the dominant one, sheared along the direction
      * (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection). x: y, z;  y: z, x;  z: x, y. */
@@ -90,7 +89,8 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
 #if RT_LANES == 1
     r->coherent = 1;
 #else
-    const uint neg_x = rt_bits(r->neg_x) & bits, neg_y = rt_bits(r->neg_y) & bits, neg_z = rt_bits(r->neg_z) & bits;
+    const uint neg_x = rt_bits(rt_negative(r->ix)) & bits, neg_y = rt_bits(rt_negative(r->iy)) & bits,
+               neg_z = rt_bits(rt_negative(r->iz)) & bits;
     r->coherent = (neg_x == 0u || neg_x == bits) && (neg_y == 0u || neg_y == bits) && (neg_z == 0u || neg_z == bits);
     r->lo_x = neg_x ? 3u : 0u;
     r->lo_y = neg_y ? 4u : 1u;
@@ -101,8 +101,15 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->kz = any_x ? 0u : any_y ? 1u : 2u;
     r->kx = r->kz == 2u ? 0u : r->kz + 1u;
     r->ky = r->kz == 0u ? 2u : r->kz - 1u;
-    r->is_y = is_y;
-    r->is_z = is_z;
+#if RT_LANES > 1
+    if (!r->same_axis)
+#endif
+    {
+        const vint zero = rt_vint(0), one = rt_vint(1), two = rt_vint(2);
+        r->axis_x = rt_select(is_z, zero, rt_select(is_y, two, one));
+        r->axis_y = rt_select(is_z, one, rt_select(is_y, zero, two));
+        r->axis_z = rt_select(is_z, two, rt_select(is_y, one, zero));
+    }
     r->px = rt_select(is_z, r->ox, rt_select(is_y, r->oz, r->oy));
     r->py = rt_select(is_z, r->oy, rt_select(is_y, r->ox, r->oz));
     r->pz = rt_select(is_z, r->oz, rt_select(is_y, r->oy, r->ox));
@@ -137,12 +144,10 @@ RT_INLINE vmask rt_closer(const rt_rays *r, const rt_hits *h, vfloat t, uint pri
 RT_INLINE vmask rt_enter_bounds(vfloat lo_x, vfloat lo_y, vfloat lo_z, vfloat hi_x, vfloat hi_y, vfloat hi_z, const rt_rays *r,
                                 const rt_hits *h, vfloat *entry)
 {
-    const vfloat ax = fma(r->ix, rt_select(r->neg_x, hi_x, lo_x), r->near_x);
-    const vfloat ay = fma(r->iy, rt_select(r->neg_y, hi_y, lo_y), r->near_y);
-    const vfloat az = fma(r->iz, rt_select(r->neg_z, hi_z, lo_z), r->near_z);
-    const vfloat bx = fma(r->ix, rt_select(r->neg_x, lo_x, hi_x), r->far_x);
-    const vfloat by = fma(r->iy, rt_select(r->neg_y, lo_y, hi_y), r->far_y);
-    const vfloat bz = fma(r->iz, rt_select(r->neg_z, lo_z, hi_z), r->far_z);
+    const vmask neg_x = rt_negative(r->ix), neg_y = rt_negative(r->iy), neg_z = rt_negative(r->iz);
+    const vfloat ax = fma(r->ix, rt_select(neg_x, hi_x, lo_x), r->near_x), bx = fma(r->ix, rt_select(neg_x, lo_x, hi_x), r->far_x);
+    const vfloat ay = fma(r->iy, rt_select(neg_y, hi_y, lo_y), r->near_y), by = fma(r->iy, rt_select(neg_y, lo_y, hi_y), r->far_y);
+    const vfloat az = fma(r->iz, rt_select(neg_z, hi_z, lo_z), r->near_z), bz = fma(r->iz, rt_select(neg_z, lo_z, hi_z), r->far_z);
     const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
     const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, h->t);
     *entry = in;

@@ -5,23 +5,7 @@
  * either direction: the polygons at an edge agree on it, whatever rounding did, so a ray that passes from the one to the other
  * meets an odd number of them. The product of one corner with the other decides only where the corners lie on different sides of
  * the half line's axis, and its sign is right or it is zero, as that of triangle.h is; a zero is no crossing, for both. */
-RT_INLINE void RT_FN(rt_corner_across)(const global float *corner, const rt_rays *r, vfloat *x, vfloat *y, vfloat *z)
-{
-#pragma OPENCL FP_CONTRACT OFF
-#if RT_CPU
-    if (r->same_axis) {
-        *z = r->pz - rt_vfloat(corner[r->kz]);
-        *x = fma(r->sx, *z, r->px - rt_vfloat(corner[r->kx]));
-        *y = fma(r->sy, *z, r->py - rt_vfloat(corner[r->ky]));
-        return;
-    }
-#endif
-    const vfloat from_x = r->ox - rt_vfloat(corner[0]), from_y = r->oy - rt_vfloat(corner[1]), from_z = r->oz - rt_vfloat(corner[2]);
-    *z = rt_select(r->is_z, from_z, rt_select(r->is_y, from_y, from_x));
-    *x = fma(r->sx, *z, rt_select(r->is_z, from_x, rt_select(r->is_y, from_z, from_y)));
-    *y = fma(r->sy, *z, rt_select(r->is_z, from_y, rt_select(r->is_y, from_x, from_z)));
-}
-
+#define RT_PROJECT(at, x, y, z) rt_across(r, at, (float4)((at)[0], (at)[1], (at)[2], 0.0f), x, y, z);
 RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
@@ -29,12 +13,12 @@ RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *le
     const global float *corners = ctx->polygon_corners + 3ul * polygon.first;
     const vfloat zero = rt_vfloat(0.0f);
     vfloat x0, y0, z0;
-    RT_FN(rt_corner_across)(corners + 3u * (polygon.count - 1u), r, &x0, &y0, &z0);
+    RT_PROJECT(corners + 3u * (polygon.count - 1u), &x0, &y0, &z0)
     vfloat nearest = z0, farthest = z0;
     vmask above0 = RT_MASK(y0 > zero), inside = RT_MASK(zero != zero);
     for (uint i = 0; i < polygon.count; ++i) {
         vfloat x1, y1, z1;
-        RT_FN(rt_corner_across)(corners + 3u * i, r, &x1, &y1, &z1);
+        RT_PROJECT(corners + 3u * i, &x1, &y1, &z1)
         const vmask above1 = RT_MASK(y1 > zero); /* half-open, so a corner counts once */
         const vfloat edge = x0 * y1 - x1 * y0;
         inside ^= (above0 ^ above1) & rt_select(above1, RT_MASK(edge > zero), RT_MASK(edge < zero));
@@ -58,3 +42,4 @@ RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *le
     if (!rt_any(closer)) return;
     RT_FN(rt_record)(h, closer, t, zero, zero, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, leaf->prim);
 }
+#undef RT_PROJECT

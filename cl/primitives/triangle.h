@@ -8,54 +8,44 @@
 #if RT_CPU
 #define RT_CORNER(corner, k) leaf->corner[k]
 #define RT_PRIM leaf->prim
-RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+#define RT_PROJECT(corner, x, y, z) rt_across(r, leaf->corner, *(const global float4 *)leaf->corner, x, y, z);
 #else
 #define RT_CORNER(corner, k) leaf->corner.s##k
 #define RT_PRIM as_uint(leaf->c.s3)
+#define RT_PROJECT(corner, x, y, z) rt_across(r, 0, leaf->corner, x, y, z);
+#endif
+/* Corners across the ray and what the edges say of it. */
+#define RT_TRIANGLE_EDGES                                                                                                        \
+    vfloat ax, ay, az, bx, by, bz, cx, cy, cz;                                                                                   \
+    RT_PROJECT(a, &ax, &ay, &az)                                                                                                 \
+    RT_PROJECT(b, &bx, &by, &bz)                                                                                                 \
+    RT_PROJECT(c, &cx, &cy, &cz)                                                                                                 \
+    const vfloat u = cx * by - cy * bx;                                                                                          \
+    const vfloat v = ax * cy - ay * cx;                                                                                          \
+    const vfloat w = bx * ay - by * ax;                                                                                          \
+    const vfloat zero = rt_vfloat(0.0f);                                                                                         \
+    const vmask between = RT_MASK(rt_min(rt_min(u, v), w) >= zero) | RT_MASK(rt_max(rt_max(u, v), w) <= zero);
+
+#if RT_CPU
+/* Whether a lane may hit it: the first half of the test, for who asks for many before it tests those that answered. */
+RT_INLINE uint RT_FN(rt_maybe_triangle)(const global rt_leaf *leaf, const rt_rays *r, const rt_hits *h)
+{
+#pragma OPENCL FP_CONTRACT OFF
+    RT_TRIANGLE_EDGES
+    return rt_any(between & RT_MASK(h->t >= zero)) ? 1u : 0u;
+}
+#endif
+
+#if RT_CPU
+RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+#else
 RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
 #endif
 {
 #pragma OPENCL FP_CONTRACT OFF
     const uint prim = RT_PRIM;
-    /* Corners across the ray (x, y) and along it (z, in units of the dominant axis), from corner to origin: the sign of the edge
-     * functions does not mind, and o - corner takes the corner straight from memory. */
-    vfloat ax, ay, az, bx, by, bz, cx, cy, cz;
-#if RT_CPU
-    if (r->same_axis) {
-        const vfloat o_x = r->kz == 2u ? r->ox : r->kz == 1u ? r->oz : r->oy;
-        const vfloat o_y = r->kz == 2u ? r->oy : r->kz == 1u ? r->ox : r->oz;
-        const vfloat o_z = r->kz == 2u ? r->oz : r->kz == 1u ? r->oy : r->ox;
-        az = o_z - rt_vfloat(leaf->a[r->kz]);
-        bz = o_z - rt_vfloat(leaf->b[r->kz]);
-        cz = o_z - rt_vfloat(leaf->c[r->kz]);
-        ax = fma(r->sx, az, o_x - rt_vfloat(leaf->a[r->kx]));
-        ay = fma(r->sy, az, o_y - rt_vfloat(leaf->a[r->ky]));
-        bx = fma(r->sx, bz, o_x - rt_vfloat(leaf->b[r->kx]));
-        by = fma(r->sy, bz, o_y - rt_vfloat(leaf->b[r->ky]));
-        cx = fma(r->sx, cz, o_x - rt_vfloat(leaf->c[r->kx]));
-        cy = fma(r->sy, cz, o_y - rt_vfloat(leaf->c[r->ky]));
-    } else /* the same numbers, lane by lane: a ray's hit does not depend on who travels with it */
-#endif
-    {
-#define RT_ACROSS(corner, x, y, z)                                                                                               \
-    {                                                                                                                            \
-        const vfloat from_x = r->ox - rt_vfloat(RT_CORNER(corner, 0)), from_y = r->oy - rt_vfloat(RT_CORNER(corner, 1)),         \
-                     from_z = r->oz - rt_vfloat(RT_CORNER(corner, 2));                                                           \
-        z = rt_select(r->is_z, from_z, rt_select(r->is_y, from_y, from_x));                                                      \
-        x = fma(r->sx, z, rt_select(r->is_z, from_x, rt_select(r->is_y, from_z, from_y)));                                       \
-        y = fma(r->sy, z, rt_select(r->is_z, from_y, rt_select(r->is_y, from_x, from_z)));                                       \
-    }
-        RT_ACROSS(a, ax, ay, az)
-        RT_ACROSS(b, bx, by, bz)
-        RT_ACROSS(c, cx, cy, cz)
-#undef RT_ACROSS
-    }
-    const vfloat u = cx * by - cy * bx;
-    const vfloat v = ax * cy - ay * cx;
-    const vfloat w = bx * ay - by * ax;
-    const vfloat lowest = rt_min(rt_min(u, v), w), highest = rt_max(rt_max(u, v), w);
-    const vfloat zero = rt_vfloat(0.0f);
-    vmask inside = RT_MASK(lowest >= zero) | RT_MASK(highest <= zero);
+    RT_TRIANGLE_EDGES
+    vmask inside = between;
     if (!rt_any(inside & RT_MASK(h->t >= zero))) return;
     /* A ray that passes a slim triangle at a million times its size finds all three products equal by rounding. The ray is the
      * origin here, so a triangle around it has corners on both sides of either axis: exact, and so still watertight. */
@@ -79,6 +69,8 @@ RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_leaf *leaf, uint at
 }
 #undef RT_CORNER
 #undef RT_PRIM
+#undef RT_PROJECT
+#undef RT_TRIANGLE_EDGES
 
 #if !RT_CPU
 RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)

@@ -69,36 +69,50 @@ struct Template {
     bool leaves_twice;  // for measuring what they take
     bool instances;
 };
+// What a traversal calls leaf tests, and what these are called by the name of theirs: rt_leaf_mesh or rt_leaf_scene.
+struct LeafStep {
+    const char *macro, *suffix;
+    bool cpu_only;
+};
+constexpr LeafStep kLeafSteps[] = {{"RT_LEAF", "", false},
+                                   {"RT_LEAF_CANDIDATE", "_candidate", true},
+                                   {"RT_LEAF_TEST", "_test", true},
+                                   {"RT_LONE_CANDIDATES", "_candidates", true},
+                                   {"RT_LONE_TEST", "_lone", true}};
+
 // One inclusion, with the leaf tests that it may use. The prototype makes it inline whatever the author wrote.
 void traversal(std::ostream& out, const Template& plugin, const std::string& name, const std::string& leaf, bool mixed) {
-    out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LEAF RT_FN(" << leaf << ")\n"
-        << "#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n#define RT_TRAVERSE_BUNDLE RT_FN(" << name << "_bundle)\n";
+    const auto each_step = [&](const auto& write) {
+        for (const LeafStep& step : kLeafSteps)
+            if (plugin.cpu || !step.cpu_only) write(std::string(step.macro), leaf + step.suffix);
+    };
+    out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n"
+        << "#define RT_TRAVERSE_BUNDLE RT_FN(" << name << "_bundle)\n";
     define_int(out, "RT_TRIANGLES_ONLY", !mixed);
+    each_step([&](const std::string& macro, const std::string& function) {
+        out << "#define " << macro << " RT_FN(" << function << ")\n";
+    });
     if (plugin.cpu) {
-        out << "#define RT_LONE_CANDIDATES RT_FN(" << leaf << "_candidates)\n#define RT_LONE_TEST RT_FN(" << leaf << "_lone)\n";
         define_int(out, "RT_LONE_MIXED", mixed);
         include(out, "leaf_lone.h");
     }
     if (plugin.leaves_twice) {
-        out << "#define RT_LEAF_ONCE RT_FN(" << leaf << ")\n#undef RT_LEAF\n#define RT_LEAF RT_FN(" << leaf << "_twice)\n";
-        if (plugin.cpu)
-            for (const char* step : {"CANDIDATES", "TEST"}) {
-                const std::string name = "RT_LONE_" + std::string(step),
-                                  once = leaf + (step == std::string("TEST") ? "_lone" : "_candidates");
-                out << "#define " << name << "_ONCE RT_FN(" << once << ")\n#undef " << name << "\n#define " << name << " RT_FN("
-                    << once << "_twice)\n";
-            }
+        each_step([&](const std::string& macro, const std::string& function) {
+            out << "#define " << macro << "_ONCE RT_FN(" << function << ")\n#undef " << macro << "\n#define " << macro << " RT_FN("
+                << function << "_twice)\n";
+        });
         define_int(out, "RT_LEAF_INSTANCES", mixed && plugin.instances);
         include(out, "leaf_twice.h");
-        out << "#undef RT_LEAF_ONCE\n#undef RT_LONE_CANDIDATES_ONCE\n#undef RT_LONE_TEST_ONCE\n#undef RT_LEAF_INSTANCES\n";
+        each_step([&](const std::string& macro, const std::string&) { out << "#undef " << macro << "_ONCE\n"; });
+        out << "#undef RT_LEAF_INSTANCES\n";
     }
     out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n#if RT_BUNDLE > 1\n"
            "RT_INLINE void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count);\n"
            "#endif\n";
     part(out, plugin.file, plugin.text);
-    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_LEAF\n#undef RT_LOADED_LEAF\n#undef "
-           "RT_TRIANGLES_ONLY\n#undef RT_LONE_CANDIDATES\n"
-           "#undef RT_LONE_TEST\n#undef RT_LONE_MIXED\n";
+    each_step([&](const std::string& macro, const std::string&) { out << "#undef " << macro << "\n"; });
+    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n"
+           "#undef RT_LONE_MIXED\n";
 }
 
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const Template& plugin) {
@@ -237,6 +251,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "rt_types.h");
     include(out, "lanes.h");
     include(out, "rays.h");
+    include(out, "across.h");
     include(out, "loaded_leaf.h");
     if (layout.cpu)
         for (const char* name : {"lone.h", "primitives/triangle_row.h"}) include(out, name);

@@ -338,6 +338,17 @@ RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hit
     uint top = 0;
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u) | (ray->lo_z == 2u ? 4u : 0u);
+    /* Of a box's two planes across an axis a ray meets one and then the other, whichever; each with the slack that it needs as the
+     * near or the far one, which is widened as in a program of one lane. */
+#define BVH8_AXIS(x)                                                                                                             \
+    const vmask neg_##x = rt_negative(ray->i##x);                                                                                \
+    const vfloat wide_##x = ray->i##x * RT_WIDE, off_##x = ray->far_##x * RT_WIDE;                                               \
+    const vfloat i_lo_##x = rt_select(neg_##x, wide_##x, ray->i##x), o_lo_##x = rt_select(neg_##x, off_##x, ray->near_##x);       \
+    const vfloat i_hi_##x = rt_select(neg_##x, ray->i##x, wide_##x), o_hi_##x = rt_select(neg_##x, ray->near_##x, off_##x);
+    BVH8_AXIS(x)
+    BVH8_AXIS(y)
+    BVH8_AXIS(z)
+#undef BVH8_AXIS
     vfloat stack_t[BVH8_STACK];
     uint stack_node[BVH8_STACK];
     uint inside = rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))); /* lanes in the node, for counting programs */
@@ -356,9 +367,12 @@ RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hit
             __attribute__((opencl_unroll_hint(BVH8_WIDTH)))
             for (uint i = 0; i < BVH8_WIDTH; ++i) {
                 const uint slot = i ^ far_first;
-                const vmask in = rt_enter_bounds(rt_vfloat(node->plane[0][slot]), rt_vfloat(node->plane[1][slot]),
-                                                 rt_vfloat(node->plane[2][slot]), rt_vfloat(node->plane[3][slot]),
-                                                 rt_vfloat(node->plane[4][slot]), rt_vfloat(node->plane[5][slot]), ray, hit, entry + i);
+                const vfloat lo_x = fma(i_lo_x, rt_vfloat(node->plane[0][slot]), o_lo_x), hi_x = fma(i_hi_x, rt_vfloat(node->plane[3][slot]), o_hi_x);
+                const vfloat lo_y = fma(i_lo_y, rt_vfloat(node->plane[1][slot]), o_lo_y), hi_y = fma(i_hi_y, rt_vfloat(node->plane[4][slot]), o_hi_y);
+                const vfloat lo_z = fma(i_lo_z, rt_vfloat(node->plane[2][slot]), o_lo_z), hi_z = fma(i_hi_z, rt_vfloat(node->plane[5][slot]), o_hi_z);
+                entry[i] = rt_max(rt_max(rt_min(lo_x, hi_x), rt_min(lo_y, hi_y)), rt_max(rt_min(lo_z, hi_z), ray->t_min));
+                const vfloat exit = rt_min(rt_min(rt_max(lo_x, hi_x), rt_max(lo_y, hi_y)), rt_min(rt_max(lo_z, hi_z), hit->t));
+                const vmask in = RT_MASK(entry[i] <= exit);
                 entry[i] = rt_select(in, entry[i], RT_INFINITY);
                 found |= (rt_any(in) ? 1u : 0u) << i;
             }
@@ -408,39 +422,41 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_rays *rays, rt_hits *hits, uint members)
 {
     const ulong near_x = BVH8_NEAR(octant, 0), near_y = BVH8_NEAR(octant, 1), near_z = BVH8_NEAR(octant, 2);
-    vfloat slow_x, slow_y, slow_z, fast_x, fast_y, fast_z, in_x, in_y, in_z, out_x, out_y, out_z, t_far = rt_vfloat(-1.0f);
-    slow_x = slow_y = slow_z = fast_x = fast_y = fast_z = in_x = in_y = in_z = out_x = out_y = out_z = rt_vfloat(0.0f);
+    vmask alive[RT_LANES];
+    const rt_rays *member[RT_LANES];
+    vfloat each[RT_LANES], slow[3], fast[3], in[3], out[3];
     uint wide = 0;
-    for (uint rest = members; rest != 0u; rest &= rest - 1u) {
-        const uint p = rt_lowest(rest);
-        const rt_rays *ray = rays + p;
-        const vmask alive = RT_MASK(hits[p].t >= rt_vfloat(0.0f)), lane = RT_MASK(rt_lane_index() == rt_vint((int)p));
-        uint is_wide = 0;
-        t_far = rt_select(lane, rt_vfloat(rt_greatest(hits[p].t)), t_far);
-        /* Here origins only; -origin / direction follows for all lanes at once. */
-#define BVH8_AXIS(x, turned)                                                                                                     \
-    {                                                                                                                            \
-        const float o_lo = rt_least_of(alive, ray->o##x), o_hi = rt_greatest_of(alive, ray->o##x);                               \
-        const float i_lo = rt_least_of(alive, ray->i##x), i_hi = rt_greatest_of(alive, ray->i##x);                               \
-        slow_##x = rt_select(lane, rt_vfloat((turned) ? i_hi : i_lo), slow_##x);                                                 \
-        fast_##x = rt_select(lane, rt_vfloat((turned) ? i_lo : i_hi), fast_##x);                                                 \
-        in_##x = rt_select(lane, rt_vfloat((turned) ? o_lo : o_hi), in_##x);                                                     \
-        out_##x = rt_select(lane, rt_vfloat((turned) ? o_hi : o_lo), out_##x);                                                   \
-        is_wide |= BVH8_WIDE(o_lo, o_hi, i_lo, i_hi);                                                                            \
+    for (uint p = 0; p < RT_LANES; ++p) {
+        const bool is_member = (members >> p & 1u) != 0u;
+        const uint which = is_member ? p : rt_lowest(members);
+        const vfloat t = rt_select(rt_vint(is_member ? -1 : 0), hits[which].t, rt_vfloat(-1.0f));
+        member[p] = rays + which;
+        alive[p] = RT_MASK(t >= rt_vfloat(0.0f));
+        each[p] = t;
     }
-        BVH8_AXIS(x, near_x != 0u)
-        BVH8_AXIS(y, near_y != 32u)
-        BVH8_AXIS(z, near_z != 64u)
-#undef BVH8_AXIS
-        wide |= is_wide << p;
+    vfloat t_far = rt_greatest_each(each);
+#define BVH8_GREATEST(sign, field)                                                                                               \
+    __attribute__((opencl_unroll_hint(RT_LANES)))                                                                                \
+    for (uint p = 0; p < RT_LANES; ++p) each[p] = rt_select(alive[p], sign(&member[p]->field)[axis], rt_vfloat(-MAXFLOAT));
+    for (uint axis = 0; axis < 3u; ++axis) {
+        BVH8_GREATEST(, ox)
+        const vfloat o_hi = rt_greatest_each(each);
+        BVH8_GREATEST(-, ox)
+        const vfloat o_lo = -rt_greatest_each(each);
+        BVH8_GREATEST(, ix)
+        const vfloat i_hi = rt_greatest_each(each);
+        BVH8_GREATEST(-, ix)
+        const vfloat i_lo = -rt_greatest_each(each);
+        const bool turned = (octant >> axis & 1u) != 0u;
+        wide |= rt_bits(RT_MASK(o_lo != o_hi) | RT_MASK(i_hi - i_lo > 0.25f * fabs(i_lo)));
+        slow[axis] = turned ? i_hi : i_lo;
+        fast[axis] = turned ? i_lo : i_hi;
+        in[axis] = BVH8_DOWN(-(turned ? o_lo : o_hi) * slow[axis]);
+        out[axis] = BVH8_UP(-(turned ? o_hi : o_lo) * fast[axis]);
     }
-#define BVH8_OFF(x)                                                                                                              \
-    in_##x = BVH8_DOWN(-in_##x * slow_##x);                                                                                      \
-    out_##x = BVH8_UP(-out_##x * fast_##x);
-    BVH8_OFF(x)
-    BVH8_OFF(y)
-    BVH8_OFF(z)
-#undef BVH8_OFF
+#undef BVH8_GREATEST
+    const vfloat slow_x = slow[0], slow_y = slow[1], slow_z = slow[2], fast_x = fast[0], fast_y = fast[1], fast_z = fast[2];
+    const vfloat in_x = in[0], in_y = in[1], in_z = in[2], out_x = out[0], out_y = out[1], out_z = out[2];
 
     float few_t_far[RT_LANES], few[12][RT_LANES]; /* the same numbers, packet by packet */
     rt_store(t_far, few_t_far);
@@ -472,10 +488,23 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
         if (!is_root) at = ((const global uint *)(node + 192))[slot];
         if (at & BVH8_LEAF) {
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
+            /* Who enters, then which triangles they may hit, then those: a branch on each would be guessed wrongly every other time. */
+            uint entering = 0, count_candidates = 0;
             for (; inside != 0u; inside &= inside - 1u) {
                 const uint p = rt_lowest(inside);
-                if (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) == 0u) continue;
-                for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, rays + p, hits + p);
+                entering |= (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) != 0u ? 1u : 0u) << p;
+            }
+            uint candidates[RT_BUNDLE * BVH8_LEAF_MAX + 1u];
+            for (; entering != 0u; entering &= entering - 1u) {
+                const uint p = rt_lowest(entering);
+                for (uint i = 0; i < count; ++i) {
+                    candidates[count_candidates] = p * 8u + i;
+                    count_candidates += RT_LEAF_CANDIDATE(ctx, first + i, rays + p, hits + p);
+                }
+            }
+            for (uint i = 0; i < count_candidates; ++i) {
+                const uint p = candidates[i] / 8u;
+                RT_LEAF_TEST(ctx, first + candidates[i] % 8u, rays + p, hits + p);
                 few_t_far[p] = rt_greatest(hits[p].t);
                 t_far = rt_select(RT_MASK(rt_lane_index() == rt_vint((int)p)), rt_vfloat(few_t_far[p]), t_far);
             }

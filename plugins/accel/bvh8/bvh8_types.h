@@ -87,7 +87,7 @@ RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf
 /* Bits 0, 1, 2: the direction's component is negative. */
 RT_INLINE vint bvh8_octants(const rt_rays *ray)
 {
-    return (ray->neg_x & rt_vint(1)) | (ray->neg_y & rt_vint(2)) | (ray->neg_z & rt_vint(4));
+    return (rt_negative(ray->ix) & rt_vint(1)) | (rt_negative(ray->iy) & rt_vint(2)) | (rt_negative(ray->iz) & rt_vint(4));
 }
 /* Octants that active lanes have, as bits. */
 RT_INLINE uint bvh8_which_octants(const rt_rays *ray, vint octants, vfloat t)
@@ -168,10 +168,10 @@ RT_INLINE void bvh8_lone_begin(bvh8_lone *s, const rt_rays *ray, const rt_hits *
 {
     rt_spread_rays(ray, &s->rays);
     rt_spread_hits(hit, &s->hits);
-    rt_store(rt_select(ray->neg_x, rt_vint(96), rt_vint(0)), s->near_x);
-    rt_store(rt_select(ray->neg_y, rt_vint(128), rt_vint(32)), s->near_y);
-    rt_store(rt_select(ray->neg_z, rt_vint(160), rt_vint(64)), s->near_z);
-    rt_store((~ray->neg_x & rt_vint(1)) | (~ray->neg_y & rt_vint(2)) | (~ray->neg_z & rt_vint(4)), s->order);
+    rt_store(rt_select(rt_negative(ray->ix), rt_vint(96), rt_vint(0)), s->near_x);
+    rt_store(rt_select(rt_negative(ray->iy), rt_vint(128), rt_vint(32)), s->near_y);
+    rt_store(rt_select(rt_negative(ray->iz), rt_vint(160), rt_vint(64)), s->near_z);
+    rt_store(~bvh8_octants(ray) & rt_vint(7), s->order);
     for (uint l = 0; l < RT_LANES; ++l) {
         vstore8((float8)(-INFINITY), 0, s->entry + l * BVH8_ROOM);
         vstore8((uint8)(BVH8_NOTHING), 0, s->child + l * BVH8_ROOM);

@@ -183,12 +183,13 @@ RT_INLINE vmask cwbvh_enter_slot(const global cwbvh_node *node, const cwbvh_grid
     const vfloat lo_x = CWBVH_BYTE(0, 0u), lo_y = CWBVH_BYTE(1, 0u), lo_z = CWBVH_BYTE(2, 0u);
     const vfloat hi_x = CWBVH_BYTE(0, 2u), hi_y = CWBVH_BYTE(1, 2u), hi_z = CWBVH_BYTE(2, 2u);
 #undef CWBVH_BYTE
-    const vfloat ax = fma(grid->step_x, rt_select(ray->neg_x, hi_x, lo_x), grid->near_x);
-    const vfloat ay = fma(grid->step_y, rt_select(ray->neg_y, hi_y, lo_y), grid->near_y);
-    const vfloat az = fma(grid->step_z, rt_select(ray->neg_z, hi_z, lo_z), grid->near_z);
-    const vfloat bx = fma(grid->step_x, rt_select(ray->neg_x, lo_x, hi_x), grid->far_x);
-    const vfloat by = fma(grid->step_y, rt_select(ray->neg_y, lo_y, hi_y), grid->far_y);
-    const vfloat bz = fma(grid->step_z, rt_select(ray->neg_z, lo_z, hi_z), grid->far_z);
+    const vmask neg_x = rt_negative(ray->ix), neg_y = rt_negative(ray->iy), neg_z = rt_negative(ray->iz);
+    const vfloat ax = fma(grid->step_x, rt_select(neg_x, hi_x, lo_x), grid->near_x);
+    const vfloat ay = fma(grid->step_y, rt_select(neg_y, hi_y, lo_y), grid->near_y);
+    const vfloat az = fma(grid->step_z, rt_select(neg_z, hi_z, lo_z), grid->near_z);
+    const vfloat bx = fma(grid->step_x, rt_select(neg_x, lo_x, hi_x), grid->far_x);
+    const vfloat by = fma(grid->step_y, rt_select(neg_y, lo_y, hi_y), grid->far_y);
+    const vfloat bz = fma(grid->step_z, rt_select(neg_z, lo_z, hi_z), grid->far_z);
     const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, ray->t_min));
     const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, hit->t);
     *entry = in;
