@@ -87,6 +87,40 @@ RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt
     r->t_min = rt_vfloat(0.0f);
 }
 
+#if RT_BUNDLE > 1
+/* Whether no camera ray of a packet comes to the bounds of all but planes: by intervals of the directions, not yet of unit length,
+ * which are affine in the pixels and so lie between those of the packet's corners. */
+RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
+{
+    /* Corners of the packet, in lanes; x and y are those of rt_camera_rays(). */
+    const float4 px = convert_float(origin.x) + (float4)(0.0f, 1.0f, 0.0f, 1.0f) * convert_float(RT_PACKET_W(frame) - 1u) + frame->within_x;
+    const float4 py = convert_float(origin.y) + (float4)(0.0f, 0.0f, 1.0f, 1.0f) * convert_float(RT_PACKET_H(frame) - 1u) + frame->within_y;
+    const float4 sx = px * (2.0f * frame->pixel_x) - 1.0f, sy = py * (-2.0f * frame->pixel_y) + 1.0f;
+    float enter = 0.0f, leave = MAXFLOAT;
+    for (uint k = 0; k < 3u; ++k) {
+        const float4 d = sx * frame->right[k] + sy * frame->up[k] + frame->forward[k];
+        /* A millionth of what is added up covers how it is rounded, there and here; forward has unit length. */
+        const float slack = 1e-6f * (1.0f + fabs(frame->right[k]) + fabs(frame->up[k]));
+        const float hi = rt_max(rt_max(d.x, d.y), rt_max(d.z, d.w)) + slack, lo = rt_min(rt_min(d.x, d.y), rt_min(d.z, d.w)) - slack;
+        const float to_lower = frame->bounds[k] - frame->eye[k], to_upper = frame->bounds[3u + k] - frame->eye[k];
+        /* Against the side that is ahead of the eye no ray comes earlier than the fastest; past both none stays longer than the slowest. */
+        if (to_lower > 0.0f) {
+            if (hi <= 0.0f) return true;
+            enter = rt_max(enter, to_lower / hi);
+            if (lo > 0.0f) leave = rt_min(leave, to_upper / lo);
+        } else if (to_upper < 0.0f) {
+            if (lo >= 0.0f) return true;
+            enter = rt_max(enter, to_upper / lo);
+            if (hi < 0.0f) leave = rt_min(leave, to_lower / hi);
+        } else {
+            if (lo > 0.0f) leave = rt_min(leave, to_upper / lo);
+            if (hi < 0.0f) leave = rt_min(leave, to_lower / hi);
+        }
+    }
+    return enter > leave * 1.00001f;
+}
+#endif
+
 /* What a packet's pixels, row by row, add to the film. */
 RT_INLINE void rt_put_pixels(const constant rt_frame *frame, uint2 origin, const float4 *sums, global float4 *film)
 {

@@ -60,13 +60,12 @@ RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
     return rt_vfloat(1.0f) / copysign(magnitude, d);
 }
 
-/* Fills in what follows from origin and direction. `bits`: the active lanes, by whose signs and axes the packet is judged. */
-RT_INLINE void rt_prepare(rt_rays *r, uint bits)
+/* Fills in what boxes need of origin and direction. */
+RT_INLINE void rt_prepare_for_boxes(rt_rays *r)
 {
     /* The planes of a box are crossed at (plane - origin) * (1 / d). Computed as fma(1 / d, plane, -origin / d) that has an
      * absolute error of about half an ulp of origin / d and a relative one of a few ulp. Widening every interval by that much
      * keeps traversal watertight (Ize 2013, Robust BVH Ray Traversal) at no cost per node. */
-    r->scattered = 0;
     r->ix = rt_safe_reciprocal(r->dx);
     r->iy = rt_safe_reciprocal(r->dy);
     r->iz = rt_safe_reciprocal(r->dz);
@@ -78,7 +77,12 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->far_x = fma(fabs(nx), slack, nx);
     r->far_y = fma(fabs(ny), slack, ny);
     r->far_z = fma(fabs(nz), slack, nz);
+}
 
+/* The rest. `bits`: the active lanes, by whose signs and axes the packet is judged. */
+RT_INLINE void rt_prepare_for_triangles(rt_rays *r, uint bits)
+{
+    r->scattered = 0;
     /* Triangles are tested in a plane across the ray: the two axes other than the dominant one, sheared along the direction
      * (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection). x: y, z;  y: z, x;  z: x, y. */
     const vfloat ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
@@ -116,6 +120,12 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     r->sx = shear_p;
     r->sy = shear_q;
     r->sz = along;
+}
+
+RT_INLINE void rt_prepare(rt_rays *r, uint bits)
+{
+    rt_prepare_for_boxes(r);
+    rt_prepare_for_triangles(r, bits);
 }
 
 /* Whether half of the rays of a packet start more than four triangles away from the first, by the size of those that they start on.
@@ -173,6 +183,16 @@ RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt
 #endif
     return rt_enter_bounds(rt_vfloat(box[0]), rt_vfloat(box[1]), rt_vfloat(box[2]), rt_vfloat(box[3]), rt_vfloat(box[4]),
                            rt_vfloat(box[5]), r, h, entry);
+}
+
+/* Which rays come to the bounds of all but planes before t_max. */
+RT_INLINE vmask rt_enter_scene(const constant rt_frame *frame, const rt_rays *r, vfloat t_max)
+{
+    vfloat entry;
+    rt_hits reach;
+    reach.t = t_max;
+    return rt_enter_bounds(rt_vfloat(frame->bounds[0]), rt_vfloat(frame->bounds[1]), rt_vfloat(frame->bounds[2]),
+                           rt_vfloat(frame->bounds[3]), rt_vfloat(frame->bounds[4]), rt_vfloat(frame->bounds[5]), r, &reach, &entry);
 }
 
 #endif

@@ -97,7 +97,7 @@ typedef struct rt_texture {
     rt_u32 first, width, height, pad;
 } rt_texture;
 
-/* All that may change from frame to frame without touching program or scene. 160 B. */
+/* All that may change from frame to frame without touching program or scene. 176 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
     rt_f32 pixel_x; /* (2 (x + .5) pixel_x - 1): 1 / width */
@@ -121,7 +121,7 @@ typedef struct rt_frame {
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
     rt_f32 within_x, within_y;    /* where in each pixel this sample's rays go through, 0..1 */
     rt_u32 row_count; /* 0: rows of work-groups are those of the picture. Else so many uints follow this struct, each row's number */
-    rt_u32 pad[2];
+    rt_f32 bounds[6]; /* of all but planes, lower x, y, z, then upper; of nothing: inf, -inf */
 } rt_frame;
 
 /* A ray and its answer, for tests and benches that bring their own rays. 32 B each; kernels see blocks of RT_LANES of them,

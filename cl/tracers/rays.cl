@@ -22,14 +22,25 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 t_max = rt_load_reach(rays, base + b);
 #endif
                 active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
-                const uint bits = rt_bits(active[b]);
-                if (RT_BUNDLE == 1 || bits != 0u) rt_clear_hits(hit + b, active[b]);
-                hit[b].t = rt_select(active[b], t_max, rt_vfloat(-1.0f));
-                if (bits == 0u) continue;
+#if RT_BUNDLE > 1 /* where few rays meet anything, most of what a packet takes is to prepare it */
+                hit[b].t = rt_vfloat(-1.0f);
+                if (!rt_any(active[b])) continue;
+                rt_load_ray_block(rays, base + b, ray + b, &t_max);
+                rt_prepare_for_boxes(ray + b);
+#if !RT_HAS_PLANES
+                active[b] &= rt_enter_scene(frame, ray + b, t_max);
+                if (!rt_any(active[b])) continue;
+#endif
+                rt_prepare_for_triangles(ray + b, rt_bits(active[b]));
+                rt_clear_hits(hit + b, active[b]);
+#else
 #if RT_LANES > 1
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
 #endif
-                rt_prepare(ray + b, bits);
+                rt_clear_hits(hit + b, active[b]);
+                rt_prepare(ray + b, rt_bits(active[b]));
+#endif
+                hit[b].t = rt_select(active[b], t_max, rt_vfloat(-1.0f));
             }
             if (any_hit)
                 rt_trace_bundle_any(&ctx, frame, ray, hit, count);

@@ -30,6 +30,7 @@ struct BuildScene {
     std::vector<rt_polygon> polygon_table;
     std::vector<float> polygon_corners;  // 3 per corner
     std::vector<rt_plane> planes;
+    Bounds bounds;  // of the world's group: all but planes
 };
 BuildScene make_build_scene(const Scene& scene, Progress& progress);
 

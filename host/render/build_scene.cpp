@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 
 #include "base/error.hpp"
 #include "plugin/host_services.hpp"
@@ -22,6 +23,11 @@ rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
     prim.ref = ref;
     prim.mesh = mesh;
     return prim;
+}
+
+void grow(Bounds& bounds, const rt_prim& prim) {
+    bounds.add(prim.lo);
+    bounds.add(prim.hi);
 }
 
 void grow(rt_prim& prim, const float* p) {
@@ -47,10 +53,12 @@ Row named(Row point, rt_u32 name) {
     return reinterpret_cast<Row>(reinterpret_cast<Bits>(point) | Bits{0, 0, 0, name});
 }
 
-// Writes the triangles of one mesh as refs first.., transformed unless world is nullptr.
-void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim,
-                   rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
+// Writes the triangles of one mesh as refs first.., transformed unless world is nullptr. Returns their bounds.
+Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim,
+                     rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
     const uint32_t chunks = (mesh.triangle_count + kChunk - 1) / kChunk;
+    Bounds bounds;
+    std::mutex bounds_mutex;
     parallel_for(chunks, [&](uint32_t chunk) {
         const rt_u32 begin = chunk * kChunk, end = std::min(mesh.triangle_count, begin + kChunk);
         const float* const positions = scene.positions.data();
@@ -59,6 +67,7 @@ void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt
         rt_leaf* const leaves = out.triangles.data() + first_ref + begin;
         rt_prim* const prims = out.prims.data() + prim_at + begin;
         rt_u32* const sources = out.attribute_triangle.data() + first_ref + begin;
+        Row all_lo = {INFINITY, INFINITY, INFINITY, INFINITY}, all_hi = -all_lo;
         for (rt_u32 i = 0; i < end - begin; ++i) {
             // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
             const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i), material != RT_NONE ? material : materials[i],
@@ -77,13 +86,19 @@ void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt
             Row lo = corner[1] < corner[0] ? corner[1] : corner[0], hi = corner[0] < corner[1] ? corner[1] : corner[0];
             lo = corner[2] < lo ? corner[2] : lo;
             hi = hi < corner[2] ? corner[2] : hi;
+            all_lo = lo < all_lo ? lo : all_lo;
+            all_hi = all_hi < hi ? hi : all_hi;
             const Row leaf[3] = {named(corner[0], meta[0]), named(corner[1], meta[1]), named(corner[2], meta[2])},
                       prim[2] = {named(lo, meta[0]), named(hi, run)};
             std::memcpy(&leaves[i], leaf, sizeof leaf);
             std::memcpy(&prims[i], prim, sizeof prim);
             sources[i] = mesh.first_triangle + begin + i;
         }
+        const std::lock_guard<std::mutex> lock(bounds_mutex);
+        bounds.add(reinterpret_cast<const float*>(&all_lo));
+        bounds.add(reinterpret_cast<const float*>(&all_hi));
     });
+    return bounds;
 }
 
 void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
@@ -101,6 +116,7 @@ void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at
             prim.hi[k] = sphere.center[k] + sphere.radius;
         }
         widen(prim, 1e-6f);
+        grow(out.bounds, prim);
         out.spheres.push_back(leaf);
         out.prims[at++] = prim;
     }
@@ -134,6 +150,7 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
         rt_prim prim = empty_prim(leaf.ref, run);
         for (rt_u32 c = 0; c < polygon.corner_count; ++c) grow(prim, corners + 3 * c);
         widen(prim, 1e-6f);
+        grow(out.bounds, prim);
         out.polygons.push_back(leaf);
         out.prims[at++] = prim;
     }
@@ -257,8 +274,12 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
             if (!identity) out.flattened.push_back(static_cast<rt_u32>(i));
-            add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material, next_prim, next_ref,
-                          static_cast<rt_u32>(i), at, out);
+            const Bounds bounds = add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material,
+                                                next_prim, next_ref, static_cast<rt_u32>(i), at, out);
+            if (!bounds.empty) {
+                out.bounds.add(bounds.min.data());
+                out.bounds.add(bounds.max.data());
+            }
             next_ref += mesh.triangle_count;
             at += mesh.triangle_count;
         } else {
@@ -269,6 +290,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
             rt_prim prim = instance_prim(out, group, instance.world_from_object, index);
             prim.mesh = static_cast<rt_u32>(i);
+            grow(out.bounds, prim);
             instance_prims.push_back(prim);
             rt_leaf leaf{};
             std::copy_n(prim.lo, 3, leaf.a);

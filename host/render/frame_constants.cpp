@@ -64,6 +64,11 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     frame.min_weight = static_cast<float>(settings.min_weight);
     frame.shadows = settings.shadows;
     frame.root = accel.roots.empty() ? 0 : accel.roots[0];
+    const Bounds& bounds = accel.scene.bounds;
+    for (int k = 0; k < 3; ++k) {
+        frame.bounds[k] = bounds.empty ? INFINITY : bounds.min[k];
+        frame.bounds[3 + k] = bounds.empty ? -INFINITY : bounds.max[k];
+    }
     return frame;
 }
 
