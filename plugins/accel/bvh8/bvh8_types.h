@@ -71,6 +71,7 @@ RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf
 {
 #if RT_CPU && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
     const ulong lines = at & BVH8_LEAF ? (ulong)(leaves + BVH8_LEAF_FIRST(at)) : (ulong)(nodes + at);
+    __attribute__((opencl_unroll_hint(4)))
     for (uint i = 0; i < 256u; i += 64u) __builtin_prefetch((const void *)(lines + i));
 #endif
 }
