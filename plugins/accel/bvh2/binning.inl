@@ -6,6 +6,8 @@
 namespace bvh2 {
 namespace BVH2_ISA {
 
+constexpr ptrdiff_t kAhead = 64;  // records that are fetched before their turn: a processor alone looks less far ahead
+
 void clear(Bins& bins, uint32_t bin_count) {
     for (uint32_t b = 0; b < bin_count; ++b)
         for (int axis = 0; axis < 3; ++axis) store_box(bins.box[b][axis], no_box());
@@ -31,20 +33,23 @@ void merge(const Bins& from, uint32_t bin_count, Bins& to) {
     }
 }
 
-// Neighbours often share a slice, and a box that was just written is waited for: in long ranges they go to two sets by turns.
-constexpr ptrdiff_t kTwoSets = 512;
+// Neighbours often share a slice, and a box that was just written is waited for, or read too early and then once more: in long
+// ranges they go to four sets by turns.
+constexpr ptrdiff_t kSets = 4, kManyForSets = 512;
 
 void bin(const Record* first, const Record* end, const Slices& slices, Bins& bins) {
     const Slices place = slices;  // whatever is written, it stays in registers
     const Record* r = first;
-    if (end - first >= kTwoSets) {
-        Bins others;
-        clear(others, place.count);
-        for (; end - r >= 2; r += 2) {
+    if (end - first >= kManyForSets) {
+        Bins others[kSets - 1];
+        for (Bins& other : others) clear(other, place.count);
+        for (; end - r >= kSets; r += kSets) {
+            __builtin_prefetch(r + kAhead);
+            __builtin_prefetch(r + kAhead + 2);
             bin_one(r[0], place, bins);
-            bin_one(r[1], place, others);
+            for (ptrdiff_t i = 1; i < kSets; ++i) bin_one(r[i], place, others[i - 1]);
         }
-        merge(others, place.count, bins);
+        for (const Bins& other : others) merge(other, place.count, bins);
     }
     for (; r != end; ++r) bin_one(*r, place, bins);
 }
@@ -104,6 +109,7 @@ void scatter(const Record* first, const Record* end, const Slices& slices, const
     char* to_left = reinterpret_cast<char*>(left);
     char* to_right = reinterpret_cast<char*>(right);
     for (const Record* at = first; at != end; ++at) {
+        __builtin_prefetch(at + kAhead);
         const Box8 centroid = centroid2_box(box_of(*at));
         // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said.
         const uint32_t goes_left = any(less(place.position(low(centroid)), plane));
