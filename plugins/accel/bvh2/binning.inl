@@ -100,10 +100,11 @@ void find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, uin
 
 void scatter(const Record* first, const Record* end, const Slices& slices, const Split& split, Record* left, Record* right,
              Bounds& left_centroids2, Bounds& right_centroids2) {
-    alignas(16) float bound[4] = {-1.0f, -1.0f, -1.0f, -1.0f};  // of the other axes: never reached
-    bound[split.axis] = static_cast<float>(split.bin);
-    const Vec4 plane = load(bound);
-    const Slices place = slices;  // whatever is written, it stays in registers
+    alignas(16) float base_of[4], scale_of[4];
+    store(base_of, slices.base);
+    store(scale_of, slices.scale);
+    const Box8 base = all_eight(base_of[split.axis]), scale = all_eight(scale_of[split.axis]),
+               plane = all_eight(static_cast<float>(split.bin));
     Box8 l = load_box(left_centroids2), r = load_box(right_centroids2);
     // Where the next one goes, left or right: chosen by arithmetic, for a branch would be guessed wrongly every other time.
     char* to_left = reinterpret_cast<char*>(left);
@@ -111,10 +112,12 @@ void scatter(const Record* first, const Record* end, const Slices& slices, const
     for (const Record* at = first; at != end; ++at) {
         __builtin_prefetch(at + kAhead);
         const Box8 centroid = centroid2_box(box_of(*at));
-        // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said.
-        const uint32_t goes_left = any(less(place.position(low(centroid)), plane));
-        l = min(l, choose(goes_left, centroid, no_box()));
-        r = min(r, choose(goes_left, no_box(), centroid));
+        // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said, where what lies
+        // beyond the last slice is in it.
+        const Box8 is_left = less((lane_in_all(centroid, split.axis) - base) * scale, plane);
+        l = min_where(is_left, centroid, l);
+        r = min_unless(is_left, centroid, r);
+        const uint32_t goes_left = first_of(is_left);
         copy(reinterpret_cast<Record*>(to_right + ((to_left - to_right) & -static_cast<ptrdiff_t>(goes_left))), *at);
         to_left += sizeof(Record) * goes_left;
         to_right += sizeof(Record) * (goes_left ^ 1u);

@@ -78,9 +78,23 @@ inline Box8 highest(Box8 a) {
 inline Box8 where_less(Box8 a, Box8 b, Box8 x, Box8 y) {
     return {_mm256_blendv_ps(y.m, x.m, _mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ))};
 }
-// which ? a : b.
-inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
-    return {_mm256_blendv_ps(b.m, a.m, _mm256_castsi256_ps(_mm256_set1_epi32(-static_cast<int>(which))))};
+// One of the lower four lanes in all eight.
+inline Box8 lane_in_all(Box8 a, int lane) {
+    return {_mm256_permutevar8x32_ps(a.m, _mm256_set1_epi32(lane))};
+}
+// A mask of the lanes where a < b, and 1 or 0: its first lane.
+inline Box8 less(Box8 a, Box8 b) {
+    return {_mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ)};
+}
+inline uint32_t first_of(Box8 mask) {
+    return static_cast<uint32_t>(_mm256_movemask_ps(mask.m)) & 1u;
+}
+// The lesser of a and b, but b where the mask is set, or where it is not. NaN is what a minimum passes over.
+inline Box8 min_unless(Box8 mask, Box8 a, Box8 b) {
+    return {_mm256_min_ps(_mm256_or_ps(a.m, mask.m), b.m)};
+}
+inline Box8 min_where(Box8 mask, Box8 a, Box8 b) {
+    return min_unless({_mm256_xor_ps(mask.m, _mm256_castsi256_ps(_mm256_set1_epi32(-1)))}, a, b);
 }
 inline void copy(Record* to, const Record& from) {
     _mm256_storeu_ps(to->lo, _mm256_loadu_ps(from.lo));
@@ -150,9 +164,22 @@ inline Box8 highest(Box8 a) {
 inline Box8 where_less(Box8 a, Box8 b, Box8 x, Box8 y) {
     return {select(less(a.lo, b.lo), x.lo, y.lo), select(less(a.neg_hi, b.neg_hi), x.neg_hi, y.neg_hi)};
 }
-inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
-    const Vec4 mask = all_lanes(which);
-    return {select(mask, a.lo, b.lo), select(mask, a.neg_hi, b.neg_hi)};
+inline Box8 lane_in_all(Box8 a, int lane) {
+    alignas(16) float v[4];
+    store(v, a.lo);
+    return all_eight(v[lane]);
+}
+inline Box8 less(Box8 a, Box8 b) {
+    return {bvh2::less(a.lo, b.lo), bvh2::less(a.neg_hi, b.neg_hi)};
+}
+inline uint32_t first_of(Box8 mask) {
+    return any(mask.lo);
+}
+inline Box8 min_unless(Box8 mask, Box8 a, Box8 b) {
+    return min({select(mask.lo, no_box().lo, a.lo), select(mask.neg_hi, no_box().neg_hi, a.neg_hi)}, b);
+}
+inline Box8 min_where(Box8 mask, Box8 a, Box8 b) {
+    return min({select(mask.lo, a.lo, no_box().lo), select(mask.neg_hi, a.neg_hi, no_box().neg_hi)}, b);
 }
 inline void copy(Record* to, const Record& from) {
     store(to->lo, load(from.lo));

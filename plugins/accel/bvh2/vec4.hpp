@@ -57,12 +57,9 @@ inline Vec4 less(Vec4 a, Vec4 b) {
 inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
     return {_mm_or_ps(_mm_and_ps(mask.m, a.m), _mm_andnot_ps(mask.m, b.m))};
 }
-// 1 if any lane of a mask is set, else 0; and a mask of all lanes from that.
+// 1 if any lane of a mask is set, else 0.
 inline uint32_t any(Vec4 mask) {
     return _mm_movemask_ps(mask.m) != 0;
-}
-inline Vec4 all_lanes(uint32_t set) {
-    return {_mm_castsi128_ps(_mm_set1_epi32(-static_cast<int>(set)))};
 }
 // x y z 0, whatever bits the fourth lane held (an integer, say).
 inline Vec4 xyz(Vec4 a) {
@@ -172,9 +169,6 @@ inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
 }
 inline uint32_t any(Vec4 mask) {
     return mask.v[0] + mask.v[1] + mask.v[2] + mask.v[3] != 0.0f;
-}
-inline Vec4 all_lanes(uint32_t set) {
-    return splat(static_cast<float>(set));
 }
 inline Vec4 xyz(Vec4 a) {
     return {{a.v[0], a.v[1], a.v[2], 0.0f}};
