@@ -12,6 +12,7 @@ namespace clarity {
 namespace {
 
 constexpr uint32_t kChunk = 1u << 10;  // triangles that one task copies
+constexpr uint32_t kAhead = 32;        // places that are fetched before they are written
 
 rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
     rt_prim prim;
@@ -60,6 +61,8 @@ void add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt
         rt_prim* const prims = out.prims.data() + prim_at + begin;
         rt_u32* const sources = out.attribute_triangle.data() + first_ref + begin;
         for (rt_u32 i = 0; i < end - begin; ++i) {
+            __builtin_prefetch(leaves + i + kAhead, 1);
+            __builtin_prefetch(prims + i + kAhead, 1);
             // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
             const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i), material != RT_NONE ? material : materials[i],
                                     first_prim + begin + i};

@@ -6,8 +6,6 @@
 namespace bvh2 {
 namespace BVH2_ISA {
 
-constexpr ptrdiff_t kAhead = 64;  // records that are fetched before their turn: a processor alone looks less far ahead
-
 void clear(Bins& bins, uint32_t bin_count) {
     for (uint32_t b = 0; b < bin_count; ++b)
         for (int axis = 0; axis < 3; ++axis) store_box(bins.box[b][axis], no_box());
@@ -44,8 +42,8 @@ void bin(const Record* first, const Record* end, const Slices& slices, Bins& bin
         Bins others[kSets - 1];
         for (Bins& other : others) clear(other, place.count);
         for (; end - r >= kSets; r += kSets) {
-            __builtin_prefetch(r + kAhead);
-            __builtin_prefetch(r + kAhead + 2);
+            fetch(r + kStreamAhead);
+            fetch(r + kStreamAhead + 2);
             bin_one(r[0], place, bins);
             for (ptrdiff_t i = 1; i < kSets; ++i) bin_one(r[i], place, others[i - 1]);
         }
@@ -74,9 +72,7 @@ void find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, uin
         left = left + load_counts(bins.count[b - 1]);
         const Vec4 left_f = to_float(left);
         const Vec4 cost = half_areas(area, box) * left_f + right_area[b] * (all - left_f);
-        const Vec4 better = less(cost, best_cost);
-        best_cost = select(better, cost, best_cost);
-        best_bin = select(better, splat(static_cast<float>(b)), best_bin);
+        bvh2::keep_less(cost, splat(static_cast<float>(b)), best_cost, best_bin);
     }
     alignas(16) float costs[4], planes[4];
     store(costs, best_cost);
@@ -110,7 +106,7 @@ void scatter(const Record* first, const Record* end, const Slices& slices, const
     char* to_left = reinterpret_cast<char*>(left);
     char* to_right = reinterpret_cast<char*>(right);
     for (const Record* at = first; at != end; ++at) {
-        __builtin_prefetch(at + kAhead);
+        fetch(at + kStreamAhead);
         const Box8 centroid = centroid2_box(box_of(*at));
         // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said, where what lies
         // beyond the last slice is in it.
