@@ -13,10 +13,10 @@
 namespace bvh2 {
 
 // Blocks that were given back, the latest last, for the next build: what lies at the end of the heap the system takes and
-// clears anew. Those of scenes up to about 100 000 primitives fit; a scene that is built again asks for the same ones.
+// clears anew. Those of scenes up to about 150 000 primitives fit; a scene that is built again asks for the same ones.
 class SpareScratch {
  public:
-    static constexpr size_t kKept = size_t{16} << 20, kMost = 16;
+    static constexpr size_t kKept = size_t{24} << 20, kMost = 16;
     static constexpr size_t kLeast = size_t{1} << 16;  // smaller ones the heap keeps itself
 
     void* take(size_t bytes) {
@@ -63,7 +63,7 @@ class Scratch {
  public:
     explicit Scratch(uint64_t count) {
         constexpr size_t kLargePage = size_t{1} << 21;
-        const size_t bytes = count * sizeof(T), alignment = bytes < 4 * kLargePage ? 64 : kLargePage;
+        const size_t bytes = count * sizeof(T), alignment = bytes < kLargePage ? 64 : kLargePage;
         bytes_ = (bytes + alignment) / alignment * alignment;
         if (bytes_ >= SpareScratch::kLeast) data_ = SpareScratch::instance().take(bytes_);
         if (data_) return;
