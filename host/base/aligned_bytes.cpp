@@ -11,7 +11,7 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kMapped = 1u << 20;  // from this size on memory is mapped: cleared by whoever touches a page first
+constexpr size_t kMapped = 1u << 17;  // from this size on memory is mapped: cleared by whoever touches a page first
 constexpr size_t kLargePage = 1u << 21, kPage = 1u << 16;  // no machine's ordinary pages are larger than this
 
 // A last large page is worth having when half of it is used.
@@ -64,7 +64,7 @@ class SpareBlocks {
         void* p;
         size_t bytes;
     };
-    static constexpr size_t kMost = 16;
+    static constexpr size_t kMost = 24;
 
     void* remove(size_t i) {
         void* const p = blocks_[i].p;

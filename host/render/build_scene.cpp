@@ -13,6 +13,7 @@ namespace clarity {
 namespace {
 
 constexpr uint32_t kChunk = 1u << 10;  // triangles that one task copies
+constexpr uint32_t kAhead = 32;        // places that are fetched before they are written
 
 rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
     rt_prim prim;
@@ -69,6 +70,8 @@ Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, 
         rt_u32* const sources = out.attribute_triangle.data() + first_ref + begin;
         Row all_lo = {INFINITY, INFINITY, INFINITY, INFINITY}, all_hi = -all_lo;
         for (rt_u32 i = 0; i < end - begin; ++i) {
+            __builtin_prefetch(leaves + i + kAhead, 1);
+            __builtin_prefetch(prims + i + kAhead, 1);
             // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
             const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i), material != RT_NONE ? material : materials[i],
                                     first_prim + begin + i};

@@ -48,11 +48,10 @@ inline Box8 all_eight(float x) {
 inline Box8 load_eight(const float* p) {
     return {_mm256_loadu_ps(p)};
 }
-// Where a < b: a to b and index_a to index_b.
+// Where a < b: a to b and index_a, which is not below any index so far, to index_b.
 inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
-    const __m256 less = _mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ);
-    b.m = _mm256_blendv_ps(b.m, a.m, less);
-    index_b.m = _mm256_blendv_ps(index_b.m, index_a.m, less);
+    index_b.m = _mm256_max_ps(index_b.m, _mm256_and_ps(_mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ), index_a.m));
+    b.m = _mm256_min_ps(a.m, b.m);
 }
 inline Box8 no_box() {
     return {_mm256_set1_ps(FLT_MAX)};
@@ -74,13 +73,23 @@ inline Box8 highest(Box8 a) {
     m = _mm256_max_ps(m, _mm256_permute_ps(m, _MM_SHUFFLE(1, 0, 3, 2)));
     return {_mm256_max_ps(m, _mm256_permute_ps(m, _MM_SHUFFLE(2, 3, 0, 1)))};
 }
-// a < b ? x : y, per lane.
-inline Box8 where_less(Box8 a, Box8 b, Box8 x, Box8 y) {
-    return {_mm256_blendv_ps(y.m, x.m, _mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ))};
+// One of the lower four lanes in all eight.
+inline Box8 lane_in_all(Box8 a, int lane) {
+    return {_mm256_permutevar8x32_ps(a.m, _mm256_set1_epi32(lane))};
 }
-// which ? a : b.
-inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
-    return {_mm256_blendv_ps(b.m, a.m, _mm256_castsi256_ps(_mm256_set1_epi32(-static_cast<int>(which))))};
+// A mask of the lanes where a < b, and 1 or 0: its first lane.
+inline Box8 less(Box8 a, Box8 b) {
+    return {_mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ)};
+}
+inline uint32_t first_of(Box8 mask) {
+    return static_cast<uint32_t>(_mm256_movemask_ps(mask.m)) & 1u;
+}
+// The lesser of a and b, but b where the mask is set, or where it is not. NaN is what a minimum passes over.
+inline Box8 min_unless(Box8 mask, Box8 a, Box8 b) {
+    return {_mm256_min_ps(_mm256_or_ps(a.m, mask.m), b.m)};
+}
+inline Box8 min_where(Box8 mask, Box8 a, Box8 b) {
+    return min_unless({_mm256_xor_ps(mask.m, _mm256_castsi256_ps(_mm256_set1_epi32(-1)))}, a, b);
 }
 inline void copy(Record* to, const Record& from) {
     _mm256_storeu_ps(to->lo, _mm256_loadu_ps(from.lo));
@@ -126,9 +135,8 @@ inline Box8 load_eight(const float* p) {
     return {load_any(p), load_any(p + 4)};
 }
 inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
-    const Vec4 less_lo = less(a.lo, b.lo), less_hi = less(a.neg_hi, b.neg_hi);
-    b = {select(less_lo, a.lo, b.lo), select(less_hi, a.neg_hi, b.neg_hi)};
-    index_b = {select(less_lo, index_a.lo, index_b.lo), select(less_hi, index_a.neg_hi, index_b.neg_hi)};
+    bvh2::keep_less(a.lo, index_a.lo, b.lo, index_b.lo);
+    bvh2::keep_less(a.neg_hi, index_a.neg_hi, b.neg_hi, index_b.neg_hi);
 }
 inline Box8 no_box() {
     return {splat(FLT_MAX), splat(FLT_MAX)};
@@ -147,12 +155,22 @@ inline Box8 highest(Box8 a) {
     store(v, bvh2::max(a.lo, a.neg_hi));
     return all_eight(std::max(std::max(v[0], v[1]), std::max(v[2], v[3])));
 }
-inline Box8 where_less(Box8 a, Box8 b, Box8 x, Box8 y) {
-    return {select(less(a.lo, b.lo), x.lo, y.lo), select(less(a.neg_hi, b.neg_hi), x.neg_hi, y.neg_hi)};
+inline Box8 lane_in_all(Box8 a, int lane) {
+    alignas(16) float v[4];
+    store(v, a.lo);
+    return all_eight(v[lane]);
 }
-inline Box8 choose(uint32_t which, Box8 a, Box8 b) {
-    const Vec4 mask = all_lanes(which);
-    return {select(mask, a.lo, b.lo), select(mask, a.neg_hi, b.neg_hi)};
+inline Box8 less(Box8 a, Box8 b) {
+    return {bvh2::less(a.lo, b.lo), bvh2::less(a.neg_hi, b.neg_hi)};
+}
+inline uint32_t first_of(Box8 mask) {
+    return any(mask.lo);
+}
+inline Box8 min_unless(Box8 mask, Box8 a, Box8 b) {
+    return min({select(mask.lo, no_box().lo, a.lo), select(mask.neg_hi, no_box().neg_hi, a.neg_hi)}, b);
+}
+inline Box8 min_where(Box8 mask, Box8 a, Box8 b) {
+    return min({select(mask.lo, a.lo, no_box().lo), select(mask.neg_hi, a.neg_hi, no_box().neg_hi)}, b);
 }
 inline void copy(Record* to, const Record& from) {
     store(to->lo, load(from.lo));

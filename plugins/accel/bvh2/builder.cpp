@@ -129,6 +129,7 @@ std::vector<Builder::Pending> Builder::load() {
         const rt_prim* prim = input_.prims + input_.groups[chunk.owner].first + (chunk.begin - groups[chunk.owner].range.begin);
         Record* const records = records_[0].data();
         for (uint32_t r = chunk.begin; r < chunk.end; ++r, ++prim) {
+            fetch(prim + kStreamAhead);
             Vec4 lo, neg_hi;
             sound_box(*prim, lo, neg_hi);
             store(records[r].lo, lo);

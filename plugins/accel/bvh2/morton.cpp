@@ -68,6 +68,7 @@ struct MortonOrder::Builder {
         each_chunk(0, count, [&](rt_u32 c, uint32_t begin, uint32_t end) {
             Vec4 lo = splat(FLT_MAX), neg_hi = lo, least = lo, neg_most = lo;
             for (uint32_t i = begin; i < end; ++i) {
+                fetch(prims + i + kStreamAhead);
                 Vec4 prim_lo, prim_neg_hi;
                 sound_box(prims[i], prim_lo, prim_neg_hi);
                 const Vec4 centroid = half_centroid(prim_lo, prim_neg_hi);
@@ -92,6 +93,7 @@ struct MortonOrder::Builder {
             counts[c].fill(0);
             MortonKey* const to = keys(0) + group_begin;
             for (uint32_t i = begin; i < end; ++i) {
+                fetch(prims + i + kStreamAhead);
                 Vec4 lo, neg_hi;
                 sound_box(prims[i], lo, neg_hi);
                 to[i] = curve.place(half_centroid(lo, neg_hi)) << kPositionBits | i;

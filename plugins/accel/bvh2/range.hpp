@@ -32,6 +32,9 @@ struct alignas(32) Record {
     float centroid2(int axis) const { return lo[axis] - neg_hi[axis]; }
 };
 
+// Where many are read one after the other, fetched so many before their turn: by itself a processor looks less far ahead.
+constexpr uint32_t kStreamAhead = 64;
+
 // Part of the primitives that will be one subtree. There are two buffers: a split moves a range from one to the other, which
 // needs neither swaps nor unpredictable branches.
 struct Range {

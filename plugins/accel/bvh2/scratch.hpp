@@ -1,13 +1,60 @@
 // scratch.hpp -- memory that is filled before it is read.
 #pragma once
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
-#include <memory>
+#include <mutex>
 #include <new>
 #ifdef __linux__
 #include <sys/mman.h>
 #endif
 
 namespace bvh2 {
+
+// Blocks that were given back, the latest last, for the next build: what lies at the end of the heap the system takes and
+// clears anew. Those of scenes up to about 150 000 primitives fit; a scene that is built again asks for the same ones.
+class SpareScratch {
+ public:
+    static constexpr size_t kKept = size_t{24} << 20, kMost = 16;
+    static constexpr size_t kLeast = size_t{1} << 16;  // smaller ones the heap keeps itself
+
+    void* take(size_t bytes) {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        for (size_t i = count_; i-- > 0;)
+            if (blocks_[i].bytes == bytes) return remove(i);
+        return nullptr;
+    }
+    void give(void* p, size_t bytes) {
+        if (bytes > kKept) return std::free(p);
+        const std::lock_guard<std::mutex> lock(mutex_);
+        while (count_ == kMost || sum_ + bytes > kKept) std::free(remove(0));
+        blocks_[count_++] = {p, bytes};
+        sum_ += bytes;
+    }
+    // Of the plugin, which is never unloaded; never destroyed.
+    static SpareScratch& instance() {
+        static SpareScratch& spare = *new SpareScratch;
+        return spare;
+    }
+
+ private:
+    struct Block {
+        void* p;
+        size_t bytes;
+    };
+    void* remove(size_t i) {
+        void* const p = blocks_[i].p;
+        sum_ -= blocks_[i].bytes;
+        std::copy(blocks_ + i + 1, blocks_ + count_, blocks_ + i);
+        --count_;
+        return p;
+    }
+
+    std::mutex mutex_;
+    Block blocks_[kMost];
+    size_t count_ = 0, sum_ = 0;
+};
 
 // Memory that nobody clears first: its pages are touched by the threads that fill them, and in large pages where the system has
 // them (the faults of small ones are a tenth of a build).
@@ -16,24 +63,31 @@ class Scratch {
  public:
     explicit Scratch(uint64_t count) {
         constexpr size_t kLargePage = size_t{1} << 21;
-        size_t bytes = count * sizeof(T);
-        const size_t alignment = bytes < 4 * kLargePage ? 64 : kLargePage;
-        bytes = (bytes + alignment) / alignment * alignment;
-        data_.reset(std::aligned_alloc(alignment, bytes));
+        const size_t bytes = count * sizeof(T), alignment = bytes < kLargePage ? 64 : kLargePage;
+        bytes_ = (bytes + alignment) / alignment * alignment;
+        if (bytes_ >= SpareScratch::kLeast) data_ = SpareScratch::instance().take(bytes_);
+        if (data_) return;
+        data_ = std::aligned_alloc(alignment, bytes_);
         if (!data_) throw std::bad_alloc();
 #ifdef __linux__
-        if (alignment == kLargePage) madvise(data_.get(), bytes, MADV_HUGEPAGE);  // advice: may fail
+        if (alignment == kLargePage) madvise(data_, bytes_, MADV_HUGEPAGE);  // advice: may fail
 #endif
     }
+    Scratch(const Scratch&) = delete;
+    Scratch& operator=(const Scratch&) = delete;
+    ~Scratch() {
+        if (bytes_ >= SpareScratch::kLeast)
+            SpareScratch::instance().give(data_, bytes_);
+        else
+            std::free(data_);
+    }
     T* data() const {
-        return static_cast<T*>(data_.get());
+        return static_cast<T*>(data_);
     }
 
  private:
-    struct Free {
-        void operator()(void* p) const { std::free(p); }
-    };
-    std::unique_ptr<void, Free> data_;
+    void* data_ = nullptr;
+    size_t bytes_ = 0;
 };
 
 }  // namespace bvh2

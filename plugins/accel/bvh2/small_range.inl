@@ -70,9 +70,7 @@ inline void split_small(const Record* records, uint32_t count, const Bounds& ran
         for (int axis = 0; axis < 3; ++axis) box[axis] = min(box[axis], unit[split.order[k - 1][axis]]);
         const Vec4 cost =
             areas(box) * splat(static_cast<float>(k)) + right_area[k] * splat(static_cast<float>(count - k));
-        const Vec4 better = less(cost, best_cost);
-        best_cost = select(better, cost, best_cost);
-        best_count = select(better, splat(static_cast<float>(k)), best_count);
+        bvh2::keep_less(cost, splat(static_cast<float>(k)), best_cost, best_count);
     }
     alignas(16) float costs[4], counts[4];
     store(costs, best_cost);

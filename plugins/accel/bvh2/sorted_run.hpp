@@ -43,9 +43,7 @@ inline SortedSubtree sweep(const MortonKey* keys, uint32_t count, const rt_prim*
     };
     SortedSubtree at{};
     for (uint32_t i = 0; i < count; ++i) {
-#ifdef __GNUC__
-        __builtin_prefetch(prims + position(keys[std::min(i + kAhead, count - 1)]));
-#endif
+        fetch(prims + position(keys[std::min(i + kAhead, count - 1)]));
         const rt_prim& prim = prims[position(keys[i])];
         refs[i] = prim.ref;
         sound_box(prim, at.lo, at.neg_hi);

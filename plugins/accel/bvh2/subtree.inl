@@ -168,7 +168,7 @@ void assign_places(Suits suits[], uint32_t count, uint32_t place_of[]) {
         std::memcpy(&tag, values, sizeof tag);
         tag %= kTags;
         place_of[tag / kPlaces] = tag % kPlaces;
-        open = where_less(best_of_place, best, open, all_eight(-FLT_MAX));
+        open = min_unless(less(best_of_place, best), all_eight(-FLT_MAX), open);
         store_box(suits[tag / kPlaces].place, all_eight(-FLT_MAX));
     }
 }

@@ -11,6 +11,15 @@
 
 namespace bvh2 {
 
+// Has memory sent for what will be read.
+inline void fetch(const void* p) {
+#ifdef __GNUC__
+    __builtin_prefetch(p);
+#else
+    (void)p;
+#endif
+}
+
 #ifdef BVH2_SSE2
 
 struct Vec4 {
@@ -57,12 +66,14 @@ inline Vec4 less(Vec4 a, Vec4 b) {
 inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
     return {_mm_or_ps(_mm_and_ps(mask.m, a.m), _mm_andnot_ps(mask.m, b.m))};
 }
-// 1 if any lane of a mask is set, else 0; and a mask of all lanes from that.
+// Where a < b: a to b and index_a, which is not below any index so far, to index_b.
+inline void keep_less(Vec4 a, Vec4 index_a, Vec4& b, Vec4& index_b) {
+    index_b = max(index_b, {_mm_and_ps(less(a, b).m, index_a.m)});
+    b = min(a, b);
+}
+// 1 if any lane of a mask is set, else 0.
 inline uint32_t any(Vec4 mask) {
     return _mm_movemask_ps(mask.m) != 0;
-}
-inline Vec4 all_lanes(uint32_t set) {
-    return {_mm_castsi128_ps(_mm_set1_epi32(-static_cast<int>(set)))};
 }
 // x y z 0, whatever bits the fourth lane held (an integer, say).
 inline Vec4 xyz(Vec4 a) {
@@ -170,11 +181,12 @@ inline Vec4 less(Vec4 a, Vec4 b) {
 inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
     return each_lane([&](int i) { return mask.v[i] != 0.0f ? a.v[i] : b.v[i]; });
 }
+inline void keep_less(Vec4 a, Vec4 index_a, Vec4& b, Vec4& index_b) {
+    index_b = max(index_b, select(less(a, b), index_a, splat(0.0f)));
+    b = min(a, b);
+}
 inline uint32_t any(Vec4 mask) {
     return mask.v[0] + mask.v[1] + mask.v[2] + mask.v[3] != 0.0f;
-}
-inline Vec4 all_lanes(uint32_t set) {
-    return splat(static_cast<float>(set));
 }
 inline Vec4 xyz(Vec4 a) {
     return {{a.v[0], a.v[1], a.v[2], 0.0f}};

@@ -3,6 +3,7 @@
 // bvh8's tree, each box rounded outwards to a grid of 255 steps a node: 80 bytes a node instead of 224, 55 a triangle with the
 // triangle itself, where bvh4 takes 67.
 #include <iterator>
+#include <memory>
 
 #include "compress.hpp"
 #include "compressed_levels.hpp"
