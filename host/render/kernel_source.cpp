@@ -22,8 +22,7 @@ constexpr Member kMembers[] = {
 constexpr unsigned kMostRays = 32768;  // of one generation of a packet: 2.6 MB of private memory
 constexpr unsigned kUsualRays = 8192;
 
-// Turns of a traversal after which a ray is long: an H200's queries gain with 32 to 64, most by this. One in 200 of
-// salle_de_bain's rays is, and of those that any other scene shows fewer, or many that end soon after.
+// Turns of a traversal after which a ray is long. On an H200 32 to 64 serve nearly as well (docs/performance.md).
 constexpr unsigned kPatience = 48;
 
 void define(std::ostream& out, const std::string& name, unsigned value) {
