@@ -168,8 +168,8 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 }
 
 #ifdef RT_TRAVERSE_LONG
-/* Each work-item takes an entry of the stack that all share, the topmost being the nearest, tests the node's children or the leaf, and
- * puts back what is met. While room is short only one is taken: then BVH4_STACK more are enough. */
+/* Each work-item takes an entry of the stack that all share, the topmost being the nearest, tests the node's children or the leaf,
+ * and puts back what is met. While room is short only one is taken: then BVH4_STACK more are enough. */
 void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit, local rt_long_scratch *shared)
 {
     const uint item = (uint)get_local_id(0);
@@ -209,8 +209,9 @@ void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits 
 #endif
         } else if (goes) {
             const global float4 *row = (const global float4 *)(ctx->bvh4_nodes + at);
-            const float4 entries = bvh4_enter(ray, &own, hit->t, row[own.near_x / 16u], row[own.near_y / 16u], row[own.near_z / 16u],
-                                              row[own.far_x / 16u], row[own.far_y / 16u], row[own.far_z / 16u]);
+            const float4 entries =
+                bvh4_enter(ray, &own, hit->t, row[own.near_x / 16u], row[own.near_y / 16u], row[own.near_z / 16u],
+                           row[own.far_x / 16u], row[own.far_y / 16u], row[own.far_z / 16u]);
             const uint4 child = ((const global uint4 *)row)[6];
             float t0 = entries.s0, t1 = entries.s1, t2 = entries.s2, t3 = entries.s3;
             uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
