@@ -33,6 +33,9 @@ typedef struct rt_hits {
 #ifdef RT_DEBUG
     uint overflow;
 #endif
+#ifdef RT_PATIENCE
+    int patience; /* turns of the traversal that are left; negative: it was stopped */
+#endif
 } rt_hits;
 
 /* Counting programs; see CONTRACT.md. The plain ones are not slowed by it: what only feeds these macros is dead code there. */
@@ -46,6 +49,13 @@ typedef struct rt_hits {
 #define RT_COUNT_LEAF(hit) RT_COUNT_LEAVES(hit, 1u)
 /* For traversals that do not know who is in a node: all who are still looking. */
 #define RT_COUNT_STEP(hit) RT_COUNT_VISIT(hit, rt_bits(RT_MASK((hit)->t >= rt_vfloat(0.0f))))
+
+/* Before each turn of a traversal's loop; see CONTRACT.md. */
+#ifdef RT_PATIENCE
+#define RT_MAY_GO_ON(hit) ((hit)->patience-- > 0)
+#else
+#define RT_MAY_GO_ON(hit) 1
+#endif
 
 #define RT_EPS 5.9604645e-8f /* 2^-24, half an ulp of 1 */
 #define RT_WIDE (1.0f + 16.0f * RT_EPS)

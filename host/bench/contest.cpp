@@ -15,9 +15,11 @@
 #include "bench/bench.hpp"
 #include "bench/breakdown.hpp"
 #include "bench/machine.hpp"
+#include "bench/moving.hpp"
 #include "bench/pictures.hpp"
 #include "bench/row.hpp"
 #include "bench/versus.hpp"
+#include "render/accel_choice.hpp"
 #include "render/ray_blocks.hpp"
 
 namespace clarity {
@@ -43,7 +45,8 @@ class Contest {
         for (const Variant& variant : case_.variants)
             for (size_t device = 0; device < stand_.device_count(); ++device) {
                 if (variant.cpu_only && !stand_.device(device).cpu) continue;
-                if (case_.measure == "build" && device > 0) break;  // builders run on the host
+                if (case_.measure == "moving" && stand_.device(device).cpu) continue;  // which copies nothing
+                if (case_.measure == "build" && device > 0) break;                     // builders run on the host
                 add_ours(variant, device);
             }
         if (!case_.peer_qualities.empty() && stand_.peer_threads() > 0 && peers_cannot(*stand_.scene()).empty()) add_peers();
@@ -55,6 +58,7 @@ class Contest {
             rows.push_back(std::move(entry.row));
         }
         compare_with_peers(rows);
+        if (case_.measure == "moving") compare_with_one_by_one(rows);
         return rows;
     }
 
@@ -91,7 +95,8 @@ class Contest {
     void add_ours(const Variant& variant, size_t device) {
         entries_.push_back({make_row(), {}, {}});
         Entry& entry = entries_.back();
-        const Settings settings = variant_settings(plugins_, request_, variant);
+        Settings settings = variant_settings(plugins_, request_, variant);
+        if (variant.accel.empty()) choose_accel(plugins_, usual_accel(plugins_, stand_.device(device).id()), settings);
         const rt_plugin& plugin = *plugins_.accel(settings.accel);
         BenchRecord& row = entry.row;
         row.variant = variant.label;
@@ -122,6 +127,8 @@ class Contest {
                 add_frame(entry, settings, held);
             else if (case_.measure == "whitted")
                 add_whitted(entry, settings, held);
+            else if (case_.measure == "moving")
+                add_moving(entry, settings, held, variant.overlapped);
             else if (case_.measure == "dropped")
                 entry.finish = [=](BenchRecord& r) { count_rays(r, settings, held, stand_.view()); };
             else
@@ -186,6 +193,28 @@ class Contest {
             put_parts(row, *parts);
             count_rays(row, settings, held, view);
             compare(row, held.frames->read_values());
+        };
+    }
+
+    void add_moving(Entry& entry, const Settings& settings, const Stand::Held& held, bool overlapped) {
+        const auto parts = std::make_shared<Parts>();
+        entry.once = [=] {
+            std::vector<KernelTime> times;
+            const Take take = show_moving(*held.frames, *held.prepared, settings, stand_.view(), overlapped, progress_, &times);
+            for (const KernelTime& time : times) (*parts)[time.name].push_back(time.ms);
+            return take;
+        };
+        entry.finish = [=](BenchRecord& row) {
+            put_parts(row, *parts);
+            uint64_t digest = 0;
+            show_moving(*held.frames, *held.prepared, settings, stand_.view(), overlapped, progress_, nullptr, &digest);
+            uint64_t& expected = one_by_one_[same_but_overlapped(row)];
+            if (!overlapped) {
+                expected = digest;
+            } else if (digest != expected) {
+                row.status = RowStatus::refused;
+                row.why = "its pictures are not those that are copied one by one";
+            }
         };
     }
 
@@ -399,6 +428,21 @@ class Contest {
         }
     }
 
+    // Each overlapped row by that of the same structure and device which is not.
+    static void compare_with_one_by_one(std::vector<BenchRecord>& rows) {
+        for (size_t i = 0; i < rows.size(); ++i)
+            for (size_t k = 0; k < i; ++k) {
+                if (rows[i].status != RowStatus::ok || rows[k].fps <= 0 ||
+                    same_but_overlapped(rows[k]) != same_but_overlapped(rows[i]))
+                    continue;
+                rows[i].versus.peer = rows[k].variant;
+                rows[i].versus.ratio = rows[i].fps / rows[k].fps;
+            }
+    }
+    static std::string same_but_overlapped(const BenchRecord& row) {
+        return row.accel + " " + row.accel_params + " " + row.device_id;
+    }
+
     static void derive(BenchRecord& row) {
         if (row.status != RowStatus::ok) return;
         const double ms = row.time_ms.median;
@@ -418,7 +462,8 @@ class Contest {
     std::map<unsigned, std::shared_ptr<const RayBlocks>> packed_;  // the same, by lanes
     std::vector<float> reference_;                                 // distances of the first row that was compared
     std::optional<WhittedScene> whitted_;
-    FloatImage reference_picture_;  // likewise
+    FloatImage reference_picture_;                // likewise
+    std::map<std::string, uint64_t> one_by_one_;  // digests of pictures that are not overlapped
 };
 
 }  // namespace

@@ -292,6 +292,15 @@ class Planner {
                 usual(variant, "size", "3840x2160");
                 usual(variant, "spp", "16");
             }
+            const std::vector<Variant> variants = c.variants;
+            BenchCase& moving = add_case("devices", scene, "moving", "moving");
+            for (Variant variant : variants)
+                for (const bool overlapped : {false, true}) {
+                    variant.label = (variant.accel.empty() ? "" : variant.accel + ", ") +
+                                    std::string(overlapped ? "copied beside the next" : "one by one");
+                    variant.overlapped = overlapped;
+                    moving.variants.push_back(variant);
+                }
         }
     }
 

@@ -33,13 +33,15 @@ struct Variant {
     std::string accel;                                          // ID[,key=value...]
     std::vector<std::pair<std::string, std::string>> settings;  // over those of the request
     bool cpu_only = false;                                      // more lanes than one, or too much private memory
+    bool overlapped = false;                                    // moving: each picture is copied while the next is traced
 };
 
 enum class Timing { timed, counted_only };
 
 struct BenchCase {
     std::string suite, name;
-    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture
+    std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture |
+                          // moving
     size_t scene = 0;     // of Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> peer_qualities;  // of peers, where they can trace the scene

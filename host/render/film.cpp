@@ -68,19 +68,26 @@ RayCounts FilmKernels::sum(const cl::Buffer& counters, unsigned packets, KernelT
     return {sums[0], sums[1], sums[2], sums[3]};
 }
 
-const cl::Buffer& FilmKernels::set_map(cl::Kernel& kernel, const cl::Buffer& film, size_t pixels, const Settings& settings) {
+const cl::Buffer& FilmKernels::own_display(size_t pixels) {
     if (device_->info().cpu) picture_.release();  // it is the display itself
-    const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
+    return display_.fit(device_->context(), room(pixels) * 4);
+}
+
+void FilmKernels::set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::Buffer& display, size_t pixels,
+                          const Settings& settings) {
     kernel.setArg(0, film);
     kernel.setArg(1, display);
     kernel.setArg(2, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce));
     kernel.setArg(3, static_cast<float>(settings.exposure));
     kernel.setArg(4, number_of_tone(settings.tone));
-    return display;
 }
 
 cl::Event FilmKernels::map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings) {
-    set_map(map_tones_, film, pixels, settings);
+    return map_tones(film, own_display(pixels), pixels, settings);
+}
+
+cl::Event FilmKernels::map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings) {
+    set_map(map_tones_, film, display, pixels, settings);
     return run(map_tones_, room(pixels) / kPixelsAtOnce);
 }
 
@@ -93,7 +100,9 @@ cl::Event FilmKernels::run(const cl::Kernel& kernel, size_t items) {
 
 void FilmKernels::show_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
                             unsigned row_height, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times) {
-    const cl::Buffer& display = set_map(map_tones_of_rows_, film, size_t(width) * height, settings);
+    const size_t pixels = size_t(width) * height;
+    const cl::Buffer& display = own_display(pixels);
+    set_map(map_tones_of_rows_, film, display, pixels, settings);
     const size_t bytes = rows.size() * sizeof(rt_u32), row_quads = size_t(width) * row_height / kPixelsAtOnce;
     const cl::Buffer before = rows_.get();
     const cl::Buffer& table = rows_.fit(device_->context(), bytes);

@@ -48,6 +48,8 @@ class FilmKernels {
     cl::Event begin_to_show(const cl::Buffer& film, size_t pixels, const Settings& settings);
     // The film is about to be another.
     void forget_shown() { begun_ = {}; }
+    // Tones alone, into a display of room(pixels) * 4 bytes.
+    cl::Event map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings);
 
  private:
     struct Begun {
@@ -58,8 +60,10 @@ class FilmKernels {
         const uint8_t* rgba = nullptr;  // null: nothing is begun
     };
     cl::Event map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings);
-    // Arguments that both kernels have. Returns the display.
-    const cl::Buffer& set_map(cl::Kernel& kernel, const cl::Buffer& film, size_t pixels, const Settings& settings);
+    // Arguments that both kernels have.
+    static void set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::Buffer& display, size_t pixels,
+                        const Settings& settings);
+    const cl::Buffer& own_display(size_t pixels);
     cl::Event run(const cl::Kernel& kernel, size_t items);
 
     std::shared_ptr<Device> device_;

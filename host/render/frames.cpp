@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "render/bands.hpp"
+#include "render/display_relay.hpp"
 #include "render/film.hpp"
 #include "render/frame_constants.hpp"
 #include "render/guarded.hpp"
@@ -52,10 +53,11 @@ void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const f
 }  // namespace
 
 struct Frames::Impl {
-    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), queries(d), wavefront(d) {}
+    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), relay(d), queries(d), wavefront(d) {}
 
     std::shared_ptr<Device> device;
     FilmKernels film_kernels;
+    DisplayRelay relay;
     RayQueries queries;
     Wavefront wavefront;
     ViewBuffers view;
@@ -68,7 +70,8 @@ struct Frames::Impl {
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
     Launcher launcher;
-    bool looked_at = false;  // the picture before: then this one will be
+    enum class Shown { no, looked_at, exchanged };
+    Shown shown = Shown::no;  // the picture before: then this one will be
     std::vector<uint8_t> false_picture;
     std::vector<float> scratch;  // kept: fresh pages cost more than what is done with them
 
@@ -140,8 +143,14 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         // Who looked at the last picture gets this one by a single wait, not by one for the trace and one for the copy.
         Behind behind;
         im.film_kernels.forget_shown();
-        if (std::exchange(im.looked_at, false) && im.aov == "color" && !shared && !im.device->info().cpu)
-            behind = [&] { return im.film_kernels.begin_to_show(film, pixels, settings); };
+        im.relay.forget_begun();
+        const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
+        if (im.aov == "color" && !shared && !im.device->info().cpu) {
+            if (before == Impl::Shown::looked_at)
+                behind = [&] { return im.film_kernels.begin_to_show(film, pixels, settings); };
+            else if (before == Impl::Shown::exchanged)
+                behind = [&] { return im.relay.begin(im.film_kernels, film, pixels, settings); };
+        }
         LaunchTimes times;
         if (program.is_wavefront()) {
             const auto depth = static_cast<unsigned>(settings.depth);
@@ -279,9 +288,22 @@ const uint8_t* Frames::look_at_display(const Settings& settings, FrameStats* sta
         return im.false_picture.data();
     }
     if (scale) *scale = {};
-    im.looked_at = true;
+    im.shown = Impl::Shown::looked_at;
     return guarded(*im.device, "reading the picture",
                    [&] { return im.film_kernels.show(im.film.get(), pixels, settings, stats ? &stats->kernels : nullptr); });
+}
+
+const uint8_t* Frames::exchange_display(const Settings& settings, FrameStats* stats) {
+    Impl& im = *impl_;
+    im.shown = Impl::Shown::exchanged;
+    return guarded(*im.device, "reading the picture", [&] {
+        return im.relay.exchange(im.film_kernels, im.film.get(), size_t(im.width) * im.height, settings,
+                                 stats ? &stats->kernels : nullptr);
+    });
+}
+
+const uint8_t* Frames::last_display(FrameStats* stats) {
+    return guarded(*impl_->device, "reading the picture", [&] { return impl_->relay.last(stats ? &stats->kernels : nullptr); });
 }
 
 std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

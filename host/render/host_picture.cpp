@@ -25,8 +25,9 @@ const uint8_t* HostPicture::fetch(const cl::Buffer& source, size_t bytes, cl::Ev
     return static_cast<const uint8_t*>(memory_);
 }
 
-const uint8_t* HostPicture::begin(const cl::Buffer& source, size_t bytes, cl::Event* done) {
-    device_->queue().enqueueReadBuffer(source, CL_FALSE, 0, bytes, pinned(bytes), nullptr, done);
+const uint8_t* HostPicture::begin(const cl::Buffer& source, size_t bytes, cl::Event* done,
+                                  const std::vector<cl::Event>& after) {
+    device_->queue().enqueueReadBuffer(source, CL_FALSE, 0, bytes, pinned(bytes), &after, done);
     return static_cast<const uint8_t*>(memory_);
 }
 

@@ -1,6 +1,7 @@
 // host_picture.hpp -- memory of the host that a device writes to without a detour.
 #pragma once
 #include <CL/opencl.hpp>
+#include <vector>
 
 #include "device/device.hpp"
 
@@ -20,8 +21,9 @@ class HostPicture {
     // The first `bytes` of a buffer, when all that is queued is done; stays until the next release(), fetch() or begin().
     // `done` is the copy's event, or none.
     const uint8_t* fetch(const cl::Buffer& source, size_t bytes, cl::Event* done);
-    // The same without waiting: what is returned is there once `done` is. Not for a CPU.
-    const uint8_t* begin(const cl::Buffer& source, size_t bytes, cl::Event* done);
+    // The same without waiting: what is returned is there once `done` is. Not for a CPU. after: waited for first, by the
+    // device.
+    const uint8_t* begin(const cl::Buffer& source, size_t bytes, cl::Event* done, const std::vector<cl::Event>& after = {});
     // So many bytes of pinned memory, which stay where they are until more are wanted. Not for a CPU.
     uint8_t* pinned(size_t bytes);
 

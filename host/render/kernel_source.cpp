@@ -22,6 +22,9 @@ constexpr Member kMembers[] = {
 constexpr unsigned kMostRays = 32768;  // of one generation of a packet: 2.6 MB of private memory
 constexpr unsigned kUsualRays = 8192;
 
+// Turns of a traversal after which a ray is long. On an H200 32 to 64 serve nearly as well (docs/performance.md).
+constexpr unsigned kPatience = 48;
+
 void define(std::ostream& out, const std::string& name, unsigned value) {
     out << "#define " << name << ' ' << value << "u\n";
 }
@@ -68,6 +71,7 @@ struct Template {
     bool cpu;
     bool leaves_twice;  // for measuring what they take
     bool instances;
+    bool long_rays;
 };
 // What a traversal calls leaf tests, and what these are called by the name of theirs: rt_leaf_mesh or rt_leaf_scene.
 struct LeafStep {
@@ -88,6 +92,7 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
     };
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n"
         << "#define RT_TRAVERSE_BUNDLE RT_FN(" << name << "_bundle)\n";
+    if (plugin.long_rays) out << "#define RT_TRAVERSE_LONG RT_FN(" << name << "_long)\n";
     define_int(out, "RT_TRIANGLES_ONLY", !mixed);
     each_step([&](const std::string& macro, const std::string& function) {
         out << "#define " << macro << " RT_FN(" << function << ")\n";
@@ -98,8 +103,8 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
     }
     if (plugin.leaves_twice) {
         each_step([&](const std::string& macro, const std::string& function) {
-            out << "#define " << macro << "_ONCE RT_FN(" << function << ")\n#undef " << macro << "\n#define " << macro << " RT_FN("
-                << function << "_twice)\n";
+            out << "#define " << macro << "_ONCE RT_FN(" << function << ")\n#undef " << macro << "\n#define " << macro
+                << " RT_FN(" << function << "_twice)\n";
         });
         define_int(out, "RT_LEAF_INSTANCES", mixed && plugin.instances);
         include(out, "leaf_twice.h");
@@ -108,10 +113,13 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
     }
     out << "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n#if RT_BUNDLE > 1\n"
            "RT_INLINE void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count);\n"
-           "#endif\n";
+           "#endif\n#ifdef RT_TRAVERSE_LONG\n"
+           "RT_INLINE void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit, "
+           "local rt_long_scratch *shared);\n#endif\n";
     part(out, plugin.file, plugin.text);
     each_step([&](const std::string& macro, const std::string&) { out << "#undef " << macro << "\n"; });
-    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n"
+    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_TRAVERSE_LONG\n#undef RT_LOADED_LEAF\n#undef "
+           "RT_TRIANGLES_ONLY\n"
            "#undef RT_LONE_MIXED\n";
 }
 
@@ -147,6 +155,11 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
                              [](const Material& m) { return m.values.texture != RT_NONE; });
     f.uvs = !scene.uvs.empty() && !build.attribute_triangle.empty();
     return f;
+}
+
+bool takes_long_rays(const rt_plugin& accel) {
+    const rt_cl_file& types = accel.accel->types;
+    return types.text && plugin_kernel_text(accel, types).find("\n#define RT_TRAVERSES_LONG_RAYS\n") != std::string::npos;
 }
 
 Layout make_layout(const Settings& settings, bool cpu) {
@@ -235,6 +248,12 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
             kernel_file = "tracers/rays.cl";
             source.entry = "trace_rays";
             break;
+        case KernelKind::long_rays:
+            define_int(out, "RT_PATIENCE", kPatience);
+            define(out, "RT_LONG_ITEMS", kLongItems);
+            kernel_file = "tracers/long_rays.cl";
+            source.entry = "trace_short";
+            break;
         case KernelKind::inspect:
             out << "#define RT_INSPECT\n#define RT_COUNT_STEPS\n";
             kernel_file = "tracers/inspect.cl";
@@ -259,7 +278,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "bundle.h");
     context(out, *accel.accel);
     const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
-    Template plugin{file, text, layout.cpu, false, features.instances};
+    Template plugin{file, text, layout.cpu, false, features.instances, kind == KernelKind::long_rays};
     plugin.leaves_twice = frame_part == FramePart::closest_twice || frame_part == FramePart::whole_closest_twice;
     query(out, false, features, plugin);
     plugin.leaves_twice = frame_part == FramePart::whole_any_twice;
@@ -267,7 +286,8 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "vec.h");
     include(out, "surface.h");
     include(out, "camera.h");
-    if (kind == KernelKind::rays || kind == KernelKind::counted_rays) include(out, "ray_blocks.h");
+    if (kind == KernelKind::rays || kind == KernelKind::counted_rays || kind == KernelKind::long_rays)
+        include(out, "ray_blocks.h");
     if (shades) include(out, "material.h");
     if (queues)
         for (const char* name : {"ray_queue.h", "inspect.h"}) include(out, name);

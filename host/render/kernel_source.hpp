@@ -15,8 +15,9 @@ struct SceneFeatures {
 };
 SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 
-// generations: the tracer of color, whose picture is how many generations of rays each pixel has.
-enum class KernelKind { color, generations, aov, rays, counted_rays, inspect };
+// long_rays: of one lane, where takes_long_rays(). generations: the tracer of color, whose picture is how many generations of
+// rays each pixel has.
+enum class KernelKind { color, generations, aov, rays, counted_rays, long_rays, inspect };
 
 // How much of a frame a program of kind `color` does; see frame_parts.hpp. The first three are its beginning: the film alone,
 // camera rays, their nearest hits. twice: leaf tests are done twice, which changes no picture.
@@ -42,6 +43,10 @@ struct Layout {
 // settings: packet and lanes resolved. Throws Error(usage) if packet x ray_slots asks for more private memory than devices
 // have.
 Layout make_layout(const Settings& settings, bool cpu);
+
+// Whether a plugin's traversal lets go of rays and takes one by many work-items (long_rays.cl).
+bool takes_long_rays(const rt_plugin& accel);
+constexpr unsigned kLongItems = 32;  // as many as a warp has
 
 constexpr const char* kWavefrontEntry = "trace_wavefront";  // of its several kernels the one that traces
 

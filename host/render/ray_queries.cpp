@@ -6,6 +6,24 @@
 
 namespace clarity {
 
+LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout,
+                                      size_t blocks, bool any_hit, cl_uint fields, const cl::Buffer& in,
+                                      const cl::Buffer& out) {
+    cl::Kernel kernel = program.kernel();
+    cl_uint at = 0;
+    kernel.setArg(at++, view_.frame());
+    const cl_uint first_group = at++;
+    kernel.setArg(at++, static_cast<cl_uint>(blocks));
+    kernel.setArg(at++, static_cast<cl_uint>(any_hit));
+    kernel.setArg(at++, fields);
+    kernel.setArg(at++, in);
+    kernel.setArg(at++, out);
+    view_.bind(*prepared.on_device, kernel, at);
+    const size_t in_group = size_t(layout.group_packets()) * layout.blocks();
+    const size_t groups = (blocks + in_group - 1) / in_group;
+    return launcher_.run(device_->queue(), kernel, first_group, static_cast<unsigned>(groups), layout.local_size(), [] {});
+}
+
 double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
     return guarded(*device_, "tracing rays", [&] {
         if (hits) hits->clear();
@@ -20,7 +38,16 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
                                : query.brief   ? RT_ANSWER_NEAREST
                                                : RT_ANSWER_ALL;
         const size_t slots = rays.block_count() * layout.lanes;
-        const KernelKind kind = query.count ? KernelKind::counted_rays : KernelKind::rays;
+        const Asked asked{prepared.on_device, prepared.program, rays.block_count(), query.any_hit, query.count};
+        if (!(asked == last_)) {
+            last_ = asked;
+            way_ = {};
+            launcher_.forget();
+            long_rays_.forget();
+        }
+        const bool has_choice = !query.count && layout.lanes == 1 && !layout.cpu && takes_long_rays(*prepared.accel->plugin);
+        const bool in_two = has_choice && way_.takes_second();
+        const KernelKind kind = query.count ? KernelKind::counted_rays : in_two ? KernelKind::long_rays : KernelKind::rays;
         const KernelSource source =
             assemble_kernel(prepared.settings, layout, kind, features_of(*prepared.scene, prepared.accel->scene),
                             *prepared.accel->plugin, prepared.accel->defines);
@@ -32,25 +59,10 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
         // Before every run, though it be the same again: then a CPU's caches are as warm each time.
         queue.enqueueWriteBuffer(in, CL_TRUE, 0, rays.floats().size() * sizeof(float), rays.floats().data());
-
-        cl::Kernel kernel = program->kernel();
-        cl_uint at = 0;
-        kernel.setArg(at++, view_.frame());
-        const cl_uint first_group = at++;
-        kernel.setArg(at++, static_cast<cl_uint>(rays.block_count()));
-        kernel.setArg(at++, static_cast<cl_uint>(query.any_hit));
-        kernel.setArg(at++, fields);
-        kernel.setArg(at++, in);
-        kernel.setArg(at++, out);
-        view_.bind(*prepared.on_device, kernel, at);
-        // A pace is that of one program on one scene; with it, what is short is one launch.
-        if (program != last_program_ || prepared.on_device != last_scene_) launcher_.forget();
-        last_program_ = program;
-        last_scene_ = prepared.on_device;
-        const size_t in_group = size_t(layout.group_packets()) * layout.blocks();
-        const size_t groups = (rays.block_count() + in_group - 1) / in_group;
         const LaunchTimes times =
-            launcher_.run(queue, kernel, first_group, static_cast<unsigned>(groups), layout.local_size(), [] {});
+            in_two ? long_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), query.any_hit, fields, in, out)
+                   : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
+        if (has_choice) way_.took(times.device_ms);
         if (hits) {
             std::vector<float> answers(slots * fields);
             queue.enqueueReadBuffer(out, CL_TRUE, 0, answers.size() * sizeof(float), answers.data());

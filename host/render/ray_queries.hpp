@@ -1,6 +1,10 @@
 // ray_queries.hpp -- rays of the caller's own through the traversals that pictures use.
 #pragma once
+#include <tuple>
+
+#include "render/kernel_source.hpp"
 #include "render/launch.hpp"
+#include "render/long_rays.hpp"
 #include "render/ray_blocks.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
@@ -10,19 +14,34 @@ namespace clarity {
 
 class RayQueries {
  public:
-    explicit RayQueries(std::shared_ptr<Device> device) : device_(device), programs_(device) {}
+    explicit RayQueries(std::shared_ptr<Device> device) : device_(device), programs_(device), long_rays_(device) {}
     // Returns what the kernel took, ms by the device's clock. hits: null: the answers stay on the device. Throws Error(failed)
     // if the rays were packed for other lanes.
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
 
  private:
+    LaunchTimes trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout, size_t blocks,
+                              bool any_hit, cl_uint fields, const cl::Buffer& in, const cl::Buffer& out);
+
     std::shared_ptr<Device> device_;
     ProgramCache programs_;  // counting and plain ones
     ViewBuffers view_;
     Launcher launcher_;
-    std::shared_ptr<const TraceProgram> last_program_;
-    std::shared_ptr<const DeviceScene> last_scene_;
-    GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_WRITE_ONLY};
+    LongRays long_rays_;
+    // A pace is that of one program on one scene, with which what is short is one launch, and so is the faster way.
+    struct Asked {
+        std::shared_ptr<const DeviceScene> scene;
+        std::shared_ptr<const TraceProgram> program;  // of pictures: it goes with the settings
+        size_t blocks = 0;
+        bool any_hit = false, count = false;
+        bool operator==(const Asked& o) const {
+            return std::tie(scene, program, blocks, any_hit, count) ==
+                   std::tie(o.scene, o.program, o.blocks, o.any_hit, o.count);
+        }
+    };
+    Asked last_;
+    FasterWay way_;
+    GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
 };
 
 }  // namespace clarity

@@ -155,6 +155,11 @@ class Frames {
     // The same in memory of this object's, which a device fills several times as fast as the caller's; it stays until the next
     // call of read_display(), look_at_display() or trace().
     const uint8_t* look_at_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
+    // Colours, picture after picture: hands in the one traced last, which is copied while the next is traced, and gives the one
+    // handed in before it, with the times that one took; null the first time. It stays until the next trace(). last_display()
+    // gives what was handed in last, for which it waits; then it begins anew.
+    const uint8_t* exchange_display(const Settings& settings, FrameStats* stats = nullptr);
+    const uint8_t* last_display(FrameStats* stats = nullptr);
 
     // Rays of the caller's own, for tests and benches.
     std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

@@ -144,7 +144,7 @@ TEST_F(BenchCommand, DevicesShareAPicture) {
     EXPECT_EQ(list[1]["threads"], list[0]["threads"].get<int>() * 2);
     EXPECT_TRUE(list[0]["versus"].is_null());
     EXPECT_GT(list[1]["versus"]["ratio"], 0) << "times as fast as one";
-    EXPECT_NE(result.out.find("x one device"), std::string::npos) << result.out;
+    EXPECT_NE(result.out.find("x the first"), std::string::npos) << result.out;
 }
 
 TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {

@@ -127,6 +127,43 @@ TEST_P(Failures, ALaunchThatIsRefused) {
     }
 }
 
+// Pictures that follow one another, on a CPU that says it is a GPU, so that copies have a queue of their own.
+TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
+    DeviceInfo info = device_->info();
+    info.cpu = false;
+    info.gpu = true;
+    const auto device = std::make_shared<Device>(info);
+    Settings small = small_;
+    small.lanes = small.packet_w = small.packet_h = 1;
+    Preparer preparer(Workbench::get().plugins(), device);
+    Frames frames(device);
+    const auto prepared = preparer.prepare(scene_, small, progress_);
+    const auto show = [&] {
+        frames.trace(*prepared, small, view_, 0, false, progress_);
+        return frames.exchange_display(small);
+    };
+    show();
+    const ByteImage truth = frames.read_display(small);
+    for (int launch = 0; launch < 12; ++launch) {
+        faults.launches_left = launch;
+        bool failed = false;
+        try {
+            show();
+        } catch (const Error& error) {
+            failed = true;
+            EXPECT_EQ(error.code(), Exit::failed) << error.what();
+        }
+        faults = {};
+        for (int picture = 0; picture < 3; ++picture) show();
+        EXPECT_TRUE(std::equal(truth.pixels.begin(), truth.pixels.end(), frames.last_display())) << "launch " << launch;
+        show();
+        if (!failed) {
+            EXPECT_GT(launch, 1) << "a picture of so few launches?";
+            return;
+        }
+    }
+}
+
 INSTANTIATE_TEST_SUITE_P(Tracers, Failures, ::testing::Values("iterative", "wavefront"));
 
 }  // namespace

@@ -29,7 +29,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     }
 #endif
     const bvh4_ray own = bvh4_prepare(ray);
-    while (at != BVH4_DONE) {
+    while (at != BVH4_DONE && RT_MAY_GO_ON(hit)) {
         const uint is_leaf = at >> 31, first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
         /* Rows a, b, c of a node's near planes or of the first triangle; d, e, f of its far planes or of the second. */
         float4 a, b, c, d, e, f;
@@ -166,3 +166,72 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     }
 #endif
 }
+
+#ifdef RT_TRAVERSE_LONG
+/* Each work-item takes an entry of the stack that all share, the topmost being the nearest, tests the node's children or the leaf,
+ * and puts back what is met. While room is short only one is taken: then BVH4_STACK more are enough. */
+void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit, local rt_long_scratch *shared)
+{
+    const uint item = (uint)get_local_id(0);
+    const bvh4_ray own = bvh4_prepare(ray);
+    if (item == 0u) {
+        shared->stack[0] = BVH4_ENTRY(0.0f, root);
+        shared->put[0] = 0u;
+        shared->nearest = as_uint(hit->t);
+    }
+    barrier(CLK_LOCAL_MEM_FENCE);
+    for (uint top = 1u, turn = 0u; top != 0u; turn ^= 1u) {
+        const uint room = (uint)max(1, ((int)BVH4_LONG_STACK - (int)(BVH4_STACK + top)) / 3);
+        const uint taken = min(min(top, RT_LONG_ITEMS), room);
+        const ulong entry = shared->stack[top - 1u - min(item, taken - 1u)];
+        const float nearest = as_float(shared->nearest);
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (item == 0u) shared->put[turn ^ 1u] = 0u;
+        top -= taken;
+#if RT_ANY_HIT
+        const bool goes = item < taken && nearest != 0.0f;
+        if (nearest == 0.0f) top = 0u;
+#else
+        const bool goes = item < taken && as_float((uint)(entry >> 32)) <= nearest;
+        if (nearest < hit->t) { /* another's; what is as near must still be found, for the lower number wins */
+            hit->t = as_float(as_uint(nearest) + 1u);
+            hit->prim = hit->leaf = hit->instance = -1;
+        }
+#endif
+        const uint at = (uint)entry;
+        if (goes && (at & BVH4_LEAF)) {
+            const uint first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
+            for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
+#if RT_ANY_HIT
+            if (hit->t < 0.0f) atomic_min(&shared->nearest, 0u);
+#else
+            if (hit->leaf != -1) atomic_min(&shared->nearest, as_uint(hit->t));
+#endif
+        } else if (goes) {
+            const global float4 *row = (const global float4 *)(ctx->bvh4_nodes + at);
+            const float4 entries =
+                bvh4_enter(ray, &own, hit->t, row[own.near_x / 16u], row[own.near_y / 16u], row[own.near_z / 16u],
+                           row[own.far_x / 16u], row[own.far_y / 16u], row[own.far_z / 16u]);
+            const uint4 child = ((const global uint4 *)row)[6];
+            float t0 = entries.s0, t1 = entries.s1, t2 = entries.s2, t3 = entries.s3;
+            uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
+            bvh4_order(&t0, &child0, &t1, &child1);
+            bvh4_order(&t2, &child2, &t3, &child3);
+            bvh4_order(&t0, &child0, &t2, &child2);
+            bvh4_order(&t1, &child1, &t3, &child3);
+            bvh4_order(&t1, &child1, &t2, &child2);
+            const uint more = (t0 < INFINITY ? 1u : 0u) + (t1 < INFINITY ? 1u : 0u) + (t2 < INFINITY ? 1u : 0u) +
+                              (t3 < INFINITY ? 1u : 0u);
+            if (more != 0u) {
+                local ulong *to = shared->stack + top + atomic_add(&shared->put[turn], more);
+                if (t3 < INFINITY) *to++ = BVH4_ENTRY(t3, child3);
+                if (t2 < INFINITY) *to++ = BVH4_ENTRY(t2, child2);
+                if (t1 < INFINITY) *to++ = BVH4_ENTRY(t1, child1);
+                *to = BVH4_ENTRY(t0, child0);
+            }
+        }
+        barrier(CLK_LOCAL_MEM_FENCE);
+        top += shared->put[turn];
+    }
+}
+#endif

@@ -25,6 +25,16 @@ typedef struct bvh4_node {
 #ifdef __OPENCL_VERSION__
 #if RT_LANES == 1
 
+#define RT_TRAVERSES_LONG_RAYS
+#ifdef RT_PATIENCE
+#define BVH4_LONG_STACK (BVH4_STACK + 512u)
+typedef struct rt_long_scratch {
+    ulong stack[BVH4_LONG_STACK];
+    uint put[2];  /* entries put back in this turn and in the next */
+    uint nearest; /* bits of the distance; any hit: 0 once there is one */
+} rt_long_scratch;
+#endif
+
 #define BVH4_DONE 0xFFFFFFFFu /* in place of a child: the stack is empty */
 
 /* Of floats, by the order of their bits: the same where either is not negative, and the compiler makes one instruction of two of

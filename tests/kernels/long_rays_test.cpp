@@ -1,0 +1,96 @@
+// long_rays_test.cpp -- rays of the caller's own in one launch and in two: which it is, is found out by trying, so the same
+// rays are asked for as often as it takes to see both.
+#include "render/long_rays.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "support/generated.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+constexpr unsigned kTries = 6;
+constexpr rt_u32 kLong = 64;  // turns: a node or two triangles each
+
+// Towards the rubble from all around, straight and askew, some reaching only half of the way, some inactive.
+std::vector<rt_ray> rays_at_rubble() {
+    std::vector<rt_ray> rays;
+    for (int i = 0; i < 3000; ++i) {
+        const float a = 0.7f * float(i), b = 1.9f * float(i), x = 6 * std::sin(a), y = 2 * std::cos(b), z = 6 * std::cos(a);
+        const float tx = 2 * std::sin(3 * b), ty = 2 * std::cos(5 * a), tz = 2 * std::sin(7 * a);
+        const float dx = tx - x, dy = i % 5 ? ty - y : 0, dz = tz - z, length = std::sqrt(dx * dx + dy * dy + dz * dz);
+        const float reach = i % 11 == 5 ? -1.0f : i % 7 == 3 ? 6.5f : INFINITY;
+        rays.push_back({{x, y, z}, 0, {dx / length, dy / length, dz / length}, reach});
+    }
+    return rays;
+}
+
+// Many times over at one place, so that rays meet the same distances again and again, and pass by more than they hit.
+ScenePtr heap() {
+    Scene scene = *rubble();
+    for (int i = 0; i < 8; ++i) {
+        Instance more = scene.instances[0];
+        more.world_from_object[3] = 0.01f * float(i / 2);
+        scene.instances.push_back(more);
+    }
+    scene.spheres.push_back({{0.3f, 0.2f, 0.1f}, 0.4f, 0});
+    scene.planes.push_back({{0, 1, 0}, -1.5f, 0});
+    return shared_scene(scene);
+}
+
+void expect_same_each_time(const ScenePtr& scene) {
+    const std::vector<rt_ray> rays = rays_at_rubble();
+    const Settings settings = make_settings({{"accel", "bvh4"}, {"lanes", "1"}, {"packet", "1x1"}, {"portable", "true"}});
+    const auto counted = Workbench::get().rays(scene, settings, rays, RayQuery{false, true});
+    EXPECT_GT(
+        std::count_if(counted.begin(), counted.end(), [](const rt_hit& hit) { return hit.steps + hit.leaf_tests / 2 > kLong; }),
+        10);
+    for (const bool brief : {false, true})
+        for (unsigned i = 0; i < kTries; ++i) {
+            const auto hits = Workbench::get().rays(scene, settings, rays, RayQuery{false, false, brief});
+            ASSERT_EQ(hits.size(), rays.size());
+            for (size_t k = 0; k < rays.size(); ++k) {
+                ASSERT_EQ(hits[k].t, counted[k].t) << "try " << i << ", ray " << k;
+                ASSERT_EQ(hits[k].prim, counted[k].prim) << "try " << i << ", ray " << k;
+                if (brief) continue;
+                ASSERT_EQ(hits[k].u, counted[k].u) << "try " << i << ", ray " << k;
+                ASSERT_EQ(hits[k].v, counted[k].v) << "try " << i << ", ray " << k;
+                ASSERT_EQ(hits[k].instance, counted[k].instance) << "try " << i << ", ray " << k;
+            }
+        }
+    for (unsigned i = 0; i < kTries; ++i) {
+        const auto shadows = Workbench::get().rays(scene, settings, rays, RayQuery{true});
+        for (size_t k = 0; k < rays.size(); ++k)
+            ASSERT_EQ(shadows[k].t, counted[k].prim >= 0 ? 0 : INFINITY) << "try " << i << ", ray " << k;
+    }
+}
+
+}  // namespace
+
+TEST(LongRays, AreThoseOfOneLaunch) {
+    expect_same_each_time(rubble());
+}
+
+TEST(LongRays, AreThoseOfOneLaunchWithInstances) {
+    expect_same_each_time(heap());
+}
+
+TEST(FasterWay, TakesTheLeastTimeOfEachButTheFirst) {
+    for (const bool second : {false, true}) {
+        FasterWay way;
+        for (int i = 0; i < 8; ++i) {
+            const bool better = (i % 2 == 1) == second;
+            EXPECT_EQ(way.takes_second(), i % 2 == 1);
+            way.took(i < 2 ? (better ? 9 : 1) : i < 4 ? 50 : better ? 2 : 3);
+        }
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_EQ(way.takes_second(), second);
+            way.took(second ? 100 : 0);
+        }
+    }
+}
