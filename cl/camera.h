@@ -87,7 +87,7 @@ RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt
     r->t_min = rt_vfloat(0.0f);
 }
 
-#if RT_BUNDLE > 1
+#if RT_BUNDLE > 1 && !RT_HAS_PLANES
 /* Whether no camera ray of a packet comes to the bounds of all but planes: by intervals of the directions, not yet of unit length,
  * which are affine in the pixels and so lie between those of the packet's corners. */
 RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
@@ -148,6 +148,20 @@ RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
 #endif
 #ifdef RT_DEBUG
     h->overflow = 0;
+#endif
+}
+
+/* A packet that sees nothing but background, if it is one: its pixels, and the distances of its camera rays, block by block. */
+RT_INLINE bool rt_only_background(const constant rt_frame *frame, uint2 origin, float4 *sums, global float *distance)
+{
+#if RT_BUNDLE > 1 && !RT_HAS_PLANES
+    if (!rt_packet_misses(frame, origin)) return false;
+    const float4 background = (float4)(frame->background[0], frame->background[1], frame->background[2], 1.0f);
+    for (uint i = 0; i < RT_PACKET_W(frame) * RT_PACKET_H(frame); ++i) sums[i] = background;
+    for (uint i = 0; frame->sample == 0u && i < RT_BLOCKS(frame); ++i) rt_store(RT_INFINITY, distance + i * RT_LANES);
+    return true;
+#else
+    return false;
 #endif
 }
 

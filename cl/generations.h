@@ -84,12 +84,8 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
 {
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), capacity = pixels * RT_RAY_SLOTS;
     uint count = RT_BLOCKS(frame) * RT_LANES; /* the first generation is made, not stored */
-#if RT_BUNDLE > 1 && !RT_HAS_PLANES && !defined(RT_SHOW_GENERATIONS)
-    if (rt_packet_misses(frame, origin)) {
-        for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(frame->background[0], frame->background[1], frame->background[2], 1.0f);
-        for (uint i = 0; frame->sample == 0u && i < count; i += RT_LANES) rt_store(RT_INFINITY, distance + i);
-        return;
-    }
+#ifndef RT_SHOW_GENERATIONS
+    if (rt_only_background(frame, origin, sums, distance)) return;
 #endif
     for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     for (uint generation = 0; generation < frame->depth && count != 0u; ++generation) {

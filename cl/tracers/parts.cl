@@ -13,7 +13,12 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
         for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
-        RT_FOR_BUNDLES(base, 0u, blocks) {
+#if RT_PART >= 1
+        const bool empty = rt_only_background(frame, origin, sums, distances + (size_t)number * blocks * RT_LANES);
+#else
+        const bool empty = false;
+#endif
+        RT_FOR_BUNDLES(base, 0u, empty ? 0u : blocks) {
             const uint count = RT_BUNDLE_OF(blocks - base);
             rt_rays rays[RT_BUNDLE];
             rt_hits hits[RT_BUNDLE];

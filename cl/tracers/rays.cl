@@ -27,7 +27,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 if (!rt_any(active[b])) continue;
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
                 rt_prepare_for_boxes(ray + b);
-#if !RT_HAS_PLANES
+#if !RT_HAS_PLANES && !defined(RT_COUNT_STEPS) /* whose counts are of the tree, from its root on */
                 active[b] &= rt_enter_scene(frame, ray + b, t_max);
                 if (!rt_any(active[b])) continue;
 #endif

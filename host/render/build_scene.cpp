@@ -277,8 +277,8 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
             if (!identity) out.flattened.push_back(static_cast<rt_u32>(i));
-            const Bounds bounds = add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object, instance.material,
-                                                next_prim, next_ref, static_cast<rt_u32>(i), at, out);
+            const Bounds bounds = add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object,
+                                                instance.material, next_prim, next_ref, static_cast<rt_u32>(i), at, out);
             if (!bounds.empty) {
                 out.bounds.add(bounds.min.data());
                 out.bounds.add(bounds.max.data());

@@ -1,7 +1,9 @@
 // independence_test.cpp -- a picture is the same whatever structure, lane count, packet and tracer computed it.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <random>
 
 #include "support/scenes.hpp"
 
@@ -67,6 +69,52 @@ TEST(Independence, TexturedShowpiece) {
         lanes = lanes == 16 ? 8 : 16;
     }
     expect_same_pictures("scenes/showpiece.scene", some, 240, 180);
+}
+
+// Packets of camera rays that see nothing of a scene are filled without being traced. Lost would be what stands at the edge of
+// one.
+TEST(Independence, WhatPacketsHardlySee) {
+    auto bounded = std::make_shared<Scene>(*geometry_of(load_scene(source_file("scenes/primitives.scene"))));
+    bounded->planes.clear();  // of which there would be something to see everywhere
+    const ScenePtr scene = bounded;
+    const Bounds box = scene->bounds();
+    const std::array<float, 3> middle = {(box.min[0] + box.max[0]) / 2, (box.min[1] + box.max[1]) / 2,
+                                         (box.min[2] + box.max[2]) / 2};
+    const float size = box.diagonal();
+    std::mt19937 random(21);
+    std::normal_distribution<float> normal;
+    std::uniform_real_distribution<float> any(0, 1);
+    Settings one = make_settings({{"size", "190x150"}, {"depth", "1"}}), many = one;
+    Configuration{"bvh8", 1, 1, 1}.apply(one);
+    Configuration{"bvh8", 16, 16, 16}.apply(many);
+    size_t seen = 0, empty = 0;
+    for (int i = 0; i < 60; ++i) {
+        View view = make_view(*scene, float(one.width) / one.height);
+        // Within, near and far; looking at it, past it, and away; along the axes too.
+        const float distance = size * std::pow(10.0f, 3 * any(random) - 1.5f);
+        std::array<float, 3> away{normal(random), normal(random), normal(random)};
+        if (i % 4 == 0) away = {i % 8 ? 0.0f : 1.0f, i % 8 ? 1.0f : 0.0f, 0.0f};
+        const float length = std::hypot(away[0], away[1], away[2]);
+        for (int k = 0; k < 3; ++k) {
+            view.camera.eye[k] = middle[k] + distance / length * away[k];
+            view.camera.target[k] = middle[k] + (i % 3 == 0 ? 0 : 0.7f * std::min(distance, 3 * size)) * normal(random);
+        }
+        view.camera.fov_y_rad = 0.02f + 2.5f * any(random) * any(random);
+        const auto distances = [&](const Settings& settings) {
+            bench().trace(scene, settings, view);
+            return bench().frames().read_distance();
+        };
+        const FloatImage alone = distances(one), together = distances(many);
+        ASSERT_EQ(alone.pixels.size(), together.pixels.size());
+        size_t different = 0;
+        for (size_t p = 0; p < alone.pixels.size(); ++p) {
+            different += std::isfinite(alone.pixels[p]) != std::isfinite(together.pixels[p]);
+            ++(std::isfinite(alone.pixels[p]) ? seen : empty);
+        }
+        EXPECT_EQ(different, 0u) << "view " << i << ": pixels in which only one of them sees anything";
+    }
+    EXPECT_GT(seen, 100000u);
+    EXPECT_GT(empty, 100000u);
 }
 
 // Sizes that no packet divides, down to a single pixel.

@@ -26,10 +26,11 @@ constexpr rt_cl_file kTypes = rt::file(kFiles, "bvh8_types.h"), kTraversal = rt:
 constexpr int kIncoherent = kOwnParams;
 enum Incoherent { kAuto, kPackets, kSingle };
 constexpr const char* kIncoherentWays[] = {"auto", "packets", "single", nullptr};
-// Measured with diffuse rays and frames on a CPU of 1 MiB L2 (docs/performance.md): of fourteen models the twelve of up to
-// 100'000 triangles are traced as fast or faster together, one of 300'000 either way, those of a million alone, up to 1.5
-// times as fast.
-constexpr uint64_t kTogether = 200'000;  // primitives
+// About where a tree outgrows a core's own cache, measured with diffuse rays and frames (docs/performance.md). With 2 MiB of it
+// and a slow third one (Sapphire Rapids) models of up to 70'000 triangles are traced faster together, those of 86'000 and
+// 100'000 as fast from close by and 1.1 to 1.3 times as fast alone from afar, those of a million 1.2 to 1.6 times as fast
+// alone.
+constexpr uint64_t kTogether = 75'000;  // primitives
 // Leaves of the kernels' own measure: four triangles are tested by one ray at the price of one, and a packet's bounds spare it
 // most leaves. Against leaves of four at a cost of 1, measured over the twelve views of the suite `cpu`: diffuse rays 1.05
 // times as fast, shadow rays 1.07, primary rays 1.03, nodes a third fewer.
