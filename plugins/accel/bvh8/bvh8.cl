@@ -422,7 +422,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_rays *rays, rt_hits *hits, uint members)
 {
     const ulong near_x = BVH8_NEAR(octant, 0), near_y = BVH8_NEAR(octant, 1), near_z = BVH8_NEAR(octant, 2);
-    vmask alive[RT_LANES];
+    vmask alive[RT_LANES]; /* none in the place of a packet that is no member: a member's rays stand in for its own */
     const rt_rays *member[RT_LANES];
     vfloat each[RT_LANES], slow[3], fast[3], in[3], out[3];
     uint wide = 0;
@@ -435,6 +435,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
         each[p] = t;
     }
     vfloat t_far = rt_greatest_each(each);
+    /* ox, oy, oz lie side by side, and so do ix, iy, iz. */
 #define BVH8_GREATEST(sign, field)                                                                                               \
     __attribute__((opencl_unroll_hint(RT_LANES)))                                                                                \
     for (uint p = 0; p < RT_LANES; ++p) each[p] = rt_select(alive[p], sign(&member[p]->field)[axis], rt_vfloat(-MAXFLOAT));
@@ -448,7 +449,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
         BVH8_GREATEST(-, ix)
         const vfloat i_lo = -rt_greatest_each(each);
         const bool turned = (octant >> axis & 1u) != 0u;
-        wide |= rt_bits(RT_MASK(o_lo != o_hi) | RT_MASK(i_hi - i_lo > 0.25f * fabs(i_lo)));
+        wide |= rt_bits(RT_MASK(o_lo != o_hi) | RT_MASK(i_hi - i_lo > 0.25f * fabs(i_lo))); /* as BVH8_WIDE */
         slow[axis] = turned ? i_hi : i_lo;
         fast[axis] = turned ? i_lo : i_hi;
         in[axis] = BVH8_DOWN(-(turned ? o_lo : o_hi) * slow[axis]);
