@@ -151,13 +151,18 @@ RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
 #endif
 }
 
+RT_INLINE void rt_fill_with_background(const constant rt_frame *frame, float4 *sums)
+{
+    const float4 background = (float4)(frame->background[0], frame->background[1], frame->background[2], 1.0f);
+    for (uint i = 0; i < RT_PACKET_W(frame) * RT_PACKET_H(frame); ++i) sums[i] = background;
+}
+
 /* A packet that sees nothing but background, if it is one: its pixels, and the distances of its camera rays, block by block. */
 RT_INLINE bool rt_only_background(const constant rt_frame *frame, uint2 origin, float4 *sums, global float *distance)
 {
 #if RT_BUNDLE > 1 && !RT_HAS_PLANES
     if (!rt_packet_misses(frame, origin)) return false;
-    const float4 background = (float4)(frame->background[0], frame->background[1], frame->background[2], 1.0f);
-    for (uint i = 0; i < RT_PACKET_W(frame) * RT_PACKET_H(frame); ++i) sums[i] = background;
+    rt_fill_with_background(frame, sums);
     for (uint i = 0; frame->sample == 0u && i < RT_BLOCKS(frame); ++i) rt_store(RT_INFINITY, distance + i * RT_LANES);
     return true;
 #else

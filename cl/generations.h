@@ -164,7 +164,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
             }
 #if RT_BUNDLE > 1 && !defined(RT_SHOW_GENERATIONS)
             if (any_hit == 0u && blocks <= RT_BUNDLE && generation == 0u) { /* nothing but background */
-                for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(frame->background[0], frame->background[1], frame->background[2], 1.0f);
+                rt_fill_with_background(frame, sums);
                 break;
             }
 #endif

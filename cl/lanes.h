@@ -113,16 +113,6 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #define RT_INFINITY ((vfloat)(INFINITY))
 
-/* A mask of which the compiler is told nothing: what is worked out from it is not done ahead of where it stands. Left to itself it
- * prepares in every packet what only rays that part will need. Where a mask is one register; elsewhere it does no harm. */
-#if defined(RT_PORTABLE) || !defined(__x86_64__)
-#define RT_OPAQUE(mask) ((void)0)
-#elif RT_LANES == 4 || (RT_LANES == 8 && defined(__AVX__)) || (RT_LANES == 16 && defined(__AVX512F__))
-#define RT_OPAQUE(mask) __asm__("" : "+x"(mask))
-#else
-#define RT_OPAQUE(mask) ((void)0)
-#endif
-
 /* The greatest lane, as a scalar. */
 #if RT_LANES == 1
 #define rt_greatest(v) (v)

@@ -22,24 +22,20 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 t_max = rt_load_reach(rays, base + b);
 #endif
                 active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
-#if RT_BUNDLE > 1 /* where few rays meet anything, most of what a packet takes is to prepare it */
+                if (RT_BUNDLE == 1) rt_clear_hits(hit + b, active[b]); /* else there is an answer for blocks without rays */
                 hit[b].t = rt_vfloat(-1.0f);
                 if (!rt_any(active[b])) continue;
+#if RT_LANES > 1
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
+#endif
                 rt_prepare_for_boxes(ray + b);
-#if !RT_HAS_PLANES && !defined(RT_COUNT_STEPS) /* whose counts are of the tree, from its root on */
+                /* Where few rays meet anything, most of what a bundle takes is to prepare it. Counts are of the tree, from its root on. */
+#if RT_BUNDLE > 1 && !RT_HAS_PLANES && !defined(RT_COUNT_STEPS)
                 active[b] &= rt_enter_scene(frame, ray + b, t_max);
                 if (!rt_any(active[b])) continue;
 #endif
                 rt_prepare_for_triangles(ray + b, rt_bits(active[b]));
-                rt_clear_hits(hit + b, active[b]);
-#else
-#if RT_LANES > 1
-                rt_load_ray_block(rays, base + b, ray + b, &t_max);
-#endif
-                rt_clear_hits(hit + b, active[b]);
-                rt_prepare(ray + b, rt_bits(active[b]));
-#endif
+                if (RT_BUNDLE > 1) rt_clear_hits(hit + b, active[b]);
                 hit[b].t = rt_select(active[b], t_max, rt_vfloat(-1.0f));
             }
             if (any_hit)

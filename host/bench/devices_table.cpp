@@ -39,8 +39,7 @@ std::string devices_table(const BenchReport& report) {
     }
     return table.empty() ? std::string()
                          : "devices: a picture with all its samples, from the call to the pixels on the host, medians, or one "
-                           "of a hundred "
-                           "while the camera moves; kernels' times are the slowest device's\n" +
+                           "of a hundred while the camera moves; kernels' times are the slowest device's\n" +
                                table.text(26) + "\n";
 }
 
