@@ -63,12 +63,27 @@ RT_INLINE void rt_mark_pixels(float value, vint pixel, uint bits, float4 *marks)
 }
 #endif
 
+/* The light of a block of camera rays, the first that its pixels get: by rows of four where blocks have them. */
+RT_INLINE void rt_begin_pixels(const constant rt_frame *frame, rt_vec light, vint pixel, uint bits, float4 *sums)
+{
+    float4 lanes[RT_LANES];
+    int at[RT_LANES];
+    rt_store_lanes(light, 1.0f, lanes);
+    rt_store(pixel, at);
+    if (bits == RT_ALL_LANES && frame->block_w_log2 >= 2u)
+        for (uint l = 0; l < RT_LANES; l += 4u)
+            for (uint x = 0; x < 4u; ++x) sums[at[l] + (int)x] = lanes[l + x];
+    else
+        for (uint l = 0; l < RT_LANES; ++l)
+            if (bits >> l & 1u) sums[at[l]] = lanes[l];
+}
+
 /* Adds each lane's light to its pixel, one by one: two lanes may belong to the same. */
 RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float4 *sums)
 {
     float4 lanes[RT_LANES];
     int at[RT_LANES];
-    rt_store_lanes(light, lanes);
+    rt_store_lanes(light, 0.0f, lanes);
     rt_store(pixel, at);
     if (bits == RT_ALL_LANES)
         for (uint l = 0; l < RT_LANES; ++l) sums[at[l]] += lanes[l];
@@ -87,7 +102,6 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
 #ifndef RT_SHOW_GENERATIONS
     if (rt_only_background(frame, origin, sums, distance)) return;
 #endif
-    for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
     for (uint generation = 0; generation < frame->depth && count != 0u; ++generation) {
         const rt_queue *current = queues + (generation & 1u);
         rt_queue *next = queues + (1u - (generation & 1u));
@@ -180,7 +194,10 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                 rt_mark_pixels((float)(generation + 1u), pixels_of[b], bits, sums);
 #else
                 const rt_vec seen = rt_any(points[b].hits) ? rt_choose(points[b].hits, light[b], behind) : behind;
-                rt_add_to_pixels(rt_mul(weights[b], seen), pixels_of[b], bits, sums);
+                if (generation == 0u)
+                    rt_begin_pixels(frame, seen, pixels_of[b], bits, sums);
+                else
+                    rt_add_to_pixels(rt_mul(weights[b], seen), pixels_of[b], bits, sums);
 #endif
             }
         }

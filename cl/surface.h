@@ -96,6 +96,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_ATTRIBUTES
         if (kind == RT_REF_TRIANGLE) {
             const global rt_triangle *tri = ctx->triangles + RT_REF_INDEX(leaf->ref);
+            __attribute__((opencl_unroll_hint(3))) /* in registers: cleared in halves and read whole, arrays were waited for */
             for (uint i = 0; i < 3u; ++i) {
 #if RT_HAS_NORMALS
                 normal[i] = rt_choose(mine, rt_spread(ctx->normals + 3u * tri->v[i]), normal[i]);

@@ -30,17 +30,17 @@ RT_INLINE rt_vec rt_choose(vmask m, rt_vec a, rt_vec b)
 /* 1 / length; finite also for a null vector. */
 RT_INLINE vfloat rt_inverse_length(rt_vec a) { return rt_vfloat(1.0f) / sqrt(rt_max(rt_dot(a, a), rt_vfloat(1e-36f))); }
 RT_INLINE rt_vec rt_normalize(rt_vec a) { return rt_scale(rt_inverse_length(a), a); }
-/* Lane by lane: x, y, z and 0. */
+/* Lane by lane: x, y, z and w. */
 #if RT_LANES == 16 && defined(__clang__)
-RT_INLINE void rt_store_lanes(rt_vec v, float4 *out)
+RT_INLINE void rt_store_lanes(rt_vec v, float w, float4 *out)
 {
     /* Within quarters of the register, where shuffles are cheapest: lanes l, l + 4, l + 8 and l + 12 become a vector. */
 #define RT_EVEN(a, b) __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29)
 #define RT_ODD(a, b) __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31)
 #define RT_FIRST(a, b) __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29)
 #define RT_SECOND(a, b) __builtin_shufflevector(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31)
-    const float16 none = (float16)(0.0f);
-    const float16 xy_even = RT_EVEN(v.x, v.y), xy_odd = RT_ODD(v.x, v.y), z_even = RT_EVEN(v.z, none), z_odd = RT_ODD(v.z, none);
+    const float16 all_w = (float16)(w);
+    const float16 xy_even = RT_EVEN(v.x, v.y), xy_odd = RT_ODD(v.x, v.y), z_even = RT_EVEN(v.z, all_w), z_odd = RT_ODD(v.z, all_w);
     const float16 four[4] = {RT_FIRST(xy_even, z_even), RT_SECOND(xy_even, z_even), RT_FIRST(xy_odd, z_odd), RT_SECOND(xy_odd, z_odd)};
     for (uint l = 0; l < 4u; ++l) {
         out[l] = four[l].s0123;
@@ -54,13 +54,13 @@ RT_INLINE void rt_store_lanes(rt_vec v, float4 *out)
 #undef RT_SECOND
 }
 #else
-RT_INLINE void rt_store_lanes(rt_vec v, float4 *out)
+RT_INLINE void rt_store_lanes(rt_vec v, float w, float4 *out)
 {
     float x[RT_LANES], y[RT_LANES], z[RT_LANES];
     rt_store(v.x, x);
     rt_store(v.y, y);
     rt_store(v.z, z);
-    for (uint l = 0; l < RT_LANES; ++l) out[l] = (float4)(x[l], y[l], z[l], 0.0f);
+    for (uint l = 0; l < RT_LANES; ++l) out[l] = (float4)(x[l], y[l], z[l], w);
 }
 #endif
 RT_INLINE vfloat rt_largest(rt_vec a) { return rt_max(a.x, rt_max(a.y, a.z)); }

@@ -6,13 +6,12 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
 {
     RT_CTX_INIT(ctx);
     const uint group = first_group + (uint)get_group_id(0);
-    const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), blocks = RT_BLOCKS(frame);
+    const uint packet_w = RT_PACKET_W(frame), blocks = RT_BLOCKS(frame);
     float4 sums[RT_MAX_PIXELS];
     RT_FOR_PACKETS(frame, packet)
     {
         const uint2 origin = rt_packet_origin(frame, group, packet);
         const uint number = group * RT_GROUP_PACKETS(frame) + packet;
-        for (uint i = 0; i < pixels; ++i) sums[i] = (float4)(0.0f, 0.0f, 0.0f, 1.0f);
 #if RT_PART >= 1
         const bool empty = rt_only_background(frame, origin, sums, distances + (size_t)number * blocks * RT_LANES);
 #else
@@ -55,7 +54,7 @@ trace_parts(const constant rt_frame *frame, const uint first_group, global float
                 light.y += hit->v;
 #endif
 #endif
-                rt_add_to_pixels(light, in_y * rt_vint((int)packet_w) + in_x, bits, sums);
+                rt_begin_pixels(frame, light, in_y * rt_vint((int)packet_w) + in_x, bits, sums);
             }
         }
         rt_put_pixels(frame, origin, sums, film);

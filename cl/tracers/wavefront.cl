@@ -117,7 +117,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
         if (mine != 0u) {
             float4 light[RT_LANES];
             int at[RT_LANES];
-            rt_store_lanes(sum, light);
+            rt_store_lanes(sum, 0.0f, light);
             rt_store(pixel, at);
             for (uint l = 0; l < RT_LANES; ++l) {
                 if ((mine >> l & 1u) == 0u) continue;

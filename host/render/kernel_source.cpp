@@ -206,8 +206,9 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     define_int(out, "RT_HAS_POLYGONS", features.polygons);
     define_int(out, "RT_HAS_PLANES", features.planes);
     define_int(out, "RT_HAS_NORMALS", features.normals);
-    define_int(out, "RT_HAS_UVS", features.uvs);
-    define_int(out, "RT_HAS_ATTRIBUTES", features.normals || features.uvs);
+    const bool uvs = features.uvs && (features.textures || kind == KernelKind::aov);  // who else would look
+    define_int(out, "RT_HAS_UVS", uvs);
+    define_int(out, "RT_HAS_ATTRIBUTES", features.normals || uvs);
     define_int(out, "RT_HAS_TEXTURES", features.textures);
     if (settings.portable) out << "#define RT_PORTABLE\n";
     if (settings.debug) out << "#define RT_DEBUG\n";

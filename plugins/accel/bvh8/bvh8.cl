@@ -239,11 +239,13 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
 /* The rays of `lanes` from `at` down, each on its own way but all by turns: while one waits, for memory as much as for arithmetic,
  * the others' work goes on, and what a turn does with a node is free of branches that depend on the ray. A turn looks for
  * candidates in all leaves that rays have come to, enters all nodes, tests the candidates, then sends on the rays that have met a
- * leaf or the end of their way. What lies beyond the nearest hit is passed over eight entries at a time. Children come in the
- * order of their slots: ordering them by their distances would save a node in thirty and cost more.
+ * leaf, or that must pass over what lies beyond their nearest hit: eight entries at a time. A ray leaves a node for what is then
+ * on top of its stack, a child or what was put off before. Children come in the order of their slots: ordering them by their
+ * distances would save a node in thirty and cost more. Of a node's turn 80 instructions are left, each a hundredth of frames'
+ * time by turns: so nodes and leaves are found alike, without a choice, and lists grow by their ends.
  *
  * Puts what was hit into `hit`, all of it as bvh8_lone_begin() found it or better. */
-RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint at, uint lanes, const rt_rays *ray, rt_hits *hit)
+RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint root, uint lanes, const rt_rays *ray, rt_hits *hit)
 {
     const rt_lone_rays *rays = &s->rays;
     float *const entry = s->entry;
@@ -251,72 +253,89 @@ RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint at, uint lanes, 
     /* Lanes: at nodes and at leaves, now and next; in leaves with candidates; to be sent on. One more is written than counts. */
     uint nodes[2][RT_LANES + 1], leaves[2][RT_LANES + 1], tests[RT_LANES + 1], candidates[RT_LANES + 1], pops[RT_LANES + 1];
     uint code[RT_LANES];
-    uint node_count = 0, leaf_count = 0;
+    const global char *at[RT_LANES];
+    const global char *const begin[2] = {(const global char *)ctx->bvh8_nodes, (const global char *)ctx->leaves};
+    const ulong size[2] = {sizeof(bvh8_node), sizeof(rt_leaf)};
 #define BVH8_GO_ON(l, to, alive)                                                                                                 \
     {                                                                                                                            \
         const uint is_leaf = (to) >> 31;                                                                                         \
-        bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, to);                                                                         \
+        const global char *const next = begin[is_leaf] + BVH8_LEAF_FIRST(to) * size[is_leaf];                                    \
+        bvh8_prefetch_at((ulong)next);                                                                                           \
         code[l] = to;                                                                                                            \
-        next_nodes[node_count] = l;                                                                                              \
-        node_count += (alive) & ~is_leaf;                                                                                        \
-        next_leaves[leaf_count] = l;                                                                                             \
-        leaf_count += (alive)&is_leaf;                                                                                           \
+        at[l] = next;                                                                                                            \
+        *node_end = l;                                                                                                           \
+        node_end += (alive) & ~is_leaf;                                                                                          \
+        *leaf_end = l;                                                                                                           \
+        leaf_end += (alive)&is_leaf;                                                                                             \
     }
-    uint *next_nodes = nodes[0], *next_leaves = leaves[0];
+    uint *node_end = nodes[0], *leaf_end = leaves[0];
     for (uint bits = lanes; bits != 0u; bits &= bits - 1u) {
         const uint l = rt_lowest(bits);
-        BVH8_GO_ON(l, at, 1u)
+        BVH8_GO_ON(l, root, 1u)
     }
-    for (uint turn = 0; node_count + leaf_count != 0u; ++turn) {
-        const uint *now_nodes = nodes[turn & 1u], *now_leaves = leaves[turn & 1u];
-        const uint now_node_count = node_count, now_leaf_count = leaf_count;
-        uint test_count = 0, pop_count = 0;
-        next_nodes = nodes[~turn & 1u], next_leaves = leaves[~turn & 1u];
-        node_count = leaf_count = 0;
-        for (uint i = 0; i < now_leaf_count; ++i) {
-            const uint l = now_leaves[i], first = BVH8_LEAF_FIRST(code[l]), count = BVH8_LEAF_COUNT(code[l]);
+    for (uint turn = 0;; ++turn) {
+        const uint *const now_nodes_end = node_end, *const now_leaves_end = leaf_end;
+        const uint *now_node = nodes[turn & 1u], *now_leaf = leaves[turn & 1u];
+        if (now_node == now_nodes_end && now_leaf == now_leaves_end) break;
+        uint test_count = 0, *pop_end = pops;
+        node_end = nodes[~turn & 1u], leaf_end = leaves[~turn & 1u];
+        for (; now_leaf != now_leaves_end; ++now_leaf) {
+            const uint l = *now_leaf, first = BVH8_LEAF_FIRST(code[l]), count = BVH8_LEAF_COUNT(code[l]);
             RT_COUNT_LEAVES(hit, count);
             const uint bits = RT_LONE_CANDIDATES(ctx, first, count, rays, l);
-            pops[pop_count++] = l;
+            *pop_end++ = l;
             tests[test_count] = l;
             candidates[test_count] = bits;
             test_count += bits != 0u ? 1u : 0u;
         }
-        for (uint i = 0; i < now_node_count; ++i) {
+        for (; now_node != now_nodes_end; ++now_node) {
             RT_COUNT_VISIT(hit, 1u);
-            const uint l = now_nodes[i];
-            const global char *node = (const global char *)(ctx->bvh8_nodes + code[l]);
-            const long x = s->near_x[l], y = s->near_y[l], z = s->near_z[l];
+            const uint l = *now_node;
+            const global char *const node = at[l];
             const float8 ix = (float8)(rays->ix[l]), iy = (float8)(rays->iy[l]), iz = (float8)(rays->iz[l]);
-            const float8 ax = fma(ix, BVH8_ROW(node, x), (float8)(rays->near_x[l]));
-            const float8 ay = fma(iy, BVH8_ROW(node, y), (float8)(rays->near_y[l]));
-            const float8 az = fma(iz, BVH8_ROW(node, z), (float8)(rays->near_z[l]));
-            const float8 bx = fma(ix, BVH8_ROW(node, 96 - x), (float8)(rays->far_x[l]));
-            const float8 by = fma(iy, BVH8_ROW(node, 160 - y), (float8)(rays->far_y[l]));
-            const float8 bz = fma(iz, BVH8_ROW(node, 224 - z), (float8)(rays->far_z[l]));
+            const float8 ax = fma(ix, BVH8_ROW(node, (long)s->near_x[l]), (float8)(rays->near_x[l]));
+            const float8 ay = fma(iy, BVH8_ROW(node, (long)s->near_y[l]), (float8)(rays->near_y[l]));
+            const float8 az = fma(iz, BVH8_ROW(node, (long)s->near_z[l]), (float8)(rays->near_z[l]));
+            const float8 bx = fma(ix, BVH8_ROW(node, (long)s->far_x[l]), (float8)(rays->far_x[l]));
+            const float8 by = fma(iy, BVH8_ROW(node, (long)s->far_y[l]), (float8)(rays->far_y[l]));
+            const float8 bz = fma(iz, BVH8_ROW(node, (long)s->far_z[l]), (float8)(rays->far_z[l]));
             const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(rays->t_min[l])));
             const float8 out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(s->hits.t[l]));
             const uint base = top[l];
-            uint count = bvh8_put_off(in, out, node, s->order[l], entry + base, child + base);
+#if RT_ANY_HIT
+            uint count = bvh8_put_off_any(in, out, node, child + base);
+#else
+            uint count = bvh8_put_off(in, out, node, s->slots + l, entry + base, child + base);
+#endif
             if (!RT_STACK_OK(base + count - l * BVH8_ROOM, BVH8_BELOW + BVH8_STACK + 2u, hit)) count = 0;
-            const uint some = count != 0u ? 1u : 0u, last = base + count - some;
+            const uint last = base + count - 1u;
             top[l] = last;
-            BVH8_GO_ON(l, child[last], some)
-            pops[pop_count] = l;
-            pop_count += 1u - some;
+#if RT_ANY_HIT
+            BVH8_GO_ON(l, child[last], 1u)
+#else
+            const uint in_reach = entry[last] <= s->hits.t[l] ? 1u : 0u;
+            BVH8_GO_ON(l, child[last], in_reach)
+            *pop_end = l;
+            pop_end += 1u - in_reach;
+#endif
         }
         for (uint i = 0; i < test_count; ++i) {
             const uint l = tests[i];
             RT_LONE_TEST(ctx, BVH8_LEAF_FIRST(code[l]), candidates[i], rays, l, &s->hits, ray, hit);
         }
-        for (uint i = 0; i < pop_count; ++i) {
-            const uint l = pops[i];
+        for (const uint *pop = pops; pop != pop_end; ++pop) {
+            const uint l = *pop;
+#if RT_ANY_HIT
+            const uint from = top[l] - 1u;
+            const uint alive = (s->hits.t[l] >= 0.0f ? 1u : 0u) & (from >= l * BVH8_ROOM + BVH8_BELOW ? 1u : 0u);
+#else
             const float8 t = (float8)(s->hits.t[l]);
             uint from = top[l] - 8u, open;
             while ((open = BVH8_BITS(vload8(0, entry + from) <= t)) == 0u) from -= 8u;
             from += 31u - (uint)clz(open);
-            top[l] = from;
             const uint alive = from >= l * BVH8_ROOM + BVH8_BELOW ? 1u : 0u;
+#endif
+            top[l] = from;
             BVH8_GO_ON(l, child[from], alive)
         }
     }
@@ -477,8 +496,9 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
     uint place = 0, inside = members;
     bool is_root = true;
 #if RT_ANY_HIT
-    /* Order is worth little, so there is a queue between the stack and its reader. */
-    uint top = 0, coming[BVH8_AHEAD], coming_packets[BVH8_AHEAD], first_coming = 0, ahead = 0;
+    /* Order is worth little, so there is a queue between the stack and its reader, nothing is sorted, and of who is done with a
+     * packet one bit is enough. */
+    uint searching = members, top = 0, coming[BVH8_AHEAD], coming_packets[BVH8_AHEAD], first_coming = 0, ahead = 0;
 #else
     /* Nodes keep their order, but their leaves are tested after the next node: lists of now and of then. */
     uint top = BVH8_LISTS, list = 0, list_end = 0, fresh = BVH8_WIDTH, fresh_end = BVH8_WIDTH;
@@ -506,8 +526,12 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
             for (uint i = 0; i < count_candidates; ++i) {
                 const uint p = candidates[i] / 8u;
                 RT_LEAF_TEST(ctx, first + candidates[i] % 8u, rays + p, hits + p);
+#if RT_ANY_HIT
+                searching &= ~((rt_any(RT_MASK(hits[p].t >= rt_vfloat(0.0f))) ? 0u : 1u) << p);
+#else
                 few_t_far[p] = rt_greatest(hits[p].t);
                 t_far = rt_select(RT_MASK(rt_lane_index() == rt_vint((int)p)), rt_vfloat(few_t_far[p]), t_far);
+#endif
             }
         } else {
             for (uint doubt = is_root ? 0u : inside & wide; doubt != 0u; doubt &= doubt - 1u) {
@@ -531,6 +555,9 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
 #undef BVH8_FEW
                 const float8 in = rt_max(rt_max(ax, ay), rt_max(az, (float8)(0.0f)));
                 found = BVH8_BITS(in <= rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(few_t_far[p])));
+#if RT_ANY_HIT
+                for (uint rest = found; rest != 0u; rest &= rest - 1u) enters[rt_lowest(rest)] = inside;
+#else
                 float ins[BVH8_WIDTH];
                 vstore8(in, 0, ins);
                 for (uint rest = found; rest != 0u; rest &= rest - 1u) {
@@ -538,6 +565,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                     ((float *)(entry + i))[p] = ins[i];
                     enters[i] = inside;
                 }
+#endif
             } else {
                 __attribute__((opencl_unroll_hint(BVH8_WIDTH)))
                 for (uint i = 0; i < BVH8_WIDTH; ++i) {
@@ -550,19 +578,25 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                     found |= (enters[i] != 0u ? 1u : 0u) << i;
                 }
             }
-#define BVH8_PUT_BY(to, some) bvh8_put_by(&waiting, to, ctx->bvh8_nodes, ctx->leaves, at, some, entry, enters, rt_lowest(inside))
 #if RT_ANY_HIT
-            const uint stacked = found;
+            for (; found != 0u; found &= found - 1u) {
+                const uint i = rt_lowest(found);
+                bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, ctx->bvh8_nodes[at].child[i]);
+                waiting.place[top] = at * BVH8_WIDTH + i;
+                waiting.packets[top] = enters[i];
+                if (RT_STACK_OK(top + 1u, BVH8_PLACES + 1u, hits)) ++top;
+            }
 #else
+#define BVH8_PUT_BY(to, some) bvh8_put_by(&waiting, to, ctx->bvh8_nodes, ctx->leaves, at, some, entry, enters, rt_lowest(inside))
             const uint leaves = found & BVH8_BITS(*(const global int8 *)(node + 192) < (int8)(0)); /* BVH8_LEAF */
             const uint stacked = found ^ leaves;
             if (leaves != 0u) fresh_end = BVH8_PUT_BY(fresh, leaves);
-#endif
             if (stacked != 0u) {
                 const uint end = BVH8_PUT_BY(top, stacked);
                 if (RT_STACK_OK(end, BVH8_PLACES + 1u, hits)) top = end;
             }
 #undef BVH8_PUT_BY
+#endif
         }
 
 #if RT_ANY_HIT
@@ -570,7 +604,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
             --top;
             const uint last = (first_coming + ahead) % BVH8_AHEAD;
             coming[last] = waiting.place[top];
-            coming_packets[last] = BVH8_STILL(top);
+            coming_packets[last] = waiting.packets[top] & searching;
             ahead += coming_packets[last] != 0u ? 1u : 0u;
         }
         if (ahead == 0u) return;

@@ -67,13 +67,16 @@ RT_INLINE uint bvh8_bits(int8 m)
 #define BVH8_KEY(entry, child, i) ((ulong)as_uint((entry)[i]) << 32 | (child)[i])
 /* Asks for what will be read at a node or leaf, four lines of the cache, ahead of its turn: packets trace trees larger than a
  * core's cache a sixth faster for it. */
-RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf *leaves, uint at)
+RT_INLINE void bvh8_prefetch_at(ulong lines)
 {
 #if RT_CPU && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
-    const ulong lines = at & BVH8_LEAF ? (ulong)(leaves + BVH8_LEAF_FIRST(at)) : (ulong)(nodes + at);
     __attribute__((opencl_unroll_hint(4)))
     for (uint i = 0; i < 256u; i += 64u) __builtin_prefetch((const void *)(lines + i));
 #endif
+}
+RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf *leaves, uint at)
+{
+    bvh8_prefetch_at(at & BVH8_LEAF ? (ulong)(leaves + BVH8_LEAF_FIRST(at)) : (ulong)(nodes + at));
 }
 #if RT_LANES > 1
 /* Whether a packet whose rays start far apart is parted. Where rays that part go together it gains nothing. */
@@ -152,14 +155,16 @@ RT_INLINE uint bvh8_put_by(bvh8_waiting *waiting, uint top, const global bvh8_no
 }
 
 /* Rays of a packet that go their own ways, and what each has put off: children in the order in which they were met, the next one
- * on top, and where the ray enters them. Below each stack lie entries that end every search in it. 60 KB at most. */
-#define BVH8_BELOW 8u
-#define BVH8_ROOM (BVH8_BELOW + BVH8_STACK + 16u) /* eight more are written than count; no multiple of a page's size apart */
+ * on top, and where the ray enters them. Below each stack lie entries that end every search in it, for eight at a time and one
+ * that is taken untested. 60 KB at most. */
+#define BVH8_BELOW 9u
+#define BVH8_ROOM (BVH8_BELOW + BVH8_STACK + 15u) /* eight more are written than count; no multiple of a page's size apart */
 typedef struct bvh8_lone {
     rt_lone_rays rays;
     rt_lone_hits hits;
     int near_x[RT_LANES], near_y[RT_LANES], near_z[RT_LANES]; /* rows of a node in bytes, as the ray meets them */
-    int order[RT_LANES];                                      /* slots i ^ order, i = 0..7, come nearer and nearer */
+    int far_x[RT_LANES], far_y[RT_LANES], far_z[RT_LANES];
+    int8 slots[RT_LANES];                                     /* of a node's children, as the ray meets them: the first last */
     uint top[RT_LANES];                                       /* in the arrays below */
     float entry[RT_LANES * BVH8_ROOM];
     uint child[RT_LANES * BVH8_ROOM];
@@ -172,20 +177,25 @@ RT_INLINE void bvh8_lone_begin(bvh8_lone *s, const rt_rays *ray, const rt_hits *
     rt_store(rt_select(rt_negative(ray->ix), rt_vint(96), rt_vint(0)), s->near_x);
     rt_store(rt_select(rt_negative(ray->iy), rt_vint(128), rt_vint(32)), s->near_y);
     rt_store(rt_select(rt_negative(ray->iz), rt_vint(160), rt_vint(64)), s->near_z);
-    rt_store(~bvh8_octants(ray) & rt_vint(7), s->order);
+    rt_store(rt_select(rt_negative(ray->ix), rt_vint(0), rt_vint(96)), s->far_x);
+    rt_store(rt_select(rt_negative(ray->iy), rt_vint(32), rt_vint(128)), s->far_y);
+    rt_store(rt_select(rt_negative(ray->iz), rt_vint(64), rt_vint(160)), s->far_z);
+    int order[RT_LANES];
+    rt_store(~bvh8_octants(ray) & rt_vint(7), order);
     for (uint l = 0; l < RT_LANES; ++l) {
-        vstore8((float8)(-INFINITY), 0, s->entry + l * BVH8_ROOM);
-        vstore8((uint8)(BVH8_NOTHING), 0, s->child + l * BVH8_ROOM);
+        vstore8((float8)(-INFINITY), 0, s->entry + l * BVH8_ROOM + 1u);
+        vstore8((uint8)(BVH8_NOTHING), 0, s->child + l * BVH8_ROOM + 1u);
         s->top[l] = l * BVH8_ROOM + BVH8_BELOW;
+        s->slots[l] = (int8)(0, 1, 2, 3, 4, 5, 6, 7) ^ (int8)(order[l]);
     }
 }
 #endif
 
-/* The children of a node that a ray enters and where, in the order of slots i ^ order; returns how many. Eight are written. */
-RT_INLINE uint bvh8_put_off(float8 in, float8 out, const global char *node, int order, float *entry, uint *child)
+/* The children of a node that a ray enters and where, in the order of the slots; returns how many. Eight are written. */
+RT_INLINE uint bvh8_put_off(float8 in, float8 out, const global char *node, const int8 *slots, float *entry, uint *child)
 {
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX512VL__)
-    const int8 slot = (int8)(0, 1, 2, 3, 4, 5, 6, 7) ^ (int8)(order);
+    const int8 slot = *slots;
     const float8 from = __builtin_ia32_permvarsf256(in, slot), to = __builtin_ia32_permvarsf256(out, slot);
     const int8 children = __builtin_ia32_permvarsi256(*(const global int8 *)(node + 192), slot);
     const uint bits = BVH8_BITS(from <= to);
@@ -199,10 +209,29 @@ RT_INLINE uint bvh8_put_off(float8 in, float8 out, const global char *node, int 
     const uint bits = BVH8_BITS(in <= out);
     uint count = 0;
     for (uint i = 0; i < BVH8_WIDTH; ++i) {
-        const uint slot = i ^ (uint)order;
+        const uint slot = ((const uint *)slots)[i];
         entry[count] = from[slot];
         child[count] = children[slot];
         count += bits >> slot & 1u;
+    }
+    return count;
+#endif
+}
+
+/* The same where any hit will do: neither where nor in which order matters. */
+RT_INLINE uint bvh8_put_off_any(float8 in, float8 out, const global char *node, uint *child)
+{
+    const uint bits = BVH8_BITS(in <= out);
+#if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX512VL__)
+    const int8 children = *(const global int8 *)(node + 192);
+    vstore8(__builtin_ia32_compresssi256_mask(children, children, (uchar)bits), 0, (int *)child);
+    return popcount(bits);
+#else
+    const global uint *children = (const global uint *)(node + 192);
+    uint count = 0;
+    for (uint i = 0; i < BVH8_WIDTH; ++i) {
+        child[count] = children[i];
+        count += bits >> i & 1u;
     }
     return count;
 #endif
