@@ -138,9 +138,9 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     rt_prepare_for_triangles(r, bits);
 }
 
-/* Whether half of the rays of a packet start more than four triangles away from the first, by the size of those that they start on.
+/* Whether half of the rays of a packet start more than two triangles away from the first, by the size of those that they start on.
  * area: twice that of each ray's. */
-#define RT_SCATTERED 16.0f
+#define RT_SCATTERED 4.0f
 RT_INLINE int rt_scattered(const rt_rays *r, vfloat area, uint bits)
 {
 #if RT_LANES == 1
