@@ -42,6 +42,11 @@ std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_co
         for (size_t i = first; i < end; ++i) {
             const float* block = &answers[i / lanes * lanes * fields] + i % lanes;
             rt_hit& hit = hits[i];
+            if (fields == RT_ANSWER_HIT) {
+                hit = {block[0], block[1], block[2], -1, -1, 0, 0, 0};
+                std::memcpy(&hit.prim, block + 3, sizeof hit.prim);
+                continue;
+            }
             if (fields != RT_ANSWER_ALL) {
                 hit = {*block, 0, 0, -1, -1, 0, 0, 0};
                 if (fields == RT_ANSWER_NEAREST) std::memcpy(&hit.prim, block + lanes, sizeof hit.prim);

@@ -1,6 +1,6 @@
-// long_rays_test.cpp -- rays of the caller's own in one launch and in two: which it is, is found out by trying, so the same
-// rays are asked for as often as it takes to see both.
-#include "render/long_rays.hpp"
+// long_rays_test.cpp -- rays of the caller's own in one launch, in two, and drawn from a queue: which it is, is found out by
+// trying, so the same rays are asked for as often as it takes to see all.
+#include "render/faster_way.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr unsigned kTries = 6;
+constexpr unsigned kTries = 9;
 constexpr rt_u32 kLong = 64;  // turns: a node or two triangles each
 
 // Towards the rubble from all around, straight and askew, some reaching only half of the way, some inactive.
@@ -81,16 +81,23 @@ TEST(LongRays, AreThoseOfOneLaunchWithInstances) {
 }
 
 TEST(FasterWay, TakesTheLeastTimeOfEachButTheFirst) {
-    for (const bool second : {false, true}) {
-        FasterWay way;
-        for (int i = 0; i < 8; ++i) {
-            const bool better = (i % 2 == 1) == second;
-            EXPECT_EQ(way.takes_second(), i % 2 == 1);
-            way.took(i < 2 ? (better ? 9 : 1) : i < 4 ? 50 : better ? 2 : 3);
+    for (const unsigned ways : {1u, 2u, 3u})
+        for (unsigned best = 0; best < ways; ++best) {
+            FasterWay way(ways);
+            for (unsigned i = 0; i < 3 * ways; ++i) {
+                EXPECT_EQ(way.way(), i % ways);
+                const bool better = i % ways == best;
+                way.took(i < ways ? (better ? 9 : 1) : i < 2 * ways ? 50 : better ? 2 : 3);
+            }
+            for (int i = 0; i < 3; ++i) {
+                EXPECT_EQ(way.way(), best);
+                way.took(way.way() == best ? 100 : 0);
+            }
         }
-        for (int i = 0; i < 3; ++i) {
-            EXPECT_EQ(way.takes_second(), second);
-            way.took(second ? 100 : 0);
-        }
-    }
+}
+
+TEST(FasterWay, StaysWithTheFirstForLittle) {
+    FasterWay way(2);
+    for (int i = 0; i < 6; ++i) way.took(i % 2 == 0 ? 100 : 98);
+    EXPECT_EQ(way.way(), 0u);
 }
