@@ -1,5 +1,5 @@
 /* queued_rays.cl -- nearest hits of rays that the host brings, for single rays on a GPU: work-items that are done with a ray draw
- * another while their warp goes on, for rays that part take turns of very different number (Aila, Laine 2009, "Understanding the
+ * another while their warp goes on, for rays that part need very different numbers of turns (Aila, Laine 2009, "Understanding the
  * Efficiency of Ray Traversal on GPUs"). A warp steps through nodes until a third of its rays are at leaves, and then takes those
  * too: it runs both ways where its rays are not at one of them. Rays that keep together lose by either.
  *
@@ -38,9 +38,9 @@ trace_queued(const constant rt_frame *frame, const uint first, const uint end, c
     rt_turn_ray turns;
     rt_hits hit;
     for (;;) {
+        uint next = own[0], next_end = own[1]; /* before the vote, for it is after it that somebody writes them */
         const bool idle = at == RT_TURN_DONE;
         const uint idlers = RT_DRAWING_VOTE(idle);
-        uint next = own[0], next_end = own[1];
         if (next >= next_end && next_end < end) {
             uint from = 0u;
             if (RT_DRAWING_ITEM == 0u) from = atomic_add(queue + turn, share * RT_DRAWING);
@@ -72,7 +72,8 @@ trace_queued(const constant rt_frame *frame, const uint first, const uint end, c
         own[0] = next;
         own[1] = next_end;
         const bool last = next >= next_end && next_end >= end;
-        uint at_nodes = RT_DRAWING_VOTE(!RT_TURN_IS_LEAF(at)), at_leaves = RT_DRAWING_VOTE(RT_TURN_IS_LEAF(at) && at != RT_TURN_DONE);
+        uint at_nodes = RT_DRAWING_VOTE(!RT_TURN_IS_LEAF(at));
+        uint at_leaves = RT_DRAWING_VOTE(RT_TURN_IS_LEAF(at) && at != RT_TURN_DONE);
         if (last && RT_DRAWING_VOTE(mine != RT_NO_RAY) == 0u) break;
         const uint least = last ? 1u : RT_BUSY_LEAST;
         while (popcount(at_nodes | at_leaves) >= least) {

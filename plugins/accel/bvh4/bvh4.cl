@@ -144,8 +144,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
         } else {
             RT_COUNT_VISIT(hit, inside);
-            const global float *numbers = (const global float *)ctx->bvh4_nodes;
-#define BVH4_NUMBER(k) numbers[4u * (size_t)(at ^ (k)) + slot]
+#define BVH4_NUMBER(k) ((const global float *)((ulong)ctx->bvh4_nodes + ((ulong)(at ^ (k)) << 4)))[slot]
             for (uint i = 0; i < 4u; ++i) {
                 const uint slot = i ^ far_first, child = as_uint(BVH4_NUMBER(6u));
                 if (child == BVH4_NOTHING) continue;
