@@ -1,6 +1,7 @@
 #include "render/ray_blocks.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "plugin/host_services.hpp"
@@ -21,6 +22,8 @@ void for_chunks(size_t count, const Work& work) {
 }  // namespace
 
 RayBlocks::RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes) : ray_count_(rays.size()), lanes_(lanes) {
+    static std::atomic<uint64_t> packings{0};
+    packing_ = ++packings;
     floats_.resize(block_count() * lanes * RT_RAY_FIELDS);
     // Places beyond the last ray repeat it, but see nothing: packets judge their rays by neighbours that are alike.
     for_chunks(block_count() * lanes, [&](size_t first, size_t end) {

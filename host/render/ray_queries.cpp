@@ -56,11 +56,15 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const Asked asked{prepared.on_device, prepared.program, rays.block_count(), query.any_hit, query.count, query.brief};
         if (!(asked == last_)) {
             last_ = asked;
-            ways_ = ways_for(*prepared.accel->plugin, layout, query);
-            way_ = FasterWay(static_cast<unsigned>(ways_.size()));
+            packing_ = 0;
             launcher_.forget();
             long_rays_.forget();
             queued_rays_.forget();
+        }
+        if (packing_ != rays.packing()) {
+            packing_ = rays.packing();
+            ways_ = ways_for(*prepared.accel->plugin, layout, query);
+            way_ = FasterWay(static_cast<unsigned>(ways_.size()));
         }
         const KernelKind kind = ways_[way_.way()];
         const KernelSource source =

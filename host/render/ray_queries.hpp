@@ -32,7 +32,7 @@ class RayQueries {
     Launcher launcher_;
     LongRays long_rays_;
     QueuedRays queued_rays_;
-    // A pace is that of one program on one scene, with which what is short is one launch, and so is the fastest way.
+    // A pace is that of one program on one scene, with which what is short is one launch.
     struct Asked {
         std::shared_ptr<const DeviceScene> scene;
         std::shared_ptr<const TraceProgram> program;  // of pictures: it goes with the settings
@@ -44,6 +44,8 @@ class RayQueries {
         }
     };
     Asked last_;
+    // The fastest way is that of the same rays: mirrored ones may want another than diffuse ones.
+    uint64_t packing_ = 0;
     std::vector<KernelKind> ways_;
     FasterWay way_;
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/ray_blocks.hpp"
 #include "support/generated.hpp"
 
 using namespace clarity;
@@ -50,9 +51,15 @@ void expect_same_each_time(const ScenePtr& scene) {
     EXPECT_GT(
         std::count_if(counted.begin(), counted.end(), [](const rt_hit& hit) { return hit.steps + hit.leaf_tests / 2 > kLong; }),
         10);
+    const RayBlocks packed(rays, 1);
+    const auto trace = [&](RayQuery query) {
+        std::vector<rt_hit> hits;
+        Workbench::get().frames().trace_rays(*Workbench::get().prepare(scene, settings), packed, query, &hits);
+        return hits;
+    };
     for (const bool brief : {false, true})
         for (unsigned i = 0; i < kTries; ++i) {
-            const auto hits = Workbench::get().rays(scene, settings, rays, RayQuery{false, false, brief});
+            const auto hits = trace(RayQuery{false, false, brief});
             ASSERT_EQ(hits.size(), rays.size());
             for (size_t k = 0; k < rays.size(); ++k) {
                 ASSERT_EQ(hits[k].t, counted[k].t) << "try " << i << ", ray " << k;
@@ -64,7 +71,7 @@ void expect_same_each_time(const ScenePtr& scene) {
             }
         }
     for (unsigned i = 0; i < kTries; ++i) {
-        const auto shadows = Workbench::get().rays(scene, settings, rays, RayQuery{true});
+        const auto shadows = trace(RayQuery{true});
         for (size_t k = 0; k < rays.size(); ++k)
             ASSERT_EQ(shadows[k].t, counted[k].prim >= 0 ? 0 : INFINITY) << "try " << i << ", ray " << k;
     }
