@@ -3,8 +3,8 @@
  * A block is RT_LANES rays side by side, field by field: RT_LANES floats origin x, then y, z, t_min, direction x, y, z, t_max.
  * Every load is one aligned vector; gathering from rays one after the other costs 15 to 20 clocks a ray. With one lane a block
  * is an rt_ray. Answers likewise, as many fields as were asked for: RT_ANSWER_ALL are t, u, v, prim, instance and three more that
- * only counting programs write, and with one lane a block of them is an rt_hit; RT_ANSWER_NEAREST are t and prim,
- * RT_ANSWER_OCCLUSION is t. The last block is filled up with inactive rays by the host, who packs and unpacks in
+ * only counting programs write, and with one lane a block of them is an rt_hit; RT_ANSWER_HIT, of one lane, are the first four, for
+ * scenes without instances: half the bytes; RT_ANSWER_NEAREST are t and prim, RT_ANSWER_OCCLUSION is t. The last block is filled up with inactive rays by the host, who packs and unpacks in
  * host/render/ray_blocks.cpp. */
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
@@ -63,6 +63,12 @@ RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays
 
 RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields, const rt_hits *hit)
 {
+#if RT_LANES == 1
+    if (fields == RT_ANSWER_HIT) {
+        ((global float4 *)blocks)[block] = (float4)(hit->t, hit->u, hit->v, as_float(hit->prim));
+        return;
+    }
+#endif
     global vfloat *few = (global vfloat *)blocks + fields * (size_t)block;
     if (fields != RT_ANSWER_ALL) {
         RT_STREAM(few, hit->t);

@@ -142,6 +142,7 @@ typedef struct rt_hit {
 /* Fields of an answer, see ray_blocks.h. */
 #define RT_ANSWER_OCCLUSION 1u
 #define RT_ANSWER_NEAREST 2u
+#define RT_ANSWER_HIT 4u
 #define RT_ANSWER_ALL 8u
 
 /* One ray of the tree behind a pixel. 96 B. */

@@ -56,7 +56,7 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
         hit.patience = INT_MAX;
         const float before = answers[at * (size_t)fields];
         hit.t = fmin(t_max, before);
-        if (before < INFINITY) hit.prim = as_int(answers[at * (size_t)fields + (fields == RT_ANSWER_ALL ? 3u : 1u)]);
+        if (before < INFINITY) hit.prim = as_int(answers[at * (size_t)fields + (fields == RT_ANSWER_NEAREST ? 1u : 3u)]);
         if (get_local_id(0) == 0) nearest = lowest = 0x7FFFFFFFu;
         rt_scene_long_closest(&ctx, frame->root, &ray, &hit, &scratch);
         /* Several may have met something, of which one is the nearest. */

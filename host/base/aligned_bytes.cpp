@@ -97,7 +97,7 @@ AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
         data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{mapped});
         return;
     }
-    void* p = std::aligned_alloc(64, (bytes + 63) / 64 * 64);
+    void* p = std::aligned_alloc(128, (bytes + 127) / 128 * 128);
     if (!p) throw std::bad_alloc();
     data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{});
     if (zero) std::memset(p, 0, bytes);

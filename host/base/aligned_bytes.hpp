@@ -14,7 +14,7 @@ struct FreeMemory {
     void operator()(void* p) const;
 };
 
-// Storage aligned to 64 bytes, which builders and devices like; never grows.
+// Storage aligned to 128 bytes, as buffers of devices are (OpenCL's largest type); never grows.
 class AlignedBytes {
  public:
     AlignedBytes() = default;

@@ -142,6 +142,11 @@ void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const
     out << "#undef RT_ANY_HIT\n#undef RT_FN\n";
 }
 
+bool defines_flag(const rt_plugin& accel, const std::string& flag) {
+    const rt_cl_file& types = accel.accel->types;
+    return types.text && plugin_kernel_text(accel, types).find("\n#define " + flag + "\n") != std::string::npos;
+}
+
 }  // namespace
 
 SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
@@ -158,8 +163,11 @@ SceneFeatures features_of(const Scene& scene, const BuildScene& build) {
 }
 
 bool takes_long_rays(const rt_plugin& accel) {
-    const rt_cl_file& types = accel.accel->types;
-    return types.text && plugin_kernel_text(accel, types).find("\n#define RT_TRAVERSES_LONG_RAYS\n") != std::string::npos;
+    return defines_flag(accel, "RT_TRAVERSES_LONG_RAYS");
+}
+
+bool goes_by_turns(const rt_plugin& accel) {
+    return defines_flag(accel, "RT_TRAVERSES_BY_TURNS");
 }
 
 Layout make_layout(const Settings& settings, bool cpu) {
@@ -255,6 +263,10 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
             kernel_file = "tracers/long_rays.cl";
             source.entry = "trace_short";
             break;
+        case KernelKind::queued_rays:
+            kernel_file = "tracers/queued_rays.cl";
+            source.entry = "trace_queued";
+            break;
         case KernelKind::inspect:
             out << "#define RT_INSPECT\n#define RT_COUNT_STEPS\n";
             kernel_file = "tracers/inspect.cl";
@@ -283,12 +295,14 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     plugin.leaves_twice = frame_part == FramePart::closest_twice || frame_part == FramePart::whole_closest_twice;
     query(out, false, features, plugin);
     plugin.leaves_twice = frame_part == FramePart::whole_any_twice;
-    if (kind != KernelKind::aov) query(out, true, features, plugin);
+    if (kind != KernelKind::aov && kind != KernelKind::queued_rays) query(out, true, features, plugin);
     include(out, "vec.h");
     include(out, "surface.h");
     include(out, "camera.h");
-    if (kind == KernelKind::rays || kind == KernelKind::counted_rays || kind == KernelKind::long_rays)
+    if (kind == KernelKind::rays || kind == KernelKind::counted_rays || kind == KernelKind::long_rays ||
+        kind == KernelKind::queued_rays)
         include(out, "ray_blocks.h");
+    if (kind == KernelKind::queued_rays) include(out, "wave.h");
     if (shades) include(out, "material.h");
     if (queues)
         for (const char* name : {"ray_queue.h", "inspect.h"}) include(out, name);

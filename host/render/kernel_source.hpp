@@ -15,9 +15,9 @@ struct SceneFeatures {
 };
 SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 
-// long_rays: of one lane, where takes_long_rays(). generations: the tracer of color, whose picture is how many generations of
-// rays each pixel has.
-enum class KernelKind { color, generations, aov, rays, counted_rays, long_rays, inspect };
+// long_rays: of one lane, where takes_long_rays(); queued_rays: nearest hits alone, where goes_by_turns(). generations: the
+// tracer of color, whose picture is how many generations of rays each pixel has.
+enum class KernelKind { color, generations, aov, rays, counted_rays, long_rays, queued_rays, inspect };
 
 // How much of a frame a program of kind `color` does; see frame_parts.hpp. The first three are its beginning: the film alone,
 // camera rays, their nearest hits. twice: leaf tests are done twice, which changes no picture.
@@ -46,6 +46,8 @@ Layout make_layout(const Settings& settings, bool cpu);
 
 // Whether a plugin's traversal lets go of rays and takes one by many work-items (long_rays.cl).
 bool takes_long_rays(const rt_plugin& accel);
+// Whether it goes turn by turn, so that who is done may begin another ray (queued_rays.cl).
+bool goes_by_turns(const rt_plugin& accel);
 constexpr unsigned kLongItems = 32;  // as many as a warp has
 
 constexpr const char* kWavefrontEntry = "trace_wavefront";  // of its several kernels the one that traces

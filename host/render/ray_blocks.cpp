@@ -1,6 +1,7 @@
 #include "render/ray_blocks.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "plugin/host_services.hpp"
@@ -21,6 +22,8 @@ void for_chunks(size_t count, const Work& work) {
 }  // namespace
 
 RayBlocks::RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes) : ray_count_(rays.size()), lanes_(lanes) {
+    static std::atomic<uint64_t> packings{0};
+    packing_ = ++packings;
     floats_.resize(block_count() * lanes * RT_RAY_FIELDS);
     // Places beyond the last ray repeat it, but see nothing: packets judge their rays by neighbours that are alike.
     for_chunks(block_count() * lanes, [&](size_t first, size_t end) {
@@ -42,6 +45,11 @@ std::vector<rt_hit> unpack_hits(const std::vector<float>& answers, size_t ray_co
         for (size_t i = first; i < end; ++i) {
             const float* block = &answers[i / lanes * lanes * fields] + i % lanes;
             rt_hit& hit = hits[i];
+            if (fields == RT_ANSWER_HIT) {
+                hit = {block[0], block[1], block[2], -1, -1, 0, 0, 0};
+                std::memcpy(&hit.prim, block + 3, sizeof hit.prim);
+                continue;
+            }
             if (fields != RT_ANSWER_ALL) {
                 hit = {*block, 0, 0, -1, -1, 0, 0, 0};
                 if (fields == RT_ANSWER_NEAREST) std::memcpy(&hit.prim, block + lanes, sizeof hit.prim);

@@ -2,6 +2,7 @@
 // block. The layout is that of cl/ray_blocks.h.
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "rt_types.h"
@@ -14,11 +15,14 @@ class RayBlocks {
     size_t ray_count() const { return ray_count_; }
     size_t block_count() const { return (ray_count_ + lanes_ - 1) / lanes_; }
     unsigned lanes() const { return lanes_; }
+    // Different for all that were packed by themselves: who is asked about the same rays again knows them by it.
+    uint64_t packing() const { return packing_; }
     const std::vector<float>& floats() const { return floats_; }
 
  private:
     size_t ray_count_;
     unsigned lanes_;
+    uint64_t packing_;
     std::vector<float> floats_;
 };
 

@@ -5,6 +5,19 @@
 #include "render/guarded.hpp"
 
 namespace clarity {
+namespace {
+
+// Of a query, the plain one first.
+std::vector<KernelKind> ways_for(const rt_plugin& accel, const Layout& layout, RayQuery query) {
+    if (query.count) return {KernelKind::counted_rays};
+    std::vector<KernelKind> ways{KernelKind::rays};
+    if (layout.lanes > 1 || layout.cpu) return ways;
+    if (takes_long_rays(accel)) ways.push_back(KernelKind::long_rays);
+    if (goes_by_turns(accel) && !query.any_hit) ways.push_back(KernelKind::queued_rays);
+    return ways;
+}
+
+}  // namespace
 
 LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout,
                                       size_t blocks, bool any_hit, cl_uint fields, const cl::Buffer& in,
@@ -33,21 +46,27 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (rays.lanes() != layout.lanes)
             throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
                                           " lanes and the program has " + std::to_string(layout.lanes) + ": pack them anew");
+        const bool unplaced = layout.lanes == 1 && prepared.accel->scene.instances.empty();
         const cl_uint fields = query.count     ? RT_ANSWER_ALL
                                : query.any_hit ? RT_ANSWER_OCCLUSION
                                : query.brief   ? RT_ANSWER_NEAREST
+                               : unplaced      ? RT_ANSWER_HIT
                                                : RT_ANSWER_ALL;
         const size_t slots = rays.block_count() * layout.lanes;
-        const Asked asked{prepared.on_device, prepared.program, rays.block_count(), query.any_hit, query.count};
+        const Asked asked{prepared.on_device, prepared.program, rays.block_count(), query.any_hit, query.count, query.brief};
         if (!(asked == last_)) {
             last_ = asked;
-            way_ = {};
+            packing_ = 0;
             launcher_.forget();
             long_rays_.forget();
+            queued_rays_.forget();
         }
-        const bool has_choice = !query.count && layout.lanes == 1 && !layout.cpu && takes_long_rays(*prepared.accel->plugin);
-        const bool in_two = has_choice && way_.takes_second();
-        const KernelKind kind = query.count ? KernelKind::counted_rays : in_two ? KernelKind::long_rays : KernelKind::rays;
+        if (packing_ != rays.packing()) {
+            packing_ = rays.packing();
+            ways_ = ways_for(*prepared.accel->plugin, layout, query);
+            way_ = FasterWay(static_cast<unsigned>(ways_.size()));
+        }
+        const KernelKind kind = ways_[way_.way()];
         const KernelSource source =
             assemble_kernel(prepared.settings, layout, kind, features_of(*prepared.scene, prepared.accel->scene),
                             *prepared.accel->plugin, prepared.accel->defines);
@@ -60,9 +79,12 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         // Before every run, though it be the same again: then a CPU's caches are as warm each time.
         queue.enqueueWriteBuffer(in, CL_TRUE, 0, rays.floats().size() * sizeof(float), rays.floats().data());
         const LaunchTimes times =
-            in_two ? long_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), query.any_hit, fields, in, out)
-                   : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
-        if (has_choice) way_.took(times.device_ms);
+            kind == KernelKind::long_rays
+                ? long_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), query.any_hit, fields, in, out)
+            : kind == KernelKind::queued_rays
+                ? queued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out)
+                : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
+        way_.took(times.device_ms);
         if (hits) {
             std::vector<float> answers(slots * fields);
             queue.enqueueReadBuffer(out, CL_TRUE, 0, answers.size() * sizeof(float), answers.data());

@@ -2,9 +2,11 @@
 #pragma once
 #include <tuple>
 
+#include "render/faster_way.hpp"
 #include "render/kernel_source.hpp"
 #include "render/launch.hpp"
 #include "render/long_rays.hpp"
+#include "render/queued_rays.hpp"
 #include "render/ray_blocks.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
@@ -14,7 +16,8 @@ namespace clarity {
 
 class RayQueries {
  public:
-    explicit RayQueries(std::shared_ptr<Device> device) : device_(device), programs_(device), long_rays_(device) {}
+    explicit RayQueries(std::shared_ptr<Device> device)
+        : device_(device), programs_(device), long_rays_(device), queued_rays_(device) {}
     // Returns what the kernel took, ms by the device's clock. hits: null: the answers stay on the device. Throws Error(failed)
     // if the rays were packed for other lanes.
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
@@ -28,18 +31,22 @@ class RayQueries {
     ViewBuffers view_;
     Launcher launcher_;
     LongRays long_rays_;
-    // A pace is that of one program on one scene, with which what is short is one launch, and so is the faster way.
+    QueuedRays queued_rays_;
+    // A pace is that of one program on one scene, with which what is short is one launch.
     struct Asked {
         std::shared_ptr<const DeviceScene> scene;
         std::shared_ptr<const TraceProgram> program;  // of pictures: it goes with the settings
         size_t blocks = 0;
-        bool any_hit = false, count = false;
+        bool any_hit = false, count = false, brief = false;
         bool operator==(const Asked& o) const {
-            return std::tie(scene, program, blocks, any_hit, count) ==
-                   std::tie(o.scene, o.program, o.blocks, o.any_hit, o.count);
+            return std::tie(scene, program, blocks, any_hit, count, brief) ==
+                   std::tie(o.scene, o.program, o.blocks, o.any_hit, o.count, o.brief);
         }
     };
     Asked last_;
+    // The fastest way is that of the same rays: mirrored ones may want another than diffuse ones.
+    uint64_t packing_ = 0;
+    std::vector<KernelKind> ways_;
     FasterWay way_;
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
 };

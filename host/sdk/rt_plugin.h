@@ -77,7 +77,7 @@ typedef struct rt_build_input {
 typedef struct rt_build_output {
     rt_u32 struct_bytes;
     void *ctx;
-    /* Host-owned, zeroed, 64-byte aligned memory for `count` elements of a slot; once per slot. NULL: stop, return RT_FAILED. */
+    /* Host-owned, zeroed, 128-byte aligned memory for `count` elements of a slot; once per slot. NULL: stop, return RT_FAILED. */
     void *(*alloc)(void *ctx, rt_u32 slot, uint64_t count);
     /* The refs in leaf order, once. The host packs the primitives in this order; RT_LEAF takes a position in it. A ref may
      * stand in several places (spatial splits). NULL: stop. */

@@ -1,12 +1,13 @@
-// long_rays_test.cpp -- rays of the caller's own in one launch and in two: which it is, is found out by trying, so the same
-// rays are asked for as often as it takes to see both.
-#include "render/long_rays.hpp"
+// long_rays_test.cpp -- rays of the caller's own in one launch, in two, and drawn from a queue: which it is, is found out by
+// trying, so the same rays are asked for as often as it takes to see all.
+#include "render/faster_way.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "render/ray_blocks.hpp"
 #include "support/generated.hpp"
 
 using namespace clarity;
@@ -14,7 +15,7 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr unsigned kTries = 6;
+constexpr unsigned kTries = 9;
 constexpr rt_u32 kLong = 64;  // turns: a node or two triangles each
 
 // Towards the rubble from all around, straight and askew, some reaching only half of the way, some inactive.
@@ -50,9 +51,15 @@ void expect_same_each_time(const ScenePtr& scene) {
     EXPECT_GT(
         std::count_if(counted.begin(), counted.end(), [](const rt_hit& hit) { return hit.steps + hit.leaf_tests / 2 > kLong; }),
         10);
+    const RayBlocks packed(rays, 1);
+    const auto trace = [&](RayQuery query) {
+        std::vector<rt_hit> hits;
+        Workbench::get().frames().trace_rays(*Workbench::get().prepare(scene, settings), packed, query, &hits);
+        return hits;
+    };
     for (const bool brief : {false, true})
         for (unsigned i = 0; i < kTries; ++i) {
-            const auto hits = Workbench::get().rays(scene, settings, rays, RayQuery{false, false, brief});
+            const auto hits = trace(RayQuery{false, false, brief});
             ASSERT_EQ(hits.size(), rays.size());
             for (size_t k = 0; k < rays.size(); ++k) {
                 ASSERT_EQ(hits[k].t, counted[k].t) << "try " << i << ", ray " << k;
@@ -64,7 +71,7 @@ void expect_same_each_time(const ScenePtr& scene) {
             }
         }
     for (unsigned i = 0; i < kTries; ++i) {
-        const auto shadows = Workbench::get().rays(scene, settings, rays, RayQuery{true});
+        const auto shadows = trace(RayQuery{true});
         for (size_t k = 0; k < rays.size(); ++k)
             ASSERT_EQ(shadows[k].t, counted[k].prim >= 0 ? 0 : INFINITY) << "try " << i << ", ray " << k;
     }
@@ -81,16 +88,23 @@ TEST(LongRays, AreThoseOfOneLaunchWithInstances) {
 }
 
 TEST(FasterWay, TakesTheLeastTimeOfEachButTheFirst) {
-    for (const bool second : {false, true}) {
-        FasterWay way;
-        for (int i = 0; i < 8; ++i) {
-            const bool better = (i % 2 == 1) == second;
-            EXPECT_EQ(way.takes_second(), i % 2 == 1);
-            way.took(i < 2 ? (better ? 9 : 1) : i < 4 ? 50 : better ? 2 : 3);
+    for (const unsigned ways : {1u, 2u, 3u})
+        for (unsigned best = 0; best < ways; ++best) {
+            FasterWay way(ways);
+            for (unsigned i = 0; i < 3 * ways; ++i) {
+                EXPECT_EQ(way.way(), i % ways);
+                const bool better = i % ways == best;
+                way.took(i < ways ? (better ? 9 : 1) : i < 2 * ways ? 50 : better ? 2 : 3);
+            }
+            for (int i = 0; i < 3; ++i) {
+                EXPECT_EQ(way.way(), best);
+                way.took(way.way() == best ? 100 : 0);
+            }
         }
-        for (int i = 0; i < 3; ++i) {
-            EXPECT_EQ(way.takes_second(), second);
-            way.took(second ? 100 : 0);
-        }
-    }
+}
+
+TEST(FasterWay, StaysWithTheFirstForLittle) {
+    FasterWay way(2);
+    for (int i = 0; i < 6; ++i) way.took(i % 2 == 0 ? 100 : 98);
+    EXPECT_EQ(way.way(), 0u);
 }

@@ -24,7 +24,7 @@ TEST(AlignedBytes, AreAlignedAndZeroedAndAllThere) {
         for (int again = 0; again < 3; ++again) {  // what comes from the system, then what was written before
             AlignedBytes memory(bytes, true);
             ASSERT_EQ(memory.bytes(), bytes);
-            ASSERT_EQ(reinterpret_cast<uintptr_t>(memory.data()) % 64, 0u);
+            ASSERT_EQ(reinterpret_cast<uintptr_t>(memory.data()) % 128, 0u);
             ASSERT_TRUE(all_are(memory, 0)) << bytes << ", time " << again;
             std::memset(memory.data(), 0xA5, bytes);
             ASSERT_TRUE(all_are(memory, 0xA5)) << bytes;

@@ -5,129 +5,131 @@
  * longest ray of a warp, which decides over small pictures, takes as many turns as it has nodes and pairs of triangles.
  *
  * 128 bytes a node; 71 registers on an H200, so 28 warps a multiprocessor; a stack of 8 bytes an entry (any hit: 4) in local
- * memory. Measured there, geometric means over four scenes and three kinds of rays, at 1024x768 (at 3840x2160): 1.08 (0.98) of
- * leaves in a loop of their own; 1.3 (1.06) where single rays meet hundreds of triangles; 1.10 of fetching triangles only when
- * nodes are done. No gain: loads by inline PTX, prefetching what is put off, one triangle a turn (0.9), a node and two triangles
- * a turn (0.88: nodes are visited that the triangles would have hidden), leaves that wait until several of a warp have one (0.94
- * to 0.86), constants of the ray pinned to registers, nodes of eight (0.93, leaves in a loop). Leaves put off until all of a warp have one
- * (Aila, Laine 2009) are better at 3840x2160 (1.04) and worse at 1024x768 (0.94). */
-void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
-{
-    uint top = 0, at = root;
+ * memory, whose lowest entry says that nothing is left. Measured there, geometric means over four scenes and three kinds of rays,
+ * at 1024x768 (at 3840x2160): 1.08 (0.98) of leaves in a loop of their own; 1.3 (1.06) where single rays meet hundreds of triangles;
+ * 1.10 of fetching triangles only when nodes are done. No gain: loads by inline PTX, prefetching what is put off, one triangle a turn
+ * (0.9), a node and two triangles a turn (0.88: nodes are visited that the triangles would have hidden), leaves that wait until
+ * several of a warp have one (0.94 to 0.86), constants of the ray pinned to registers, nodes of eight (0.93, leaves in a loop). Leaves
+ * put off until all of a warp have one (Aila, Laine 2009) are better at 3840x2160 (1.04) and worse at 1024x768 (0.94). */
 #if RT_LANES == 1
 #if RT_ANY_HIT
-    uint stack[BVH4_STACK];
-#define BVH4_POP() (at = top != 0u ? stack[--top] : BVH4_DONE)
+#define BVH4_PUSHED uint
+#define BVH4_RETURN_TOP() return stack[--*top]
 #else
-    ulong stack[BVH4_STACK];
-#define BVH4_POP()                                                                                                               \
+#define BVH4_PUSHED ulong
+#define BVH4_RETURN_TOP()                                                                                                        \
     {                                                                                                                            \
-        ulong entry;                                                                                                             \
-        do entry = top != 0u ? stack[--top] : BVH4_BOTTOM;                                                                        \
-        while (as_float((uint)(entry >> 32)) > hit->t);                                                                          \
-        at = (uint)entry;                                                                                                        \
+        ulong pushed;                                                                                                            \
+        do pushed = stack[--*top];                                                                                               \
+        while (as_float((uint)(pushed >> 32)) > hit->t);                                                                         \
+        return (uint)pushed;                                                                                                     \
     }
 #endif
-    const bvh4_ray own = bvh4_prepare(ray);
-    while (at != BVH4_DONE && RT_MAY_GO_ON(hit)) {
-        const uint is_leaf = at >> 31, first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
-        /* Rows a, b, c of a node's near planes or of the first triangle; d, e, f of its far planes or of the second. */
-        float4 a, b, c, d, e, f;
-        uint4 child;
-        if (!is_leaf) {
-            const global char *node = (const global char *)(ctx->bvh4_nodes + at);
-#define BVH4_ROW(bytes) (*(const global float4 *)(node + (bytes)))
-            a = BVH4_ROW(own.near_x);
-            b = BVH4_ROW(own.near_y);
-            c = BVH4_ROW(own.near_z);
-            d = BVH4_ROW(own.far_x);
-            e = BVH4_ROW(own.far_y);
-            f = BVH4_ROW(own.far_z);
-            child = *(const global uint4 *)(node + 96);
-#undef BVH4_ROW
-        }
+/* A turn: the node or the leaf `at`. Returns what comes next. */
+RT_INLINE uint RT_CAT(RT_TRAVERSE, _turn)(const rt_ctx *ctx, uint at, const rt_rays *ray, const bvh4_ray *own, rt_hits *hit,
+                                          BVH4_PUSHED *stack, uint *top)
+{
+    const uint is_leaf = at >> 31, first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
+    /* Rows a, b, c of a node's near planes or of the first triangle; d, e, f of its far planes or of the second. */
+    float4 a, b, c, d, e, f;
+    uint4 child;
+    if (!is_leaf) {
+        const ulong node = BVH4_NODE(ctx, at);
+        a = BVH4_ROW(node, own->near_x);
+        b = BVH4_ROW(node, own->near_y);
+        c = BVH4_ROW(node, own->near_z);
+        d = BVH4_ROW(node, own->near_x ^ BVH4_ACROSS_X);
+        e = BVH4_ROW(node, own->near_y ^ BVH4_ACROSS_Y);
+        f = BVH4_ROW(node, own->near_z ^ BVH4_ACROSS_Z);
+        child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
+    }
 #if RT_TRIANGLES_ONLY
-        else {
-            const global float4 *row = (const global float4 *)(ctx->leaves + first);
-            a = row[0];
-            b = row[1];
-            c = row[2];
-            if (count > 1u) {
-                d = row[3];
-                e = row[4];
-                f = row[5];
-            }
+    else {
+        const global float4 *row = (const global float4 *)(ctx->leaves + first);
+        a = row[0];
+        b = row[1];
+        c = row[2];
+        if (count > 1u) {
+            d = row[3];
+            e = row[4];
+            f = row[5];
         }
+    }
 #endif
-        if (bvh4_hidden(is_leaf)) {
+    if (bvh4_hidden(is_leaf)) {
 #if RT_TRIANGLES_ONLY
-            const rt_loaded_leaf one = {a, b, c};
-            RT_LOADED_LEAF(ctx, &one, first, ray, hit);
-            if (count > 1u) {
-                const rt_loaded_leaf two = {d, e, f};
-                RT_LOADED_LEAF(ctx, &two, first + 1u, ray, hit);
-            }
-            const uint done = 2u;
+        const rt_loaded_leaf one = {a, b, c};
+        RT_LOADED_LEAF(ctx, &one, first, ray, hit);
+        if (count > 1u) {
+            const rt_loaded_leaf two = {d, e, f};
+            RT_LOADED_LEAF(ctx, &two, first + 1u, ray, hit);
+        }
+        const uint done = 2u;
 #else
-            for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
-            const uint done = count;
+        for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
+        const uint done = count;
 #endif
 #if RT_ANY_HIT
-            if (hit->t < 0.0f) return;
+        if (hit->t < 0.0f) return BVH4_DONE;
 #endif
-            if (count > done)
-                at = BVH4_MAKE_LEAF(first + done, count - done);
-            else
-                BVH4_POP();
-            continue;
-        }
-        RT_COUNT_VISIT(hit, 1u);
-        const float4 entry = bvh4_enter(ray, &own, hit->t, a, b, c, d, e, f);
+        if (count > done) return BVH4_MAKE_LEAF(first + done, count - done);
+        BVH4_RETURN_TOP();
+    }
+    RT_COUNT_VISIT(hit, 1u);
+    const float4 entry = bvh4_enter(ray, own, hit->t, a, b, c, d, e, f);
 #if RT_ANY_HIT
-        /* Order is worth nothing here: the last child that is met goes first. */
-        uint next = BVH4_NOTHING;
+    /* Order is worth nothing here: the last child that is met goes first. */
+    uint next = BVH4_NOTHING;
 #define BVH4_TAKE(k)                                                                                                             \
     if (entry.s##k < INFINITY) {                                                                                                 \
         if (next != BVH4_NOTHING) {                                                                                              \
-            stack[top] = next;                                                                                                   \
-            if (RT_STACK_OK(top + 1u, BVH4_STACK, hit)) ++top;                                                                   \
+            stack[*top] = next;                                                                                                  \
+            if (RT_STACK_OK(*top, BVH4_STACK, hit)) ++*top;                                                                      \
         }                                                                                                                        \
         next = child.s##k;                                                                                                       \
     }
-        BVH4_TAKE(0)
-        BVH4_TAKE(1)
-        BVH4_TAKE(2)
-        BVH4_TAKE(3)
+    BVH4_TAKE(0)
+    BVH4_TAKE(1)
+    BVH4_TAKE(2)
+    BVH4_TAKE(3)
 #undef BVH4_TAKE
-        if (next != BVH4_NOTHING)
-            at = next;
-        else
-            BVH4_POP();
+    if (next != BVH4_NOTHING) return next;
+    BVH4_RETURN_TOP();
 #else
-        float t0 = entry.s0, t1 = entry.s1, t2 = entry.s2, t3 = entry.s3;
-        uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
-        bvh4_order(&t0, &child0, &t1, &child1);
-        bvh4_order(&t2, &child2, &t3, &child3);
-        bvh4_order(&t0, &child0, &t2, &child2);
-        if (fmin(fmin(t1, t2), t3) < INFINITY) {
-            bvh4_order(&t1, &child1, &t3, &child3);
-            bvh4_order(&t1, &child1, &t2, &child2);
-            const uint more = 1u + (t2 < INFINITY ? 1u : 0u) + (t3 < INFINITY ? 1u : 0u);
-            if (RT_STACK_OK(top + more, BVH4_STACK, hit)) {
-                top += more;
-                stack[top - 1u] = BVH4_ENTRY(t1, child1);
-                if (t2 < INFINITY) stack[top - 2u] = BVH4_ENTRY(t2, child2);
-                if (t3 < INFINITY) stack[top - 3u] = BVH4_ENTRY(t3, child3);
-            }
+    float t0 = entry.s0, t1 = entry.s1, t2 = entry.s2, t3 = entry.s3;
+    uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
+    bvh4_order(&t0, &child0, &t1, &child1);
+    bvh4_order(&t2, &child2, &t3, &child3);
+    bvh4_order(&t0, &child0, &t2, &child2);
+    if (fmin(fmin(t1, t2), t3) < INFINITY) {
+        bvh4_order(&t1, &child1, &t3, &child3);
+        bvh4_order(&t1, &child1, &t2, &child2);
+        const uint more = 1u + (t2 < INFINITY ? 1u : 0u) + (t3 < INFINITY ? 1u : 0u);
+        if (RT_STACK_OK(*top + more, BVH4_STACK + 1u, hit)) {
+            *top += more;
+            stack[*top - 1u] = BVH4_ENTRY(t1, child1);
+            if (t2 < INFINITY) stack[*top - 2u] = BVH4_ENTRY(t2, child2);
+            if (t3 < INFINITY) stack[*top - 3u] = BVH4_ENTRY(t3, child3);
         }
-        if (t0 < INFINITY)
-            at = child0;
-        else
-            BVH4_POP();
-#endif
     }
-#undef BVH4_POP
+    if (t0 < INFINITY) return child0;
+    BVH4_RETURN_TOP();
+#endif
+}
+#undef BVH4_RETURN_TOP
+#endif
+
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+#if RT_LANES == 1
+    BVH4_PUSHED stack[BVH4_STACK + 1];
+    stack[0] = (BVH4_PUSHED)BVH4_LOWEST;
+    uint top = 1u, at = BVH4_PLACE(root);
+    const bvh4_ray own = bvh4_prepare(ray);
+    while (at != BVH4_DONE && RT_MAY_GO_ON(hit)) at = RT_CAT(RT_TRAVERSE, _turn)(ctx, at, ray, &own, hit, stack, &top);
+#undef BVH4_PUSHED
 #else
+    uint top = 0, at = BVH4_PLACE(root);
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u);
     vfloat stack_t[BVH4_STACK];
@@ -142,20 +144,20 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
         } else {
             RT_COUNT_VISIT(hit, inside);
-            const global bvh4_node *node = ctx->bvh4_nodes + at;
+#define BVH4_NUMBER(k) ((const global float *)((ulong)ctx->bvh4_nodes + ((ulong)(at ^ (k)) << 4)))[slot]
             for (uint i = 0; i < 4u; ++i) {
-                const uint slot = i ^ far_first, child = node->child[slot];
+                const uint slot = i ^ far_first, child = as_uint(BVH4_NUMBER(6u));
                 if (child == BVH4_NOTHING) continue;
                 vfloat entry;
-                const vmask in =
-                    rt_enter_bounds(rt_vfloat(node->plane[0][slot]), rt_vfloat(node->plane[1][slot]),
-                                    rt_vfloat(node->plane[2][slot]), rt_vfloat(node->plane[3][slot]),
-                                    rt_vfloat(node->plane[4][slot]), rt_vfloat(node->plane[5][slot]), ray, hit, &entry);
+                const vmask in = rt_enter_bounds(rt_vfloat(BVH4_NUMBER(0u)), rt_vfloat(BVH4_NUMBER(1u)), rt_vfloat(BVH4_NUMBER(2u)),
+                                                 rt_vfloat(BVH4_NUMBER(3u)), rt_vfloat(BVH4_NUMBER(4u)), rt_vfloat(BVH4_NUMBER(5u)),
+                                                 ray, hit, &entry);
                 if (!rt_any(in)) continue;
                 stack_node[top] = child;
                 stack_t[top] = rt_select(in, entry, RT_INFINITY);
                 if (RT_STACK_OK(top + 1u, BVH4_STACK, hit)) ++top;
             }
+#undef BVH4_NUMBER
         }
         do {
             if (top == 0u) return;
@@ -175,7 +177,7 @@ void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits 
     const uint item = (uint)get_local_id(0);
     const bvh4_ray own = bvh4_prepare(ray);
     if (item == 0u) {
-        shared->stack[0] = BVH4_ENTRY(0.0f, root);
+        shared->stack[0] = BVH4_ENTRY(0.0f, BVH4_PLACE(root));
         shared->put[0] = 0u;
         shared->nearest = as_uint(hit->t);
     }
@@ -208,11 +210,12 @@ void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits 
             if (hit->leaf != -1) atomic_min(&shared->nearest, as_uint(hit->t));
 #endif
         } else if (goes) {
-            const global float4 *row = (const global float4 *)(ctx->bvh4_nodes + at);
+            const ulong node = BVH4_NODE(ctx, at);
             const float4 entries =
-                bvh4_enter(ray, &own, hit->t, row[own.near_x / 16u], row[own.near_y / 16u], row[own.near_z / 16u],
-                           row[own.far_x / 16u], row[own.far_y / 16u], row[own.far_z / 16u]);
-            const uint4 child = ((const global uint4 *)row)[6];
+                bvh4_enter(ray, &own, hit->t, BVH4_ROW(node, own.near_x), BVH4_ROW(node, own.near_y), BVH4_ROW(node, own.near_z),
+                           BVH4_ROW(node, own.near_x ^ BVH4_ACROSS_X), BVH4_ROW(node, own.near_y ^ BVH4_ACROSS_Y),
+                           BVH4_ROW(node, own.near_z ^ BVH4_ACROSS_Z));
+            const uint4 child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
             float t0 = entries.s0, t1 = entries.s1, t2 = entries.s2, t3 = entries.s3;
             uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
             bvh4_order(&t0, &child0, &t1, &child1);

@@ -5,22 +5,28 @@
 
 /* 128 B, a line of a GPU's cache; a row is one 16-byte load. plane[k] for k = 0..2 are the children's lower bounds in x, y, z,
  * for k = 3..5 the upper ones: exact, not padded, for the traversal accounts for its own rounding. Bits 0 and 1 of a child's
- * slot say on which side it lies in x and y, as far as slots were free. */
+ * slot say on which side it lies in x and y, as far as slots were free.
+ *
+ * So much for the builder. In memory row k of node i stands where row k ^ (i & 7) would: the lanes of a warp read the same row of
+ * different nodes, all of which would come from the same eighth of the cache's banks. */
 typedef struct bvh4_node {
     rt_f32 plane[6][4];
     rt_u32 child[4];
     rt_u32 pad[4];
 } bvh4_node;
 
-/* A child is the index of a node, or, with bit 31 set, a leaf: bits 28..30 count its primitives (1..7), bits 0..27 are the
+/* A child is the place of a node, or, with bit 31 set, a leaf: bits 28..30 count its primitives (1..7), bits 0..27 are the
  * position of the first in leaf order.
  *
- * The root of a group is always a node. A slot without child is BVH4_NOTHING in a box from +inf to -inf, which no ray enters. */
+ * A place is where row 0 of a node stands, in rows from where the first node begins; row k stands at place ^ k. The root of a group
+ * is always a node, reported by its index. A slot without child is BVH4_NOTHING in a box from +inf to -inf, which no ray enters. */
 #define BVH4_LEAF 0x80000000u
 #define BVH4_LEAF_COUNT(child) (((child) >> 28) & 7u)
 #define BVH4_LEAF_FIRST(child) ((child)&0x0FFFFFFFu)
 #define BVH4_MAKE_LEAF(first, count) (BVH4_LEAF | ((count) << 28) | (first))
 #define BVH4_NOTHING BVH4_MAKE_LEAF(0u, 0u)
+#define BVH4_PLACE(index) ((index) << 3 | ((index)&7u))
+#define BVH4_INDEX(place) ((place) >> 3)
 
 #ifdef __OPENCL_VERSION__
 #if RT_LANES == 1
@@ -43,10 +49,19 @@ typedef struct rt_long_scratch {
 #define BVH4_MAX(a, b) as_float4(max(as_int4(a), as_int4(b)))
 #define BVH4_MIN(a, b) as_float4(min(as_int4(a), as_int4(b)))
 
+/* Where row 0 of a node stands, and the row that stands `bytes` across from it: nodes are lines of a buffer that begins with one.
+ * The far plane of an axis stands across its near one. */
+#define BVH4_NODE(ctx, place) ((ulong)(ctx)->bvh4_nodes + ((ulong)(place) << 4))
+#define BVH4_ROW(node, bytes) (*(const global float4 *)((node) ^ (ulong)(bytes)))
+#define BVH4_ACROSS_X 48u
+#define BVH4_ACROSS_Y 80u
+#define BVH4_ACROSS_Z 112u
+#define BVH4_CHILDREN 96u
+
 /* What of a ray every node needs. The far side is widened here instead of in each node: that rounds twice more, each time by half
  * an ulp of origin / direction or of the distance, for which the slack of rt_prepare and RT_WIDE have room. */
 typedef struct bvh4_ray {
-    uint near_x, near_y, near_z, far_x, far_y, far_z; /* bytes from a node's begin to the rows of near and far planes */
+    uint near_x, near_y, near_z; /* rows of the near planes, for BVH4_ROW */
     float wide_x, wide_y, wide_z, exit_x, exit_y, exit_z;
 } bvh4_ray;
 
@@ -56,9 +71,6 @@ RT_INLINE bvh4_ray bvh4_prepare(const rt_rays *ray)
     own.near_x = ray->ix < 0.0f ? 48u : 0u;
     own.near_y = ray->iy < 0.0f ? 64u : 16u;
     own.near_z = ray->iz < 0.0f ? 80u : 32u;
-    own.far_x = 48u - own.near_x;
-    own.far_y = 80u - own.near_y;
-    own.far_z = 112u - own.near_z;
     own.wide_x = ray->ix * RT_WIDE;
     own.wide_y = ray->iy * RT_WIDE;
     own.wide_z = ray->iz * RT_WIDE;
@@ -108,9 +120,24 @@ RT_INLINE void bvh4_order(float *t0, uint *child0, float *t1, uint *child1)
     *child0 = child;
 }
 
-/* On the stack: entry distance in the upper half, child in the lower. Below all of them, in reach of any ray: */
-#define BVH4_BOTTOM ((ulong)as_uint(-INFINITY) << 32 | BVH4_DONE)
+/* On the stack: entry distance in the upper half, child in the lower. Lowest of all stands what ends the traversal, in reach of any
+ * ray. */
 #define BVH4_ENTRY(t, child) ((ulong)as_uint(t) << 32 | (child))
+#define BVH4_LOWEST BVH4_ENTRY(-INFINITY, BVH4_DONE)
+
+#define RT_TRAVERSES_BY_TURNS
+typedef ulong rt_turn_entry;
+typedef bvh4_ray rt_turn_ray;
+#define RT_TURN_PLACES (BVH4_STACK + 1u)
+#define RT_TURN_DONE BVH4_DONE
+#define RT_TURN_IS_LEAF(at) ((at) >= BVH4_LEAF)
+RT_INLINE uint rt_begin_turns(uint root, const rt_rays *ray, rt_turn_ray *turns, rt_turn_entry *stack, uint *top)
+{
+    *turns = bvh4_prepare(ray);
+    stack[0] = BVH4_LOWEST;
+    *top = 1u;
+    return BVH4_PLACE(root);
+}
 
 #endif
 #endif

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <mutex>
 
+#include "node_memory.hpp"
 #include "node_slots.hpp"
 #include "rt_plugin.hpp"
 #include "sorted_run.hpp"
@@ -220,6 +221,7 @@ void MortonTree::write(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) c
         for (rt_u32& child : node.child)
             if (!(child & BVH8_LEAF)) child += at;
         nodes[at + i] = node;
+        settle(nodes, at + i);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "node_bounds.hpp"
+#include "node_memory.hpp"
 #include "rt_plugin.hpp"
 
 namespace bvh8 {
@@ -13,7 +14,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
     const auto show = [&](const float box[6]) { sink->box(sink->ctx, box, box + 3); };
     if (level == 0) {
         float box[6];
-        if (bounds(nodes[built->roots[group]], box)) show(box);
+        if (bounds(settled_node(nodes, built->roots[group]), box)) show(box);
         return RT_OK;
     }
     struct Visit {
@@ -23,7 +24,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
     while (!stack.empty()) {
         const Visit at = stack.back();
         stack.pop_back();
-        each_child(nodes[at.node], [&](const float box[6], rt_u32 child) {
+        each_child(settled_node(nodes, at.node), [&](const float box[6], rt_u32 child) {
             const bool leaf = (child & BVH8_LEAF) != 0;
             if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level)
                 show(box);

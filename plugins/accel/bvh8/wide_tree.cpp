@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "node_memory.hpp"
 #include "node_slots.hpp"
 #include "rt_plugin.hpp"
 
@@ -70,6 +71,7 @@ void WideTree::write(const rt_build_output* out) {
         for (uint32_t i = 0; i < top.count; ++i)
             below[i] = top.slots[i].leaf != BVH8_NOTHING ? top.slots[i].leaf : place_of(top.below[i]);
         write_node(nodes_[top.place], top.slots, below, top.count);
+        settle(nodes_, top.place);
     }
     for (rt_u32 g = 0; g < group_count; ++g) rt::root(out, g, roots[g]);
 }
@@ -152,6 +154,7 @@ rt_u32 CollapsedSubtrees::write_subtree(rt_u32 binary, bvh8_node* nodes, rt_u32 
         if (slots[i].leaf == BVH8_NOTHING) next = write_subtree(slots[i].binary, nodes, next, sums);
     }
     write_node(nodes[at], slots, below, count);
+    settle(nodes, at);
     return next;
 }
 

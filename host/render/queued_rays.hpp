@@ -1,0 +1,27 @@
+// queued_rays.hpp -- nearest hits of the caller's own rays, which work-items draw as they get free
+// (cl/tracers/queued_rays.cl).
+#pragma once
+#include "render/launch.hpp"
+#include "render/renderer.hpp"
+#include "render/trace_program.hpp"
+#include "render/view_buffers.hpp"
+
+namespace clarity {
+
+class QueuedRays {
+ public:
+    explicit QueuedRays(std::shared_ptr<Device> device) : device_(std::move(device)) {}
+    // program: of kind queued_rays.
+    LaunchTimes trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
+                      cl_uint fields, const cl::Buffer& in, const cl::Buffer& out);
+    void forget() { launcher_.forget(); }
+
+ private:
+    std::shared_ptr<Device> device_;
+    Launcher launcher_;
+    GrowingBuffer queue_{CL_MEM_READ_WRITE};
+    cl_uint turn_ = 0;
+    bool clean_ = false;  // the queue is, for this turn
+};
+
+}  // namespace clarity
