@@ -16,7 +16,7 @@ namespace {
 
 struct Faults {
     size_t largest_buffer = ~size_t(0);
-    int launches_left = -1;  // negative: no end of them
+    int launches_left = -1, copies_left = -1;  // negative: no end of them
 } faults;
 
 template <class Function>
@@ -40,6 +40,14 @@ extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kerne
     if (faults.launches_left == 0) return CL_OUT_OF_RESOURCES;
     if (faults.launches_left > 0) --faults.launches_left;
     return real(queue, kernel, dimensions, offset, global, local, count, after, event);
+}
+
+extern "C" cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool wait, size_t offset, size_t bytes,
+                                      void* to, cl_uint count, const cl_event* after, cl_event* event) {
+    static const auto real = driver<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
+    if (faults.copies_left == 0) return CL_OUT_OF_RESOURCES;
+    if (faults.copies_left > 0) --faults.copies_left;
+    return real(queue, buffer, wait, offset, bytes, to, count, after, event);
 }
 
 namespace {
@@ -116,7 +124,7 @@ TEST_P(Failures, ALaunchThatIsRefused) {
         faults.launches_left = launch;
         try {
             FrameStats stats = frames_.trace(*prepared_, small_, view_, 0, true, progress_);
-            frames_.look_at_display(small_, &stats);
+            frames_.read_display(small_, &stats);
             EXPECT_GT(launch, 2) << "a picture of so few launches?";
             return;  // this one needed no more
         } catch (const Error& error) {
@@ -138,9 +146,13 @@ TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
     Preparer preparer(Workbench::get().plugins(), device);
     Frames frames(device);
     const auto prepared = preparer.prepare(scene_, small, progress_);
+    PendingImage pending;
+    ByteImage shown;
     const auto show = [&] {
-        frames.trace(*prepared, small, view_, 0, false, progress_);
-        return frames.exchange_display(small);
+        frames.trace(*prepared, small, view_, 0, false, progress_, nullptr, [&] {
+            if (pending) shown = pending.wait();
+        });
+        pending = frames.begin_display(small);
     };
     show();
     const ByteImage truth = frames.read_display(small);
@@ -154,14 +166,45 @@ TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
             EXPECT_EQ(error.code(), Exit::failed) << error.what();
         }
         faults = {};
-        for (int picture = 0; picture < 3; ++picture) show();
-        EXPECT_TRUE(std::equal(truth.pixels.begin(), truth.pixels.end(), frames.last_display())) << "launch " << launch;
+        EXPECT_TRUE(!pending || pending.wait().pixels == truth.pixels) << "launch " << launch;
+        for (int picture = 0; picture < 3; ++picture) {
+            shown = {};
+            show();
+        }
+        EXPECT_TRUE(shown.pixels == truth.pixels) << "launch " << launch;
+        EXPECT_TRUE(pending.wait().pixels == truth.pixels) << "launch " << launch;
         show();
         if (!failed) {
             EXPECT_GT(launch, 1) << "a picture of so few launches?";
             return;
         }
     }
+}
+
+// Copies too: a picture that does not arrive is a message, and those after it are whole.
+TEST_P(Failures, ACopyThatIsRefused) {
+    DeviceInfo info = device_->info();
+    info.cpu = false;
+    info.gpu = true;
+    const auto device = std::make_shared<Device>(info);
+    Settings small = small_;
+    small.lanes = small.packet_w = small.packet_h = 1;
+    Preparer preparer(Workbench::get().plugins(), device);
+    Frames frames(device);
+    const auto prepared = preparer.prepare(scene_, small, progress_);
+    frames.trace(*prepared, small, view_, 0, false, progress_);
+    PendingImage before = frames.begin_display(small);
+    const ByteImage truth = frames.read_display(small);
+    faults.copies_left = 0;
+    const std::string said = message([&] {
+        frames.trace(*prepared, small, view_, 0, false, progress_);
+        frames.begin_display(small);
+    });
+    EXPECT_NE(said.find(info.name), std::string::npos) << said;
+    faults = {};
+    EXPECT_TRUE(before.wait().pixels == truth.pixels);
+    frames.trace(*prepared, small, view_, 0, false, progress_);
+    EXPECT_TRUE(frames.begin_display(small).wait().pixels == truth.pixels);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracers, Failures, ::testing::Values("iterative", "wavefront"));
