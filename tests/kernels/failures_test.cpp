@@ -1,54 +1,15 @@
 // failures_test.cpp -- a device that has no room left or refuses to work costs a message; what comes after is as if nothing had
-// happened. This program puts its own entry points before the driver's.
-#include <CL/cl.h>
-#include <dlfcn.h>
+// happened.
 #include <gtest/gtest.h>
 
 #include <cstring>
 
 #include "base/error.hpp"
+#include "support/faults.hpp"
 #include "support/scenes.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
-
-namespace {
-
-struct Faults {
-    size_t largest_buffer = ~size_t(0);
-    int launches_left = -1, copies_left = -1;  // negative: no end of them
-} faults;
-
-template <class Function>
-Function* driver(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-
-extern "C" cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
-    static const auto real = driver<decltype(clCreateBuffer)>("clCreateBuffer");
-    if (size <= faults.largest_buffer) return real(context, flags, size, host, error);
-    if (error) *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
-    return nullptr;
-}
-
-extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
-                                         const size_t* global, const size_t* local, cl_uint count, const cl_event* after,
-                                         cl_event* event) {
-    static const auto real = driver<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
-    if (faults.launches_left == 0) return CL_OUT_OF_RESOURCES;
-    if (faults.launches_left > 0) --faults.launches_left;
-    return real(queue, kernel, dimensions, offset, global, local, count, after, event);
-}
-
-extern "C" cl_int clEnqueueReadBuffer(cl_command_queue queue, cl_mem buffer, cl_bool wait, size_t offset, size_t bytes,
-                                      void* to, cl_uint count, const cl_event* after, cl_event* event) {
-    static const auto real = driver<decltype(clEnqueueReadBuffer)>("clEnqueueReadBuffer");
-    if (faults.copies_left == 0) return CL_OUT_OF_RESOURCES;
-    if (faults.copies_left > 0) --faults.copies_left;
-    return real(queue, buffer, wait, offset, bytes, to, count, after, event);
-}
 
 namespace {
 
@@ -65,7 +26,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
         frames_.trace(*prepared_, small_, view_, 0, true, progress_);
         truth_ = frames_.read_values().pixels;
     }
-    void TearDown() override { faults = {}; }
+    void TearDown() override { faults.end(); }
 
     // The message of the error that `work` is to end with.
     template <class Work>
@@ -80,7 +41,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
         return {};
     }
     void expect_all_is_well(const std::string& after) {
-        faults = {};
+        faults.end();
         for (int picture = 0; picture < 2; ++picture) {
             frames_.trace(*prepared_, small_, view_, 0, true, progress_);
             const std::vector<float> pixels = frames_.read_values().pixels;
@@ -165,7 +126,7 @@ TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
             failed = true;
             EXPECT_EQ(error.code(), Exit::failed) << error.what();
         }
-        faults = {};
+        faults.end();
         EXPECT_TRUE(!pending || pending.wait().pixels == truth.pixels) << "launch " << launch;
         for (int picture = 0; picture < 3; ++picture) {
             shown = {};
@@ -201,7 +162,7 @@ TEST_P(Failures, ACopyThatIsRefused) {
         frames.begin_display(small);
     });
     EXPECT_NE(said.find(info.name), std::string::npos) << said;
-    faults = {};
+    faults.end();
     EXPECT_TRUE(before.wait().pixels == truth.pixels);
     frames.trace(*prepared, small, view_, 0, false, progress_);
     EXPECT_TRUE(frames.begin_display(small).wait().pixels == truth.pixels);
