@@ -23,7 +23,8 @@ cl::Event DisplayRelay::begin(const ColorFilm& film, const Settings& settings, b
         const cl::Buffer& tones = display.buffer.fit(device_->context(), room);
         image.mapped_ = kernels_.map_tones(film.sums, tones, pixels, settings);
         const std::vector<cl::Event> after = {image.mapped_};
-        cl::CommandQueue& copies = aside ? memory_.queue() : device_->queue();
+        if (aside && !copies_) copies_ = device_->with_own_queue();
+        cl::CommandQueue& copies = aside ? copies_->queue() : device_->queue();
         copies.enqueueReadBuffer(tones, CL_FALSE, 0, image.bytes(), image.memory_.get(), &after, &image.copied_);
         display.copied = image.copied_;
         device_->queue().flush();  // or the other queue may wait for what is not on its way

@@ -8,8 +8,8 @@
 
 #include "render/film.hpp"
 #include "render/growing_buffer.hpp"
+#include "render/host_memory.hpp"
 #include "render/pending_image.hpp"
-#include "render/picture_memory.hpp"
 
 namespace clarity {
 
@@ -36,9 +36,9 @@ class DisplayRelay {
         GrowingBuffer buffer{CL_MEM_WRITE_ONLY};
         cl::Event copied;
     };
-    std::shared_ptr<Device> device_;
+    std::shared_ptr<Device> device_, copies_;  // the same by a queue of its own
     FilmKernels& kernels_;
-    PictureMemory memory_;
+    HostMemory memory_;
     Display displays_[2];
     unsigned turn_ = 0;
     PendingImage begun_;

@@ -1,6 +1,8 @@
 #include "render/film.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <map>
 #include <utility>
 
@@ -12,6 +14,9 @@
 
 namespace clarity {
 namespace {
+
+constexpr size_t kSumBytes = 4 * sizeof(cl_uint);
+constexpr unsigned kSummersPerUnit = 2048;  // work-items that a GPU's unit has at a time
 
 // As film.cl numbers them.
 cl_uint number_of_tone(const std::string& tone) {
@@ -37,7 +42,7 @@ ByteImage show_values(const std::function<FloatImage()>& read, const std::string
     return image;
 }
 
-FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(std::move(device)) {
+FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), memory_(device) {
     const BuildResult built =
         build_program(*device_, "#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film");
     guarded(*device_, "preparing the film", [&] {
@@ -48,18 +53,29 @@ FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(std::move(dev
     });
 }
 
-RayCounts FilmKernels::sum(const cl::Buffer& counters, unsigned packets, KernelTime& time) {
+// Sums may be on their way hither.
+FilmKernels::~FilmKernels() {
+    if (sums_read_()) clWaitForEvents(1, &sums_read_());
+}
+
+cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned packets) {
     cl::CommandQueue& queue = device_->queue();
-    const cl::Buffer& out = sums_.fit(device_->context(), 16);
-    cl_uint sums[4] = {};
-    cl::Event event;
-    queue.enqueueWriteBuffer(out, CL_TRUE, 0, sizeof sums, sums);
+    const cl::Buffer& out = sums_.fit(device_->context(), kSumBytes);
+    if (!read_sums_) read_sums_ = memory_.lend(kSumBytes);
+    queue.enqueueFillBuffer(out, cl_uint(0), 0, kSumBytes);
     sum_counters_.setArg(0, counters);
     sum_counters_.setArg(1, packets);
     sum_counters_.setArg(2, out);
-    queue.enqueueNDRangeKernel(sum_counters_, cl::NullRange, cl::NDRange(1024), cl::NDRange(64), nullptr, &event);
-    queue.enqueueReadBuffer(out, CL_TRUE, 0, sizeof sums, sums);
-    time = {"counters", event_ms(event)};
+    summed_ = run(sum_counters_, std::min(packets, device_->info().compute_units * kSummersPerUnit));
+    queue.enqueueReadBuffer(out, CL_FALSE, 0, kSumBytes, read_sums_.get(), nullptr, &sums_read_);
+    return sums_read_;
+}
+
+RayCounts FilmKernels::end_sum(KernelTime& time) {
+    sums_read_.wait();
+    time = {"counters", event_ms(summed_)};
+    cl_uint sums[4];
+    std::memcpy(sums, read_sums_.get(), sizeof sums);
     return {sums[0], sums[1], sums[2], sums[3]};
 }
 

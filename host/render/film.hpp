@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "render/growing_buffer.hpp"
+#include "render/host_memory.hpp"
 #include "render/renderer.hpp"
 
 namespace clarity {
@@ -33,8 +34,11 @@ class FilmKernels {
 
     // Throws Error(kernel_build_failed).
     explicit FilmKernels(std::shared_ptr<Device> device);
-    // counters: of so many packets, as trace_iterative leaves them.
-    RayCounts sum(const cl::Buffer& counters, unsigned packets, KernelTime& time);
+    ~FilmKernels();
+    // Enqueues sums over counters of so many packets, as trace_iterative leaves them; returns the last event.
+    cl::Event begin_sum(const cl::Buffer& counters, unsigned packets);
+    // Waits for them.
+    RayCounts end_sum(KernelTime& time);
     // Enqueues the tones of a film, room(pixels) float4, sums of samples, into a display of room(pixels) * 4 bytes.
     cl::Event map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings);
     // Of some rows of work-groups alone, `row_height` pixels high, each to its place in the picture: rgba, 4 * pixels bytes.
@@ -53,6 +57,9 @@ class FilmKernels {
     cl::Kernel map_tones_, map_tones_of_rows_, sum_counters_;
     GrowingBuffer display_{CL_MEM_WRITE_ONLY}, sums_{CL_MEM_READ_WRITE}, rows_{CL_MEM_READ_ONLY};
     std::vector<rt_u32> rows_written_;
+    HostMemory memory_;
+    std::shared_ptr<uint8_t> read_sums_;
+    cl::Event summed_, sums_read_;
 };
 
 }  // namespace clarity

@@ -92,6 +92,18 @@ struct Frames::Impl {
         const std::vector<rt_u32> some(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.end());
         return bands_of(some, layout.group_h * layout.packet_h, height);
     }
+    cl::Event begin_sum() {
+        if (program->is_wavefront()) return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count());
+        return film_kernels.begin_sum(counters.get(), groups() * layout.group_packets());
+    }
+    void end_sum(FrameStats& stats) {
+        stats.kernels.emplace_back();
+        const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
+        stats.shadow = counts.shadow;
+        stats.secondary = counts.secondary;
+        stats.dropped = counts.dropped;
+        stats.overflowed = counts.overflowed;
+    }
     ColorFilm film_of_colors() const { return {film.get(), width, height}; }
     unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
     FloatImage image(unsigned channels) const {
@@ -145,8 +157,13 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         Beside beside{{}, meanwhile};
         im.relay.forget_begun();
         const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
-        if (im.aov == "color" && !shared && !im.device->info().cpu && before != Impl::Shown::no)
-            beside.behind = [&] { return im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun); };
+        const bool show = im.aov == "color" && !shared && !im.device->info().cpu && before != Impl::Shown::no;
+        const bool sum = count_rays && program.has_generations() && groups > 0;
+        if (sum || show)
+            beside.behind = [&] {
+                const cl::Event summed = sum ? im.begin_sum() : cl::Event();
+                return show ? im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun) : summed;
+            };
         LaunchTimes times;
         if (program.is_wavefront()) {
             const auto depth = static_cast<unsigned>(settings.depth);
@@ -174,7 +191,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         for (const Band& band : im.bands(shared ? shared->begin : 0)) stats.primary += uint64_t(band.count) * width;
         stats.samples = sample + 1;
         stats.kernels.push_back({"trace", times.device_ms});
-        if (count_rays) count(stats);
+        if (sum) im.end_sum(stats);
         return stats;
     });
 }
@@ -183,15 +200,8 @@ void Frames::count(FrameStats& stats) {
     Impl& im = *impl_;
     if (!im.program || !im.program->has_generations() || im.rows.empty()) return;
     guarded(*im.device, "counting rays", [&] {
-        stats.kernels.emplace_back();
-        const bool wave = im.program->is_wavefront();
-        const RayCounts counts = im.film_kernels.sum(
-            wave ? im.wavefront.counters() : im.counters.get(),
-            wave ? im.wavefront.counter_count() : im.groups() * im.layout.group_packets(), stats.kernels.back());
-        stats.shadow = counts.shadow;
-        stats.secondary = counts.secondary;
-        stats.dropped = counts.dropped;
-        stats.overflowed = counts.overflowed;
+        im.begin_sum();
+        im.end_sum(stats);
     });
 }
 

@@ -4,7 +4,7 @@
 
 #include "render/film.hpp"
 #include "render/guarded.hpp"
-#include "render/picture_memory.hpp"
+#include "render/host_memory.hpp"
 #include "render/shared_picture.hpp"
 
 namespace clarity {
@@ -16,7 +16,7 @@ struct MultiFrames::Impl {
     std::shared_ptr<const MultiPrepared> prepared;
     unsigned width = 0, height = 0;
     unsigned samples = 0;  // of `alone`
-    std::unique_ptr<PictureMemory> memory;
+    std::unique_ptr<HostMemory> memory;
     std::shared_ptr<Device> memory_of;
 
     const std::string& aov() const { return prepared->first()->settings.aov; }
@@ -31,7 +31,7 @@ struct MultiFrames::Impl {
         std::shared_ptr<Device> gpu;
         for (size_t i = 0; i < shared->size() && !gpu; ++i)
             if (shared->works(i) && !shared->device(i)->info().cpu) gpu = shared->device(i);
-        if (!memory || memory_of != gpu) memory = std::make_unique<PictureMemory>(gpu);
+        if (!memory || memory_of != gpu) memory = std::make_unique<HostMemory>(gpu);
         memory_of = gpu;
         return gpu ? guarded(*gpu, "reading the picture", [&] { return memory->lend(bytes); }) : memory->lend(bytes);
     }

@@ -1,4 +1,4 @@
-#include "render/picture_memory.hpp"
+#include "render/host_memory.hpp"
 
 #include <mutex>
 #include <utility>
@@ -14,7 +14,7 @@ constexpr size_t kShelved = 2;
 
 }  // namespace
 
-struct PictureMemory::Block {
+struct HostMemory::Block {
     AlignedBytes plain;
     cl::Buffer pinned;  // or this
     cl::CommandQueue queue;
@@ -32,26 +32,21 @@ struct PictureMemory::Block {
     }
 };
 
-struct PictureMemory::Shelf {
+struct HostMemory::Shelf {
     std::mutex mutex;
     std::vector<std::unique_ptr<Block>> blocks;
 };
 
-PictureMemory::PictureMemory(std::shared_ptr<Device> device) : device_(std::move(device)), shelf_(std::make_shared<Shelf>()) {}
+HostMemory::HostMemory(std::shared_ptr<Device> device) : device_(std::move(device)), shelf_(std::make_shared<Shelf>()) {}
 
-cl::CommandQueue& PictureMemory::queue() {
-    if (!copies_) copies_ = device_->with_own_queue();
-    return copies_->queue();
-}
-
-std::unique_ptr<PictureMemory::Block> PictureMemory::make(size_t bytes) {
+std::unique_ptr<HostMemory::Block> HostMemory::make(size_t bytes) {
     auto block = std::make_unique<Block>();
     block->room = bytes;
     if (!device_ || device_->info().cpu) {
         block->plain = AlignedBytes(bytes, false);
         block->bytes = static_cast<uint8_t*>(block->plain.data());
     } else {
-        block->queue = queue();
+        block->queue = device_->queue();
         block->pinned = cl::Buffer(device_->context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
         block->bytes =
             static_cast<uint8_t*>(block->queue.enqueueMapBuffer(block->pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
@@ -59,7 +54,7 @@ std::unique_ptr<PictureMemory::Block> PictureMemory::make(size_t bytes) {
     return block;
 }
 
-std::shared_ptr<uint8_t> PictureMemory::lend(size_t bytes) {
+std::shared_ptr<uint8_t> HostMemory::lend(size_t bytes) {
     std::unique_ptr<Block> block;
     {
         const std::lock_guard<std::mutex> lock(shelf_->mutex);
