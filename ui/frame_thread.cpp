@@ -236,8 +236,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
     const auto begin = Clock::now();
     if (order.retrace) {
         const auto show_last = [this] {
-            finish(false);
-            wake_();
+            if (finish(false)) wake_();
         };
         side.stats = tracer.frames->trace(ready.shared, settings, view, order.sample, true, progress, 1, show_last);
     } else if (last) {
@@ -260,13 +259,13 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
     return side;
 }
 
-// Waits for what is still on its way of the picture traced last, and leaves that as the newest. held_up: nothing else is done
-// meanwhile.
-void FrameThread::finish(bool held_up) {
+// Waits for what is still on its way of the picture traced last, and leaves that as the newest; false: it is already. held_up:
+// nothing else is done meanwhile.
+bool FrameThread::finish(bool held_up) {
     Traced traced;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
-        if (!traced_) return;
+        if (!traced_) return false;
         traced = std::move(*traced_);
         traced_.reset();
     }
@@ -285,12 +284,13 @@ void FrameThread::finish(bool held_up) {
     }
     const std::lock_guard<std::mutex> lock(mutex_);
     latest_ = traced.picture;
-    if (!traced.fresh) return;
+    if (!traced.fresh) return true;
     note_time(times_[0], picture.job.ready->main.prepared, picture.main.frame_ms);
     if (picture.other)
         note_time(times_[1], picture.job.ready->other->prepared, picture.other->frame_ms);
     else
         times_[1] = {};
+    return true;
 }
 
 // The film has kernels of its own. If edited ones do not compile, the last good ones go on.

@@ -110,7 +110,7 @@ class FrameThread {
     };
     PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
                            const Order& order, const PictureSide* last, Progress& progress, PendingImage& image);
-    void finish(bool held_up);
+    bool finish(bool held_up);
     bool wants_work(unsigned& sample, bool& retrace) const;
     void fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision);
     bool has_saving() const;
