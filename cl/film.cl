@@ -65,13 +65,19 @@ kernel void map_tones_of_rows(const global float *film, global uchar *display, c
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
-/* sums: 4 zeroed uints. */
+/* sums: 4 zeroed uints. On a GPU a packet is a pixel, so many work-items add up first what is their group's. */
 kernel void sum_counters(const global uint4 *counters, const uint count, global uint *sums)
 {
+    local uint ours[4];
+    const uint lane = (uint)get_local_id(0);
+    if (lane < 4u) ours[lane] = 0u;
+    barrier(CLK_LOCAL_MEM_FENCE);
     uint4 mine = (uint4)(0u);
     for (uint i = (uint)get_global_id(0); i < count; i += (uint)get_global_size(0)) mine += counters[i];
-    if (mine.x) atomic_add(sums + 0, mine.x);
-    if (mine.y) atomic_add(sums + 1, mine.y);
-    if (mine.z) atomic_add(sums + 2, mine.z);
-    if (mine.w) atomic_add(sums + 3, mine.w);
+    if (mine.x) atomic_add(ours + 0, mine.x);
+    if (mine.y) atomic_add(ours + 1, mine.y);
+    if (mine.z) atomic_add(ours + 2, mine.z);
+    if (mine.w) atomic_add(ours + 3, mine.w);
+    barrier(CLK_LOCAL_MEM_FENCE);
+    if (lane < 4u && ours[lane]) atomic_add(sums + lane, ours[lane]);
 }

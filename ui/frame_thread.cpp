@@ -38,7 +38,7 @@ void share_scale(PictureSide& a, PictureSide& b) {
     if (!amounts || a.settings.aov != b.settings.aov || a.scale.max == b.scale.max) return;
     PictureSide& shorter = a.scale.max < b.scale.max ? a : b;
     shorter.scale = scale_of(*shorter.values, shorter.settings.aov, std::max(a.scale.max, b.scale.max));
-    false_colors(*shorter.values, shorter.settings.aov, shorter.scale, shorter.image.pixels.data());
+    shorter.image = false_colors(*shorter.values, shorter.settings.aov, shorter.scale);
 }
 
 }  // namespace
@@ -76,7 +76,7 @@ bool FrameThread::idle() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     unsigned sample = 0;
     bool retrace = false;
-    return !tracing_ && !wants_work(sample, retrace);
+    return !tracing_ && !traced_ && !wants_work(sample, retrace);
 }
 
 std::string FrameThread::take_failure() {
@@ -106,7 +106,7 @@ void FrameThread::release() {
     std::unique_lock<std::mutex> lock(mutex_);
     released_ = true;
     if (running_) running_->cancel();
-    stopped_.wait(lock, [this] { return !tracing_; });
+    stopped_.wait(lock, [this] { return !tracing_ && !traced_; });
     for (Tracer& tracer : tracers_) tracer = {};
 }
 
@@ -125,6 +125,7 @@ std::vector<FrameThread::Saved> FrameThread::take_saved() {
 
 // With the lock held: whether there is something to do, which sample, and whether it needs tracing at all.
 bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
+    retrace = false;
     if (!job_.ready || failed_ || released_ || !job_.ready->main.device->is_open()) return false;
     const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
     const bool fresh = job_.revision != traced_revision_ || sharpen;
@@ -154,20 +155,23 @@ void FrameThread::run() {
     for (;;) {
         FrameJob job;
         unsigned sample = 0;
-        bool retrace = false, save = false;
+        bool retrace = false, save = false, settle = false;
         {
             std::unique_lock<std::mutex> lock(mutex_);
-            changed_.wait(lock, [&] { return stop_ || wants_work(sample, retrace); });
+            changed_.wait(lock, [&] { return wants_work(sample, retrace) || traced_ || stop_; });
             if (stop_) return;
             job = job_;
             save = has_saving();
+            settle = traced_ && (save || !retrace);  // there is nothing to trace meanwhile
             tracing_ = true;
             running_ = std::make_shared<StopProgress>();
             if (sample == 0 && retrace && !save) samples_ = 0;
         }
         std::string failure;
         try {
-            if (save)
+            if (settle)
+                finish(true);
+            else if (save)
                 save_waiting();
             else
                 trace(job, sample, retrace);
@@ -175,6 +179,7 @@ void FrameThread::run() {
         } catch (const std::exception& error) {
             failure = std::string("tracing stopped: ") + error.what();
         }
+        bool news = false;
         {
             const std::lock_guard<std::mutex> lock(mutex_);
             tracing_ = false;
@@ -183,9 +188,10 @@ void FrameThread::run() {
                 failure_ = failure;
                 failed_ = job_.revision == job.revision;
             }
+            news = !traced_;
         }
         stopped_.notify_all();
-        wake_();
+        if (news) wake_();
     }
 }
 
@@ -224,18 +230,22 @@ float FrameThread::moving_scale(const FrameJob& job) const {
 }
 
 PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
-                                    const Order& order, const PictureSide* last, Progress& progress) {
+                                    const Order& order, const PictureSide* last, Progress& progress, PendingImage& image) {
     PictureSide side;
     side.settings = settings;
     const auto begin = Clock::now();
-    if (order.retrace)
-        side.stats = tracer.frames->trace(ready.shared, settings, view, order.sample, true, progress);
-    else if (last)
+    if (order.retrace) {
+        const auto show_last = [this] {
+            if (finish(false)) wake_();
+        };
+        side.stats = tracer.frames->trace(ready.shared, settings, view, order.sample, true, progress, 1, show_last);
+    } else if (last) {
         side.stats = traced_part(last->stats);
-    side.image.width = static_cast<unsigned>(settings.width);
-    side.image.height = static_cast<unsigned>(settings.height);
-    side.image.pixels.resize(size_t(side.image.width) * side.image.height * 4);
-    side.scale = tracer.frames->read_display(settings, side.image.pixels.data(), &side.stats);
+    }
+    if (tracer.frames->copies_aside())
+        image = tracer.frames->begin_display(settings);
+    else
+        side.image = tracer.frames->read_display(settings, &side.stats, &side.scale);
     side.frame_ms = ms_since(begin);
     if (side.scale.map != FalseColorScale::Map::none)
         side.values = std::make_shared<const FloatImage>(tracer.frames->read_values());
@@ -247,6 +257,40 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
             side.distance = std::make_shared<const FloatImage>(tracer.frames->read_distance());
     }
     return side;
+}
+
+// Waits for what is still on its way of the picture traced last, and leaves that as the newest; false: it is already. held_up:
+// nothing else is done meanwhile.
+bool FrameThread::finish(bool held_up) {
+    Traced traced;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!traced_) return false;
+        traced = std::move(*traced_);
+        traced_.reset();
+    }
+    Picture& picture = *traced.picture;
+    const auto receive = [&](PictureSide& side, PendingImage& image) {
+        if (!image) return;
+        const auto begin = Clock::now();
+        side.image = image.wait(&side.stats.kernels);
+        if (held_up && traced.fresh) side.frame_ms += ms_since(begin);
+    };
+    receive(picture.main, traced.images[0]);
+    if (picture.other) {
+        receive(*picture.other, traced.images[1]);
+        share_scale(picture.main, *picture.other);
+        picture.difference = compare_pictures(picture.main.image, picture.other->image);
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    latest_ = traced.picture;
+    if (!traced.fresh) return true;
+    note_time(times_[0], picture.job.ready->main.prepared, picture.main.frame_ms);
+    if (picture.other)
+        note_time(times_[1], picture.job.ready->other->prepared, picture.other->frame_ms);
+    else
+        times_[1] = {};
+    return true;
 }
 
 // The film has kernels of its own. If edited ones do not compile, the last good ones go on.
@@ -273,7 +317,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         progress = running_;
-        last = latest_;
+        last = traced_ ? traced_->picture : latest_;
         distance = distance_;
         reduced = traced_reduced_;
     }
@@ -284,7 +328,9 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         reduced = moving < 1;
         scale *= moving;
     }
-    auto picture = std::make_shared<Picture>();
+    Traced traced;
+    const auto picture = traced.picture = std::make_shared<Picture>();
+    traced.fresh = retrace;
     picture->job = job;
     const auto sized = [&](const ReadySide& side, const Settings& wished, const PictureSide* before) {
         Settings settings = frame_settings(side.prepared->settings, wished);
@@ -302,34 +348,33 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     const Order order{sample, retrace, distance};
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
     picture->main = trace_side(tracers_[0], job.ready->main, sized(job.ready->main, job.settings, before[0]), job.view, order,
-                               before[0], *progress);
+                               before[0], *progress, traced.images[0]);
     double ms = picture->main.frame_ms;
     if (two) {
         picture->other = trace_side(tracers_[1], *job.ready->other, sized(*job.ready->other, *job.other_settings, before[1]),
-                                    job.view, order, before[1], *progress);
+                                    job.view, order, before[1], *progress, traced.images[1]);
         ms += picture->other->frame_ms;
-        share_scale(picture->main, *picture->other);
-        picture->difference = compare_pictures(picture->main.image, picture->other->image);
     }
     picture->job.settings = picture->main.settings;
     picture->reduced = reduced;
-
-    const std::lock_guard<std::mutex> lock(mutex_);
-    latest_ = picture;
-    traced_revision_ = job.revision;
-    shown_revision_ = job.display_revision;
-    if (!retrace) return;
-    traced_reduced_ = reduced;
-    samples_ = sample + 1;
-    const double pixels = double(picture->main.settings.width) * picture->main.settings.height;
-    // The first frame of a program is slower than those that follow.
-    ms_per_pixel_ = paced_ == job.ready ? ms / pixels : 0;
-    paced_ = job.ready;
-    note_time(times_[0], job.ready->main.prepared, picture->main.frame_ms);
-    if (two)
-        note_time(times_[1], job.ready->other->prepared, picture->other->frame_ms);
-    else
-        times_[1] = {};
+    const bool pending = traced.images[0] || traced.images[1];
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        traced_ = std::move(traced);
+        traced_revision_ = job.revision;
+        shown_revision_ = job.display_revision;
+        if (retrace) {
+            traced_reduced_ = reduced;
+            samples_ = sample + 1;
+        }
+    }
+    if (retrace) {
+        // The first frame of a program is slower than those that follow.
+        const double pixels = double(picture->main.settings.width) * picture->main.settings.height;
+        ms_per_pixel_ = paced_ == job.ready ? ms / pixels : 0;
+        paced_ = job.ready;
+    }
+    if (!pending) finish(false);
 }
 
 // Times of another program say nothing of this one, nor does its first frame: drivers compile the last bit then.

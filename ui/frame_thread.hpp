@@ -1,4 +1,7 @@
 // frame_thread.hpp -- the thread that traces: takes the newest wish, leaves the newest picture.
+//
+// Where a device copies beside its tracing, the next picture is begun before the last one is copied, if there is a next one to
+// trace: pictures come as soon as they would otherwise, and more of them.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -34,7 +37,7 @@ struct PictureSide {
     FalseColorScale scale;  // of an AOV; without a unit for colours
     Settings settings;      // as traced
     FrameStats stats;
-    double frame_ms = 0;                         // tracing and reading back
+    double frame_ms = 0;                         // what it took of the thread: tracing, and reading back if that held it up
     std::shared_ptr<const FloatImage> distance;  // of the camera rays of sample 0, +inf: nothing; nullptr if not asked for,
                                                  // empty where it is not known
     std::shared_ptr<const FloatImage> values;    // what a picture with a scale shows; else nullptr
@@ -93,14 +96,21 @@ class FrameThread {
         std::shared_ptr<const Prepared> of;
         bool cold = false;  // only its first frame is in
     };
+    // A picture whose images may still be on their way.
+    struct Traced {
+        std::shared_ptr<Picture> picture;
+        PendingImage images[2];  // of its sides
+        bool fresh = false;      // not only shown anew
+    };
     void run();
     void trace(const FrameJob& job, unsigned sample, bool retrace);
     struct Order {  // what of a side is to be done
         unsigned sample = 0;
         bool retrace = false, distance = false;
     };
-    static PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
-                                  const Order& order, const PictureSide* last, Progress& progress);
+    PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
+                           const Order& order, const PictureSide* last, Progress& progress, PendingImage& image);
+    bool finish(bool held_up);
     bool wants_work(unsigned& sample, bool& retrace) const;
     void fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision);
     bool has_saving() const;
@@ -121,6 +131,7 @@ class FrameThread {
     bool traced_reduced_ = false;  // the films hold fewer pixels than asked for
     unsigned samples_ = 0;         // in the films
     std::shared_ptr<StopProgress> running_;
+    std::optional<Traced> traced_;  // newer than latest_, which it becomes when its images are here
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
     Times times_[2];

@@ -204,19 +204,18 @@ ByteImage GlWindow::end_frame_and_read() {
     draw();
     int width = 0, height = 0;
     glfwGetFramebufferSize(window_, &width, &height);
-    ByteImage image{static_cast<unsigned>(width), static_cast<unsigned>(height), {}};
-    const size_t row_bytes = size_t{4} * image.width;
-    std::vector<uint8_t> rows(row_bytes * image.height);
+    const size_t row_bytes = size_t{4} * static_cast<unsigned>(width);
+    std::vector<uint8_t> rows(row_bytes * static_cast<unsigned>(height)), pixels;
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
     glfwSwapBuffers(window_);
     for (size_t i = 3; i < rows.size(); i += 4) rows[i] = 255;
-    image.pixels.reserve(rows.size());
+    pixels.reserve(rows.size());
     for (auto row = rows.end(); row != rows.begin();) {  // GL's first row is the lowest
         row -= static_cast<std::ptrdiff_t>(row_bytes);
-        image.pixels.insert(image.pixels.end(), row, row + static_cast<std::ptrdiff_t>(row_bytes));
+        pixels.insert(pixels.end(), row, row + static_cast<std::ptrdiff_t>(row_bytes));
     }
-    return image;
+    return {static_cast<unsigned>(width), static_cast<unsigned>(height), std::move(pixels)};
 }
 
 std::string GlWindow::gl_text() const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace clarity {
 
@@ -12,9 +13,7 @@ PictureDifference compare_pictures(const ByteImage& a, const ByteImage& b) {
         out.share = 1;
         return out;
     }
-    out.image.width = a.width;
-    out.image.height = a.height;
-    out.image.pixels.resize(a.pixels.size());
+    std::vector<uint8_t> pixels(a.pixels.size());
     constexpr int kBrighter = 8;
     uint64_t sum = 0, differing = 0;
     int largest = 0;
@@ -24,18 +23,19 @@ PictureDifference compare_pictures(const ByteImage& a, const ByteImage& b) {
             const int d = std::abs(int(a.pixels[i + k]) - int(b.pixels[i + k]));
             sum += static_cast<uint64_t>(d);
             most = std::max(most, d);
-            out.image.pixels[i + k] = static_cast<uint8_t>(std::min(255, d * kBrighter));
+            pixels[i + k] = static_cast<uint8_t>(std::min(255, d * kBrighter));
         }
-        out.image.pixels[i + 3] = 255;
+        pixels[i + 3] = 255;
         differing += most > 1;
         largest = std::max(largest, most);
     }
-    const double pixels = static_cast<double>(a.pixels.size()) / 4;
-    if (pixels > 0) {
-        out.mean = static_cast<double>(sum) / (3 * pixels);
-        out.share = static_cast<double>(differing) / pixels;
+    const double count = static_cast<double>(pixels.size()) / 4;
+    if (count > 0) {
+        out.mean = static_cast<double>(sum) / (3 * count);
+        out.share = static_cast<double>(differing) / count;
     }
     out.largest = largest;
+    out.image = {a.width, a.height, std::move(pixels)};
     return out;
 }
 

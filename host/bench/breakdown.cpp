@@ -58,7 +58,6 @@ void measure_breakdown(BenchRecord& row, Stand& stand, size_t device, const Sett
     // Each has a film of its own, as rows of other cases do, so that none disturbs another's pace.
     std::vector<Contender> contenders;
     std::vector<KernelTime> shown;
-    std::vector<uint8_t> pixels(4 * size_t(settings.width) * size_t(settings.height));
     for (size_t i = 0; i < kProbes; ++i) {
         const Probe probe = static_cast<Probe>(i);
         Settings reduced = held.prepared->settings;
@@ -71,12 +70,12 @@ void measure_breakdown(BenchRecord& row, Stand& stand, size_t device, const Sett
         const auto prepared = programs.prepare(*held.prepared, kPrograms[i]);
         const auto frames = std::make_shared<Frames>(stand.opened(device));
         frames->trace(*prepared, reduced, view, 0, false, progress);  // compiles, which is no part of the time limit's share
-        contenders.push_back({kNames[i], [=, &view, &progress, &shown, &pixels] {
+        contenders.push_back({kNames[i], [=, &view, &progress, &shown] {
                                   const auto begin = std::chrono::steady_clock::now();
                                   FrameStats stats = frames->trace(*prepared, reduced, view, 0, false, progress);
                                   Take take{stats.device_ms, 0};
                                   if (probe != Probe::whole) return take;
-                                  frames->read_display(reduced, pixels.data(), &stats);
+                                  frames->read_display(reduced, &stats);
                                   take.wall_ms = ms_since(begin);
                                   shown.insert(shown.end(), stats.kernels.begin(), stats.kernels.end());
                                   return take;

@@ -155,7 +155,7 @@ class Contest {
     double show_frame(const Settings& settings, const Stand::Held& held, const View& view, FrameStats& stats, Parts& parts) {
         const auto begin = Clock::now();
         stats = held.frames->trace(*held.prepared, settings, view, 0, false, progress_);
-        held.frames->look_at_display(settings, &stats);
+        held.frames->read_display(settings, &stats);
         const double ms = ms_since(begin);
         double busy = 0;
         for (const KernelTime& kernel : stats.kernels) {

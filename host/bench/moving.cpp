@@ -23,10 +23,10 @@ View turned(View view, unsigned step) {
 }
 
 // Wants the whole picture, and costs little beside it.
-void add_bytes(uint64_t& digest, const uint8_t* bytes, size_t count) {
-    for (size_t i = 0; i + 8 <= count; i += 8) {
+void add_bytes(uint64_t& digest, const SharedBytes& bytes) {
+    for (size_t i = 0; i + 8 <= bytes.size(); i += 8) {
         uint64_t word;
-        std::memcpy(&word, bytes + i, sizeof word);
+        std::memcpy(&word, bytes.data() + i, sizeof word);
         digest = (digest ^ word) * 0x9E3779B97F4A7C15u;
     }
 }
@@ -35,22 +35,29 @@ void add_bytes(uint64_t& digest, const uint8_t* bytes, size_t count) {
 
 Take show_moving(Frames& frames, const Prepared& prepared, const Settings& settings, const View& view, bool overlapped,
                  Progress& progress, std::vector<KernelTime>* parts, uint64_t* digest) {
-    const size_t bytes = size_t(settings.width) * size_t(settings.height) * 4;
     Take take;
+    PendingImage pending;
+    FrameStats pending_stats;
+    const auto show = [&](const ByteImage& picture, const FrameStats& stats) {
+        if (parts) parts->insert(parts->end(), stats.kernels.begin(), stats.kernels.end());
+        if (digest) add_bytes(*digest, picture.pixels);
+    };
+    const auto show_pending = [&] {
+        if (pending) show(pending.wait(&pending_stats.kernels), pending_stats);
+    };
     const auto begin = std::chrono::steady_clock::now();
     for (unsigned i = 0; i < kPictures; ++i) {
         if (progress.cancelled()) throw Cancelled();
-        FrameStats stats = frames.trace(prepared, settings, turned(view, i), 0, false, progress);
+        FrameStats stats = frames.trace(prepared, settings, turned(view, i), 0, false, progress, nullptr, show_pending);
         take.time_ms += stats.device_ms / kPictures;
-        const uint8_t* picture =
-            overlapped ? frames.exchange_display(settings, &stats) : frames.look_at_display(settings, &stats);
-        if (parts) parts->insert(parts->end(), stats.kernels.begin(), stats.kernels.end());
-        if (picture && digest) add_bytes(*digest, picture, bytes);
+        if (overlapped) {
+            pending = frames.begin_display(settings);
+            pending_stats = std::move(stats);
+        } else {
+            show(frames.read_display(settings, &stats), stats);
+        }
     }
-    if (overlapped) {
-        const uint8_t* picture = frames.last_display();
-        if (digest) add_bytes(*digest, picture, bytes);
-    }
+    show_pending();
     take.wall_ms = ms_since(begin) / kPictures;
     return take;
 }

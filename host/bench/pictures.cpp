@@ -139,7 +139,7 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
                                           const auto begin = Clock::now();
                                           FrameStats stats = team.frames->trace(team.prepared, settings, stand.view(), 0, false,
                                                                                 progress, samples);
-                                          team.frames->look_at_display(settings, &stats);
+                                          team.frames->read_display(settings, &stats);
                                           const auto took = Clock::now() - begin;
                                           note_times(team, stats);
                                           return Take{stats.device_ms, std::chrono::duration<double, std::milli>(took).count()};

@@ -6,55 +6,41 @@
 
 namespace clarity {
 
-cl::Event DisplayRelay::begin(FilmKernels& kernels, const cl::Buffer& film, size_t pixels, const Settings& settings) {
-    const bool cpu = device_->info().cpu;
-    if (!copies_) copies_ = cpu ? device_ : device_->with_own_queue();
-    Slot& slot = slots_[at_];
-    begun_ = false;
-    if (std::exchange(slot.filled, false) && !cpu) clWaitForEvents(1, &slot.read());  // whatever became of it
-    if (!slot.picture) slot.picture = std::make_unique<HostPicture>(copies_);
-    if (cpu) slot.picture->release();  // it is the display itself
-    const cl::Buffer& display = slot.display.fit(device_->context(), FilmKernels::room(pixels) * 4);
-    slot.mapped = kernels.map_tones(film, display, pixels, settings);
-    slot.rgba = nullptr;
-    if (!cpu) {
-        slot.rgba = slot.picture->begin(display, pixels * 4, &slot.read, {slot.mapped});
+cl::Event DisplayRelay::begin(const ColorFilm& film, const Settings& settings, bool aside) {
+    begun_ = {};
+    const size_t pixels = size_t(film.width) * film.height, room = FilmKernels::room(pixels) * 4;
+    PendingImage image;
+    image.device_ = device_;
+    image.width_ = film.width;
+    image.height_ = film.height;
+    image.memory_ = memory_.lend(room);
+    if (device_->info().cpu) {
+        image.in_place_ = cl::Buffer(device_->context(), CL_MEM_WRITE_ONLY | CL_MEM_USE_HOST_PTR, room, image.memory_.get());
+        image.mapped_ = kernels_.map_tones(film.sums, image.in_place_, pixels, settings);
+    } else {
+        Display& display = displays_[turn_ ^= 1u];
+        if (display.copied()) clWaitForEvents(1, &display.copied());  // long done; if it failed, that is another's affair
+        const cl::Buffer& tones = display.buffer.fit(device_->context(), room);
+        image.mapped_ = kernels_.map_tones(film.sums, tones, pixels, settings);
+        const std::vector<cl::Event> after = {image.mapped_};
+        if (aside && !copies_) copies_ = device_->with_own_queue();
+        cl::CommandQueue& copies = aside ? copies_->queue() : device_->queue();
+        copies.enqueueReadBuffer(tones, CL_FALSE, 0, image.bytes(), image.memory_.get(), &after, &image.copied_);
+        display.copied = image.copied_;
         device_->queue().flush();  // or the other queue may wait for what is not on its way
-        copies_->queue().flush();
+        copies.flush();
     }
-    slot.pixels = pixels;
-    slot.exposure = settings.exposure;
-    slot.tone = settings.tone;
-    slot.filled = begun_ = true;
-    return slot.mapped;
+    exposure_ = settings.exposure;
+    tone_ = settings.tone;
+    begun_ = std::move(image);
+    return aside ? begun_.mapped_ : begun_.copied_;
 }
 
-const uint8_t* DisplayRelay::exchange(FilmKernels& kernels, const cl::Buffer& film, size_t pixels, const Settings& settings,
-                                      std::vector<KernelTime>* times) {
-    const Slot& slot = slots_[at_];
-    const bool same = slot.pixels == pixels && slot.exposure == settings.exposure && slot.tone == settings.tone;
-    if (!begun_ || !same) begin(kernels, film, pixels, settings);
-    begun_ = false;
-    at_ ^= 1u;
-    return finish(slots_[at_], times);
-}
-
-const uint8_t* DisplayRelay::last(std::vector<KernelTime>* times) {
-    at_ ^= 1u;
-    return finish(slots_[at_], times);
-}
-
-const uint8_t* DisplayRelay::finish(Slot& slot, std::vector<KernelTime>* times) {
-    if (!std::exchange(slot.filled, false)) return nullptr;
-    if (device_->info().cpu)
-        slot.rgba = slot.picture->fetch(slot.display.get(), slot.pixels * 4, &slot.read);
-    else
-        slot.read.wait();
-    if (times) {
-        times->push_back({"tone map", event_ms(slot.mapped)});
-        times->push_back({"read-back", event_ms(slot.read)});
-    }
-    return slot.rgba;
+PendingImage DisplayRelay::take(const ColorFilm& film, const Settings& settings, bool aside) {
+    const bool same = begun_ && begun_.width_ == film.width && begun_.height_ == film.height &&
+                      exposure_ == settings.exposure && tone_ == settings.tone;
+    if (!same) begin(film, settings, aside);
+    return std::move(begun_);
 }
 
 }  // namespace clarity

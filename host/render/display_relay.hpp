@@ -1,49 +1,49 @@
-// display_relay.hpp -- picture after picture on its way to the host: each is copied while the next one is traced.
+// display_relay.hpp -- pictures from a film to the host, one by one or each copied while the next one is traced.
 //
-// A queue does one thing after the other, so copies have one of their own, which waits for a picture's tones by an event.
-// Displays and memory of the host are double. It is worth what the copy takes, at the price of one picture's delay.
+// A queue does one thing after the other, so copies beside it have one of their own, which waits for a picture's tones by an
+// event. Displays are double; the memory of the host that they are copied to goes with the picture.
 #pragma once
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "render/film.hpp"
 #include "render/growing_buffer.hpp"
-#include "render/host_picture.hpp"
+#include "render/host_memory.hpp"
+#include "render/pending_image.hpp"
 
 namespace clarity {
 
+// A film of colours.
+struct ColorFilm {
+    const cl::Buffer& sums;  // of samples: room(pixels) float4
+    unsigned width, height;
+};
+
 class DisplayRelay {
  public:
-    explicit DisplayRelay(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // Enqueues tones and copy of the film behind what is queued. Returns the event of its tones.
-    cl::Event begin(FilmKernels& kernels, const cl::Buffer& film, size_t pixels, const Settings& settings);
+    DisplayRelay(std::shared_ptr<Device> device, FilmKernels& kernels)
+        : device_(std::move(device)), kernels_(kernels), memory_(device_) {}
+    // The film's picture. aside: its copy holds up nothing that is queued later.
+    PendingImage take(const ColorFilm& film, const Settings& settings, bool aside);
+    // Begins with that, behind what is queued: take() of the same film with the same settings then finds it under way. Returns
+    // the last event in the device's own queue.
+    cl::Event begin(const ColorFilm& film, const Settings& settings, bool aside);
     // The film is about to be another.
-    void forget_begun() { begun_ = false; }
-    // Hands in the film, begun or not, and gives what was handed in before: null the first time. It stays until the next
-    // begin().
-    const uint8_t* exchange(FilmKernels& kernels, const cl::Buffer& film, size_t pixels, const Settings& settings,
-                            std::vector<KernelTime>* times);
-    // What was handed in last; null if nothing was since.
-    const uint8_t* last(std::vector<KernelTime>* times);
+    void forget_begun() { begun_ = {}; }
 
  private:
-    struct Slot {
-        GrowingBuffer display{CL_MEM_WRITE_ONLY | CL_MEM_ALLOC_HOST_PTR};
-        std::unique_ptr<HostPicture> picture;  // goes before what it shows
-        size_t pixels = 0;
-        double exposure = 0;
-        std::string tone;
-        cl::Event mapped, read;
-        const uint8_t* rgba = nullptr;  // of a CPU: not looked at yet
-        bool filled = false;
+    struct Display {
+        GrowingBuffer buffer{CL_MEM_WRITE_ONLY};
+        cl::Event copied;
     };
-    const uint8_t* finish(Slot& slot, std::vector<KernelTime>* times);
-
     std::shared_ptr<Device> device_, copies_;  // the same by a queue of its own
-    Slot slots_[2];
-    unsigned at_ = 0;     // where the film goes, by turns
-    bool begun_ = false;  // it is there
+    FilmKernels& kernels_;
+    HostMemory memory_;
+    Display displays_[2];
+    unsigned turn_ = 0;
+    PendingImage begun_;
+    double exposure_ = 0;  // of what is begun
+    std::string tone_;
 };
 
 }  // namespace clarity

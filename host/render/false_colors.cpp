@@ -132,7 +132,9 @@ FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float
     return scale;
 }
 
-void false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale, uint8_t* rgba) {
+ByteImage false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale) {
+    std::vector<uint8_t> pixels(4 * pixel_count(values));
+    uint8_t* const rgba = pixels.data();
     if (aov == "prim" || aov == "instance") {
         paint(values, rgba, [](const float* v) { return color_of_number(*v); });
     } else if (aov == "normal") {
@@ -154,6 +156,7 @@ void false_colors(const FloatImage& values, const std::string& aov, const FalseC
             std::memcpy(rgba + 4 * i, map[entry].data(), 4);
         }
     }
+    return {values.width, values.height, std::move(pixels)};
 }
 
 }  // namespace clarity

@@ -24,7 +24,7 @@ std::array<uint8_t, 3> color_at(const FalseColorScale& scale, float position);
 FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float most = 0);
 
 // t: near is bright; prim, instance: a colour a number; normal: xyz to rgb; uv: to red and green; counts and shares: dark blue
-// to yellow. What was not hit is black. rgba: 4 bytes a pixel.
-void false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale, uint8_t* rgba);
+// to yellow. What was not hit is black.
+ByteImage false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale);
 
 }  // namespace clarity

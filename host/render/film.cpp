@@ -1,6 +1,8 @@
 #include "render/film.hpp"
 
+#include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <map>
 #include <utility>
 
@@ -13,36 +15,34 @@
 namespace clarity {
 namespace {
 
+constexpr size_t kSumBytes = 4 * sizeof(cl_uint);
+constexpr unsigned kSummersPerUnit = 2048;  // work-items that a GPU's unit has at a time
+
 // As film.cl numbers them.
 cl_uint number_of_tone(const std::string& tone) {
     static const std::map<std::string, cl_uint> numbers = {{"linear", 0}, {"reinhard", 1}, {"aces", 2}, {"agx", 3}};
     return numbers.at(tone);
 }
 
-void add_times(std::vector<KernelTime>* times, const cl::Event& mapped, const cl::Event& read) {
-    if (!times) return;
-    times->push_back({"tone map", event_ms(mapped)});
-    times->push_back({"read-back", event_ms(read)});
-}
-
 }  // namespace
 
-FalseColorScale show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
-                            uint8_t* rgba, FrameStats* stats) {
+ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
+                      FrameStats* stats, FalseColorScale* scale) {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     const FloatImage values = read();
     const auto done = Clock::now();
-    const FalseColorScale scale = scale_of(values, aov, static_cast<float>(settings.scale_max));
-    false_colors(values, aov, scale, rgba);
+    const FalseColorScale found = scale_of(values, aov, static_cast<float>(settings.scale_max));
+    ByteImage image = false_colors(values, aov, found);
     if (stats) {
         stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(done - begin).count()});
         stats->kernels.push_back({"false colours", ms_since(done)});
     }
-    return scale;
+    if (scale) *scale = found;
+    return image;
 }
 
-FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), picture_(device) {
+FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), memory_(device) {
     const BuildResult built =
         build_program(*device_, "#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film");
     guarded(*device_, "preparing the film", [&] {
@@ -53,24 +53,30 @@ FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), pict
     });
 }
 
-RayCounts FilmKernels::sum(const cl::Buffer& counters, unsigned packets, KernelTime& time) {
+// Sums may be on their way hither.
+FilmKernels::~FilmKernels() {
+    if (sums_read_()) clWaitForEvents(1, &sums_read_());
+}
+
+cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned packets) {
     cl::CommandQueue& queue = device_->queue();
-    const cl::Buffer& out = sums_.fit(device_->context(), 16);
-    cl_uint sums[4] = {};
-    cl::Event event;
-    queue.enqueueWriteBuffer(out, CL_TRUE, 0, sizeof sums, sums);
+    const cl::Buffer& out = sums_.fit(device_->context(), kSumBytes);
+    if (!read_sums_) read_sums_ = memory_.lend(kSumBytes);
+    queue.enqueueFillBuffer(out, cl_uint(0), 0, kSumBytes);
     sum_counters_.setArg(0, counters);
     sum_counters_.setArg(1, packets);
     sum_counters_.setArg(2, out);
-    queue.enqueueNDRangeKernel(sum_counters_, cl::NullRange, cl::NDRange(1024), cl::NDRange(64), nullptr, &event);
-    queue.enqueueReadBuffer(out, CL_TRUE, 0, sizeof sums, sums);
-    time = {"counters", event_ms(event)};
-    return {sums[0], sums[1], sums[2], sums[3]};
+    summed_ = run(sum_counters_, std::min(packets, device_->info().compute_units * kSummersPerUnit));
+    queue.enqueueReadBuffer(out, CL_FALSE, 0, kSumBytes, read_sums_.get(), nullptr, &sums_read_);
+    return sums_read_;
 }
 
-const cl::Buffer& FilmKernels::own_display(size_t pixels) {
-    if (device_->info().cpu) picture_.release();  // it is the display itself
-    return display_.fit(device_->context(), room(pixels) * 4);
+RayCounts FilmKernels::end_sum(KernelTime& time) {
+    sums_read_.wait();
+    time = {"counters", event_ms(summed_)};
+    cl_uint sums[4];
+    std::memcpy(sums, read_sums_.get(), sizeof sums);
+    return {sums[0], sums[1], sums[2], sums[3]};
 }
 
 void FilmKernels::set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::Buffer& display, size_t pixels,
@@ -80,10 +86,6 @@ void FilmKernels::set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::
     kernel.setArg(2, static_cast<cl_uint>(room(pixels) / kPixelsAtOnce));
     kernel.setArg(3, static_cast<float>(settings.exposure));
     kernel.setArg(4, number_of_tone(settings.tone));
-}
-
-cl::Event FilmKernels::map_tones(const cl::Buffer& film, size_t pixels, const Settings& settings) {
-    return map_tones(film, own_display(pixels), pixels, settings);
 }
 
 cl::Event FilmKernels::map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings) {
@@ -101,7 +103,7 @@ cl::Event FilmKernels::run(const cl::Kernel& kernel, size_t items) {
 void FilmKernels::show_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
                             unsigned row_height, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times) {
     const size_t pixels = size_t(width) * height;
-    const cl::Buffer& display = own_display(pixels);
+    const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
     set_map(map_tones_of_rows_, film, display, pixels, settings);
     const size_t bytes = rows.size() * sizeof(rt_u32), row_quads = size_t(width) * row_height / kPixelsAtOnce;
     const cl::Buffer before = rows_.get();
@@ -120,36 +122,6 @@ void FilmKernels::show_rows(const cl::Buffer& film, unsigned width, unsigned hei
     if (!times) return;
     times->push_back({"tone map", event_ms(mapped)});
     times->push_back({"read-back", span_ms(reads.front(), reads.back())});
-}
-
-void FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings, uint8_t* rgba,
-                       std::vector<KernelTime>* times) {
-    const cl::Event mapped = map_tones(film, pixels, settings);
-    cl::Event read;
-    device_->queue().enqueueReadBuffer(display_.get(), CL_TRUE, 0, pixels * 4, rgba, nullptr, &read);
-    add_times(times, mapped, read);
-}
-
-cl::Event FilmKernels::begin_to_show(const cl::Buffer& film, size_t pixels, const Settings& settings) {
-    Begun begun{pixels, settings.exposure, settings.tone, map_tones(film, pixels, settings), {}, nullptr};
-    begun.rgba = picture_.begin(display_.get(), pixels * 4, &begun.read);
-    begun_ = std::move(begun);
-    return begun_.read;
-}
-
-const uint8_t* FilmKernels::show(const cl::Buffer& film, size_t pixels, const Settings& settings,
-                                 std::vector<KernelTime>* times) {
-    const Begun begun = std::exchange(begun_, {});
-    if (begun.rgba && begun.pixels == pixels && begun.exposure == settings.exposure && begun.tone == settings.tone) {
-        begun.read.wait();
-        add_times(times, begun.mapped, begun.read);
-        return begun.rgba;
-    }
-    const cl::Event mapped = map_tones(film, pixels, settings);
-    cl::Event read;
-    const uint8_t* rgba = picture_.fetch(display_.get(), pixels * 4, &read);
-    add_times(times, mapped, read);
-    return rgba;
 }
 
 }  // namespace clarity

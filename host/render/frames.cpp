@@ -53,7 +53,8 @@ void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const f
 }  // namespace
 
 struct Frames::Impl {
-    explicit Impl(const std::shared_ptr<Device>& d) : device(d), film_kernels(d), relay(d), queries(d), wavefront(d) {}
+    explicit Impl(const std::shared_ptr<Device>& d)
+        : device(d), film_kernels(d), relay(d, film_kernels), queries(d), wavefront(d) {}
 
     std::shared_ptr<Device> device;
     FilmKernels film_kernels;
@@ -70,9 +71,8 @@ struct Frames::Impl {
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
     Launcher launcher;
-    enum class Shown { no, looked_at, exchanged };
-    Shown shown = Shown::no;  // the picture before: then this one will be
-    std::vector<uint8_t> false_picture;
+    enum class Shown { no, read, begun };
+    Shown shown = Shown::no;     // the picture before: then this one will be
     std::vector<float> scratch;  // kept: fresh pages cost more than what is done with them
 
     // Waits for all that is queued.
@@ -92,6 +92,19 @@ struct Frames::Impl {
         const std::vector<rt_u32> some(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.end());
         return bands_of(some, layout.group_h * layout.packet_h, height);
     }
+    cl::Event begin_sum() {
+        if (program->is_wavefront()) return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count());
+        return film_kernels.begin_sum(counters.get(), groups() * layout.group_packets());
+    }
+    void end_sum(FrameStats& stats) {
+        stats.kernels.emplace_back();
+        const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
+        stats.shadow = counts.shadow;
+        stats.secondary = counts.secondary;
+        stats.dropped = counts.dropped;
+        stats.overflowed = counts.overflowed;
+    }
+    ColorFilm film_of_colors() const { return {film.get(), width, height}; }
     unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
     FloatImage image(unsigned channels) const {
         FloatImage image{width, height, channels, {}};
@@ -104,7 +117,7 @@ Frames::Frames(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>(de
 Frames::~Frames() = default;
 
 FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
-                         Progress& progress, const SharedRows* shared) {
+                         Progress& progress, const SharedRows* shared, const std::function<void()>& meanwhile) {
     Impl& im = *impl_;
     return guarded(*im.device, "tracing", [&] {
         const TraceProgram& program = *prepared.program;
@@ -140,24 +153,24 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         const cl::Buffer& film = im.film.fit(context, FilmKernels::room(pixels) * film_channels(im.aov) * sizeof(float));
         if (program.has_generations()) im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float));
         const unsigned groups = im.groups() - begin;
-        // Who looked at the last picture gets this one by a single wait, not by one for the trace and one for the copy.
-        Behind behind;
-        im.film_kernels.forget_shown();
+        // Who was shown the last picture gets this one by a single wait, not by one for the trace and one for the copy.
+        Beside beside{{}, meanwhile};
         im.relay.forget_begun();
         const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
-        if (im.aov == "color" && !shared && !im.device->info().cpu) {
-            if (before == Impl::Shown::looked_at)
-                behind = [&] { return im.film_kernels.begin_to_show(film, pixels, settings); };
-            else if (before == Impl::Shown::exchanged)
-                behind = [&] { return im.relay.begin(im.film_kernels, film, pixels, settings); };
-        }
+        const bool show = im.aov == "color" && !shared && !im.device->info().cpu && before != Impl::Shown::no;
+        const bool sum = count_rays && program.has_generations() && groups > 0;
+        if (sum || show)
+            beside.behind = [&] {
+                const cl::Event summed = sum ? im.begin_sum() : cl::Event();
+                return show ? im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun) : summed;
+            };
         LaunchTimes times;
         if (program.is_wavefront()) {
             const auto depth = static_cast<unsigned>(settings.depth);
             times = im.wavefront.trace(
                 queue, im.launcher,
                 {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film, im.distances.get()}, go_on,
-                behind);
+                beside);
         } else {
             cl_uint at = 0;
             im.kernel.setArg(at++, im.view.frame());
@@ -168,7 +181,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
                 im.kernel.setArg(at++, im.distances.get());
             }
             im.view.bind(*prepared.on_device, im.kernel, at);
-            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on, begin, behind);
+            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on, begin, beside);
         }
 
         FrameStats stats;
@@ -178,7 +191,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         for (const Band& band : im.bands(shared ? shared->begin : 0)) stats.primary += uint64_t(band.count) * width;
         stats.samples = sample + 1;
         stats.kernels.push_back({"trace", times.device_ms});
-        if (count_rays) count(stats);
+        if (sum) im.end_sum(stats);
         return stats;
     });
 }
@@ -187,15 +200,8 @@ void Frames::count(FrameStats& stats) {
     Impl& im = *impl_;
     if (!im.program || !im.program->has_generations() || im.rows.empty()) return;
     guarded(*im.device, "counting rays", [&] {
-        stats.kernels.emplace_back();
-        const bool wave = im.program->is_wavefront();
-        const RayCounts counts = im.film_kernels.sum(
-            wave ? im.wavefront.counters() : im.counters.get(),
-            wave ? im.wavefront.counter_count() : im.groups() * im.layout.group_packets(), stats.kernels.back());
-        stats.shadow = counts.shadow;
-        stats.secondary = counts.secondary;
-        stats.dropped = counts.dropped;
-        stats.overflowed = counts.overflowed;
+        im.begin_sum();
+        im.end_sum(stats);
     });
 }
 
@@ -251,24 +257,6 @@ bool Frames::read_distance(FloatImage& image) {
     return true;
 }
 
-ByteImage Frames::read_display(const Settings& settings) {
-    ByteImage image;
-    image.width = impl_->width;
-    image.height = impl_->height;
-    image.pixels.resize(size_t(image.width) * image.height * 4);
-    read_display(settings, image.pixels.data());
-    return image;
-}
-
-FalseColorScale Frames::read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats) {
-    Impl& im = *impl_;
-    if (im.aov != "color") return show_values([this] { return read_values(); }, im.aov, settings, rgba, stats);
-    guarded(*im.device, "reading the picture", [&] {
-        im.film_kernels.show(im.film.get(), size_t(im.width) * im.height, settings, rgba, stats ? &stats->kernels : nullptr);
-    });
-    return {};
-}
-
 void Frames::read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times) {
     Impl& im = *impl_;
     if (im.rows.empty()) return;
@@ -278,32 +266,23 @@ void Frames::read_display(const Settings& settings, uint8_t* rgba, std::vector<K
     });
 }
 
-const uint8_t* Frames::look_at_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
+ByteImage Frames::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
     Impl& im = *impl_;
-    const size_t pixels = size_t(im.width) * im.height;
-    if (im.aov != "color") {
-        im.false_picture.resize(pixels * 4);
-        const FalseColorScale found = read_display(settings, im.false_picture.data(), stats);
-        if (scale) *scale = found;
-        return im.false_picture.data();
-    }
     if (scale) *scale = {};
-    im.shown = Impl::Shown::looked_at;
-    return guarded(*im.device, "reading the picture",
-                   [&] { return im.film_kernels.show(im.film.get(), pixels, settings, stats ? &stats->kernels : nullptr); });
+    if (im.aov != "color") return show_values([this] { return read_values(); }, im.aov, settings, stats, scale);
+    im.shown = Impl::Shown::read;
+    return guarded(*im.device, "reading the picture", [&] { return im.relay.take(im.film_of_colors(), settings, false); })
+        .wait(stats ? &stats->kernels : nullptr);
 }
 
-const uint8_t* Frames::exchange_display(const Settings& settings, FrameStats* stats) {
+PendingImage Frames::begin_display(const Settings& settings) {
     Impl& im = *impl_;
-    im.shown = Impl::Shown::exchanged;
-    return guarded(*im.device, "reading the picture", [&] {
-        return im.relay.exchange(im.film_kernels, im.film.get(), size_t(im.width) * im.height, settings,
-                                 stats ? &stats->kernels : nullptr);
-    });
+    im.shown = Impl::Shown::begun;
+    return guarded(*im.device, "reading the picture", [&] { return im.relay.take(im.film_of_colors(), settings, true); });
 }
 
-const uint8_t* Frames::last_display(FrameStats* stats) {
-    return guarded(*impl_->device, "reading the picture", [&] { return impl_->relay.last(stats ? &stats->kernels : nullptr); });
+bool Frames::copies_aside() const {
+    return impl_->aov == "color" && !impl_->device->info().cpu;
 }
 
 std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

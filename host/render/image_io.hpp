@@ -4,16 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "render/byte_image.hpp"
+
 namespace clarity {
 
 // width x height pixels of `channels` floats, top row first.
 struct FloatImage {
     unsigned width = 0, height = 0, channels = 0;
     std::vector<float> pixels;
-};
-struct ByteImage {  // RGBA8, top row first
-    unsigned width = 0, height = 0;
-    std::vector<uint8_t> pixels;
 };
 
 // The PNG encoder counts bytes in an int.

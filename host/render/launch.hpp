@@ -12,8 +12,11 @@ struct LaunchTimes {
     unsigned launches = 0;
 };
 
-// Enqueues what is to be done behind a picture's last kernel, and returns its last event; or nothing.
-using Behind = std::function<cl::Event()>;
+// What else is done about a picture that is traced; either may be missing.
+struct Beside {
+    std::function<cl::Event()> behind;     // enqueues what is to be done after the last kernel, and returns its last event
+    std::function<void()> while_it_works;  // the host's, once, when the device has its first piece
+};
 
 // Keeps the pace of one kernel, or of several that run one after the other, from launch to launch.
 class Launcher {
@@ -26,11 +29,11 @@ class Launcher {
     // stops by throwing. What is done behind is waited for with the last piece, and counts in none of the times.
     LaunchTimes run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
                     const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
-                    const Behind& behind = {});
+                    const Beside& beside = {});
     // Runs groups [begin, begin + group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of
     // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0, const Behind& behind = {});
+                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0, const Beside& beside = {});
     void forget() { pace_.forget(); }
 
  private:

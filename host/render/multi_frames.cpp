@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "render/film.hpp"
-#include "render/host_picture.hpp"
+#include "render/guarded.hpp"
+#include "render/host_memory.hpp"
 #include "render/shared_picture.hpp"
 
 namespace clarity {
@@ -15,9 +16,8 @@ struct MultiFrames::Impl {
     std::shared_ptr<const MultiPrepared> prepared;
     unsigned width = 0, height = 0;
     unsigned samples = 0;  // of `alone`
-    std::vector<uint8_t> plain_picture;
-    std::unique_ptr<HostPicture> pinned_picture;
-    const Device* pinned_by = nullptr;
+    std::unique_ptr<HostMemory> memory;
+    std::shared_ptr<Device> memory_of;
 
     const std::string& aov() const { return prepared->first()->settings.aov; }
     FloatImage image(unsigned channels) const {
@@ -27,17 +27,13 @@ struct MultiFrames::Impl {
     }
 
     // Room that all devices write to; pinned by the first GPU.
-    uint8_t* picture() {
-        const size_t bytes = size_t(width) * height * 4;
-        for (size_t i = 0; i < shared->size(); ++i) {
-            const auto& device = shared->device(i);
-            if (!shared->works(i) || device->info().cpu) continue;
-            if (pinned_by != device.get()) pinned_picture = std::make_unique<HostPicture>(device);
-            pinned_by = device.get();
-            return pinned_picture->pinned(bytes);
-        }
-        plain_picture.resize(bytes);
-        return plain_picture.data();
+    std::shared_ptr<uint8_t> room(size_t bytes) {
+        std::shared_ptr<Device> gpu;
+        for (size_t i = 0; i < shared->size() && !gpu; ++i)
+            if (shared->works(i) && !shared->device(i)->info().cpu) gpu = shared->device(i);
+        if (!memory || memory_of != gpu) memory = std::make_unique<HostMemory>(gpu);
+        memory_of = gpu;
+        return gpu ? guarded(*gpu, "reading the picture", [&] { return memory->lend(bytes); }) : memory->lend(bytes);
     }
 };
 
@@ -54,18 +50,21 @@ unsigned MultiFrames::samples() const {
 }
 
 FrameStats MultiFrames::trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
-                              unsigned sample, bool count_rays, Progress& progress, unsigned samples) {
+                              unsigned sample, bool count_rays, Progress& progress, unsigned samples,
+                              const std::function<void()>& meanwhile) {
     Impl& im = *impl_;
     im.prepared = prepared;
     im.width = unsigned(settings.width);
     im.height = unsigned(settings.height);
     const unsigned end = sample + samples;
+    if (im.shared && meanwhile) meanwhile();
     if (im.shared) return im.shared->trace(prepared, settings, view, sample, end, count_rays, progress);
     im.samples = sample;
     FrameStats sum;
     for (unsigned s = sample; s < end; ++s) {
         if (s > sample && !progress.report(float(s - sample) / float(samples))) throw Cancelled();
-        const FrameStats one = im.alone->trace(*prepared->first(), settings, view, s, count_rays, progress);
+        const FrameStats one = im.alone->trace(*prepared->first(), settings, view, s, count_rays, progress, nullptr,
+                                               s == sample ? meanwhile : nullptr);
         im.samples = s + 1;
         add_stats(sum, one);
     }
@@ -90,22 +89,17 @@ FloatImage MultiFrames::read_distance() {
     return std::find(known.begin(), known.end(), false) == known.end() ? image : FloatImage{};
 }
 
-ByteImage MultiFrames::read_display(const Settings& settings) {
-    if (impl_->alone) return impl_->alone->read_display(settings);
-    ByteImage image{impl_->width, impl_->height, {}};
-    image.pixels.resize(size_t(image.width) * image.height * 4);
-    read_display(settings, image.pixels.data());
-    return image;
-}
-
-FalseColorScale MultiFrames::read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats) {
+ByteImage MultiFrames::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
     Impl& im = *impl_;
-    if (im.alone) return im.alone->read_display(settings, rgba, stats);
-    if (im.aov() != "color") return show_values([this] { return read_values(); }, im.aov(), settings, rgba, stats);
+    if (im.alone) return im.alone->read_display(settings, stats, scale);
+    if (scale) *scale = {};
+    if (im.aov() != "color") return show_values([this] { return read_values(); }, im.aov(), settings, stats, scale);
+    const size_t bytes = size_t(im.width) * im.height * 4;
+    const std::shared_ptr<uint8_t> rgba = im.room(bytes);
     std::vector<std::vector<KernelTime>> times(im.shared->size());
     im.shared->read([&](size_t i, Frames& frames) {
         times[i].clear();
-        frames.read_display(settings, rgba, stats ? &times[i] : nullptr);
+        frames.read_display(settings, rgba.get(), stats ? &times[i] : nullptr);
     });
     for (size_t i = 0; stats && i < times.size(); ++i) {
         merge_times(stats->kernels, times[i]);
@@ -116,16 +110,15 @@ FalseColorScale MultiFrames::read_display(const Settings& settings, uint8_t* rgb
                     ms = std::max(ms, time.ms);
                 }
     }
-    return {};
+    return {im.width, im.height, SharedBytes(rgba, bytes)};
 }
 
-const uint8_t* MultiFrames::look_at_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
-    Impl& im = *impl_;
-    if (im.alone) return im.alone->look_at_display(settings, stats, scale);
-    uint8_t* const rgba = im.picture();
-    const FalseColorScale found = read_display(settings, rgba, stats);
-    if (scale) *scale = found;
-    return rgba;
+PendingImage MultiFrames::begin_display(const Settings& settings) {
+    return impl_->alone->begin_display(settings);
+}
+
+bool MultiFrames::copies_aside() const {
+    return impl_->alone && impl_->alone->copies_aside();
 }
 
 }  // namespace clarity

@@ -24,16 +24,18 @@ class MultiFrames {
     // these samples. Devices wait for each other once, at the end, and GPUs trace many samples in two queues, so that many at a
     // time, from the first on, are faster than one by one.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
-                     unsigned sample, bool count_rays, Progress& progress, unsigned samples = 1);
+                     unsigned sample, bool count_rays, Progress& progress, unsigned samples = 1,
+                     const std::function<void()>& meanwhile = {});
     // That are complete, also after a trace() that was cancelled.
     unsigned samples() const;
 
     // As Frames has them.
     FloatImage read_values();
     FloatImage read_distance();
-    FalseColorScale read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats = nullptr);
-    ByteImage read_display(const Settings& settings);
-    const uint8_t* look_at_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
+    ByteImage read_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
+    // Where copies_aside(), which several devices do not: they copy before they go on.
+    PendingImage begin_display(const Settings& settings);
+    bool copies_aside() const;
 
  private:
     struct Impl;

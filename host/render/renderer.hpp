@@ -5,6 +5,7 @@
 // between two prepare() calls is shared between their results, so nothing is redone without need.
 #pragma once
 #include <array>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -17,6 +18,7 @@
 #include "render/accel_build.hpp"
 #include "render/false_colors.hpp"
 #include "render/image_io.hpp"
+#include "render/pending_image.hpp"
 #include "render/settings.hpp"
 #include "scene/scene.hpp"
 
@@ -133,8 +135,9 @@ class Frames {
     // the like are taken from here; what needs a rebuild or recompile from `prepared`. Cut into launches under half a second;
     // between them `progress` is asked, and a cancel throws Cancelled.
     // shared: the rows to trace, null for all; what is read back below is then theirs alone.
+    // meanwhile: called once while the device is at it, for who waits for the picture before.
     FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
-                     Progress& progress, const SharedRows* shared = nullptr);
+                     Progress& progress, const SharedRows* shared = nullptr, const std::function<void()>& meanwhile = {});
     // Adds the rays of the last sample, as trace() does if it is to count them.
     void count(FrameStats& stats);
 
@@ -146,20 +149,14 @@ class Frames {
     // The rows traced, into a picture of the whole size that other devices fill too. False: the distance is not known.
     void read_values(FloatImage& image);
     bool read_distance(FloatImage& image);
-    // Colours only.
+    // Colours only, of the rows traced, into a picture as above.
     void read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
-    // Tone-mapped sRGB; AOVs in false colours, whose scale is returned. rgba: width * height * 4 bytes of the caller's, top row
-    // first. stats: where given, gains the times of what this took.
-    FalseColorScale read_display(const Settings& settings, uint8_t* rgba, FrameStats* stats = nullptr);
-    ByteImage read_display(const Settings& settings);
-    // The same in memory of this object's, which a device fills several times as fast as the caller's; it stays until the next
-    // call of read_display(), look_at_display() or trace().
-    const uint8_t* look_at_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
-    // Colours, picture after picture: hands in the one traced last, which is copied while the next is traced, and gives the one
-    // handed in before it, with the times that one took; null the first time. It stays until the next trace(). last_display()
-    // gives what was handed in last, for which it waits; then it begins anew.
-    const uint8_t* exchange_display(const Settings& settings, FrameStats* stats = nullptr);
-    const uint8_t* last_display(FrameStats* stats = nullptr);
+    // Tone-mapped sRGB; AOVs in false colours, whose scale is told. stats: where given, gains the times of what this took.
+    ByteImage read_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
+    // The same of colours without waiting; the next picture may be traced before this one is waited for. That pays where
+    // copies_aside(): there it is copied meanwhile.
+    PendingImage begin_display(const Settings& settings);
+    bool copies_aside() const;
 
     // Rays of the caller's own, for tests and benches.
     std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

@@ -103,11 +103,11 @@ Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame
 }
 
 LaunchTimes Wavefront::trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
-                             const std::function<void()>& go_on, const Behind& behind) {
+                             const std::function<void()>& go_on, const Beside& beside) {
     const Room room = room_for(frame);
     bind(frame, room);
     const auto piece = [&](unsigned first, unsigned count) { return enqueue(queue, frame, room, first, count); };
-    return launcher.run(queue, frame.groups, room.groups, piece, go_on, behind);
+    return launcher.run(queue, frame.groups, room.groups, piece, go_on, beside);
 }
 
 }  // namespace clarity

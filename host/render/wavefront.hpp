@@ -29,7 +29,7 @@ class Wavefront {
     explicit Wavefront(std::shared_ptr<Device> device) : device_(std::move(device)) {}
     // A sample of these pixels. go_on is asked between pieces and stops by throwing.
     LaunchTimes trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
-                      const std::function<void()>& go_on, const Behind& behind = {});
+                      const std::function<void()>& go_on, const Beside& beside = {});
     // Of the last sample: shadow, secondary, dropped rays and full stacks of each work-group.
     const cl::Buffer& counters() const { return counters_.get(); }
     unsigned counter_count() const { return work_groups_; }

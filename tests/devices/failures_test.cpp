@@ -54,7 +54,7 @@ class FailingDevice : public ::testing::Test {
     ScenePtr scene_;
     View view_;
     std::vector<float> truth_;
-    std::vector<uint8_t> display_;
+    SharedBytes display_;
 };
 
 TEST_F(FailingDevice, BeforeAPicture) {

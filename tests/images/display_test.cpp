@@ -82,15 +82,19 @@ TEST(Tones, AgxBleachesBrightColors) {
     EXPECT_GT(clipped[0] - clipped[2], 200);
 }
 
-TEST(Display, IntoMemoryOfTheCaller) {
+TEST(Display, IsWhatTheFilmSays) {
     const View view = make_view(*primitives(), 4.0f / 3);
     for (const char* size : {"1x1", "3x1", "5x3", "64x48", "33x31"}) {
         const Settings settings = make_settings({{"size", size}});
         FrameStats stats = bench().trace(primitives(), settings, view);
-        const ByteImage image = bench().frames().read_display(settings);
-        std::vector<uint8_t> memory(image.pixels.size() + 64, 0xAB);
-        const FalseColorScale scale = bench().frames().read_display(settings, memory.data(), &stats);
+        FalseColorScale scale;
+        scale.map = FalseColorScale::Map::heat;
+        const ByteImage image = bench().frames().read_display(settings, &stats, &scale);
         EXPECT_EQ(scale.map, FalseColorScale::Map::none);
+        EXPECT_EQ(image.pixels.size(), size_t(image.width) * image.height * 4);
+        // The same of the rows alone, in memory of the caller's.
+        std::vector<uint8_t> memory(image.pixels.size() + 64, 0xAB);
+        bench().frames().read_display(settings, memory.data(), nullptr);
         EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), memory.begin())) << size;
         for (size_t i = image.pixels.size(); i < memory.size(); ++i) ASSERT_EQ(memory[i], 0xAB) << size << ": written beyond";
         ASSERT_EQ(stats.kernels.size(), 4u);
@@ -103,26 +107,37 @@ TEST(Display, IntoMemoryOfTheCaller) {
     }
 }
 
-// The same bytes where they lie, from size to size and view to view: nothing of an earlier picture is seen again.
-TEST(Display, InMemoryOfItsOwn) {
+// A picture stays as it is while others are made, of whatever size; only memory of one that nobody has any more is used again.
+TEST(Display, StaysWhileSomebodyHasIt) {
     const char* const eyes[] = {"0,2.5,11,0,2.2,0,50", "3,2.5,9,0,2.2,0,50"};
-    for (const char* size : {"64x48", "5x3", "33x31", "128x96"})
+    std::vector<std::pair<ByteImage, std::vector<uint8_t>>> kept;
+    const auto all_stay = [&] {
+        for (const auto& [image, bytes] : kept)
+            if (!std::equal(bytes.begin(), bytes.end(), image.pixels.begin(), image.pixels.end())) return false;
+        return true;
+    };
+    for (const char* size : {"64x48", "5x3", "33x31", "128x96", "64x48"})
         for (const char* eye : eyes) {
             const Settings settings = make_settings({{"size", size}});
             FrameStats stats = bench().trace(primitives(), settings, make_view(*primitives(), 4.0f / 3, eye));
-            const ByteImage image = bench().frames().read_display(settings);
             for (int again = 0; again < 2; ++again) {
-                const uint8_t* seen = bench().frames().look_at_display(settings, &stats);
-                EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), seen)) << size << " from " << eye;
+                const ByteImage image = bench().frames().read_display(settings, &stats);
+                EXPECT_TRUE(!again || image.pixels == kept.back().first.pixels) << size << " from " << eye;
+                kept.emplace_back(image, std::vector<uint8_t>(image.pixels.begin(), image.pixels.end()));
             }
             EXPECT_EQ(stats.kernels.size(), 6u);
+            EXPECT_TRUE(all_stay()) << size << " from " << eye;
         }
+    const Settings settings = make_settings({{"size", "128x96"}});
+    bench().trace(primitives(), settings, make_view(*primitives(), 4.0f / 3));
+    const uint8_t* const place = bench().frames().read_display(settings).pixels.data();
+    EXPECT_EQ(bench().frames().read_display(settings).pixels.data(), place);
     const Settings steps = make_settings({{"size", "64x48"}, {"aov", "steps"}});
     bench().trace(primitives(), steps, make_view(*primitives(), 4.0f / 3));
-    const ByteImage image = bench().frames().read_display(steps);
     FalseColorScale scale;
-    EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), bench().frames().look_at_display(steps, nullptr, &scale)));
+    EXPECT_EQ(bench().frames().read_display(steps, nullptr, &scale).pixels.size(), 64u * 48u * 4u);
     EXPECT_NE(scale.map, FalseColorScale::Map::none);
+    EXPECT_TRUE(all_stay());
 }
 
 // The picture's distances are the AOV's, however the picture is cut, and later samples leave them alone.
@@ -261,8 +276,7 @@ TEST(FalseColors, ArePaintedAsTheBarSays) {
     for (const char* aov : {"steps", "leaf_tests", "t"}) {
         const FalseColorScale scale = scale_of(values, aov);
         EXPECT_EQ(scale.max, 200) << aov;
-        std::vector<uint8_t> rgba(404);
-        false_colors(values, aov, scale, rgba.data());
+        const SharedBytes rgba = false_colors(values, aov, scale).pixels;
         for (unsigned i = 0; i <= 100; ++i) {
             const std::array<uint8_t, 3> wanted =
                 i == 50 || i == 51 ? std::array<uint8_t, 3>{}
@@ -273,9 +287,7 @@ TEST(FalseColors, ArePaintedAsTheBarSays) {
     }
     const FalseColorScale short_scale = scale_of(values, "steps", 10);
     EXPECT_EQ(short_scale.max, 10);
-    std::vector<uint8_t> rgba(404);
-    false_colors(values, "steps", short_scale, rgba.data());
-    EXPECT_EQ(rgba[4 * 100], color_at(short_scale, 1)[0]);
+    EXPECT_EQ(false_colors(values, "steps", short_scale).pixels[4 * 100], color_at(short_scale, 1)[0]);
     EXPECT_EQ(scale_of(values, "lanes").max, 1);
     EXPECT_EQ(scale_of(values, "normal").map, FalseColorScale::Map::none);
     // Nothing at all, one value only, nothing but misses.
@@ -284,8 +296,7 @@ TEST(FalseColors, ArePaintedAsTheBarSays) {
     for (float& value : misses.pixels) value = INFINITY;
     const FalseColorScale none = scale_of(misses, "t");
     EXPECT_TRUE(std::isfinite(none.min) && std::isfinite(none.max));
-    false_colors(misses, "t", none, rgba.data());
-    EXPECT_EQ(rgba[0], 0);
+    EXPECT_EQ(false_colors(misses, "t", none).pixels[0], 0);
     for (const float position : {-1.0f, 2.0f, float(NAN), float(INFINITY)}) color_at(scale_of(values, "steps"), position);
 }
 
@@ -294,13 +305,14 @@ TEST(FalseColors, OfAFrame) {
     Settings settings = make_settings({{"size", "64x48"}, {"aov", "steps"}});
     bench().trace(primitives(), settings, make_view(*primitives(), 4.0f / 3));
     const FloatImage values = bench().frames().read_values();
-    std::vector<uint8_t> rgba(64 * 48 * 4);
     FrameStats stats;
-    EXPECT_EQ(bench().frames().read_display(settings, rgba.data(), &stats).max,
-              *std::max_element(values.pixels.begin(), values.pixels.end()));
+    FalseColorScale scale;
+    bench().frames().read_display(settings, &stats, &scale);
+    EXPECT_EQ(scale.max, *std::max_element(values.pixels.begin(), values.pixels.end()));
     EXPECT_EQ(stats.kernels.size(), 2u);
     settings.scale_max = 7;
-    EXPECT_EQ(bench().frames().read_display(settings, rgba.data()).max, 7);
+    bench().frames().read_display(settings, nullptr, &scale);
+    EXPECT_EQ(scale.max, 7);
 }
 
 }  // namespace

@@ -1,7 +1,8 @@
-// relay_test.cpp -- picture after picture, each copied while the next is traced: none is lost, doubled or torn. A GPU copies by
-// a queue of its own; here a CPU that says it is one does so too.
+// relay_test.cpp -- picture after picture, each copied while the next one is traced: none is lost, doubled or torn, and none
+// changes while somebody has it. A GPU copies by a queue of its own; here a CPU that says it is one does so too.
 #include <gtest/gtest.h>
 
+#include "base/error.hpp"
 #include "support/scenes.hpp"
 
 using namespace clarity;
@@ -19,17 +20,17 @@ class Relay : public ::testing::TestWithParam<const char*> {
         if (std::string(GetParam()) == "gpu") info.cpu = false, info.gpu = true;
         return info;
     }
-    Relay() : device_(std::make_shared<Device>(posing())), preparer_(Workbench::get().plugins(), device_), frames_(device_) {
+    Relay()
+        : device_(std::make_shared<Device>(posing())),
+          preparer_(Workbench::get().plugins(), device_),
+          frames_(std::make_unique<Frames>(device_)) {
         prepared_ = preparer_.prepare(scene_, settings_, progress_);
     }
-    void trace(const char* eye, unsigned sample = 0) {
-        frames_.trace(*prepared_, settings_, make_view(*scene_, 4.0f / 3, eye), sample, false, progress_);
+    void trace(const char* eye, unsigned sample = 0, const std::function<void()>& meanwhile = {}) {
+        frames_->trace(*prepared_, settings_, make_view(*scene_, 4.0f / 3, eye), sample, false, progress_, nullptr, meanwhile);
     }
-    std::vector<uint8_t> picture() { return frames_.read_display(settings_).pixels; }
-    std::vector<uint8_t> bytes(const uint8_t* seen) const {
-        return seen ? std::vector<uint8_t>(seen, seen + size_t(settings_.width) * size_t(settings_.height) * 4)
-                    : std::vector<uint8_t>();
-    }
+    std::vector<uint8_t> picture() { return bytes(frames_->read_display(settings_)); }
+    static std::vector<uint8_t> bytes(const ByteImage& image) { return {image.pixels.begin(), image.pixels.end()}; }
     void resize(int width, int height) {
         settings_.width = width;
         settings_.height = height;
@@ -40,61 +41,105 @@ class Relay : public ::testing::TestWithParam<const char*> {
     Settings settings_ = make_settings({{"accel", "bvh2"}, {"size", "96x72"}, {"portable", "true"}});
     std::shared_ptr<Device> device_;
     Preparer preparer_;
-    Frames frames_;
+    std::unique_ptr<Frames> frames_;
     std::shared_ptr<const Prepared> prepared_;
 };
 
-TEST_P(Relay, GivesEachPictureOneTraceLater) {
+TEST_P(Relay, GivesEachPictureWhileTheNextIsTraced) {
     std::vector<std::vector<uint8_t>> expected;
     for (const char* eye : kEyes) {
         trace(eye);
         expected.push_back(picture());
     }
+    std::vector<ByteImage> seen;
+    PendingImage pending;
+    std::vector<KernelTime> times;
     for (int run = 0; run < 2; ++run) {
         for (size_t i = 0; i < std::size(kEyes); ++i) {
-            trace(kEyes[i]);
-            FrameStats stats;
-            const std::vector<uint8_t> before = bytes(frames_.exchange_display(settings_, &stats));
-            EXPECT_EQ(stats.kernels.size(), i == 0 ? 0u : 2u);
-            EXPECT_TRUE(before == (i == 0 ? std::vector<uint8_t>() : expected[i - 1])) << "run " << run << ", picture " << i;
+            int calls = 0;
+            trace(kEyes[i], 0, [&] {
+                ++calls;
+                if (pending) seen.push_back(pending.wait(&times));
+            });
+            EXPECT_EQ(calls, 1);
+            EXPECT_EQ(seen.size(), run * std::size(kEyes) + i);
+            EXPECT_FALSE(pending);
+            pending = frames_->begin_display(settings_);
+            EXPECT_TRUE(pending);
         }
-        EXPECT_TRUE(bytes(frames_.last_display()) == expected.back()) << "run " << run;
-        EXPECT_EQ(frames_.last_display(), nullptr);
+        seen.push_back(pending.wait(&times));
     }
+    EXPECT_EQ(times.size(), 2 * seen.size());
+    ASSERT_EQ(seen.size(), 2 * expected.size());
+    for (size_t i = 0; i < seen.size(); ++i) EXPECT_TRUE(bytes(seen[i]) == expected[i % expected.size()]) << i;
+    EXPECT_EQ(frames_->copies_aside(), std::string(GetParam()) == "gpu");
 }
 
-// What was begun of a film is not what is handed in where the tones are others, more samples are in, or it was shown otherwise.
-TEST_P(Relay, HandsInTheFilmAsItIs) {
+// Several may be waited for in any order, later than what they came from is there, or never.
+TEST_P(Relay, PicturesBelongToWhoHasThem) {
+    std::vector<std::vector<uint8_t>> expected;
+    std::vector<PendingImage> pending;
+    for (const char* eye : kEyes) {
+        trace(eye);
+        expected.push_back(picture());
+        trace(eye);
+        pending.push_back(frames_->begin_display(settings_));
+    }
+    pending[1] = {};
+    frames_.reset();
+    prepared_.reset();
+    std::vector<ByteImage> seen(pending.size());
+    for (const size_t i : {3u, 0u, 4u, 2u}) seen[i] = pending[i].wait();
+    for (const size_t i : {3u, 0u, 4u, 2u}) EXPECT_TRUE(bytes(seen[i]) == expected[i]) << i;
+}
+
+// What was begun of a film is not what is given where the tones are others, more samples are in, or it was shown otherwise.
+TEST_P(Relay, GivesTheFilmAsItIs) {
     for (const char* eye : {kEyes[0], kEyes[1]}) {
         trace(eye);
-        frames_.exchange_display(settings_);
+        frames_->begin_display(settings_).wait();
     }
     trace(kEyes[2]);
     settings_.exposure = 1.7;
     const std::vector<uint8_t> brighter = picture();
-    frames_.exchange_display(settings_);
-    EXPECT_TRUE(bytes(frames_.last_display()) == brighter);
+    EXPECT_TRUE(bytes(frames_->begin_display(settings_).wait()) == brighter);
 
     trace(kEyes[2]);
-    frames_.exchange_display(settings_);
+    PendingImage first = frames_->begin_display(settings_);
     trace(kEyes[2], 1);
     const std::vector<uint8_t> smoother = picture();
-    EXPECT_TRUE(bytes(frames_.look_at_display(settings_)) == smoother);
-    EXPECT_TRUE(bytes(frames_.exchange_display(settings_)) == brighter);
-    EXPECT_TRUE(bytes(frames_.last_display()) == smoother);
+    EXPECT_FALSE(smoother == brighter);
+    PendingImage second = frames_->begin_display(settings_);
+    EXPECT_TRUE(picture() == smoother);
+    EXPECT_TRUE(bytes(first.wait()) == brighter);
+    EXPECT_TRUE(bytes(second.wait()) == smoother);
 }
 
 TEST_P(Relay, SizesMayChangeOnTheWay) {
-    std::vector<uint8_t> last;
+    std::vector<std::vector<uint8_t>> expected;
+    std::vector<PendingImage> pending;
     for (const auto& [width, height] : {std::pair{96, 72}, {40, 30}, {200, 150}, {33, 31}, {64, 48}}) {
         resize(width, height);
         trace(kEyes[0]);
-        const std::vector<uint8_t> now = picture();
-        const uint8_t* const seen = frames_.exchange_display(settings_);
-        EXPECT_TRUE(std::equal(last.begin(), last.end(), seen)) << width << "x" << height;
-        last = now;
+        expected.push_back(picture());
+        pending.push_back(frames_->begin_display(settings_));
     }
-    EXPECT_TRUE(bytes(frames_.last_display()) == last);
+    for (size_t i = 0; i < pending.size(); ++i) EXPECT_TRUE(bytes(pending[i].wait()) == expected[i]) << i;
+}
+
+// Nobody waits while the first launch has not been made, nor after a cancel.
+TEST_P(Relay, ACancelledTraceLeavesThePictureBefore) {
+    trace(kEyes[0]);
+    const std::vector<uint8_t> before = picture();
+    PendingImage pending = frames_->begin_display(settings_);
+    Progress cancelled;
+    cancelled.cancel();
+    int calls = 0;
+    EXPECT_THROW(frames_->trace(*prepared_, settings_, make_view(*scene_, 4.0f / 3, kEyes[1]), 0, false, cancelled, nullptr,
+                                [&] { ++calls; }),
+                 Cancelled);
+    EXPECT_EQ(calls, 0);
+    EXPECT_TRUE(bytes(pending.wait()) == before);
 }
 
 INSTANTIATE_TEST_SUITE_P(Devices, Relay, ::testing::Values("cpu", "gpu"));

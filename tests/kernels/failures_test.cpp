@@ -1,46 +1,15 @@
 // failures_test.cpp -- a device that has no room left or refuses to work costs a message; what comes after is as if nothing had
-// happened. This program puts its own entry points before the driver's.
-#include <CL/cl.h>
-#include <dlfcn.h>
+// happened.
 #include <gtest/gtest.h>
 
 #include <cstring>
 
 #include "base/error.hpp"
+#include "support/faults.hpp"
 #include "support/scenes.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
-
-namespace {
-
-struct Faults {
-    size_t largest_buffer = ~size_t(0);
-    int launches_left = -1;  // negative: no end of them
-} faults;
-
-template <class Function>
-Function* driver(const char* name) {
-    return reinterpret_cast<Function*>(dlsym(RTLD_NEXT, name));
-}
-
-}  // namespace
-
-extern "C" cl_mem clCreateBuffer(cl_context context, cl_mem_flags flags, size_t size, void* host, cl_int* error) {
-    static const auto real = driver<decltype(clCreateBuffer)>("clCreateBuffer");
-    if (size <= faults.largest_buffer) return real(context, flags, size, host, error);
-    if (error) *error = CL_MEM_OBJECT_ALLOCATION_FAILURE;
-    return nullptr;
-}
-
-extern "C" cl_int clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, cl_uint dimensions, const size_t* offset,
-                                         const size_t* global, const size_t* local, cl_uint count, const cl_event* after,
-                                         cl_event* event) {
-    static const auto real = driver<decltype(clEnqueueNDRangeKernel)>("clEnqueueNDRangeKernel");
-    if (faults.launches_left == 0) return CL_OUT_OF_RESOURCES;
-    if (faults.launches_left > 0) --faults.launches_left;
-    return real(queue, kernel, dimensions, offset, global, local, count, after, event);
-}
 
 namespace {
 
@@ -57,7 +26,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
         frames_.trace(*prepared_, small_, view_, 0, true, progress_);
         truth_ = frames_.read_values().pixels;
     }
-    void TearDown() override { faults = {}; }
+    void TearDown() override { faults.end(); }
 
     // The message of the error that `work` is to end with.
     template <class Work>
@@ -72,7 +41,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
         return {};
     }
     void expect_all_is_well(const std::string& after) {
-        faults = {};
+        faults.end();
         for (int picture = 0; picture < 2; ++picture) {
             frames_.trace(*prepared_, small_, view_, 0, true, progress_);
             const std::vector<float> pixels = frames_.read_values().pixels;
@@ -116,7 +85,7 @@ TEST_P(Failures, ALaunchThatIsRefused) {
         faults.launches_left = launch;
         try {
             FrameStats stats = frames_.trace(*prepared_, small_, view_, 0, true, progress_);
-            frames_.look_at_display(small_, &stats);
+            frames_.read_display(small_, &stats);
             EXPECT_GT(launch, 2) << "a picture of so few launches?";
             return;  // this one needed no more
         } catch (const Error& error) {
@@ -138,9 +107,13 @@ TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
     Preparer preparer(Workbench::get().plugins(), device);
     Frames frames(device);
     const auto prepared = preparer.prepare(scene_, small, progress_);
+    PendingImage pending;
+    ByteImage shown;
     const auto show = [&] {
-        frames.trace(*prepared, small, view_, 0, false, progress_);
-        return frames.exchange_display(small);
+        frames.trace(*prepared, small, view_, 0, false, progress_, nullptr, [&] {
+            if (pending) shown = pending.wait();
+        });
+        pending = frames.begin_display(small);
     };
     show();
     const ByteImage truth = frames.read_display(small);
@@ -153,15 +126,46 @@ TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
             failed = true;
             EXPECT_EQ(error.code(), Exit::failed) << error.what();
         }
-        faults = {};
-        for (int picture = 0; picture < 3; ++picture) show();
-        EXPECT_TRUE(std::equal(truth.pixels.begin(), truth.pixels.end(), frames.last_display())) << "launch " << launch;
+        faults.end();
+        EXPECT_TRUE(!pending || pending.wait().pixels == truth.pixels) << "launch " << launch;
+        for (int picture = 0; picture < 3; ++picture) {
+            shown = {};
+            show();
+        }
+        EXPECT_TRUE(shown.pixels == truth.pixels) << "launch " << launch;
+        EXPECT_TRUE(pending.wait().pixels == truth.pixels) << "launch " << launch;
         show();
         if (!failed) {
             EXPECT_GT(launch, 1) << "a picture of so few launches?";
             return;
         }
     }
+}
+
+// Copies too: a picture that does not arrive is a message, and those after it are whole.
+TEST_P(Failures, ACopyThatIsRefused) {
+    DeviceInfo info = device_->info();
+    info.cpu = false;
+    info.gpu = true;
+    const auto device = std::make_shared<Device>(info);
+    Settings small = small_;
+    small.lanes = small.packet_w = small.packet_h = 1;
+    Preparer preparer(Workbench::get().plugins(), device);
+    Frames frames(device);
+    const auto prepared = preparer.prepare(scene_, small, progress_);
+    frames.trace(*prepared, small, view_, 0, false, progress_);
+    PendingImage before = frames.begin_display(small);
+    const ByteImage truth = frames.read_display(small);
+    faults.copies_left = 0;
+    const std::string said = message([&] {
+        frames.trace(*prepared, small, view_, 0, false, progress_);
+        frames.begin_display(small);
+    });
+    EXPECT_NE(said.find(info.name), std::string::npos) << said;
+    faults.end();
+    EXPECT_TRUE(before.wait().pixels == truth.pixels);
+    frames.trace(*prepared, small, view_, 0, false, progress_);
+    EXPECT_TRUE(frames.begin_display(small).wait().pixels == truth.pixels);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracers, Failures, ::testing::Values("iterative", "wavefront"));

@@ -19,17 +19,18 @@ struct Difference {
 inline Difference compare(const ByteImage& a, const ByteImage& b) {
     Difference d;
     d.pixels = size_t(a.width) * a.height;
-    d.picture = a;
+    std::vector<uint8_t> picture(a.pixels.begin(), a.pixels.end());
     for (size_t i = 0; i < d.pixels; ++i) {
         int most = 0;
         for (size_t c = 4 * i; c < 4 * i + 3; ++c) {
             const int off = std::abs(int(a.pixels[c]) - int(b.pixels[c]));
             most = std::max(most, off);
-            d.picture.pixels[c] = static_cast<uint8_t>(std::min(255, 8 * off));
+            picture[c] = static_cast<uint8_t>(std::min(255, 8 * off));
         }
         d.beyond += most > kTolerance;
         d.worst = std::max(d.worst, most);
     }
+    d.picture = {a.width, a.height, std::move(picture)};
     return d;
 }
 

@@ -120,16 +120,14 @@ FloatImage render(const Scene& scene, const View& view, const Settings& settings
 }
 
 ByteImage to_display(const FloatImage& linear) {
-    ByteImage image;
-    image.width = linear.width;
-    image.height = linear.height;
+    std::vector<uint8_t> pixels;
     for (size_t i = 0; i < linear.pixels.size(); ++i) {
         const double c = std::clamp(double(linear.pixels[i]), 0.0, 1.0);
         const double s = c <= 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055;
-        image.pixels.push_back(static_cast<uint8_t>(255 * s + 0.5));
-        if (i % 3 == 2) image.pixels.push_back(255);
+        pixels.push_back(static_cast<uint8_t>(255 * s + 0.5));
+        if (i % 3 == 2) pixels.push_back(255);
     }
-    return image;
+    return {linear.width, linear.height, std::move(pixels)};
 }
 
 }  // namespace clarity::reference

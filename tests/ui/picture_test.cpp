@@ -328,9 +328,11 @@ TEST(SelectionBox, LiesAlongTheInstance) {
 }
 
 TEST(PictureDifference, CountsPixels) {
-    ByteImage a{2, 1, {10, 20, 30, 255, 0, 0, 0, 255}}, b = a;
-    EXPECT_EQ(compare_pictures(a, b).largest, 0);
-    b.pixels[5] = 12;
+    std::vector<uint8_t> pixels = {10, 20, 30, 255, 0, 0, 0, 255};
+    const ByteImage a{2, 1, pixels};
+    EXPECT_EQ(compare_pictures(a, a).largest, 0);
+    pixels[5] = 12;
+    ByteImage b{2, 1, pixels};
     const PictureDifference difference = compare_pictures(a, b);
     EXPECT_EQ(difference.largest, 12);
     EXPECT_NEAR(difference.share, 0.5, 1e-9);

@@ -1,0 +1,250 @@
+// frame_thread_test.cpp -- the thread that traces, without a window: every picture is of the job that it says, they come in
+// order, the last one comes, and none changes while somebody has it. With a device that copies beside its tracing, as GPUs do
+// (a CPU that says it is one), and with one that does not.
+#include "ui/frame_thread.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "support/faults.hpp"
+#include "support/scenes.hpp"
+
+namespace clarity {
+namespace {
+
+using namespace test;
+
+using Bytes = std::vector<uint8_t>;
+
+Bytes bytes_of(const ByteImage& image) {
+    return {image.pixels.begin(), image.pixels.end()};
+}
+
+// A scene on a device, ready to be traced, and another way to trace it.
+struct Table {
+    Table() {
+        DeviceInfo info = choose_device("");
+        info.cpu = false;
+        info.gpu = true;
+        gpu = std::make_shared<Device>(info);
+        cpu = std::make_shared<Device>(choose_device(""));
+    }
+    std::shared_ptr<const Ready> ready(const std::shared_ptr<Device>& device, bool two) {
+        const auto prepared = [&](const Settings& wished) {
+            return std::make_shared<MultiPreparer>(Workbench::get().plugins(), Devices{device})
+                ->prepare(scene, wished, progress);
+        };
+        auto ready = std::make_shared<Ready>();
+        ready->main = ReadySide({device}, prepared(settings));
+        if (two) ready->other = ReadySide({device}, prepared(other));
+        return ready;
+    }
+    ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    const Settings settings = make_settings(
+                       {{"accel", "bvh2"}, {"size", "96x72"}, {"lanes", "1"}, {"packet", "1x1"}, {"portable", "true"}}),
+                   other = make_settings(
+                       {{"accel", "linear"}, {"size", "96x72"}, {"lanes", "1"}, {"packet", "1x1"}, {"portable", "true"}});
+    Progress progress;
+    std::shared_ptr<Device> gpu, cpu;
+};
+
+Table& table() {
+    static Table* const table = new Table;  // never destroyed: an OpenCL driver may be gone before static objects are
+    return *table;
+}
+
+class FrameThreads : public ::testing::TestWithParam<const char*> {
+ protected:
+    FrameThreads() : thread_([this] { news(); }) {
+        device_ = std::string(GetParam()) == "cpu" ? table().cpu : table().gpu;
+        two_ = std::string(GetParam()) == "gpu, compared";
+        job_.ready = table().ready(device_, two_);
+        job_.settings = table().settings;
+        if (two_) job_.other_settings = table().other;
+    }
+    void TearDown() override { faults.end(); }
+
+    // Whatever is new is kept, with its bytes as they were when it came.
+    void news() {
+        const auto picture = thread_.latest();
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (picture && (seen_.empty() || seen_.back().picture != picture))
+            seen_.push_back(
+                {picture, bytes_of(picture->main.image), picture->other ? bytes_of(picture->other->image) : Bytes()});
+    }
+    static View view(uint64_t number) {
+        const float angle = 0.3f * float(number % 7);
+        return make_view(*table().scene, 4.0f / 3,
+                         std::to_string(9 * std::sin(angle)) + ",2.5," + std::to_string(9 * std::cos(angle)) + ",0,2.2,0,50");
+    }
+    void post(uint64_t number, bool continuous) {
+        job_.revision = number;
+        job_.view = view(number);
+        job_.continuous = continuous;
+        thread_.post(job_);
+    }
+    uint64_t newest() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return seen_.empty() ? 0 : seen_.back().picture->job.revision;
+    }
+    template <class Condition>
+    bool wait_for(const Condition& condition, double seconds = 60) {
+        const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);
+        while (!condition()) {
+            if (std::chrono::steady_clock::now() > end) return false;
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        return true;
+    }
+    // Nothing is left to do, and we were told.
+    bool settles() {
+        return wait_for([this] {
+            const bool idle = thread_.idle();
+            const auto latest = thread_.latest();
+            const std::lock_guard<std::mutex> lock(mutex_);
+            return idle && !seen_.empty() && seen_.back().picture == latest;
+        });
+    }
+    Bytes truth(const Picture& picture, const PictureSide& side, const ReadySide& ready) {
+        if (!frames_) frames_ = std::make_unique<Frames>(device_);
+        for (unsigned sample = 0; sample < side.stats.samples; ++sample)
+            frames_->trace(*ready.prepared, side.settings, picture.job.view, sample, false, table().progress);
+        return bytes_of(frames_->read_display(side.settings));
+    }
+    void expect_right(const Picture& picture) {
+        const std::string what = "revision " + std::to_string(picture.job.revision);
+        EXPECT_TRUE(bytes_of(picture.main.image) == truth(picture, picture.main, picture.job.ready->main)) << what;
+        EXPECT_EQ(picture.other.has_value(), two_);
+        if (!picture.other) return;
+        EXPECT_TRUE(bytes_of(picture.other->image) == truth(picture, *picture.other, *picture.job.ready->other)) << what;
+        EXPECT_TRUE(picture.difference.has_value());
+    }
+    // All that came, when nothing more comes.
+    void expect_order() {
+        uint64_t last = 0;
+        for (const Seen& seen : seen_) {
+            EXPECT_GE(seen.picture->job.revision, last);
+            last = seen.picture->job.revision;
+            EXPECT_TRUE(bytes_of(seen.picture->main.image) == seen.main) << "revision " << last << " changed";
+            if (seen.picture->other) {
+                EXPECT_TRUE(bytes_of(seen.picture->other->image) == seen.other) << "revision " << last << " changed";
+            }
+            expect_right(*seen.picture);
+        }
+    }
+
+    struct Seen {
+        std::shared_ptr<const Picture> picture;
+        Bytes main, other;
+    };
+    std::shared_ptr<Device> device_;
+    bool two_ = false;
+    FrameJob job_;
+    std::mutex mutex_;
+    std::vector<Seen> seen_;
+    std::unique_ptr<Frames> frames_;
+    FrameThread thread_;
+};
+
+// Always something to trace, so that pictures overlap where they can; then rest.
+TEST_P(FrameThreads, EveryPictureOfAMotionAndItsEnd) {
+    for (const unsigned copy_ms : {0u, 20u}) {
+        faults.copy_ms = copy_ms;
+        const uint64_t first = newest() + 1;
+        for (uint64_t number = first; number < first + 12; ++number) {
+            post(number, true);
+            ASSERT_TRUE(wait_for([&] { return newest() >= number; })) << number;
+        }
+        job_.settings.spp = 3;
+        post(first + 12, false);
+        ASSERT_TRUE(settles());
+        ASSERT_TRUE(wait_for([&] { return newest() == first + 12; })) << "the last picture never comes";
+        EXPECT_EQ(thread_.latest()->main.stats.samples, 3u);
+    }
+    expect_order();
+    EXPECT_EQ(thread_.take_failure(), "");
+}
+
+// As a window posts them: faster than they can be traced.
+TEST_P(FrameThreads, JobsThatOvertakeEachOther) {
+    faults.copy_ms = 3;
+    for (uint64_t number = 1; number <= 60; ++number) {
+        post(number, false);
+        std::this_thread::sleep_for(std::chrono::milliseconds(number % 4));
+    }
+    ASSERT_TRUE(settles());
+    ASSERT_TRUE(wait_for([&] { return newest() == 60; })) << "the last picture never comes";
+    expect_order();
+}
+
+// Sizes, tones and what is asked for besides change between two pictures.
+TEST_P(FrameThreads, ChangesOnTheWay) {
+    faults.copy_ms = 10;
+    uint64_t number = 0;
+    for (const auto& [width, height] : {std::pair{96, 72}, {200, 150}, {33, 31}, {64, 48}}) {
+        job_.settings.width = width;
+        job_.settings.height = height;
+        if (two_) {
+            job_.other_settings->width = width;
+            job_.other_settings->height = height;
+        }
+        job_.settings.exposure += 0.25;
+        thread_.want_distance(width == 33);
+        post(++number, true);
+        ASSERT_TRUE(wait_for([&] { return newest() >= number; }));
+        EXPECT_TRUE(width != 33 || wait_for([&] { return thread_.latest()->main.distance != nullptr; }));
+    }
+    // Only shown anew.
+    post(++number, false);
+    ASSERT_TRUE(settles());
+    job_.settings.exposure = 0.5;
+    ++job_.display_revision;
+    thread_.post(job_);
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(thread_.latest()->main.settings.exposure, 0.5);
+    // Another program, and the device's owner taking it away and giving it back.
+    job_.ready = table().ready(device_, two_);
+    post(++number, true);
+    ASSERT_TRUE(wait_for([&] { return newest() == number; }));
+    post(++number, true);
+    thread_.release();
+    const auto then = thread_.latest();
+    std::this_thread::sleep_for(std::chrono::milliseconds(30));
+    EXPECT_EQ(thread_.latest(), then) << "traced on after release()";
+    thread_.resume();
+    ASSERT_TRUE(wait_for([&] { return newest() == number; }));
+    post(++number, false);
+    ASSERT_TRUE(settles());
+    ASSERT_TRUE(wait_for([&] { return newest() == number; }));
+    expect_order();
+}
+
+// Work that the device refuses, at any point of two pictures: a message, and the next picture is right.
+TEST_P(FrameThreads, WorkThatIsRefused) {
+    uint64_t number = 1;
+    post(number, true);
+    ASSERT_TRUE(wait_for([&] { return newest() == 1; }));
+    for (std::atomic<int>* const left : {&faults.launches_left, &faults.copies_left})
+        for (int launch = 0; launch < 6; ++launch) {
+            *left = launch;
+            post(++number, true);
+            std::string failure;
+            EXPECT_TRUE(wait_for([&] { return !(failure = thread_.take_failure()).empty(); }));
+            EXPECT_NE(failure.find(device_->info().name), std::string::npos) << failure;
+            faults.end();
+            post(++number, true);
+            ASSERT_TRUE(wait_for([&] { return newest() == number; })) << launch;
+        }
+    post(++number, false);
+    ASSERT_TRUE(settles());
+    ASSERT_TRUE(wait_for([&] { return newest() == number; }));
+    EXPECT_EQ(thread_.take_failure(), "");
+    expect_order();
+}
+
+INSTANTIATE_TEST_SUITE_P(Devices, FrameThreads, ::testing::Values("cpu", "gpu", "gpu, compared"));
+
+}  // namespace
+}  // namespace clarity
