@@ -4,8 +4,8 @@
  * Every load is one aligned vector; gathering from rays one after the other costs 15 to 20 clocks a ray. With one lane a block
  * is an rt_ray. Answers likewise, as many fields as were asked for: RT_ANSWER_ALL are t, u, v, prim, instance and three more that
  * only counting programs write, and with one lane a block of them is an rt_hit; RT_ANSWER_HIT, of one lane, are the first four, for
- * scenes without instances: half the bytes; RT_ANSWER_NEAREST are t and prim, RT_ANSWER_OCCLUSION is t. The last block is filled up with inactive rays by the host, who packs and unpacks in
- * host/render/ray_blocks.cpp. */
+ * scenes without instances: half the bytes; RT_ANSWER_NEAREST are t and prim, RT_ANSWER_OCCLUSION is t. The last block is filled up
+ * with inactive rays by the host, who packs and unpacks in host/render/ray_blocks.cpp. */
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
 
