@@ -96,27 +96,35 @@ TEST_P(Failures, ALaunchThatIsRefused) {
     }
 }
 
-// Pictures that follow one another, on a CPU that says it is a GPU, so that copies have a queue of their own.
-TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
-    DeviceInfo info = device_->info();
-    info.cpu = false;
-    info.gpu = true;
-    const auto device = std::make_shared<Device>(info);
-    Settings small = small_;
-    small.lanes = small.packet_w = small.packet_h = 1;
-    Preparer preparer(Workbench::get().plugins(), device);
-    Frames frames(device);
-    const auto prepared = preparer.prepare(scene_, small, progress_);
+// On a CPU that says it is a GPU, so that copies have a queue of their own.
+class CopyFailures : public Failures {
+ protected:
+    void SetUp() override {
+        Failures::SetUp();
+        DeviceInfo info = device_->info();
+        info.cpu = false;
+        info.gpu = true;
+        const auto device = std::make_shared<Device>(info);
+        small_.lanes = small_.packet_w = small_.packet_h = 1;
+        prepared_ = Preparer(Workbench::get().plugins(), device).prepare(scene_, small_, progress_);
+        copying_ = std::make_unique<Frames>(device);
+    }
+
+    std::unique_ptr<Frames> copying_;
+};
+
+// Pictures that follow one another.
+TEST_P(CopyFailures, ALaunchThatIsRefusedBetweenPictures) {
     PendingImage pending;
     ByteImage shown;
     const auto show = [&] {
-        frames.trace(*prepared, small, view_, 0, false, progress_, nullptr, [&] {
+        copying_->trace(*prepared_, small_, view_, 0, false, progress_, nullptr, [&] {
             if (pending) shown = pending.wait();
         });
-        pending = frames.begin_display(small);
+        pending = copying_->begin_display(small_);
     };
     show();
-    const ByteImage truth = frames.read_display(small);
+    const ByteImage truth = copying_->read_display(small_);
     for (int launch = 0; launch < 12; ++launch) {
         faults.launches_left = launch;
         bool failed = false;
@@ -143,31 +151,23 @@ TEST_P(Failures, ALaunchThatIsRefusedBetweenPictures) {
 }
 
 // Copies too: a picture that does not arrive is a message, and those after it are whole.
-TEST_P(Failures, ACopyThatIsRefused) {
-    DeviceInfo info = device_->info();
-    info.cpu = false;
-    info.gpu = true;
-    const auto device = std::make_shared<Device>(info);
-    Settings small = small_;
-    small.lanes = small.packet_w = small.packet_h = 1;
-    Preparer preparer(Workbench::get().plugins(), device);
-    Frames frames(device);
-    const auto prepared = preparer.prepare(scene_, small, progress_);
-    frames.trace(*prepared, small, view_, 0, false, progress_);
-    PendingImage before = frames.begin_display(small);
-    const ByteImage truth = frames.read_display(small);
+TEST_P(CopyFailures, ACopyThatIsRefused) {
+    copying_->trace(*prepared_, small_, view_, 0, false, progress_);
+    PendingImage before = copying_->begin_display(small_);
+    const ByteImage truth = copying_->read_display(small_);
     faults.copies_left = 0;
     const std::string said = message([&] {
-        frames.trace(*prepared, small, view_, 0, false, progress_);
-        frames.begin_display(small);
+        copying_->trace(*prepared_, small_, view_, 0, false, progress_);
+        copying_->begin_display(small_);
     });
-    EXPECT_NE(said.find(info.name), std::string::npos) << said;
+    EXPECT_NE(said.find(device_->info().name), std::string::npos) << said;
     faults.end();
     EXPECT_TRUE(before.wait().pixels == truth.pixels);
-    frames.trace(*prepared, small, view_, 0, false, progress_);
-    EXPECT_TRUE(frames.begin_display(small).wait().pixels == truth.pixels);
+    copying_->trace(*prepared_, small_, view_, 0, false, progress_);
+    EXPECT_TRUE(copying_->begin_display(small_).wait().pixels == truth.pixels);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tracers, Failures, ::testing::Values("iterative", "wavefront"));
+INSTANTIATE_TEST_SUITE_P(Tracers, CopyFailures, ::testing::Values("iterative", "wavefront"));
 
 }  // namespace
