@@ -361,7 +361,7 @@ class Contest {
         with_peer(kind, [&](PeerScene& scene) {
             for (const std::string& mode : scene.frame_modes()) {
                 Entry& entry = add_peer_entry(kind.name + " " + mode + " " + kind.quality);
-                const auto film = std::make_shared<std::vector<float>>();
+                const auto film = std::make_shared<PeerArray<float>>();
                 const auto counts = std::make_shared<PeerRayCounts>();
                 entry.row.depth = int(whitted_->generations);
                 entry.row.width = int(whitted_->frame.width);
@@ -395,7 +395,7 @@ class Contest {
     void add_peer_mode(const PeerKind& kind, PeerScene& scene, const std::string& mode) {
         Entry& entry = add_peer_entry(kind.name + " " + mode + " " + kind.quality);
         const RaySet* const set = rays_;
-        const auto hits = std::make_shared<std::vector<PeerHit>>(set->rays.size());
+        const auto hits = std::make_shared<PeerArray<PeerHit>>(set->rays.size());
         entry.once = [=, &scene] {
             Take take;
             take.time_ms = scene.trace_ms(mode, *hits);

@@ -296,7 +296,7 @@ EACH_ISA void embree_tile(const Job& job, Tile& tile, unsigned left, unsigned to
 }
 
 double embree_frame(RTCScene scene, const PeerMesh& mesh, const WhittedScene& whitted, bool coherent, unsigned threads,
-                    std::vector<float>& film, PeerRayCounts& counts) {
+                    PeerArray<float>& film, PeerRayCounts& counts) {
     const rt_frame& frame = whitted.frame;
     film.resize(4 * size_t(frame.width) * frame.height);
     const Job job = {scene, &mesh, &whitted, coherent, film.data()};

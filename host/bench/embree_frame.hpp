@@ -9,6 +9,6 @@ namespace clarity {
 // coherent: the flag for rays of all generations, else for camera rays and their shadow rays only. film: r, g, b and the number
 // of samples of each pixel, as ours has them. Returns the wall time in ms. counts: rays traced.
 double embree_frame(RTCScene scene, const PeerMesh& mesh, const WhittedScene& whitted, bool coherent, unsigned threads,
-                    std::vector<float>& film, PeerRayCounts& counts);
+                    PeerArray<float>& film, PeerRayCounts& counts);
 
 }  // namespace clarity

@@ -30,8 +30,8 @@ struct RayBlock {
     alignas(64) float field[8][kBlock];  // origin, t_min, direction, t_max; t_max < 0: inactive
 };
 
-std::vector<RayBlock> pack(const RaySet& set) {
-    std::vector<RayBlock> blocks((set.rays.size() + kBlock - 1) / kBlock);
+PeerArray<RayBlock> pack(const RaySet& set) {
+    PeerArray<RayBlock> blocks((set.rays.size() + kBlock - 1) / kBlock);
     for (size_t i = 0; i < blocks.size() * kBlock; ++i) {
         rt_ray ray = set.rays[std::min(i, set.rays.size() - 1)];
         if (i >= set.rays.size()) ray.t_max = -1;
@@ -43,7 +43,7 @@ std::vector<RayBlock> pack(const RaySet& set) {
 }
 
 // Asks for the rays of the next block, where it has any, as rt_fetch_ahead() does for ours.
-void fetch_ahead(const std::vector<RayBlock>& blocks, size_t block) {
+void fetch_ahead(const PeerArray<RayBlock>& blocks, size_t block) {
 #if defined(__SSE2__)
     const size_t last = blocks.size() - 1;
     const auto& next = blocks[std::min(block + 1, last)].field;
@@ -185,7 +185,7 @@ class EmbreeScene : public PeerScene {
         coherent_ = set.kind != "diffuse";  // what serves it best, measured with both
     }
 
-    double trace_ms(const std::string& mode, std::vector<PeerHit>& hits) override {
+    double trace_ms(const std::string& mode, PeerArray<PeerHit>& hits) override {
         hits.resize(std::max(hits.size(), blocks_.size() * kBlock));
         const auto trace = mode == "single" ? trace_block<1> : mode == "packet8" ? trace_block<8> : trace_block<16>;
         // Ours has its rays copied to the device just before: theirs are as warm.
@@ -220,7 +220,7 @@ class EmbreeScene : public PeerScene {
         return names;
     }
 
-    double frame_ms(const std::string& mode, const WhittedScene& whitted, std::vector<float>& film,
+    double frame_ms(const std::string& mode, const WhittedScene& whitted, PeerArray<float>& film,
                     PeerRayCounts& counts) override {
         return embree_frame(scene_, mesh_, whitted, mode == "packet16", threads_, film, counts);
     }
@@ -249,7 +249,7 @@ class EmbreeScene : public PeerScene {
     std::atomic<int64_t> bytes_{0};
     double build_ms_ = 0;
     bool any_hit_ = false, coherent_ = false;
-    std::vector<RayBlock> packed_, blocks_;
+    PeerArray<RayBlock> packed_, blocks_;
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/aligned_bytes.hpp"
 #include "bench/ray_sets.hpp"
 #include "bench/whitted.hpp"
 
@@ -25,6 +26,9 @@ struct PeerHit {
     float t;  // +inf: nothing; any hit: 0 where occluded
     rt_i32 prim;
 };
+// In large pages, as the buffers of ours are.
+template <class T>
+using PeerArray = std::vector<T, Uncleared<T>>;
 
 struct PeerRayCounts {
     uint64_t primary = 0, shadow = 0, secondary = 0;
@@ -42,10 +46,10 @@ class PeerScene {
     // Brings rays into the form that it likes best; not timed.
     virtual void take_rays(const RaySet& rays) = 0;
     // Traces them; wall time. hits: one a ray or more; of inactive rays undefined.
-    virtual double trace_ms(const std::string& mode, std::vector<PeerHit>& hits) = 0;
+    virtual double trace_ms(const std::string& mode, PeerArray<PeerHit>& hits) = 0;
     // Ways to render a whole frame; and one frame: wall time. film: r, g, b and the number of samples of each pixel.
     virtual const std::vector<std::string>& frame_modes() const = 0;
-    virtual double frame_ms(const std::string& mode, const WhittedScene& whitted, std::vector<float>& film,
+    virtual double frame_ms(const std::string& mode, const WhittedScene& whitted, PeerArray<float>& film,
                             PeerRayCounts& counts) = 0;
 };
 

@@ -53,7 +53,7 @@ Both render(const ScenePtr& scene, const View& view, const Settings& settings, c
     both.ours = bench.frames().read_values();
     const PeerMesh mesh = make_peer_mesh(*scene);
     const PeerKind kind = peer_kinds(nullptr).at(1);
-    std::vector<float> film;
+    PeerArray<float> film;
     EXPECT_GT(kind.build(mesh, kind.quality, 2)->frame_ms(mode, whitted_scene(whitted, settings), film, both.counts), 0);
     both.theirs = {unsigned(settings.width), unsigned(settings.height), 3, {}};
     for (size_t i = 0; i < film.size(); ++i)

@@ -278,7 +278,7 @@ TEST(Peers, HitWhatWeHit) {
             const auto ours = Workbench::get().rays(scene, Settings(), set->rays, set->any_hit);
             peer->take_rays(*set);
             for (const std::string& mode : peer->modes()) {
-                std::vector<PeerHit> theirs;
+                PeerArray<PeerHit> theirs;
                 EXPECT_GE(peer->trace_ms(mode, theirs), 0);
                 ASSERT_GE(theirs.size(), set->rays.size());
                 size_t differ = 0, hit = 0;
