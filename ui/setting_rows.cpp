@@ -5,12 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "ui/formats.hpp"
 #include "ui/slider_bar.hpp"
 #include "ui/theme.hpp"
@@ -63,7 +63,7 @@ bool real_slider(const char* id_text, double& value, double min, double max, boo
     const BareFrames bare;
     const bool edited = ImGui::SliderFloat(id_text, &shown, static_cast<float>(min), static_cast<float>(max), format, flags);
     if (!settled(id, edited, at_once, shown, held, &PendingEdit::real)) return false;
-    value = held;
+    read_number(exact_text(held), value);  // what is shown as 0.02 is 0.02, not the float next to it
     return true;
 }
 
@@ -144,9 +144,10 @@ bool edit_value(const Setting& row, const Settings& settings, std::string& text)
             return true;
         }
         case Setting::Kind::real: {
-            double value = std::atof(text.c_str());
+            double value = 0;
+            read_number(text, value);
             if (!real_slider("##real", value, row.min, row.max, at_once)) return false;
-            text = number_text(value);
+            text = exact_text(value);
             return true;
         }
         case Setting::Kind::boolean: {

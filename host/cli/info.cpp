@@ -1,5 +1,4 @@
 // clarity info: what the importer understood of a file, in the file's own units and axes.
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -7,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/numbers.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -18,10 +18,8 @@ using Json = nlohmann::ordered_json;
 
 // The double that prints as the float does: 0.1, not 0.10000000149011612.
 double short_double(float value) {
-    char text[32];
     double result = value;
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    std::from_chars(text, end, result);
+    read_number(exact_text(value), result);
     return result;
 }
 

@@ -1,11 +1,11 @@
 // device_choice.cpp -- which devices a user means.
 #include <algorithm>
-#include <charconv>
 #include <cstdlib>
 #include <functional>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/numbers.hpp"
 #include "device/device_list.hpp"
 
 namespace clarity {
@@ -35,11 +35,6 @@ struct Word {
     int part = -1;       // -1: all of them
 };
 
-bool read_number(const std::string& text, unsigned& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return !text.empty() && error == std::errc() && end == text.data() + text.size() && value <= kMostParts;
-}
-
 Word read_word(const std::string& text) {
     const size_t slash = text.rfind('/');
     if (slash == std::string::npos) return {text};
@@ -48,7 +43,7 @@ Word read_word(const std::string& text) {
     Word word{text.substr(0, slash)};
     const size_t dot = tail.find('.');
     unsigned part = 0;
-    const bool good = read_number(tail.substr(0, dot), word.parts) && word.parts > 0 &&
+    const bool good = read_number(tail.substr(0, dot), word.parts) && word.parts > 0 && word.parts <= kMostParts &&
                       (dot == std::string::npos || (read_number(tail.substr(dot + 1), part) && part < word.parts));
     if (!good)
         throw Error(Exit::no_device, "`" + text +

@@ -1,27 +1,19 @@
 #include "plugin/parameters.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <string_view>
 #include <utility>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace clarity {
 namespace {
 
-// Shortest text that reads back as the same number, in every locale.
-std::string number_text(double value) {
-    char buffer[32];
-    const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
-    return std::string(buffer, end);
-}
-
 bool parse_number(std::string_view text, double& value) {
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+    return read_number(text, value);
 }
 
 std::string choice_list(const rt_param& param) {
@@ -52,9 +44,9 @@ bool parse_choice(const rt_param& param, std::string_view text, double& value) {
 std::string expected(const rt_param& param) {
     switch (param.kind) {
         case RT_PARAM_INT:
-            return "a whole number from " + number_text(param.min) + " to " + number_text(param.max);
+            return "a whole number from " + exact_text(param.min) + " to " + exact_text(param.max);
         case RT_PARAM_FLOAT:
-            return "a number from " + number_text(param.min) + " to " + number_text(param.max);
+            return "a number from " + exact_text(param.min) + " to " + exact_text(param.max);
         case RT_PARAM_BOOL:
             return "0, 1, true, false, on or off";
         default:
@@ -81,7 +73,7 @@ bool parse_value(const rt_param& param, std::string_view text, double& value) {
 std::string value_text(const rt_param& param, double value) {
     if (param.kind == RT_PARAM_BOOL) return value != 0 ? "true" : "false";
     if (param.kind == RT_PARAM_ENUM && value >= 0 && value <= param.max) return param.choices[static_cast<size_t>(value)];
-    return number_text(value);
+    return exact_text(value);
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "render/edit.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace clarity {
 namespace {
@@ -16,15 +16,9 @@ constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
     throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
 }
 
-// Shortest text that reads back as the same number.
-std::string text_of(float value) {
-    char text[32];
-    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-    return std::string(text, end);
-}
 std::string text_of(const float* values, size_t count) {
     std::string text;
-    for (size_t i = 0; i < count; ++i) text += (i ? "," : "") + text_of(values[i]);
+    for (size_t i = 0; i < count; ++i) text += (i ? "," : "") + exact_text(values[i]);
     return text;
 }
 
@@ -38,20 +32,11 @@ std::vector<std::string> split(const std::string& text, char at) {
     return parts;
 }
 
-bool read_float(const std::string& text, float& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
-}
-bool read_index(const std::string& text, rt_u32& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return !text.empty() && error == std::errc() && end == text.data() + text.size();
-}
-
 // `count` numbers, commas between them.
 void read_floats(const std::string& key, const std::string& text, float* values, size_t count, const char* expected) {
     const std::vector<std::string> parts = split(text, ',');
     bool good = parts.size() == count;
-    for (size_t i = 0; good && i < count; ++i) good = read_float(parts[i], values[i]);
+    for (size_t i = 0; good && i < count; ++i) good = read_number(parts[i], values[i]);
     if (!good) refuse(key, text, expected);
 }
 
@@ -60,10 +45,9 @@ void read_camera(Camera& camera, const std::string& text) {
     float n[10];
     read_floats("camera", text, n, 10, expected);
     // A field of view that came from radians must come back bit by bit: floats of degrees are too coarse for that.
-    const std::string degrees = split(text, ',')[6];
     double fov = 0;
-    std::from_chars(degrees.data(), degrees.data() + degrees.size(), fov);
-    if (fov <= 0 || fov >= 180) refuse("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
+    if (!read_number(split(text, ',')[6], fov) || fov <= 0 || fov >= 180)
+        refuse("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
     camera.eye = {n[0], n[1], n[2]};
     camera.target = {n[3], n[4], n[5]};
     camera.fov_y_rad = static_cast<float>(fov * kRadPerDegree);
@@ -71,15 +55,13 @@ void read_camera(Camera& camera, const std::string& text) {
 }
 
 std::string camera_text(const Camera& camera) {
-    char fov[40];
-    const auto end = std::to_chars(fov, fov + sizeof fov, camera.fov_y_rad / kRadPerDegree).ptr;
-    return text_of(camera.eye.data(), 3) + "," + text_of(camera.target.data(), 3) + "," + std::string(fov, end) + "," +
-           text_of(camera.up.data(), 3);
+    return text_of(camera.eye.data(), 3) + "," + text_of(camera.target.data(), 3) + "," +
+           exact_text(camera.fov_y_rad / kRadPerDegree) + "," + text_of(camera.up.data(), 3);
 }
 
 void read_light(EditedView& edited, const std::string& key, const std::string& value) {
     rt_u32 at = 0;
-    if (!read_index(key.substr(6), at)) refuse(key, value, "for a light: light.N counts from 0");
+    if (!read_number(key.substr(6), at)) refuse(key, value, "for a light: light.N counts from 0");
     auto& lights = edited.view.lights;
     if (at > lights.size())
         throw Error(Exit::usage, key + ": the view has " + std::to_string(lights.size()) +
@@ -148,7 +130,7 @@ void read_material(const Scene& scene, EditedView& edited, const std::string& ke
         known += (known.empty() ? "" : ", ") + std::string(p.name);
         if (path.size() == 3 && path[2] == p.name) part = &p;
     }
-    if (!part || !read_index(path[1], at))
+    if (!part || !read_number(path[1], at))
         throw Error(Exit::usage, key + ": expected material.N.PART with N from 0 and PART one of " + known);
     if (at >= scene.materials.size())
         throw Error(Exit::usage, key + ": the scene has materials 0 to " + std::to_string(scene.materials.size() - 1));
@@ -156,7 +138,8 @@ void read_material(const Scene& scene, EditedView& edited, const std::string& ke
     read_floats(key, value, n, part->count, part->count == 3 ? "r,g,b" : "a number");
     const float least = std::strcmp(part->name, "ior") == 0 ? 1e-3f : 0.0f;
     for (size_t k = 0; k < part->count; ++k)
-        if (n[k] < least || n[k] > part->most) refuse(key, value, "from " + text_of(least) + " to " + text_of(part->most));
+        if (n[k] < least || n[k] > part->most)
+            refuse(key, value, "from " + exact_text(least) + " to " + exact_text(part->most));
     if (edited.view.materials.empty()) edited.view.materials = scene_materials(scene);
     std::copy(n, n + part->count, part_of(edited.view.materials[at], *part));
 }
@@ -167,8 +150,8 @@ void read_hidden(const Scene& scene, EditedView& edited, const std::string& valu
         if (value.empty()) break;
         const size_t dash = range.find('-');
         rt_u32 first = 0, last = 0;
-        if (!read_index(range.substr(0, dash), first) ||
-            !read_index(dash == std::string::npos ? range : range.substr(dash + 1), last) || last < first)
+        if (!read_number(range.substr(0, dash), first) ||
+            !read_number(dash == std::string::npos ? range : range.substr(dash + 1), last) || last < first)
             refuse("hide", value, "a list of instances such as 3,5-9");
         if (last >= scene.instances.size())
             throw Error(Exit::usage, "hide: the scene has " + std::to_string(scene.instances.size()) +

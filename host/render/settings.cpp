@@ -1,10 +1,7 @@
 #include "render/settings.hpp"
 
-#include <charconv>
-#include <cmath>
-#include <sstream>
-
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 
 namespace clarity {
 namespace {
@@ -13,27 +10,14 @@ namespace {
     throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
 }
 
-std::string text_of(double value) {
-    std::ostringstream out;
-    out << value;
-    return out.str();
-}
-
-// from_chars: whatever the locale, and nothing left over.
-template <class Number>
-bool parse(const std::string& text, Number& value) {
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    return error == std::errc() && end == text.data() + text.size();
-}
-
 Setting integer(std::string key, std::string label, std::string help, double min, double max, Effect effect,
                 int Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}};
     s.get = [member](const Settings& settings) { return std::to_string(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         int value = 0;
-        if (!parse(text, value) || value < min || value > max)
-            refuse(key, text, "a whole number from " + text_of(min) + " to " + text_of(max));
+        if (!read_number(text, value) || value < min || value > max)
+            refuse(key, text, "a whole number from " + exact_text(min) + " to " + exact_text(max));
         settings.*member = value;
     };
     return s;
@@ -42,11 +26,11 @@ Setting integer(std::string key, std::string label, std::string help, double min
 Setting real(std::string key, std::string label, std::string help, double min, double max, Effect effect,
              double Settings::*member) {
     Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}};
-    s.get = [member](const Settings& settings) { return text_of(settings.*member); };
+    s.get = [member](const Settings& settings) { return exact_text(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         double value = 0;
-        if (!parse(text, value) || !std::isfinite(value) || value < min || value > max)
-            refuse(key, text, "a number from " + text_of(min) + " to " + text_of(max));
+        if (!read_number(text, value) || value < min || value > max)
+            refuse(key, text, "a number from " + exact_text(min) + " to " + exact_text(max));
         settings.*member = value;
     };
     return s;
@@ -98,8 +82,8 @@ Setting size(std::string key, std::string label, std::string help, int min, int 
         }
         const size_t x = text.find('x');
         int w = 0, h = 0;
-        if (x == std::string::npos || !parse(text.substr(0, x), w) || !parse(text.substr(x + 1), h) || w < min || h < min ||
-            w > max || h > max)
+        if (x == std::string::npos || !read_number(text.substr(0, x), w) || !read_number(text.substr(x + 1), h) || w < min ||
+            h < min || w > max || h > max)
             refuse(key, text, "WIDTHxHEIGHT, each from " + std::to_string(min) + " to " + std::to_string(max));
         settings.*width = w;
         settings.*height = h;

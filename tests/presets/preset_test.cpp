@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
 #include "support/generated.hpp"
 
@@ -73,6 +74,22 @@ TEST(Preset, RefusesWhatItDoesNotKnow) {
             EXPECT_EQ(error.code(), Exit::usage);
             EXPECT_EQ(std::string(error.what()).find("wrong.json"), 0u) << error.what();
             EXPECT_NE(std::string(error.what()).find(says), std::string::npos) << error.what();
+        }
+    }
+}
+
+// The window's own frames take their settings through words too: of 1/512 rounded to six digits more rays were followed.
+TEST(Settings, NumbersInWordsComeBackBitByBit) {
+    for (const Setting& row : settings_table()) {
+        if (row.kind != Setting::Kind::real) continue;
+        for (const double value : {1.0 / 512, 1.0 / 3, 0.1, 1e-300, 0.123456789012345678, row.max}) {
+            Settings settings, again;
+            row.set(settings, exact_text(value));
+            row.set(again, row.get(settings));
+            EXPECT_EQ(row.get(again), exact_text(value)) << row.key;
+            EXPECT_EQ(again.min_weight, settings.min_weight);
+            EXPECT_EQ(again.exposure, settings.exposure);
+            EXPECT_EQ(again.scale_max, settings.scale_max);
         }
     }
 }
