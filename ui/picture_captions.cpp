@@ -4,6 +4,7 @@
 #include <cctype>
 #include <cstdio>
 
+#include "base/numbers.hpp"
 #include "ui/theme.hpp"
 #include "ui/widgets.hpp"
 
@@ -51,7 +52,7 @@ Differences differing_settings(const Picture& picture) {
     if (a.accel == b.accel && on_a.prepared->accel->plugin) {
         const rt_plugin& plugin = *on_a.prepared->accel->plugin;
         for (size_t i = 0; i < std::min(a.accel_params.size(), b.accel_params.size()) && i < plugin.param_count; ++i)
-            add(plugin.params[i].label, number_text(a.accel_params[i]), number_text(b.accel_params[i]));
+            add(plugin.params[i].label, exact_text(a.accel_params[i]), exact_text(b.accel_params[i]));
     }
     for (const Setting& row : settings_table()) add(row.label, row.get(a), row.get(b));
     if (on_a.devices != on_b.devices) {

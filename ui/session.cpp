@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
 #include "ui/camera_control.hpp"
 
@@ -55,7 +56,7 @@ std::string frame_key(const Settings& settings, bool displaying) {
 
 std::string prepare_key(const Side& side) {
     std::string key = side.device + ";" + side.settings.accel;
-    for (const double value : side.settings.accel_params) key += "," + std::to_string(value);
+    for (const double value : side.settings.accel_params) key += "," + exact_text(value);
     for (const Setting& row : settings_table())
         if (row.effect != Effect::frame) key += ";" + row.key + "=" + row.get(side.settings);
     return key;

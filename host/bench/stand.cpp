@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "base/numbers.hpp"
 #include "bench/machine.hpp"
 #include "bench/subdivide.hpp"
 
@@ -17,7 +18,7 @@ constexpr uint64_t kBytesPerTriangle = 600;
 // All that asks for another structure or program.
 std::string key_of(size_t device, const Settings& settings) {
     std::string key = std::to_string(device) + " " + settings.accel;
-    for (const double value : settings.accel_params) key += "," + std::to_string(value);
+    for (const double value : settings.accel_params) key += "," + exact_text(value);
     for (const Setting& setting : settings_table())
         if (setting.effect != Effect::frame) key += " " + setting.get(settings);
     return key;
