@@ -42,9 +42,22 @@ RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uin
     const uint group_w = RT_GROUP_W(frame), groups_x = (frame->width + w * group_w - 1) / (w * group_w);
     uint row = group / groups_x;
     const uint x = (group % groups_x) * group_w + packet % group_w;
-    if (frame->row_count != 0u) row = ((const constant uint *)(frame + 1))[row];
+    if (frame->row_count != 0u) row = ((const constant uint *)(frame + frame->layers))[row];
     const uint y = row * RT_GROUP_H(frame) + packet / group_w;
     return (uint2)(x * w, y * h);
+}
+
+/* Which of a launch's samples a work-group is of; *group: its number in the launch, and then in the sample. A group's samples
+ * follow each other, so that what one has fetched is still near for the next. */
+RT_INLINE uint rt_layer_of(const constant rt_frame *frame, uint *group)
+{
+#if RT_MAX_PIXELS == 1 && RT_LANES == 1
+    const uint layer = *group % frame->layers;
+    *group /= frame->layers;
+    return layer;
+#else
+    return 0u;
+#endif
 }
 
 /* Pixel of each lane within the packet, and whether packet and picture hold it. */
@@ -130,7 +143,7 @@ RT_INLINE void rt_put_pixels(const constant rt_frame *frame, uint2 origin, const
     for (uint y = 0; y < rows; ++y) {
         global float4 *const to = film + (size_t)(origin.y + y) * frame->width + origin.x;
         const float4 *const from = sums + y * packet_w;
-        if (frame->sample == 0u)
+        if (frame->adds == 0u)
             for (uint x = 0; x < columns; ++x) to[x] = from[x];
         else
             for (uint x = 0; x < columns; ++x) to[x] += from[x];

@@ -65,6 +65,21 @@ kernel void map_tones_of_rows(const global float *film, global uchar *display, c
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
+/* A launch's layers (rt_types.h) into the film, one after the other: of some rows of work-groups, of row_pixels pixels each;
+ * items: of all these rows. adds: 0: the first one in place of what was there. */
+kernel void add_layers(global float4 *film, const global float4 *layers, const uint pixels, const uint layer_count, const uint adds,
+                       const global uint *rows, const uint row_pixels, const uint items)
+{
+    const uint item = (uint)get_global_id(0);
+    if (item >= items) return;
+    const uint i = rows[item / row_pixels] * row_pixels + item % row_pixels;
+    if (i >= pixels) return;
+    float4 sum = layers[i];
+    if (adds != 0u) sum = film[i] + sum;
+    for (uint layer = 1; layer < layer_count; ++layer) sum += layers[(size_t)layer * pixels + i];
+    film[i] = sum;
+}
+
 /* sums: 4 zeroed uints. On a GPU a packet is a pixel, so many work-items add up first what is their group's. */
 kernel void sum_counters(const global uint4 *counters, const uint count, global uint *sums)
 {

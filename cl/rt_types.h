@@ -112,7 +112,9 @@ typedef struct rt_frame {
     rt_f32 ambient[3];
     rt_u32 light_count;
     rt_u32 plane_count;
-    rt_u32 sample; /* number of this sample; 0 starts the film anew */
+    rt_u32 sample; /* its number */
+    rt_u32 adds;   /* 0: it takes the place of what is in the film */
+    rt_u32 layers; /* samples of a launch, from this one on, each into a film of its own; so many frames stand in a row */
     rt_u32 packet_w, packet_h; /* pixels of one work-item */
     rt_f32 min_weight; /* rays that would add less than this are not spawned */
     rt_u32 shadows;    /* 0: none */
@@ -120,7 +122,7 @@ typedef struct rt_frame {
     rt_u32 block_w, block_w_log2; /* pixels traced side by side: block_w wide, RT_LANES in all */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
     rt_f32 within_x, within_y;    /* where in each pixel this sample's rays go through, 0..1 */
-    rt_u32 row_count; /* 0: rows of work-groups are those of the picture. Else so many uints follow this struct, each row's number */
+    rt_u32 row_count; /* 0: rows of work-groups are those of the picture. Else so many uints follow the last frame, each row's number */
     rt_f32 bounds[6]; /* of all but planes, lower x, y, z, then upper; of nothing: inf, -inf */
 } rt_frame;
 

@@ -14,8 +14,12 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global r
                 global float *distances, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    const uint group = first_group + (uint)get_group_id(0);
+    const uint launched = first_group + (uint)get_group_id(0);
+    uint group = launched;
+    const uint layer = rt_layer_of(frame, &group);
     const uint rays = RT_BLOCKS(frame) * RT_LANES;
+    frame += layer;
+    film += (size_t)layer * frame->width * frame->height;
     rt_queue queues[2];
     float4 sums[RT_MAX_PIXELS];
     RT_FOR_PACKETS(frame, packet)
@@ -34,6 +38,6 @@ trace_iterative(const constant rt_frame *frame, const uint first_group, global r
 #else
         rt_put_pixels(frame, origin, sums, film);
 #endif
-        counters[number] = (uint4)(tally.shadow, tally.secondary, tally.dropped, tally.overflow);
+        counters[launched * RT_GROUP_PACKETS(frame) + packet] = (uint4)(tally.shadow, tally.secondary, tally.dropped, tally.overflow);
     }
 }

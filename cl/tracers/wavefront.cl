@@ -65,13 +65,15 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
         if (unit < units) {
             if (level == 0u) {
                 const uint packet = unit / RT_BLOCKS(frame);
-                const uint2 origin = rt_packet_origin(frame, first_group + packet / group_packets, packet % group_packets);
+                uint group = first_group + packet / group_packets;
+                const uint layer = rt_layer_of(frame, &group);
+                const uint2 origin = rt_packet_origin(frame, group, packet % group_packets);
                 vint x, y;
                 active = rt_block_pixels(frame, origin, unit % RT_BLOCKS(frame), &x, &y);
                 x += rt_vint((int)origin.x);
                 y += rt_vint((int)origin.y);
-                pixel = y * rt_vint((int)frame->width) + x;
-                rt_camera_rays(frame, x, y, &ray);
+                pixel = (y + rt_vint((int)(layer * frame->height))) * rt_vint((int)frame->width) + x;
+                rt_camera_rays(frame + layer, x, y, &ray);
             } else {
                 active = rt_fetch_wave_rays(rays, unit * RT_LANES, count, &ray, &weight, &pixel, &generation);
             }
@@ -91,8 +93,14 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
 #ifdef RT_DEBUG
                 tally.overflow += hit.overflow;
 #endif
-                if (level == 0u && step == 0u && frame->sample == 0u)
-                    rt_store(hit.t, distances + ((size_t)first_group * group_packets * RT_BLOCKS(frame) + unit) * RT_LANES);
+                if (level == 0u && step == 0u && frame->sample == 0u) {
+                    const uint packet = unit / RT_BLOCKS(frame);
+                    uint group = first_group + packet / group_packets;
+                    if (rt_layer_of(frame, &group) == 0u) {
+                        const uint number = group * group_packets + packet % group_packets;
+                        rt_store(hit.t, distances + ((size_t)number * RT_BLOCKS(frame) + unit % RT_BLOCKS(frame)) * RT_LANES);
+                    }
+                }
                 const vmask last = RT_MASK(generation + 1 >= rt_vint((int)frame->depth));
                 rt_vec light;
                 const vmask going = rt_step(&ctx, frame, active, last, &ray, &hit, &weight, &light, &aside, &parted, &tally);
@@ -124,7 +132,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 global uint *share = shares + RT_SHARE * (size_t)at[l];
                 if (level == 0u) {
                     const float4 sample = (float4)(light[l].xyz, 1.0f);
-                    sums[at[l]] = parting == 0u && frame->sample != 0u ? sums[at[l]] + sample : sample;
+                    sums[at[l]] = parting == 0u && frame->adds != 0u ? sums[at[l]] + sample : sample;
                     if (parting)
                         for (uint i = 0; i < RT_SHARE; ++i) share[i] = 0u;
                 } else {
@@ -168,7 +176,7 @@ add_sample(const constant rt_frame *frame, const uint first_group, global float4
             float4 sample = sums[at];
             const global uint *share = shares + RT_SHARE * (size_t)at;
             sample.xyz += (float3)(rt_share(share), rt_share(share + 2), rt_share(share + 4));
-            film[at] = frame->sample != 0u ? film[at] + sample : sample;
+            film[at] = frame->adds != 0u ? film[at] + sample : sample;
         }
     }
 }

@@ -30,27 +30,14 @@ struct Team {
     bool alike = true;
 };
 
-struct TeamPlan {
-    size_t size = 1;
-    unsigned queues = 0;  // of each device; 0: the usual number
-    std::string text() const {
-        return std::to_string(size) + (size == 1 ? " device" : " devices") +
-               (queues > 0 ? ", " + std::to_string(queues) + (queues == 1 ? " queue" : " queues") : "");
-    }
-};
-
-// GPUs in one queue and in two: what several gain by the second is not the others' merit.
-std::vector<TeamPlan> team_plans(const MultiPrepared& all) {
-    std::vector<TeamPlan> plans;
-    for (size_t n = 1; n < all.parts.size(); n *= 2) plans.push_back({n});
-    plans.push_back({all.parts.size()});
-    if (all.parts[0].device->info().cpu) return plans;
-    plans.insert(plans.begin() + 1, {1, 2});
-    if (all.parts.size() > 1) plans.push_back({all.parts.size(), 1});
-    return plans;
+std::vector<size_t> team_sizes(size_t all) {
+    std::vector<size_t> sizes;
+    for (size_t n = 1; n < all; n *= 2) sizes.push_back(n);
+    sizes.push_back(all);
+    return sizes;
 }
 
-std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size, unsigned queues) {
+std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size) {
     auto team = std::make_unique<Team>();
     auto prepared = std::make_shared<MultiPrepared>();
     prepared->parts.assign(all.parts.begin(), all.parts.begin() + static_cast<std::ptrdiff_t>(size));
@@ -63,7 +50,7 @@ std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size, unsigned 
     team->row.device_id = device_list_text(infos);
     team->row.threads = 0;
     for (const DeviceInfo& info : infos) team->row.threads += info.compute_units;
-    team->frames = std::make_unique<MultiFrames>(devices, queues);
+    team->frames = std::make_unique<MultiFrames>(devices);
     team->prepared = std::move(prepared);
     return team;
 }
@@ -123,8 +110,8 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
         const auto samples = unsigned(settings.spp);
         try {
             const auto all = stand.prepare_all(settings, progress);
-            for (const TeamPlan& plan : team_plans(*all)) {
-                teams.push_back(make_team(*all, plan.size, plan.queues));
+            for (const size_t size : team_sizes(all->parts.size())) {
+                teams.push_back(make_team(*all, size));
                 Team& team = *teams.back();
                 BenchRecord of = row;
                 of.device = team.row.device;
@@ -132,7 +119,8 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
                 of.driver = team.row.driver;
                 of.device_clock_mhz = team.row.device_clock_mhz;
                 of.threads = team.row.threads;
-                of.variant = (variant.label.empty() ? "" : variant.label + ", ") + plan.text();
+                of.variant = (variant.label.empty() ? "" : variant.label + ", ") + std::to_string(size) +
+                             (size == 1 ? " device" : " devices");
                 describe(of, *team.prepared->first());
                 team.row = std::move(of);
                 contenders.push_back({team.row.variant, [&team, &stand, &progress, settings, samples] {

@@ -50,6 +50,7 @@ FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), memo
         map_tones_ = cl::Kernel(program_, "map_tones");
         map_tones_of_rows_ = cl::Kernel(program_, "map_tones_of_rows");
         sum_counters_ = cl::Kernel(program_, "sum_counters");
+        add_layers_ = cl::Kernel(program_, "add_layers");
     });
 }
 
@@ -100,28 +101,50 @@ cl::Event FilmKernels::run(const cl::Kernel& kernel, size_t items) {
     return done;
 }
 
-void FilmKernels::show_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
-                            unsigned row_height, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times) {
-    const size_t pixels = size_t(width) * height;
-    const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
-    set_map(map_tones_of_rows_, film, display, pixels, settings);
-    const size_t bytes = rows.size() * sizeof(rt_u32), row_quads = size_t(width) * row_height / kPixelsAtOnce;
+const cl::Buffer& FilmKernels::table_of(const std::vector<rt_u32>& rows) {
+    const size_t bytes = rows.size() * sizeof(rt_u32);
     const cl::Buffer before = rows_.get();
     const cl::Buffer& table = rows_.fit(device_->context(), bytes);
     if (rows_written_ != rows || table() != before()) {
         rows_written_ = rows;
         device_->queue().enqueueWriteBuffer(table, CL_TRUE, 0, bytes, rows_written_.data());
     }
-    map_tones_of_rows_.setArg(5, table);
+    return table;
+}
+
+cl::Event FilmKernels::add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds, unsigned width,
+                                  unsigned height, const std::vector<rt_u32>& rows, unsigned row_height) {
+    const size_t row_pixels = size_t(width) * row_height;
+    add_layers_.setArg(0, film);
+    add_layers_.setArg(1, layers);
+    add_layers_.setArg(2, static_cast<cl_uint>(size_t(width) * height));
+    add_layers_.setArg(3, static_cast<cl_uint>(count));
+    add_layers_.setArg(4, static_cast<cl_uint>(adds));
+    add_layers_.setArg(5, table_of(rows));
+    add_layers_.setArg(6, static_cast<cl_uint>(row_pixels));
+    add_layers_.setArg(7, static_cast<cl_uint>(row_pixels * rows.size()));
+    return run(add_layers_, row_pixels * rows.size());
+}
+
+cl::Event FilmKernels::begin_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
+                                  unsigned row_height, const Settings& settings, uint8_t* rgba) {
+    const size_t pixels = size_t(width) * height;
+    const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
+    set_map(map_tones_of_rows_, film, display, pixels, settings);
+    const size_t row_quads = size_t(width) * row_height / kPixelsAtOnce;
+    map_tones_of_rows_.setArg(5, table_of(rows));
     map_tones_of_rows_.setArg(6, static_cast<cl_uint>(row_quads));
     map_tones_of_rows_.setArg(7, static_cast<cl_uint>(row_quads * rows.size()));
-    const cl::Event mapped = run(map_tones_of_rows_, row_quads * rows.size());
-    std::vector<cl::Event> reads;
-    read_bands(device_->queue(), display, bands_of(rows, row_height, height), size_t(width) * 4, rgba, &reads);
-    device_->queue().finish();
-    if (!times) return;
-    times->push_back({"tone map", event_ms(mapped)});
-    times->push_back({"read-back", span_ms(reads.front(), reads.back())});
+    rows_mapped_ = run(map_tones_of_rows_, row_quads * rows.size());
+    rows_read_.clear();
+    read_bands(device_->queue(), display, bands_of(rows, row_height, height), size_t(width) * 4, rgba, &rows_read_);
+    return rows_read_.back();
+}
+
+void FilmKernels::end_rows(std::vector<KernelTime>& times) {
+    rows_read_.back().wait();
+    times.push_back({"tone map", event_ms(rows_mapped_)});
+    times.push_back({"read-back", span_ms(rows_read_.front(), rows_read_.back())});
 }
 
 }  // namespace clarity

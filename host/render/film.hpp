@@ -41,25 +41,32 @@ class FilmKernels {
     RayCounts end_sum(KernelTime& time);
     // Enqueues the tones of a film, room(pixels) float4, sums of samples, into a display of room(pixels) * 4 bytes.
     cl::Event map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings);
-    // Of some rows of work-groups alone, `row_height` pixels high, each to its place in the picture: rgba, 4 * pixels bytes.
-    // Adds its times.
-    void show_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
-                   unsigned row_height, const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
+    // Enqueues adding layers (rt_types.h) to the film, in rows of work-groups `row_height` pixels high. adds: 0: anew.
+    cl::Event add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds, unsigned width,
+                         unsigned height, const std::vector<rt_u32>& rows, unsigned row_height);
+    // Enqueues the tones of some rows of work-groups alone, `row_height` pixels high, each to its place in the picture: rgba,
+    // 4 * pixels bytes. Returns the last event.
+    cl::Event begin_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
+                         unsigned row_height, const Settings& settings, uint8_t* rgba);
+    // Waits for them and adds what they took.
+    void end_rows(std::vector<KernelTime>& times);
 
  private:
     // Arguments that both kernels have.
     static void set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::Buffer& display, size_t pixels,
                         const Settings& settings);
     cl::Event run(const cl::Kernel& kernel, size_t items);
+    const cl::Buffer& table_of(const std::vector<rt_u32>& rows);
 
     std::shared_ptr<Device> device_;
     cl::Program program_;
-    cl::Kernel map_tones_, map_tones_of_rows_, sum_counters_;
+    cl::Kernel map_tones_, map_tones_of_rows_, sum_counters_, add_layers_;
     GrowingBuffer display_{CL_MEM_WRITE_ONLY}, sums_{CL_MEM_READ_WRITE}, rows_{CL_MEM_READ_ONLY};
     std::vector<rt_u32> rows_written_;
     HostMemory memory_;
     std::shared_ptr<uint8_t> read_sums_;
-    cl::Event summed_, sums_read_;
+    cl::Event summed_, sums_read_, rows_mapped_;
+    std::vector<cl::Event> rows_read_;
 };
 
 }  // namespace clarity

@@ -56,6 +56,8 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     frame.light_count = static_cast<rt_u32>(view.lights.size());
     frame.plane_count = static_cast<rt_u32>(accel.scene.planes.size());
     frame.sample = sample;
+    frame.adds = sample > 0;
+    frame.layers = 1;
     // Sample 0 is the pixel's centre; the others follow the R2 sequence (Roberts 2018, The Unreasonable Effectiveness of
     // Quasirandom Sequences), whose every beginning covers the pixel evenly.
     const double x = 0.5 + sample * 0.7548776662466927, y = 0.5 + sample * 0.5698402909980532;

@@ -1,5 +1,6 @@
 // frames.cpp -- the film, and tracing into it.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <numeric>
 #include <utility>
@@ -8,6 +9,7 @@
 #include "render/display_relay.hpp"
 #include "render/film.hpp"
 #include "render/frame_constants.hpp"
+#include "render/frame_stats.hpp"
 #include "render/guarded.hpp"
 #include "render/launch.hpp"
 #include "render/ray_queries.hpp"
@@ -50,6 +52,11 @@ void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const f
                                (y * layout.group_h + in_y) * layout.packet_h, image);
 }
 
+// Samples that one launch traces: a launch ends as slowly as its slowest rays, of one sample or of many; but it may be
+// cancelled only between launches, and layers take memory.
+constexpr unsigned kMostAtOnce = 16, kShareOfMemory = 32;
+constexpr double kAtOnceMs = 50;
+
 }  // namespace
 
 struct Frames::Impl {
@@ -62,11 +69,13 @@ struct Frames::Impl {
     RayQueries queries;
     Wavefront wavefront;
     ViewBuffers view;
-    GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, counters{CL_MEM_READ_WRITE}, distances{CL_MEM_READ_WRITE};
+    GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, counters{CL_MEM_READ_WRITE},
+        distances{CL_MEM_READ_WRITE};
     unsigned width = 0, height = 0;
     std::string aov;
     Layout layout;                                // of the picture in the film
     std::vector<rt_u32> rows;                     // of work-groups, that are traced; counters and distances are in this order
+    unsigned begun = 0;                           // work-groups of these rows that were traced before
     std::shared_ptr<const TraceProgram> program;  // whose pace and kernel these are:
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
@@ -80,21 +89,110 @@ struct Frames::Impl {
         device->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, out);
     }
 
-    void take_rows(const SharedRows* shared) {
-        if (shared) {
-            rows = shared->rows;
-            return;
+    // What trace() is asked for.
+    struct Picture {
+        const Prepared& prepared;
+        const Settings& settings;
+        const View& view;
+        const SharedRows* shared;
+        Progress& progress;
+    };
+    void begin(const Picture& picture) {
+        const Prepared& prepared = picture.prepared;
+        const auto new_width = static_cast<unsigned>(picture.settings.width),
+                   new_height = static_cast<unsigned>(picture.settings.height);
+        if (program != prepared.program || bound != prepared.on_device || width != new_width || height != new_height)
+            launcher.forget();
+        if (program != prepared.program) kernel = prepared.program->kernel();
+        program = prepared.program;
+        bound = prepared.on_device;
+        aov = prepared.settings.aov;
+        width = new_width;
+        height = new_height;
+        layout = make_layout(prepared.settings, device->info().cpu);
+        if (picture.shared) {
+            rows = picture.shared->rows;
+        } else {
+            rows.resize(layout.groups_y(height));
+            std::iota(rows.begin(), rows.end(), 0u);
         }
-        rows.resize(layout.groups_y(height));
-        std::iota(rows.begin(), rows.end(), 0u);
+        begun = picture.shared ? layout.groups_x(width) * static_cast<unsigned>(picture.shared->begin) : 0;
+        film.fit(device->context(), film_bytes(FilmKernels::room(size_t(width) * height)));
+        if (program->has_generations()) distances.fit(device->context(), packets() * layout.rays() * sizeof(float));
     }
-    std::vector<Band> bands(size_t begin = 0) const {
-        const std::vector<rt_u32> some(rows.begin() + static_cast<std::ptrdiff_t>(begin), rows.end());
-        return bands_of(some, layout.group_h * layout.packet_h, height);
+
+    // Of `left` samples, how many one launch traces.
+    unsigned samples_at_once(const Picture& picture, unsigned left) const {
+        const bool parting = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
+        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || aov != "color" || !program->has_generations() ||
+            parting || begun > 0)
+            return 1;
+        const DeviceInfo& info = device->info();
+        uint64_t room = info.global_bytes / kShareOfMemory;
+        if (info.max_allocation_bytes) room = std::min(room, info.max_allocation_bytes);
+        const auto fitting = double(room / film_bytes(size_t(width) * height)),
+                   most = std::min({double(kMostAtOnce), fitting, kAtOnceMs / launcher.expected_ms(groups())});
+        if (most < 2) return 1;
+        const auto launches = static_cast<unsigned>(std::ceil(left / std::floor(most)));
+        return (left + launches - 1) / launches;
     }
-    cl::Event begin_sum() {
+
+    // Samples [sample, sample + at_once) into the film, or each into a layer.
+    LaunchTimes launch(const Picture& picture, unsigned sample, unsigned at_once, const cl::Buffer& into,
+                       const Beside& beside) {
+        const auto& [prepared, settings, view_of, shared, progress] = picture;
+        cl::CommandQueue& queue = device->queue();
+        std::vector<rt_frame> frames;
+        for (unsigned layer = 0; layer < at_once; ++layer) {
+            frames.push_back(make_frame(view_of, settings, layout, *prepared.accel, sample + layer));
+            frames.back().layers = at_once - layer;
+            if (at_once > 1) frames.back().adds = 0;
+            if (shared) frames.back().row_count = static_cast<rt_u32>(rows.size());
+        }
+        std::vector<rt_u32> table;
+        if (shared) {
+            table = rows;
+            table.resize(layout.groups_y(height));  // so that the buffer does not grow row by row
+        }
+        view.write(queue, *prepared.scene, frames, view_of, table);
+
+        const auto go_on = [&progress = picture.progress] {
+            if (progress.cancelled()) throw Cancelled();
+        };
+        const unsigned launched = at_once * groups() - begun;
+        if (program->is_wavefront()) {
+            const auto depth = static_cast<unsigned>(settings.depth);
+            return wavefront.trace(
+                queue, launcher,
+                {prepared, view_of, view, layout, width, height, begun, launched, depth, sample, into, distances.get()}, go_on,
+                beside);
+        }
+        cl_uint at = 0;
+        kernel.setArg(at++, view.frame());
+        const cl_uint first_group = at++;
+        kernel.setArg(at++, into);
+        if (program->has_generations()) {
+            kernel.setArg(at++, counters.fit(device->context(), packets() * at_once * 16));
+            kernel.setArg(at++, distances.get());
+        }
+        view.bind(*prepared.on_device, kernel, at);
+        return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, beside);
+    }
+
+    size_t film_bytes(size_t of_pixels) const { return of_pixels * film_channels(aov) * sizeof(float); }
+    size_t packets() const { return size_t(layout.groups_x(width)) * layout.groups_y(height) * layout.group_packets(); }
+    unsigned row_height() const { return layout.group_h * layout.packet_h; }
+    std::vector<Band> bands() const { return bands_of(rows, row_height(), height); }
+    // That are traced.
+    uint64_t pixels() const {
+        uint64_t sum = 0;
+        for (size_t i = begun / layout.groups_x(width); i < rows.size(); ++i)
+            sum += uint64_t(width) * std::min(row_height(), height - rows[i] * row_height());
+        return sum;
+    }
+    cl::Event begin_sum(unsigned samples = 1) {
         if (program->is_wavefront()) return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count());
-        return film_kernels.begin_sum(counters.get(), groups() * layout.group_packets());
+        return film_kernels.begin_sum(counters.get(), samples * groups() * layout.group_packets());
     }
     void end_sum(FrameStats& stats) {
         stats.kernels.emplace_back();
@@ -103,6 +201,9 @@ struct Frames::Impl {
         stats.secondary = counts.secondary;
         stats.dropped = counts.dropped;
         stats.overflowed = counts.overflowed;
+    }
+    cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
+        return film_kernels.begin_rows(film.get(), width, height, rows, row_height(), settings, rgba);
     }
     ColorFilm film_of_colors() const { return {film.get(), width, height}; }
     unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
@@ -116,82 +217,55 @@ struct Frames::Impl {
 Frames::Frames(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>(device)) {}
 Frames::~Frames() = default;
 
-FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
-                         Progress& progress, const SharedRows* shared, const std::function<void()>& meanwhile) {
+FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, const View& view, const Samples& samples,
+                         bool count_rays, Progress& progress, const SharedRows* shared,
+                         const std::function<void()>& meanwhile) {
     Impl& im = *impl_;
     return guarded(*im.device, "tracing", [&] {
-        const TraceProgram& program = *prepared.program;
-        const unsigned width = static_cast<unsigned>(settings.width), height = static_cast<unsigned>(settings.height);
-        cl::CommandQueue& queue = im.device->queue();
-        const cl::Context& context = im.device->context();
-        if (im.program != prepared.program || im.bound != prepared.on_device || width != im.width || height != im.height)
-            im.launcher.forget();
-        if (im.program != prepared.program) im.kernel = program.kernel();
-        im.program = prepared.program;
-        im.bound = prepared.on_device;
-        im.aov = prepared.settings.aov;
-        im.width = width;
-        im.height = height;
-
-        const size_t pixels = size_t(width) * height;
-        const Layout layout = im.layout = make_layout(prepared.settings, im.device->info().cpu);
-        const unsigned packets = layout.groups_x(width) * layout.groups_y(height) * layout.group_packets();
-        im.take_rows(shared);
-        const unsigned begin = shared ? layout.groups_x(width) * static_cast<unsigned>(shared->begin) : 0;
-        rt_frame frame = make_frame(view, settings, layout, *prepared.accel, sample);
-        std::vector<rt_u32> table;
-        if (shared) {
-            frame.row_count = static_cast<rt_u32>(im.rows.size());
-            table = im.rows;
-            table.resize(layout.groups_y(height));  // so that the buffer does not grow row by row
-        }
-        im.view.write(queue, *prepared.scene, frame, view, table);
-
-        const auto go_on = [&] {
-            if (progress.cancelled()) throw Cancelled();
-        };
-        const cl::Buffer& film = im.film.fit(context, FilmKernels::room(pixels) * film_channels(im.aov) * sizeof(float));
-        if (program.has_generations()) im.distances.fit(context, size_t(packets) * layout.rays() * sizeof(float));
-        const unsigned groups = im.groups() - begin;
+        const Impl::Picture picture{prepared, settings, view, shared, progress};
+        im.begin(picture);
         // Who was shown the last picture gets this one by a single wait, not by one for the trace and one for the copy.
-        Beside beside{{}, meanwhile};
         im.relay.forget_begun();
         const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
         const bool show = im.aov == "color" && !shared && !im.device->info().cpu && before != Impl::Shown::no;
-        const bool sum = count_rays && program.has_generations() && groups > 0;
-        if (sum || show)
-            beside.behind = [&] {
-                const cl::Event summed = sum ? im.begin_sum() : cl::Event();
-                return show ? im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun) : summed;
-            };
-        LaunchTimes times;
-        if (program.is_wavefront()) {
-            const auto depth = static_cast<unsigned>(settings.depth);
-            times = im.wavefront.trace(
-                queue, im.launcher,
-                {prepared, view, im.view, layout, width, height, begin, groups, depth, sample, film, im.distances.get()}, go_on,
-                beside);
-        } else {
-            cl_uint at = 0;
-            im.kernel.setArg(at++, im.view.frame());
-            const cl_uint first_group = at++;
-            im.kernel.setArg(at++, film);
-            if (program.has_generations()) {
-                im.kernel.setArg(at++, im.counters.fit(context, size_t(packets) * 16));
-                im.kernel.setArg(at++, im.distances.get());
-            }
-            im.view.bind(*prepared.on_device, im.kernel, at);
-            times = im.launcher.run(queue, im.kernel, first_group, groups, layout.local_size(), go_on, begin, beside);
-        }
-
+        const bool sum = count_rays && prepared.program->has_generations() && im.groups() > im.begun;
         FrameStats stats;
-        stats.device_ms = times.device_ms;
-        stats.wall_ms = times.wall_ms;
-        stats.launches = times.launches;
-        for (const Band& band : im.bands(shared ? shared->begin : 0)) stats.primary += uint64_t(band.count) * width;
-        stats.samples = sample + 1;
-        stats.kernels.push_back({"trace", times.device_ms});
-        if (sum) im.end_sum(stats);
+        for (unsigned sample = samples.first, end = sample + samples.count; sample < end;) {
+            const unsigned at_once = im.samples_at_once(picture, end - sample);
+            const cl::Buffer& film = im.film.get();
+            const cl::Buffer& into =
+                at_once == 1 ? film
+                             : im.layers.fit(im.device->context(), im.film_bytes(size_t(im.width) * im.height * at_once));
+            const bool first = sample == samples.first, last = sample + at_once == end;
+            uint8_t* const display = shared && last ? shared->display : nullptr;
+            cl::Event added;
+            Beside beside;
+            if (first) beside.while_it_works = meanwhile;
+            if (at_once > 1 || sum || display || (show && last))
+                beside.behind = [&] {
+                    cl::Event behind;
+                    if (at_once > 1)
+                        behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.width, im.height,
+                                                                    im.rows, im.row_height());
+                    if (sum) behind = im.begin_sum(at_once);
+                    if (display) behind = im.begin_rows(settings, display);
+                    if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
+                    return behind;
+                };
+            const LaunchTimes times = im.launch(picture, sample, at_once, into, beside);
+            FrameStats one;
+            one.kernels.push_back({"trace", times.device_ms});
+            if (added()) one.kernels.push_back({"add samples", event_ms(added)});
+            for (const KernelTime& kernel : one.kernels) one.device_ms += kernel.ms;
+            one.wall_ms = times.wall_ms + one.device_ms - times.device_ms;
+            one.launches = times.launches;
+            one.primary = at_once * im.pixels();
+            if (sum) im.end_sum(one);
+            sample += at_once;
+            one.samples = sample;
+            add_stats(stats, one);
+            if (samples.complete && !samples.complete(sample) && sample < end) throw Cancelled();
+        }
         return stats;
     });
 }
@@ -257,13 +331,17 @@ bool Frames::read_distance(FloatImage& image) {
     return true;
 }
 
-void Frames::read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times) {
+void Frames::read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>& times) {
     Impl& im = *impl_;
     if (im.rows.empty()) return;
     guarded(*im.device, "reading the picture", [&] {
-        im.film_kernels.show_rows(im.film.get(), im.width, im.height, im.rows, im.layout.group_h * im.layout.packet_h, settings,
-                                  rgba, times);
+        im.begin_rows(settings, rgba);
+        im.film_kernels.end_rows(times);
     });
+}
+
+void Frames::add_display_times(std::vector<KernelTime>& times) {
+    guarded(*impl_->device, "reading the picture", [&] { impl_->film_kernels.end_rows(times); });
 }
 
 ByteImage Frames::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {

@@ -75,7 +75,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         im.programs.get(source, KernelKind::inspect, std::string("inspector with accel ") + prepared.accel->plugin->id, &fresh);
     return guarded(*im.device, "inspecting a pixel", [&] {
         const cl::Context& context = im.device->context();
-        im.view.write(im.queue, *prepared.scene, make_frame(view, settings, layout, *prepared.accel, 0), view);
+        im.view.write(im.queue, *prepared.scene, {make_frame(view, settings, layout, *prepared.accel, 0)}, view);
         const cl::Buffer& records = im.records.fit(context, kMostRays * sizeof(rt_ray_record));
         const cl::Buffer& summary = im.summary.fit(context, 4 * sizeof(rt_u32));
         const unsigned packet_x = x / layout.packet_w, packet_y = y / layout.packet_h;

@@ -35,6 +35,8 @@ class Launcher {
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
                     unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0, const Beside& beside = {});
     void forget() { pace_.forget(); }
+    // How long so many groups take; infinite where nothing is known.
+    double expected_ms(unsigned groups) const { return pace_.expected_ms(groups); }
 
  private:
     Pace pace_;

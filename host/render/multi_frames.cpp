@@ -1,8 +1,10 @@
 #include "render/multi_frames.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "render/film.hpp"
+#include "render/frame_stats.hpp"
 #include "render/guarded.hpp"
 #include "render/host_memory.hpp"
 #include "render/shared_picture.hpp"
@@ -18,6 +20,11 @@ struct MultiFrames::Impl {
     unsigned samples = 0;  // of `alone`
     std::unique_ptr<HostMemory> memory;
     std::shared_ptr<Device> memory_of;
+    // Of several: who was shown the last picture will be shown this one, so each device brings what is its own as soon as it
+    // has it: to where, and with which tones.
+    bool shown = false;
+    std::shared_ptr<uint8_t> display;
+    Settings display_settings;
 
     const std::string& aov() const { return prepared->first()->settings.aov; }
     FloatImage image(unsigned channels) const {
@@ -35,13 +42,24 @@ struct MultiFrames::Impl {
         memory_of = gpu;
         return gpu ? guarded(*gpu, "reading the picture", [&] { return memory->lend(bytes); }) : memory->lend(bytes);
     }
+
+    uint8_t* place_for_display(const Settings& settings) {
+        display = nullptr;
+        display_settings = settings;
+        if (!std::exchange(shown, false) || aov() != "color") return nullptr;
+        try {
+            display = room(size_t(width) * height * 4);
+        } catch (const Error&) {  // the device that was to lend it is lost, which tracing finds out
+        }
+        return display.get();
+    }
 };
 
-MultiFrames::MultiFrames(const Devices& devices, unsigned queues) : impl_(std::make_unique<Impl>()) {
-    if (devices.size() == 1 && queues < 2)
+MultiFrames::MultiFrames(const Devices& devices) : impl_(std::make_unique<Impl>()) {
+    if (devices.size() == 1)
         impl_->alone = std::make_unique<Frames>(devices[0]);
     else
-        impl_->shared = std::make_unique<SharedPicture>(devices, queues);
+        impl_->shared = std::make_unique<SharedPicture>(devices);
 }
 MultiFrames::~MultiFrames() = default;
 
@@ -58,17 +76,15 @@ FrameStats MultiFrames::trace(const std::shared_ptr<const MultiPrepared>& prepar
     im.height = unsigned(settings.height);
     const unsigned end = sample + samples;
     if (im.shared && meanwhile) meanwhile();
-    if (im.shared) return im.shared->trace(prepared, settings, view, sample, end, count_rays, progress);
+    if (im.shared)
+        return im.shared->trace(prepared, settings, view, sample, end, count_rays, progress, im.place_for_display(settings));
     im.samples = sample;
-    FrameStats sum;
-    for (unsigned s = sample; s < end; ++s) {
-        if (s > sample && !progress.report(float(s - sample) / float(samples))) throw Cancelled();
-        const FrameStats one = im.alone->trace(*prepared->first(), settings, view, s, count_rays, progress, nullptr,
-                                               s == sample ? meanwhile : nullptr);
-        im.samples = s + 1;
-        add_stats(sum, one);
-    }
-    return sum;
+    const auto complete = [&](unsigned done) {
+        im.samples = done;
+        return done == end || progress.report(float(done - sample) / float(samples));
+    };
+    return im.alone->trace(*prepared->first(), settings, view, {sample, samples, complete}, count_rays, progress, nullptr,
+                           meanwhile);
 }
 
 FloatImage MultiFrames::read_values() {
@@ -94,21 +110,23 @@ ByteImage MultiFrames::read_display(const Settings& settings, FrameStats* stats,
     if (im.alone) return im.alone->read_display(settings, stats, scale);
     if (scale) *scale = {};
     if (im.aov() != "color") return show_values([this] { return read_values(); }, im.aov(), settings, stats, scale);
+    im.shown = true;
     const size_t bytes = size_t(im.width) * im.height * 4;
-    const std::shared_ptr<uint8_t> rgba = im.room(bytes);
     std::vector<std::vector<KernelTime>> times(im.shared->size());
-    im.shared->read([&](size_t i, Frames& frames) {
-        times[i].clear();
-        frames.read_display(settings, rgba.get(), stats ? &times[i] : nullptr);
-    });
+    std::shared_ptr<uint8_t> rgba = std::exchange(im.display, nullptr);
+    const bool same_tones = im.display_settings.exposure == settings.exposure && im.display_settings.tone == settings.tone;
+    if (!rgba || !same_tones || !im.shared->displayed(times)) {
+        rgba = im.room(bytes);
+        im.shared->read([&](size_t i, Frames& frames) {
+            times[i].clear();
+            frames.read_display(settings, rgba.get(), times[i]);
+        });
+    }
     for (size_t i = 0; stats && i < times.size(); ++i) {
         merge_times(stats->kernels, times[i]);
         for (DeviceShare& share : stats->devices)
             if (share.id == im.shared->device(i)->info().id())
-                for (const KernelTime& time : times[i]) {
-                    double& ms = time.name == "tone map" ? share.tone_map_ms : share.read_ms;
-                    ms = std::max(ms, time.ms);
-                }
+                for (const KernelTime& time : times[i]) (time.name == "tone map" ? share.tone_map_ms : share.read_ms) = time.ms;
     }
     return {im.width, im.height, SharedBytes(rgba, bytes)};
 }

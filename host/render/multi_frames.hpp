@@ -16,12 +16,11 @@ namespace clarity {
 class MultiFrames {
  public:
     // A device that cannot hold a film is a warning, as long as another can. Throws what Frames throws.
-    // queues: that each device traces in, side by side; 0: one if it is the only device, else what suits it.
-    explicit MultiFrames(const Devices& devices, unsigned queues = 0);
+    explicit MultiFrames(const Devices& devices);
     ~MultiFrames();
 
     // Samples [sample, sample + samples) of the picture; the first anew if it is 0. See Frames::trace(); figures are sums over
-    // these samples. Devices wait for each other once, at the end, and GPUs trace many samples in two queues, so that many at a
+    // these samples. Devices wait for each other once, at the end, and GPUs trace many samples in one launch, so that many at a
     // time, from the first on, are faster than one by one.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
                      unsigned sample, bool count_rays, Progress& progress, unsigned samples = 1,

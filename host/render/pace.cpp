@@ -1,6 +1,7 @@
 #include "render/pace.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace clarity {
 namespace {
@@ -35,6 +36,10 @@ void Pace::took(unsigned groups, double ms) {
     all_groups_ += groups;
     all_ms_ += at_least;
     if (ms > kTellingMs) slowest_ = slowest_ > 0 ? std::min(slowest_, groups / at_least) : groups / at_least;
+}
+
+double Pace::expected_ms(unsigned groups) const {
+    return known_ > 0 ? groups / known_ : std::numeric_limits<double>::infinity();
 }
 
 void Pace::end_picture() {

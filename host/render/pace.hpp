@@ -13,6 +13,8 @@ class Pace {
     // Groups of the next piece: at least 1, at most `left` and `most`.
     unsigned next(unsigned left, unsigned most) const;
     void took(unsigned groups, double ms);
+    // Of so many groups, by what is known; infinite if nothing is.
+    double expected_ms(unsigned groups) const;
     void end_picture();
 
  private:

@@ -73,7 +73,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const auto program =
             programs_.get(source, kind, std::string("ray queries with accel ") + prepared.accel->plugin->id, &fresh);
         cl::CommandQueue& queue = device_->queue();
-        view_.write(queue, *prepared.scene, make_frame(View(), prepared.settings, layout, *prepared.accel, 0), View());
+        view_.write(queue, *prepared.scene, {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
         const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));
         const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
         // Before every run, though it be the same again: then a CPU's caches are as warm each time.

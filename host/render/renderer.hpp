@@ -101,13 +101,13 @@ struct DeviceShare {
 };
 
 struct FrameStats {
-    double device_ms = 0;                                          // the kernels of the last sample, by the device's clock
+    double device_ms = 0;                                          // the kernels of these samples, by the device's clock
     double wall_ms = 0;                                            // the same by the host's, waiting included
-    uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0;  // rays of the last sample; counted if asked for
+    uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0;  // rays of these samples; counted if asked for
     uint64_t overflowed = 0;                                       // traversal stacks that were full (debug programs)
     unsigned samples = 0;                                          // in the film now
-    unsigned launches = 0;                                         // that the last sample was cut into
-    std::vector<KernelTime> kernels;   // of the last sample: trace, counters; read_display() adds tone map and read-back
+    unsigned launches = 0;                                         // that these samples were cut into
+    std::vector<KernelTime> kernels;   // trace, counters, what adds samples up; read_display() adds tone map and read-back
     std::vector<DeviceShare> devices;  // where several share the picture; then what is above is of the slowest
 };
 
@@ -116,6 +116,7 @@ struct FrameStats {
 struct SharedRows {
     std::vector<rt_u32> rows;
     size_t begin = 0;
+    uint8_t* display = nullptr;  // where trace() is to bring them, as read_display() does, behind the last sample
 };
 
 // How trace_rays() asks.
@@ -125,19 +126,28 @@ struct RayQuery {
     bool brief = false;    // only t and prim of the nearest hit: less to write, for timing beside others who write no more
 };
 
+// Samples of a picture, one after the other; 0 starts the film anew, n adds the n-th.
+struct Samples {
+    Samples(unsigned first_sample, unsigned how_many = 1, std::function<bool(unsigned)> told = {})
+        : first(first_sample), count(how_many), complete(std::move(told)) {}
+    unsigned first, count;
+    std::function<bool(unsigned)> complete;  // if not empty, told by and by how many the film has; false: stop
+};
+
 // Owns the film of one device. Used from one thread.
 class Frames {
  public:
     explicit Frames(std::shared_ptr<Device> device);
     ~Frames();
 
-    // One sample of the picture. sample 0 starts the film anew, n adds the n-th. settings: width, height, depth, shadows and
-    // the like are taken from here; what needs a rebuild or recompile from `prepared`. Cut into launches under half a second;
-    // between them `progress` is asked, and a cancel throws Cancelled.
+    // settings: width, height, depth, shadows and the like are taken from here; what needs a rebuild or recompile from
+    // `prepared`. Cut into launches under half a second, of several samples where these are short; between them `progress` is
+    // asked, and a cancel throws Cancelled.
     // shared: the rows to trace, null for all; what is read back below is then theirs alone.
     // meanwhile: called once while the device is at it, for who waits for the picture before.
-    FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned sample, bool count_rays,
-                     Progress& progress, const SharedRows* shared = nullptr, const std::function<void()>& meanwhile = {});
+    FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, const Samples& samples,
+                     bool count_rays, Progress& progress, const SharedRows* shared = nullptr,
+                     const std::function<void()>& meanwhile = {});
     // Adds the rays of the last sample, as trace() does if it is to count them.
     void count(FrameStats& stats);
 
@@ -150,7 +160,9 @@ class Frames {
     void read_values(FloatImage& image);
     bool read_distance(FloatImage& image);
     // Colours only, of the rows traced, into a picture as above.
-    void read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>* times);
+    void read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>& times);
+    // What that took, where trace() did it.
+    void add_display_times(std::vector<KernelTime>& times);
     // Tone-mapped sRGB; AOVs in false colours, whose scale is told. stats: where given, gains the times of what this took.
     ByteImage read_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
     // The same of colours without waiting; the next picture may be traced before this one is waited for. That pays where

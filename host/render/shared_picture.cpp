@@ -6,6 +6,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
+#include "render/frame_stats.hpp"
 #include "render/guarded.hpp"
 #include "render/kernel_source.hpp"
 
@@ -15,12 +16,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr unsigned kMostStrips = 256;  // about so many: enough to balance devices, and few to keep account of
-
-// A GPU is not full while the slowest rays of a launch end, and idles while the host sees to the next one: a tenth of half a
-// sample of 2 ms. With two queues the other one's kernel runs meanwhile.
-unsigned queues_for(const DeviceInfo& info) {
-    return info.cpu ? 1 : 2;
-}
 
 unsigned divided_up(unsigned a, unsigned b) {
     return (a + b - 1) / b;
@@ -32,51 +27,16 @@ unsigned row_height(const Prepared& prepared, const Device& device) {
     return layout.group_h * layout.packet_h;
 }
 
-KernelTime& time_of(std::vector<KernelTime>& times, const std::string& name) {
-    for (KernelTime& time : times)
-        if (time.name == name) return time;
-    times.push_back({name, 0});
-    return times.back();
-}
-
-void add_rays(FrameStats& sum, const FrameStats& more) {
-    sum.primary += more.primary;
-    sum.shadow += more.shadow;
-    sum.secondary += more.secondary;
-    sum.dropped += more.dropped;
-    sum.overflowed += more.overflowed;
-    sum.launches += more.launches;
-}
-
 }  // namespace
 
-void add_stats(FrameStats& sum, const FrameStats& more) {
-    add_rays(sum, more);
-    sum.device_ms += more.device_ms;
-    sum.wall_ms += more.wall_ms;
-    sum.samples = std::max(sum.samples, more.samples);
-    for (const KernelTime& time : more.kernels) time_of(sum.kernels, time.name).ms += time.ms;
-}
-
-void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& one) {
-    for (const KernelTime& time : one) {
-        double& ms = time_of(all, time.name).ms;
-        ms = std::max(ms, time.ms);
-    }
-}
-
-SharedPicture::SharedPicture(const Devices& devices, unsigned queues) {
+SharedPicture::SharedPicture(const Devices& devices) {
     std::vector<Error> failures;
     for (const std::shared_ptr<Device>& device : devices) {
         try {
-            std::vector<Member> own(queues > 0 ? queues : queues_for(device->info()));
-            for (size_t i = 0; i < own.size(); ++i) {
-                own[i].device = device;
-                own[i].first_queue = i == 0;
-                own[i].frames = std::make_unique<Frames>(
-                    i == 0 ? device : guarded(*device, "making a queue", [&] { return device->with_own_queue(); }));
-            }
-            for (Member& member : own) members_.push_back(std::move(member));
+            Member member;
+            member.device = device;
+            member.frames = std::make_unique<Frames>(device);
+            members_.push_back(std::move(member));
         } catch (const Error& error) {
             if (error.code() == Exit::kernel_build_failed) throw;
             failures.push_back(error);
@@ -93,6 +53,18 @@ size_t SharedPicture::working() const {
     return size_t(std::count_if(members_.begin(), members_.end(), [](const Member& m) { return m.works(); }));
 }
 
+bool SharedPicture::displayed(std::vector<std::vector<KernelTime>>& times) const {
+    for (const Member& member : members_)
+        if (!member.displayed && !member.strips.empty()) return false;
+    try {
+        for (size_t i = 0; i < members_.size(); ++i)
+            if (!members_[i].strips.empty()) members_[i].frames->add_display_times(times[i]);
+    } catch (const Error&) {  // a device is lost, which reading finds out
+        return false;
+    }
+    return true;
+}
+
 unsigned SharedPicture::samples() const {
     unsigned least = ~0u;
     for (const Member& member : members_)
@@ -100,18 +72,13 @@ unsigned SharedPicture::samples() const {
     return least == ~0u ? 0 : least;
 }
 
-void SharedPicture::fail(const Device& device, const Error& error) {
+void SharedPicture::fail(Member& member, const Error& error) {
     last_failure_ = error;
-    bool known = true;
-    for (Member& member : members_) {
-        if (member.device.get() != &device) continue;
-        known &= !member.frames;
-        member.frames.reset();
-        member.strips.clear();
-        member.rows = {};
-    }
-    if (working() > 0 && !known)
-        log(LogLevel::warning, "device " + device.info().id() + " takes no further part: " + error.what() +
+    member.frames.reset();
+    member.strips.clear();
+    member.rows = {};
+    if (working() > 0)
+        log(LogLevel::warning, "device " + member.device->info().id() + " takes no further part: " + error.what() +
                                    "; the other devices go on without it");
 }
 
@@ -129,10 +96,10 @@ void SharedPicture::on_all(const std::function<void(size_t)>& work) {
             cancelled = true;
         } catch (const Error& error) {
             if (error.code() != Exit::failed && error.code() != Exit::no_device) throw;
-            fail(*members_[i].device, error);
+            fail(members_[i], error);
         } catch (const cl::Error& error) {
-            fail(*members_[i].device, Error(Exit::failed, members_[i].device->info().name + ": " + error.what() +
-                                                              " failed with OpenCL error " + std::to_string(error.err())));
+            fail(members_[i], Error(Exit::failed, members_[i].device->info().name + ": " + error.what() +
+                                                      " failed with OpenCL error " + std::to_string(error.err())));
         }
     }
     if (cancelled) throw Cancelled();
@@ -152,15 +119,14 @@ void SharedPicture::read(const std::function<void(size_t, Frames&)>& work) {
 }
 
 // A new picture's strips. They begin where every device's rows of work-groups do.
-void SharedPicture::cut(bool one_sample) {
+void SharedPicture::cut() {
     unsigned unit = 1;
     bool alike = true;
     const DeviceInfo* first = nullptr;
     std::vector<bool> takes_part;
     for (Member& member : members_) {
         const auto* own = prepared_->of(member.device);
-        // A second queue hides ends of launches behind the next sample's, so a picture of one sample has no use for it.
-        member.prepared = own && (member.first_queue || !one_sample) ? *own : nullptr;
+        member.prepared = own ? *own : nullptr;
         member.strips.clear();
         member.rows = {};
         member.samples = 0;
@@ -209,57 +175,71 @@ void SharedPicture::give(Member& member, const std::vector<unsigned>& strips) {
 }
 
 // Returns how long it took, ms.
-double SharedPicture::trace_rows(Member& member, unsigned sample, Progress& progress) {
+double SharedPicture::trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress,
+                                 uint8_t* display) {
     const auto begin = Clock::now();
+    member.rows.display = display;
     if (!member.rows.rows.empty())
         add_stats(member.stats,
-                  member.frames->trace(*member.prepared, settings_, view_, sample, false, progress, &member.rows));
+                  member.frames->trace(*member.prepared, settings_, view_, samples, count_rays, progress, &member.rows));
     return ms_since(begin);
 }
 
-void SharedPicture::trace_part(size_t index, unsigned sample, unsigned end, bool fresh, bool count_rays, Progress& progress) {
+void SharedPicture::trace_part(size_t index, const Batch& batch, bool count_rays, Progress& progress) {
+    const auto [begin, sample, end, fresh, display] = batch;
     Member& member = members_[index];
-    const auto begin = Clock::now();
-    for (unsigned s = sample; s < end; ++s) {
-        if (fresh && s == sample) {
-            for (auto strips = dealer_->next(index); !strips.empty(); strips = dealer_->next(index)) {
-                give(member, strips);
-                dealer_->took(index, strips.size(), trace_rows(member, s, progress));
-            }
-        } else {
-            member.rows.begin = 0;
-            dealer_->took(index, member.strips.size(), trace_rows(member, s, progress));
+    const auto woken = Clock::now();
+    const auto complete = [&, sample = sample, end = end](unsigned done) {
+        member.samples = done;
+        // Progress is told by one thread, the caller's.
+        return done == end ||
+               (index == 0 ? progress.report(float(done - sample) / float(end - sample)) : !progress.cancelled());
+    };
+    unsigned first = sample;
+    auto since = begin;  // of all devices: who gets to work late has to have less
+    if (fresh && dealer_->by_turns()) {
+        for (auto strips = dealer_->next(index); !strips.empty(); strips = dealer_->next(index)) {
+            give(member, strips);
+            dealer_->took(index, strips.size(), trace_rows(member, sample, false, progress));
         }
         if (count_rays && !member.strips.empty()) {
             FrameStats counted;
             member.frames->count(counted);
             add_stats(member.stats, counted);
         }
-        member.samples = s + 1;
-        if (s + 1 == end) break;
-        // Progress is told by one thread, the caller's.
-        const bool go_on = index == 0 ? progress.report(float(s + 1 - sample) / float(end - sample)) : !progress.cancelled();
-        if (!go_on) throw Cancelled();
+        if (!complete(++first)) throw Cancelled();
+        since = Clock::now();
+    } else if (fresh) {
+        give(member, dealer_->next(index));
     }
-    member.wall_ms = ms_since(begin);
+    member.rows.begin = 0;
+    if (first < end) {
+        trace_rows(member, {first, end - first, complete}, count_rays, progress, display);
+        member.displayed = display != nullptr;
+        dealer_->took(index, member.strips.size() * (end - first), ms_since(since));
+    }
+    member.samples = end;
+    member.wall_ms = ms_since(woken);
 }
 
 FrameStats SharedPicture::trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
-                                const View& view, unsigned sample, unsigned end, bool count_rays, Progress& progress) {
+                                const View& view, unsigned sample, unsigned end, bool count_rays, Progress& progress,
+                                uint8_t* display) {
     const auto begin = Clock::now();
+    for (Member& member : members_) member.displayed = false;
     const bool fresh = sample == 0 || !goes_on(*prepared, settings);
     prepared_ = prepared;
     settings_ = settings;
     view_ = view;
     if (fresh)
-        cut(end - sample == 1);
+        cut();
     else
         recover(progress);
     for (Member& member : members_) {
         member.stats = {};
         member.wall_ms = 0;
     }
-    on_all([&](size_t i) { trace_part(i, sample, end, fresh, count_rays, progress); });
+    on_all([&](size_t i) { trace_part(i, {begin, sample, end, fresh, display}, count_rays, progress); });
     recover(progress);
     return gathered(ms_since(begin));
 }
@@ -288,8 +268,9 @@ void SharedPicture::recover(Progress& progress) {
         if (std::all_of(more.begin(), more.end(), [](const auto& strips) { return strips.empty(); })) return;
         on_all([&](size_t i) {
             if (more[i].empty()) return;
+            members_[i].displayed = false;
             give(members_[i], more[i]);
-            for (unsigned sample = 0; sample < complete; ++sample) trace_rows(members_[i], sample, progress);
+            trace_rows(members_[i], {0, complete}, false, progress);
         });
     }
 }
@@ -303,12 +284,12 @@ FrameStats SharedPicture::gathered(double wall_ms) const {
         sum.device_ms = std::max(sum.device_ms, one.device_ms);
         merge_times(sum.kernels, one.kernels);
         const DeviceInfo& info = member.device->info();
-        if (sum.devices.empty() || sum.devices.back().id != info.id()) sum.devices.push_back({info.id(), info.name});
+        sum.devices.push_back({info.id(), info.name});
         DeviceShare& share = sum.devices.back();
-        share.share += double(member.rows.rows.size()) / member.rows_in_picture;
-        share.device_ms = std::max(share.device_ms, one.device_ms);
-        share.wall_ms = std::max(share.wall_ms, member.wall_ms);
-        share.launches += one.launches;
+        share.share = double(member.rows.rows.size()) / member.rows_in_picture;
+        share.device_ms = one.device_ms;
+        share.wall_ms = member.wall_ms;
+        share.launches = one.launches;
     }
     sum.samples = samples();
     sum.wall_ms = wall_ms;

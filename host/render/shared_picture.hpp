@@ -1,5 +1,6 @@
 // shared_picture.hpp -- a picture in the films of several devices: whose strips are whose, and what to do if one fails.
 #pragma once
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <vector>
@@ -14,28 +15,28 @@ namespace clarity {
 // Used from one thread. Devices that fail are out for good; functions throw when none is left.
 class SharedPicture {
  public:
-    // queues: of each device; 0: what suits it. Throws what Frames throws, if no device can hold a film.
-    SharedPicture(const Devices& devices, unsigned queues);
+    // Throws what Frames throws, if no device can hold a film.
+    explicit SharedPicture(const Devices& devices);
 
-    // Samples [sample, end). See MultiFrames::trace().
+    // Samples [sample, end). See MultiFrames::trace(). display: where devices are to bring what is shown of them as soon as
+    // they have it.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
-                     unsigned sample, unsigned end, bool count_rays, Progress& progress);
+                     unsigned sample, unsigned end, bool count_rays, Progress& progress, uint8_t* display = nullptr);
+    // Whether they did, with all of the picture; times: of each device, gain what that took.
+    bool displayed(std::vector<std::vector<KernelTime>>& times) const;
     // That are complete everywhere.
     unsigned samples() const;
     // work(i, frames of device i) on each that has something of the picture, until all of it is done.
     void read(const std::function<void(size_t, Frames&)>& work);
 
-    // Queues of devices.
     size_t size() const { return members_.size(); }
     const std::shared_ptr<Device>& device(size_t i) const { return members_[i].device; }
     bool works(size_t i) const { return members_[i].works(); }
 
  private:
-    // A queue of a device, and what is traced in it.
     struct Member {
         std::shared_ptr<Device> device;
         std::unique_ptr<Frames> frames;            // null: it failed
-        bool first_queue = true;                   // of its device
         std::shared_ptr<const Prepared> prepared;  // null: it takes no part
         std::vector<unsigned> strips;
         SharedRows rows;  // of work-groups, of these strips
@@ -43,17 +44,25 @@ class SharedPicture {
         unsigned samples = 0;  // complete, of all its strips
         FrameStats stats;      // of the last trace()
         double wall_ms = 0;
+        bool displayed = false;
         bool works() const { return frames && prepared; }
     };
-    void cut(bool one_sample);
+    // What trace() is to do, and since when.
+    struct Batch {
+        std::chrono::steady_clock::time_point begin;
+        unsigned sample, end;
+        bool fresh;
+        uint8_t* display;
+    };
+    void cut();
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& strips);
-    double trace_rows(Member& member, unsigned sample, Progress& progress);
-    void trace_part(size_t index, unsigned sample, unsigned end, bool fresh, bool count_rays, Progress& progress);
+    double trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress, uint8_t* display = nullptr);
+    void trace_part(size_t index, const Batch& batch, bool count_rays, Progress& progress);
     std::vector<std::vector<unsigned>> orphans() const;
     void recover(Progress& progress);
     void on_all(const std::function<void(size_t)>& work);
-    void fail(const Device& device, const Error& error);
+    void fail(Member& member, const Error& error);
     size_t working() const;
     FrameStats gathered(double wall_ms) const;
 
@@ -67,10 +76,5 @@ class SharedPicture {
     Error last_failure_{Exit::failed, "no device takes part"};
     std::unique_ptr<DeviceThreads> threads_;  // last: they go first
 };
-
-// Adds up what was traced one after the other; times of kernels by their names.
-void add_stats(FrameStats& sum, const FrameStats& more);
-// Of devices side by side: the slowest's time.
-void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& one);
 
 }  // namespace clarity

@@ -19,8 +19,11 @@ void StripDealer::begin(unsigned strip_count, const std::vector<bool>& takes_par
     left_.clear();
     const auto taking = static_cast<unsigned>(std::count(takes_part.begin(), takes_part.end(), true));
     // What is dealt by turns costs a launch each, what is set aside the wait for who had too much.
-    const unsigned few = !shares_.empty() ? taking : alike ? strip_count / 16 : strip_count;
-    set_aside(strip_count, taking < 2 ? 0 : std::min(strip_count, std::max(few, taking)));
+    const bool known = !shares_.empty();
+    unsigned few = known ? taking : std::max(taking, alike ? strip_count / 16 : strip_count);
+    if (taking < 2 || (known && alike)) few = 0;
+    set_aside(strip_count, std::min(strip_count, few));
+    by_turns_ = !left_.empty();
 }
 
 // The speeds that the picture showed, as shares.

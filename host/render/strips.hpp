@@ -2,7 +2,8 @@
 //
 // A picture is cut into strips of rows, and each strip has one owner from the first sample to the last, so that a pixel's
 // samples are added up by one device in their order. In the first sample every device has strips set aside, spread over the
-// picture in proportion to the speeds that the last picture showed; the few that are left go to whoever is free.
+// picture in proportion to the speeds that the last picture showed; the few that are left go to whoever is free. Nothing is
+// left where devices are of one kind and their speeds known: a launch of a few strips lasts as long as its slowest ray.
 #pragma once
 #include <mutex>
 #include <vector>
@@ -16,6 +17,8 @@ class StripDealer {
     // A new picture for these devices. alike: they are of one kind, so that nothing need be known of their speeds. Not while
     // others call.
     void begin(unsigned strip_count, const std::vector<bool>& takes_part, bool alike);
+    // Whether some are left to deal when each device has what is set aside for it.
+    bool by_turns() const { return by_turns_; }
     // More strips for a device; none: nothing is left that it would finish before the others do.
     std::vector<unsigned> next(size_t device);
     // It took so long for so many strips of one sample.
@@ -38,6 +41,7 @@ class StripDealer {
     std::vector<bool> takes_part_;
     std::vector<std::vector<unsigned>> set_aside_;
     std::vector<unsigned> left_;  // for whoever is free, the last first
+    bool by_turns_ = false;
 };
 
 }  // namespace clarity

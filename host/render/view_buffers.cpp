@@ -20,19 +20,15 @@ void check_materials(const Scene& scene, const std::vector<rt_material>& materia
 
 }  // namespace
 
-void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const rt_frame& frame, const View& view,
+void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const std::vector<rt_frame>& frames, const View& view,
                         const std::vector<rt_u32>& rows) {
     own_materials_ = !view.materials.empty();
     if (own_materials_) check_materials(scene, view.materials);
-    if (rows.empty()) {
-        frame_.write(queue, &frame, sizeof frame);
-    } else {
-        const size_t row_bytes = rows.size() * sizeof(rt_u32);
-        frame_and_rows_.resize(sizeof frame + row_bytes);
-        std::memcpy(frame_and_rows_.data(), &frame, sizeof frame);
-        std::memcpy(frame_and_rows_.data() + sizeof frame, rows.data(), row_bytes);
-        frame_.write(queue, frame_and_rows_.data(), frame_and_rows_.size());
-    }
+    const size_t frame_bytes = frames.size() * sizeof(rt_frame), row_bytes = rows.size() * sizeof(rt_u32);
+    frames_and_rows_.resize(frame_bytes + row_bytes);
+    std::memcpy(frames_and_rows_.data(), frames.data(), frame_bytes);
+    if (row_bytes > 0) std::memcpy(frames_and_rows_.data() + frame_bytes, rows.data(), row_bytes);
+    frame_.write(queue, frames_and_rows_.data(), frames_and_rows_.size());
     lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
     if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
 }

@@ -9,8 +9,9 @@ namespace clarity {
 class ViewBuffers {
  public:
     // Throws Error(failed) if the view's materials do not fit the scene's: kernels look them and their textures up by number.
-    // rows: of work-groups that a device has of a shared picture; frame.row_count of them, or more.
-    void write(cl::CommandQueue& queue, const Scene& scene, const rt_frame& frame, const View& view,
+    // frames: of each sample that is to be traced at once. rows: of work-groups that a device has of a shared picture;
+    // row_count of them, or more.
+    void write(cl::CommandQueue& queue, const Scene& scene, const std::vector<rt_frame>& frames, const View& view,
                const std::vector<rt_u32>& rows = {});
     const cl::Buffer& frame() const { return frame_.get(); }
     // The context's arguments, from `first` on.
@@ -30,7 +31,7 @@ class ViewBuffers {
         cl::Event on_its_way_;
     };
     Part frame_, lights_, materials_;
-    std::vector<unsigned char> frame_and_rows_;
+    std::vector<unsigned char> frames_and_rows_;
     bool own_materials_ = false;
 };
 

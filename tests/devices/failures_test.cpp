@@ -92,6 +92,20 @@ TEST_F(FailingDevice, BeforeItIsReadBack) {
     expect_whole(team, warnings);
 }
 
+TEST_F(FailingDevice, BeforeItBringsWhatIsShown) {
+    Team team("0:0/2");
+    const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+    Warnings warnings;
+    for (int picture = 0; picture < 2; ++picture) {
+        team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+        EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
+    }
+    lose(team, 1);
+    team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+    EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
+    expect_whole(team, warnings);
+}
+
 TEST_F(FailingDevice, WhileItIsPrepared) {
     Team team("0:0/2");
     Warnings warnings;

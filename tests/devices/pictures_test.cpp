@@ -2,6 +2,7 @@
 #include <cstring>
 
 #include "devices/team.hpp"
+#include "render/frame_stats.hpp"
 
 using namespace clarity;
 using namespace clarity::test;
@@ -132,29 +133,51 @@ TEST_F(SharedPictures, OfUnlikeDevices) {
     }
 }
 
-// As GPUs do it: several queues a device, and so several films.
-TEST_F(SharedPictures, InSeveralQueues) {
-    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
-    const Settings settings = settings_of({{"size", "160x230"}});
-    const View view = make_view(*scene, 160.0f / 230.0f);
-    for (const char* choice : {"cpu", "cpu/2"}) {
-        Team team(choice, 2);
-        for (int picture = 0; picture < 2; ++picture) {
-            one_->trace(scene, settings, view, 0, 3);
-            const FrameStats stats = team.trace(scene, settings, view, 0, 3);
-            ASSERT_EQ(stats.devices.size(), team.devices.size()) << "queues of one device are one share";
-            double whole = 0;
-            for (const DeviceShare& share : stats.devices) whole += share.share;
-            EXPECT_NEAR(whole, 1, 1e-9);
-            EXPECT_EQ(stats.primary, 160u * 230u * 3u);
-            EXPECT_GE(stats.launches, 6 * team.devices.size()) << "both queues take part";
-            EXPECT_EQ(differing(one_->frames.read_values().pixels, team.frames.read_values().pixels), 0u) << choice;
-            EXPECT_TRUE(one_->frames.read_display(settings).pixels == team.frames.read_display(settings).pixels) << choice;
+// As GPUs do it: a launch is of several samples, as soon as it is known to be short.
+TEST_F(SharedPictures, OfManySamplesALaunch) {
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene")),
+                   plain = load_scene(source_file("scenes/spheres21.scene"));
+    for (const ScenePtr& of : {scene, plain})
+        for (const char* tracer : {"iterative", "wavefront"}) {
+            const auto with = [&](const char* packet) {
+                return settings_of(
+                    {{"lanes", "1"}, {"packet", packet}, {"portable", "true"}, {"tracer", tracer}, {"size", "32x25"}});
+            };
+            const View view = make_view(*of, 32.0f / 25.0f);
+            // A packet of 2x1 is traced sample by sample.
+            const FrameStats truth = one_->trace(of, with("2x1"), view, 0, 21);
+            const std::vector<float> pixels = one_->frames.read_values().pixels, distance = one_->frames.read_distance().pixels;
+            EXPECT_GE(truth.launches, 21u);
+            for (Team* team : {one_, two_})
+                for (int picture = 0; picture < 3; ++picture) {
+                    FrameStats stats = team->trace(of, with("1x1"), view, 0, 9);
+                    add_stats(stats, team->trace(of, with("1x1"), view, 9, 12));
+                    EXPECT_EQ(differing(pixels, team->frames.read_values().pixels), 0u) << tracer << picture;
+                    EXPECT_EQ(differing(distance, team->frames.read_distance().pixels), 0u) << tracer << picture;
+                    EXPECT_EQ(stats.samples, 21u);
+                    // The first picture learns how long a sample takes; rays that part go sample by sample in queues.
+                    const bool together = picture == 2 && (of == plain || std::string(tracer) == "iterative");
+                    EXPECT_TRUE(!together || stats.launches < 21 * team->devices.size()) << tracer << stats.launches;
+                    EXPECT_EQ(stats.primary, truth.primary) << tracer << picture;
+                    EXPECT_EQ(stats.shadow, truth.shadow) << tracer << picture;
+                    EXPECT_EQ(stats.secondary, truth.secondary) << tracer << picture;
+                }
         }
-        // One sample is for one queue; those that follow stay there.
-        for (unsigned sample = 0; sample < 2; ++sample) team.trace(scene, settings, view, sample);
-        one_->trace(scene, settings, view, 0, 2);
-        EXPECT_EQ(differing(one_->frames.read_values().pixels, team.frames.read_values().pixels), 0u) << choice;
+}
+
+// What was shown once is brought along with the next picture.
+TEST_F(SharedPictures, ThatAreShownOneAfterTheOther) {
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    Settings settings = settings_of({{"size", "160x121"}});
+    for (int picture = 0; picture < 4; ++picture) {
+        const View view = make_view(*scene, 160.0f / 121.0f, picture == 2 ? "1,2,6,0,0,0" : "");
+        FrameStats stats;
+        for (Team* team : {one_, two_}) stats = team->trace(scene, settings, view, 0, 3);
+        if (picture == 3) settings.exposure = 2;
+        const ByteImage shared = two_->frames.read_display(settings, &stats);
+        EXPECT_TRUE(one_->frames.read_display(settings).pixels == shared.pixels) << picture;
+        for (const DeviceShare& share : stats.devices) EXPECT_GT(share.tone_map_ms, 0) << picture;
+        EXPECT_TRUE(shared.pixels == two_->frames.read_display(settings).pixels) << picture << ": once more";
     }
 }
 

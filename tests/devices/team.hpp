@@ -10,10 +10,8 @@ namespace clarity::test {
 
 // Devices of one choice, with what makes pictures on them.
 struct Team {
-    explicit Team(const std::string& choice, unsigned queues = 0)
-        : devices(open_devices(choose_devices(choice))),
-          preparer(Workbench::get().plugins(), devices),
-          frames(devices, queues) {}
+    explicit Team(const std::string& choice)
+        : devices(open_devices(choose_devices(choice))), preparer(Workbench::get().plugins(), devices), frames(devices) {}
     Devices devices;
     MultiPreparer preparer;
     MultiFrames frames;

@@ -94,7 +94,8 @@ TEST(Display, IsWhatTheFilmSays) {
         EXPECT_EQ(image.pixels.size(), size_t(image.width) * image.height * 4);
         // The same of the rows alone, in memory of the caller's.
         std::vector<uint8_t> memory(image.pixels.size() + 64, 0xAB);
-        bench().frames().read_display(settings, memory.data(), nullptr);
+        std::vector<KernelTime> times;
+        bench().frames().read_display(settings, memory.data(), times);
         EXPECT_TRUE(std::equal(image.pixels.begin(), image.pixels.end(), memory.begin())) << size;
         for (size_t i = image.pixels.size(); i < memory.size(); ++i) ASSERT_EQ(memory[i], 0xAB) << size << ": written beyond";
         ASSERT_EQ(stats.kernels.size(), 4u);

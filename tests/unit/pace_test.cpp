@@ -1,6 +1,7 @@
 // pace_test.cpp -- pieces of a picture stay short on any device, by a device that is told how fast it is.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "render/pace.hpp"
@@ -75,6 +76,15 @@ TEST(Pace, IsNotMisledByACompilation) {
     trace(
         pace, 12288, [](unsigned) { return 1e-4; }, 3000);
     EXPECT_EQ(trace(pace, 12288, [](unsigned) { return 1e-4; }).pieces, 1u);
+}
+
+TEST(Pace, ExpectsWhatThePictureBeforeTook) {
+    Pace pace;
+    EXPECT_TRUE(std::isinf(pace.expected_ms(1)));
+    for (int picture = 0; picture < 2; ++picture) trace(pace, 12288, [](unsigned) { return 1e-3; });
+    EXPECT_NEAR(pace.expected_ms(12288), 12.3, 0.1);
+    pace.forget();
+    EXPECT_TRUE(std::isinf(pace.expected_ms(1)));
 }
 
 TEST(Pace, KeepsToTheMost) {
