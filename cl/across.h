@@ -51,5 +51,13 @@ RT_INLINE void rt_across(const rt_rays *r, const global float *corner, float4 qu
     *y = fma(r->sy, *z, rt_select(is_z, from_y, rt_select(is_y, from_x, from_z)));
 }
 
+#ifdef RT_EACH
+/* Where a warp's rays have the same dominant axis k (warp_rays.cl) nothing is selected: a corner of `leaf` for the ray `r`. */
+#define RT_ACROSS_AXIS(corner, i, j, k, x, y, z)                                                                                 \
+    z = r->o##k - leaf->corner.k;                                                                                                \
+    x = fma(r->sx, z, r->o##i - leaf->corner.i);                                                                                 \
+    y = fma(r->sy, z, r->o##j - leaf->corner.j);
+#endif
+
 #endif
 #endif

@@ -1,14 +1,14 @@
 /* wave.h -- work-items that take work and room together: one atomic for all of them.
  *
  * A wave is RT_WAVE work-items that run the same way through a kernel's outer loop: on NVIDIA's devices a warp, which agrees by
- * ballot and shuffle (PTX; their OpenCL has no sub-groups); elsewhere a work-group, which agrees through local memory; on a CPU
- * one work-item. Every work-item of a wave must call these, at the same place. */
+ * votes (vote.h); elsewhere a work-group, which agrees through local memory; on a CPU one work-item. Every work-item of a wave must
+ * call these, at the same place. */
 #ifndef RT_WAVE_H
 #define RT_WAVE_H
 
 #if RT_CPU
 #define RT_WAVE 1u
-#elif !defined(RT_PORTABLE) && defined(__NV_CL_C_VERSION)
+#elif defined(RT_WARP_VOTES)
 #define RT_WAVE_IS_WARP
 #define RT_WAVE 32u
 #else
@@ -29,19 +29,8 @@ RT_INLINE uint rt_wave_before(uint value, uint *sum, local uint *scratch)
 
 #elif defined(RT_WAVE_IS_WARP)
 
-RT_INLINE uint rt_wave_item(void) { return (uint)get_local_id(0) & 31u; }
-RT_INLINE uint rt_ballot(uint value)
-{
-    uint bits;
-    __asm__ volatile("{ .reg .pred p; setp.ne.u32 p, %1, 0; vote.sync.ballot.b32 %0, p, 0xffffffff; }" : "=r"(bits) : "r"(value));
-    return bits;
-}
-RT_INLINE uint rt_wave_first(uint value, local uint *scratch)
-{
-    uint first;
-    __asm__ volatile("shfl.sync.idx.b32 %0, %1, 0, 31, 0xffffffff;" : "=r"(first) : "r"(value));
-    return first;
-}
+RT_INLINE uint rt_wave_item(void) { return rt_voter(); }
+RT_INLINE uint rt_wave_first(uint value, local uint *scratch) { return rt_value_of(0u, value); }
 /* value: 1 at most. */
 RT_INLINE uint rt_wave_before(uint value, uint *sum, local uint *scratch)
 {

@@ -14,12 +14,29 @@
 #define RT_PRIM as_uint(leaf->c.s3)
 #define RT_PROJECT(corner, x, y, z) rt_across(r, 0, leaf->corner, x, y, z);
 #endif
+#ifdef RT_EACH
+#define RT_PROJECT_AXIS(i, j, k)                                                                                                 \
+    RT_ACROSS_AXIS(a, i, j, k, ax, ay, az)                                                                                       \
+    RT_ACROSS_AXIS(b, i, j, k, bx, by, bz)                                                                                       \
+    RT_ACROSS_AXIS(c, i, j, k, cx, cy, cz)
+#define RT_PROJECT_ALL                                                                                                           \
+    if (r->kz == 2u) {                                                                                                           \
+        RT_PROJECT_AXIS(x, y, z)                                                                                                 \
+    } else if (r->kz == 1u) {                                                                                                    \
+        RT_PROJECT_AXIS(z, x, y)                                                                                                 \
+    } else {                                                                                                                     \
+        RT_PROJECT_AXIS(y, z, x)                                                                                                 \
+    }
+#else
+#define RT_PROJECT_ALL                                                                                                           \
+    RT_PROJECT(a, &ax, &ay, &az)                                                                                                 \
+    RT_PROJECT(b, &bx, &by, &bz)                                                                                                 \
+    RT_PROJECT(c, &cx, &cy, &cz)
+#endif
 /* Corners across the ray and what the edges say of it. */
 #define RT_TRIANGLE_EDGES                                                                                                        \
     vfloat ax, ay, az, bx, by, bz, cx, cy, cz;                                                                                   \
-    RT_PROJECT(a, &ax, &ay, &az)                                                                                                 \
-    RT_PROJECT(b, &bx, &by, &bz)                                                                                                 \
-    RT_PROJECT(c, &cx, &cy, &cz)                                                                                                 \
+    RT_PROJECT_ALL                                                                                                               \
     const vfloat u = cx * by - cy * bx;                                                                                          \
     const vfloat v = ax * cy - ay * cx;                                                                                          \
     const vfloat w = bx * ay - by * ax;                                                                                          \
@@ -70,6 +87,8 @@ RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_leaf *leaf, uint at
 #undef RT_CORNER
 #undef RT_PRIM
 #undef RT_PROJECT
+#undef RT_PROJECT_AXIS
+#undef RT_PROJECT_ALL
 #undef RT_TRIANGLE_EDGES
 
 #if !RT_CPU

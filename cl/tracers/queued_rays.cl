@@ -3,20 +3,9 @@
  * Efficiency of Ray Traversal on GPUs"). A warp steps through nodes until a third of its rays are at leaves, and then takes those
  * too: it runs both ways where its rays are not at one of them. Rays that keep together lose by either.
  *
- * On NVIDIA's devices a warp agrees by ballot (wave.h); elsewhere a work-item draws by itself. Answers are those of rays.cl bit for
+ * On NVIDIA's devices a warp agrees by ballot (vote.h); elsewhere a work-item draws by itself. Answers are those of rays.cl bit for
  * bit, for hits do not depend on the order of visits. */
-#ifdef RT_WAVE_IS_WARP
-#define RT_DRAWING RT_WAVE /* work-items that draw together */
-#define RT_DRAWING_ITEM rt_wave_item()
-#define RT_DRAWING_VOTE(value) rt_ballot(value)
-#define RT_DRAWING_FIRST(value) rt_wave_first(value, 0)
-#else
-#define RT_DRAWING 1u
-#define RT_DRAWING_ITEM 0u
-#define RT_DRAWING_VOTE(value) ((value) ? 1u : 0u)
-#define RT_DRAWING_FIRST(value) (value)
-#endif
-#define RT_BUSY_LEAST ((RT_DRAWING + 1u) / 2u) /* with fewer rays on their way, new ones are drawn */
+#define RT_BUSY_LEAST ((RT_VOTERS + 1u) / 2u) /* with fewer rays on their way, new ones are drawn */
 #define RT_NO_RAY 0xFFFFFFFFu
 
 /* Rays first..end - 1. queue: how many were drawn, in this launch and in the next, for which it is cleared, in turn. share: how many
@@ -27,11 +16,11 @@ trace_queued(const constant rt_frame *frame, const uint first, const uint end, c
 {
     RT_CTX_INIT(ctx);
     /* Where those begin and end that were drawn and not begun; not in registers, which the turns need more. */
-    volatile local uint drawn[RT_LOCAL_SIZE / RT_DRAWING][2];
-    volatile local uint *own = drawn[(uint)get_local_id(0) / RT_DRAWING];
+    volatile local uint drawn[RT_LOCAL_SIZE / RT_VOTERS][2];
+    volatile local uint *own = drawn[(uint)get_local_id(0) / RT_VOTERS];
     own[0] = own[1] = first;
     if (get_global_id(0) == 0) queue[turn ^ 1u] = 0u;
-    const uint before_me = (1u << RT_DRAWING_ITEM) - 1u;
+    const uint before_me = (1u << rt_voter()) - 1u;
     rt_turn_entry stack[RT_TURN_PLACES];
     uint top = 0u, at = RT_TURN_DONE, mine = RT_NO_RAY;
     rt_rays ray;
@@ -40,12 +29,12 @@ trace_queued(const constant rt_frame *frame, const uint first, const uint end, c
     for (;;) {
         uint next = own[0], next_end = own[1]; /* before the vote, for it is after it that somebody writes them */
         const bool idle = at == RT_TURN_DONE;
-        const uint idlers = RT_DRAWING_VOTE(idle);
+        const uint idlers = rt_ballot(idle);
         if (next >= next_end && next_end < end) {
             uint from = 0u;
-            if (RT_DRAWING_ITEM == 0u) from = atomic_add(queue + turn, share * RT_DRAWING);
-            next = min(first + RT_DRAWING_FIRST(from), end);
-            next_end = min(next + share * RT_DRAWING, end);
+            if (rt_voter() == 0u) from = atomic_add(queue + turn, share * RT_VOTERS);
+            next = min(first + rt_value_of(0u, from), end);
+            next_end = min(next + share * RT_VOTERS, end);
         }
         if (idle) {
             if (mine != RT_NO_RAY) {
@@ -72,16 +61,16 @@ trace_queued(const constant rt_frame *frame, const uint first, const uint end, c
         own[0] = next;
         own[1] = next_end;
         const bool last = next >= next_end && next_end >= end;
-        uint at_nodes = RT_DRAWING_VOTE(!RT_TURN_IS_LEAF(at));
-        uint at_leaves = RT_DRAWING_VOTE(RT_TURN_IS_LEAF(at) && at != RT_TURN_DONE);
-        if (last && RT_DRAWING_VOTE(mine != RT_NO_RAY) == 0u) break;
+        uint at_nodes = rt_ballot(!RT_TURN_IS_LEAF(at));
+        uint at_leaves = rt_ballot(RT_TURN_IS_LEAF(at) && at != RT_TURN_DONE);
+        if (last && rt_ballot(mine != RT_NO_RAY) == 0u) break;
         const uint least = last ? 1u : RT_BUSY_LEAST;
         while (popcount(at_nodes | at_leaves) >= least) {
             const bool leaves_too = 3u * popcount(at_leaves) >= popcount(at_nodes | at_leaves);
             if (!RT_TURN_IS_LEAF(at) || (leaves_too && at != RT_TURN_DONE))
                 at = rt_scene_closest_turn(&ctx, at, &ray, &turns, &hit, stack, &top);
-            at_nodes = RT_DRAWING_VOTE(!RT_TURN_IS_LEAF(at));
-            at_leaves = RT_DRAWING_VOTE(RT_TURN_IS_LEAF(at) && at != RT_TURN_DONE);
+            at_nodes = rt_ballot(!RT_TURN_IS_LEAF(at));
+            at_leaves = rt_ballot(RT_TURN_IS_LEAF(at) && at != RT_TURN_DONE);
         }
     }
 }

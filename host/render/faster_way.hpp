@@ -6,30 +6,34 @@
 namespace clarity {
 
 // In turns, each three times, of which the lesser of the last two counts: the first may be cut into small pieces and hold a
-// compilation.
+// compilation. What was far behind the second time is not tried a third.
 class FasterWay {
  public:
     // kMost ways at most.
     explicit FasterWay(unsigned ways = 1) : ways_(ways) { ms_.fill(1e30); }
-    unsigned way() const { return tried_ < kRounds * ways_ ? tried_ % ways_ : best(); }
+    unsigned way() const { return round_ < kRounds ? at_ : best(); }
     void took(double ms) {
-        if (tried_ >= kRounds * ways_) return;
-        double& least = ms_[tried_ % ways_];
-        if (tried_++ >= ways_) least = std::min(least, ms);
+        if (round_ == kRounds) return;
+        if (round_ > 0) ms_[at_] = std::min(ms_[at_], ms);
+        do {
+            if (++at_ < ways_) continue;
+            at_ = 0;
+            if (++round_ == kRounds - 1) worth_a_third_ = kFarBehind * ms_[fastest()];
+        } while (round_ == kRounds - 1 && ms_[at_] > worth_a_third_);
     }
 
-    static constexpr unsigned kMost = 3;
+    static constexpr unsigned kMost = 5;
 
  private:
     static constexpr unsigned kRounds = 3;
+    static constexpr double kFarBehind = 1.5;
     static constexpr double kWorthIt = 0.97;  // of the first way's time: less is noise
 
-    unsigned best() const {
-        const auto least = std::min_element(ms_.begin(), ms_.begin() + ways_);
-        return *least < kWorthIt * ms_[0] ? static_cast<unsigned>(least - ms_.begin()) : 0;
-    }
+    unsigned fastest() const { return static_cast<unsigned>(std::min_element(ms_.begin(), ms_.begin() + ways_) - ms_.begin()); }
+    unsigned best() const { return ms_[fastest()] < kWorthIt * ms_[0] ? fastest() : 0; }
 
-    unsigned ways_, tried_ = 0;
+    unsigned ways_, round_ = 0, at_ = 0;
+    double worth_a_third_ = 0;  // what took longer is not
     std::array<double, kMost> ms_;
 };
 

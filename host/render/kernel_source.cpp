@@ -72,6 +72,7 @@ struct Template {
     bool leaves_twice;  // for measuring what they take
     bool instances;
     bool long_rays;
+    bool by_warps;
 };
 // What a traversal calls leaf tests, and what these are called by the name of theirs: rt_leaf_mesh or rt_leaf_scene.
 struct LeafStep {
@@ -93,6 +94,7 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
     out << "#define RT_TRAVERSE RT_FN(" << name << ")\n#define RT_LOADED_LEAF RT_FN(rt_loaded_leaf)\n"
         << "#define RT_TRAVERSE_BUNDLE RT_FN(" << name << "_bundle)\n";
     if (plugin.long_rays) out << "#define RT_TRAVERSE_LONG RT_FN(" << name << "_long)\n";
+    if (plugin.by_warps) out << "#define RT_TRAVERSE_WARP RT_FN(" << name << "_warp)\n";
     define_int(out, "RT_TRIANGLES_ONLY", !mixed);
     each_step([&](const std::string& macro, const std::string& function) {
         out << "#define " << macro << " RT_FN(" << function << ")\n";
@@ -115,12 +117,13 @@ void traversal(std::ostream& out, const Template& plugin, const std::string& nam
            "RT_INLINE void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count);\n"
            "#endif\n#ifdef RT_TRAVERSE_LONG\n"
            "RT_INLINE void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit, "
-           "local rt_long_scratch *shared);\n#endif\n";
+           "local rt_long_scratch *shared);\n#endif\n#ifdef RT_TRAVERSE_WARP\n"
+           "RT_INLINE void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *rays, rt_hits *hits);\n"
+           "#endif\n";
     part(out, plugin.file, plugin.text);
     each_step([&](const std::string& macro, const std::string&) { out << "#undef " << macro << "\n"; });
-    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_TRAVERSE_LONG\n#undef RT_LOADED_LEAF\n#undef "
-           "RT_TRIANGLES_ONLY\n"
-           "#undef RT_LONE_MIXED\n";
+    out << "#undef RT_TRAVERSE\n#undef RT_TRAVERSE_BUNDLE\n#undef RT_TRAVERSE_LONG\n#undef RT_TRAVERSE_WARP\n"
+           "#undef RT_LOADED_LEAF\n#undef RT_TRIANGLES_ONLY\n#undef RT_LONE_MIXED\n";
 }
 
 void query(std::ostream& out, bool any_hit, const SceneFeatures& features, const Template& plugin) {
@@ -168,6 +171,10 @@ bool takes_long_rays(const rt_plugin& accel) {
 
 bool goes_by_turns(const rt_plugin& accel) {
     return defines_flag(accel, "RT_TRAVERSES_BY_TURNS");
+}
+
+bool goes_by_warps(const rt_plugin& accel) {
+    return defines_flag(accel, "RT_TRAVERSES_BY_WARPS");
 }
 
 Layout make_layout(const Settings& settings, bool cpu) {
@@ -267,6 +274,12 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
             kernel_file = "tracers/queued_rays.cl";
             source.entry = "trace_queued";
             break;
+        case KernelKind::warp_rays:
+        case KernelKind::warp_pairs:
+            define(out, "RT_EACH", warp_rays_each(kind));
+            kernel_file = "tracers/warp_rays.cl";
+            source.entry = "trace_warps";
+            break;
         case KernelKind::inspect:
             out << "#define RT_INSPECT\n#define RT_COUNT_STEPS\n";
             kernel_file = "tracers/inspect.cl";
@@ -282,6 +295,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     const rt_cl_file &types = accel.accel->types, &traverse = accel.accel->traverse;
     include(out, "rt_types.h");
     include(out, "lanes.h");
+    if (!layout.cpu) include(out, "vote.h");
     include(out, "rays.h");
     include(out, "across.h");
     include(out, "loaded_leaf.h");
@@ -291,7 +305,7 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "bundle.h");
     context(out, *accel.accel);
     const std::string file = folder + traverse.name, text = plugin_kernel_text(accel, traverse);
-    Template plugin{file, text, layout.cpu, false, features.instances, kind == KernelKind::long_rays};
+    Template plugin{file, text, layout.cpu, false, features.instances, kind == KernelKind::long_rays, warp_rays_each(kind) > 0};
     plugin.leaves_twice = frame_part == FramePart::closest_twice || frame_part == FramePart::whole_closest_twice;
     query(out, false, features, plugin);
     plugin.leaves_twice = frame_part == FramePart::whole_any_twice;
@@ -300,9 +314,8 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
     include(out, "surface.h");
     include(out, "camera.h");
     if (kind == KernelKind::rays || kind == KernelKind::counted_rays || kind == KernelKind::long_rays ||
-        kind == KernelKind::queued_rays)
+        kind == KernelKind::queued_rays || warp_rays_each(kind) > 0)
         include(out, "ray_blocks.h");
-    if (kind == KernelKind::queued_rays) include(out, "wave.h");
     if (shades) include(out, "material.h");
     if (queues)
         for (const char* name : {"ray_queue.h", "inspect.h"}) include(out, name);

@@ -15,9 +15,10 @@ struct SceneFeatures {
 };
 SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 
-// long_rays: of one lane, where takes_long_rays(); queued_rays: nearest hits alone, where goes_by_turns(). generations: the
-// tracer of color, whose picture is how many generations of rays each pixel has.
-enum class KernelKind { color, generations, aov, rays, counted_rays, long_rays, queued_rays, inspect };
+// long_rays: of one lane, where takes_long_rays(); queued_rays: nearest hits alone, where goes_by_turns(); warp_rays and
+// warp_pairs: where goes_by_warps(). generations: the tracer of color, whose picture is how many generations of rays each
+// pixel has.
+enum class KernelKind { color, generations, aov, rays, counted_rays, long_rays, queued_rays, warp_rays, warp_pairs, inspect };
 
 // How much of a frame a program of kind `color` does; see frame_parts.hpp. The first three are its beginning: the film alone,
 // camera rays, their nearest hits. twice: leaf tests are done twice, which changes no picture.
@@ -48,6 +49,11 @@ Layout make_layout(const Settings& settings, bool cpu);
 bool takes_long_rays(const rt_plugin& accel);
 // Whether it goes turn by turn, so that who is done may begin another ray (queued_rays.cl).
 bool goes_by_turns(const rt_plugin& accel);
+// Whether it takes all rays of a warp one way (warp_rays.cl), and how many of them a work-item then has.
+bool goes_by_warps(const rt_plugin& accel);
+constexpr unsigned warp_rays_each(KernelKind kind) {
+    return kind == KernelKind::warp_rays ? 1 : kind == KernelKind::warp_pairs ? 2 : 0;
+}
 constexpr unsigned kLongItems = 32;  // as many as a warp has
 
 constexpr const char* kWavefrontEntry = "trace_wavefront";  // of its several kernels the one that traces

@@ -7,13 +7,19 @@
 namespace clarity {
 namespace {
 
+// Whether a warp agrees by votes (cl/vote.h); tests without a GPU see what it would do.
+bool votes(const DeviceInfo& info, const Settings& settings) {
+    return (info.nvidia && !info.pocl) || settings.portable;
+}
+
 // Of a query, the plain one first.
-std::vector<KernelKind> ways_for(const rt_plugin& accel, const Layout& layout, RayQuery query) {
+std::vector<KernelKind> ways_for(const rt_plugin& accel, const Layout& layout, bool votes, RayQuery query) {
     if (query.count) return {KernelKind::counted_rays};
     std::vector<KernelKind> ways{KernelKind::rays};
     if (layout.lanes > 1 || layout.cpu) return ways;
     if (takes_long_rays(accel)) ways.push_back(KernelKind::long_rays);
     if (goes_by_turns(accel) && !query.any_hit) ways.push_back(KernelKind::queued_rays);
+    if (goes_by_warps(accel) && votes) ways.insert(ways.end(), {KernelKind::warp_rays, KernelKind::warp_pairs});
     return ways;
 }
 
@@ -32,9 +38,11 @@ LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgr
     kernel.setArg(at++, in);
     kernel.setArg(at++, out);
     view_.bind(*prepared.on_device, kernel, at);
-    const size_t in_group = size_t(layout.group_packets()) * layout.blocks();
+    const unsigned each = warp_rays_each(program.kind);
+    const size_t in_group = each ? layout.local_size() * each : size_t(layout.group_packets()) * layout.blocks();
     const size_t groups = (blocks + in_group - 1) / in_group;
-    return launcher_.run(device_->queue(), kernel, first_group, static_cast<unsigned>(groups), layout.local_size(), [] {});
+    return launchers_[program.kind].run(device_->queue(), kernel, first_group, static_cast<unsigned>(groups),
+                                        layout.local_size(), [] {});
 }
 
 double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
@@ -57,13 +65,13 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (!(asked == last_)) {
             last_ = asked;
             packing_ = 0;
-            launcher_.forget();
+            launchers_.clear();
             long_rays_.forget();
             queued_rays_.forget();
         }
         if (packing_ != rays.packing()) {
             packing_ = rays.packing();
-            ways_ = ways_for(*prepared.accel->plugin, layout, query);
+            ways_ = ways_for(*prepared.accel->plugin, layout, votes(device_->info(), prepared.settings), query);
             way_ = FasterWay(static_cast<unsigned>(ways_.size()));
         }
         const KernelKind kind = ways_[way_.way()];

@@ -1,5 +1,6 @@
 // ray_queries.hpp -- rays of the caller's own through the traversals that pictures use.
 #pragma once
+#include <map>
 #include <tuple>
 
 #include "render/faster_way.hpp"
@@ -29,7 +30,7 @@ class RayQueries {
     std::shared_ptr<Device> device_;
     ProgramCache programs_;  // counting and plain ones
     ViewBuffers view_;
-    Launcher launcher_;
+    std::map<KernelKind, Launcher> launchers_;  // of ways that are one launch
     LongRays long_rays_;
     QueuedRays queued_rays_;
     // A pace is that of one program on one scene, with which what is short is one launch.

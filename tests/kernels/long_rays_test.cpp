@@ -1,5 +1,5 @@
-// long_rays_test.cpp -- rays of the caller's own in one launch, in two, and drawn from a queue: which it is, is found out by
-// trying, so the same rays are asked for as often as it takes to see all.
+// long_rays_test.cpp -- rays of the caller's own in one launch, in two, drawn from a queue, and a warp's together: which it is,
+// is found out by trying, so the same rays are asked for as often as it takes to see all.
 #include "render/faster_way.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ using namespace clarity::test;
 
 namespace {
 
-constexpr unsigned kTries = 9;
+constexpr unsigned kTries = 15;
 constexpr rt_u32 kLong = 64;  // turns: a node or two triangles each
 
 // Towards the rubble from all around, straight and askew, some reaching only half of the way, some inactive.
@@ -88,7 +88,7 @@ TEST(LongRays, AreThoseOfOneLaunchWithInstances) {
 }
 
 TEST(FasterWay, TakesTheLeastTimeOfEachButTheFirst) {
-    for (const unsigned ways : {1u, 2u, 3u})
+    for (const unsigned ways : {1u, 2u, 3u, 5u})
         for (unsigned best = 0; best < ways; ++best) {
             FasterWay way(ways);
             for (unsigned i = 0; i < 3 * ways; ++i) {
@@ -101,6 +101,16 @@ TEST(FasterWay, TakesTheLeastTimeOfEachButTheFirst) {
                 way.took(way.way() == best ? 100 : 0);
             }
         }
+}
+
+TEST(FasterWay, TriesWhatIsFarBehindTwice) {
+    FasterWay way(3);
+    std::vector<unsigned> tried;
+    for (int i = 0; i < 10; ++i) {
+        tried.push_back(way.way());
+        way.took(way.way() == 1 ? 30 : way.way() == 2 ? 9 : 10);
+    }
+    EXPECT_EQ(tried, (std::vector<unsigned>{0, 1, 2, 0, 1, 2, 0, 2, 2, 2}));
 }
 
 TEST(FasterWay, StaysWithTheFirstForLittle) {

@@ -10,7 +10,10 @@
  * 1.10 of fetching triangles only when nodes are done. No gain: loads by inline PTX, prefetching what is put off, one triangle a turn
  * (0.9), a node and two triangles a turn (0.88: nodes are visited that the triangles would have hidden), leaves that wait until
  * several of a warp have one (0.94 to 0.86), constants of the ray pinned to registers, nodes of eight (0.93, leaves in a loop). Leaves
- * put off until all of a warp have one (Aila, Laine 2009) are better at 3840x2160 (1.04) and worse at 1024x768 (0.94). */
+ * put off until all of a warp have one (Aila, Laine 2009) are better at 3840x2160 (1.04) and worse at 1024x768 (0.94).
+ *
+ * Rays that keep together go by warps (RT_TRAVERSE_WARP): with one ray a work-item 52 registers, 36 warps a multiprocessor, with two
+ * 93 and 20. */
 #if RT_LANES == 1
 #if RT_ANY_HIT
 #define BVH4_PUSHED uint
@@ -127,7 +130,6 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     uint top = 1u, at = BVH4_PLACE(root);
     const bvh4_ray own = bvh4_prepare(ray);
     while (at != BVH4_DONE && RT_MAY_GO_ON(hit)) at = RT_CAT(RT_TRAVERSE, _turn)(ctx, at, ray, &own, hit, stack, &top);
-#undef BVH4_PUSHED
 #else
     uint top = 0, at = BVH4_PLACE(root);
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
@@ -237,4 +239,99 @@ void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits 
         top += shared->put[turn];
     }
 }
+#endif
+
+#ifdef RT_TRAVERSE_WARP
+/* What any ray of the warp enters all of it visit, so addresses, branches and the stack are the same for all. Branches are by votes,
+ * of which the compiler knows that: they need not be guarded, nor ways joined again. A work-item keeps its own distances on the
+ * stack, those of the nearer of its rays. The nearest child is taken first; of three or more the others are in no order. */
+void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *rays, rt_hits *hits)
+{
+    BVH4_PUSHED stack[BVH4_STACK + 1];
+    stack[0] = (BVH4_PUSHED)BVH4_LOWEST;
+    bvh4_ray own[RT_EACH];
+    RT_FOR_EACH_OWN(i) own[i] = bvh4_prepare(rays + i);
+    const uint near_x = BVH4_NEAR_X(octant & 1u), near_y = BVH4_NEAR_Y(octant & 2u), near_z = BVH4_NEAR_Z(octant & 4u);
+    uint top = 1u, at = BVH4_PLACE(root);
+    for (;;) {
+        bool found = false;
+        uint next = BVH4_DONE;
+        if (rt_vote(at >= BVH4_LEAF)) {
+            if (rt_vote(at == BVH4_DONE)) return;
+            const uint end = BVH4_LEAF_FIRST(at) + BVH4_LEAF_COUNT(at);
+            for (uint k = BVH4_LEAF_FIRST(at); rt_vote(k < end); ++k) {
+#if RT_TRIANGLES_ONLY
+                const rt_loaded_leaf leaf = rt_load_leaf(ctx->leaves + k);
+                RT_FOR_EACH_OWN(i) RT_LOADED_LEAF(ctx, &leaf, k, rays + i, hits + i);
+#else
+                RT_FOR_EACH_OWN(i) RT_LEAF(ctx, k, rays + i, hits + i);
+#endif
+            }
+#if RT_ANY_HIT
+            bool seeks = false;
+            RT_FOR_EACH_OWN(i) seeks |= hits[i].t >= 0.0f;
+            if (!rt_vote(seeks)) return;
+#endif
+        } else {
+            const ulong node = BVH4_NODE(ctx, at);
+            const float4 a = BVH4_ROW(node, near_x), b = BVH4_ROW(node, near_y), c = BVH4_ROW(node, near_z),
+                         d = BVH4_ROW(node, near_x ^ BVH4_ACROSS_X), e = BVH4_ROW(node, near_y ^ BVH4_ACROSS_Y),
+                         f = BVH4_ROW(node, near_z ^ BVH4_ACROSS_Z);
+            const uint4 child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
+            float4 in[RT_EACH], out[RT_EACH];
+            RT_FOR_EACH_OWN(i) bvh4_slabs(rays + i, own + i, hits[i].t, a, b, c, d, e, f, in + i, out + i);
+#if RT_ANY_HIT
+#define BVH4_KEEP(k)                                                                                                             \
+    if (found) {                                                                                                                 \
+        stack[top] = next;                                                                                                       \
+        if (RT_STACK_OK(top, BVH4_STACK, hits)) ++top;                                                                           \
+    }                                                                                                                            \
+    next = child.s##k;
+#else
+            float nearest = INFINITY;
+#define BVH4_KEEP(k)                                                                                                             \
+    float entry = INFINITY;                                                                                                      \
+    RT_FOR_EACH_OWN(i) entry = in[i].s##k <= out[i].s##k ? fmin(entry, in[i].s##k) : entry;                                      \
+    const bool nearer = !found || rt_vote(entry < nearest);                                                                      \
+    if (found) {                                                                                                                 \
+        stack[top] = nearer ? BVH4_ENTRY(nearest, next) : BVH4_ENTRY(entry, child.s##k);                                         \
+        if (RT_STACK_OK(top, BVH4_STACK, hits)) ++top;                                                                           \
+    }                                                                                                                            \
+    nearest = nearer ? entry : nearest;                                                                                          \
+    next = nearer ? child.s##k : next;
+#endif
+#define BVH4_TAKE(k)                                                                                                             \
+    {                                                                                                                            \
+        bool met = false;                                                                                                        \
+        RT_FOR_EACH_OWN(i) met |= in[i].s##k <= out[i].s##k;                                                                     \
+        if (rt_vote(met)) {                                                                                                      \
+            BVH4_KEEP(k)                                                                                                         \
+            found = true;                                                                                                        \
+        }                                                                                                                        \
+    }
+            BVH4_TAKE(0)
+            BVH4_TAKE(1)
+            BVH4_TAKE(2)
+            BVH4_TAKE(3)
+#undef BVH4_TAKE
+#undef BVH4_KEEP
+        }
+        if (!found) {
+#if RT_ANY_HIT
+            next = stack[--top];
+#else
+            float reach = hits[0].t;
+            RT_FOR_EACH_OWN(i) reach = fmax(reach, hits[i].t);
+            ulong pushed;
+            do pushed = stack[--top];
+            while (!rt_vote(as_float((uint)(pushed >> 32)) <= reach));
+            next = (uint)pushed;
+#endif
+        }
+        at = next;
+    }
+}
+#endif
+#if RT_LANES == 1
+#undef BVH4_PUSHED
 #endif

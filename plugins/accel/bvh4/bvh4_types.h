@@ -41,6 +41,8 @@ typedef struct rt_long_scratch {
 } rt_long_scratch;
 #endif
 
+#define RT_TRAVERSES_BY_WARPS
+
 #define BVH4_DONE 0xFFFFFFFFu /* in place of a child: the stack is empty */
 
 /* Of floats, by the order of their bits: the same where either is not negative, and the compiler makes one instruction of two of
@@ -53,6 +55,9 @@ typedef struct rt_long_scratch {
  * The far plane of an axis stands across its near one. */
 #define BVH4_NODE(ctx, place) ((ulong)(ctx)->bvh4_nodes + ((ulong)(place) << 4))
 #define BVH4_ROW(node, bytes) (*(const global float4 *)((node) ^ (ulong)(bytes)))
+#define BVH4_NEAR_X(negative) ((negative) ? 48u : 0u)
+#define BVH4_NEAR_Y(negative) ((negative) ? 64u : 16u)
+#define BVH4_NEAR_Z(negative) ((negative) ? 80u : 32u)
 #define BVH4_ACROSS_X 48u
 #define BVH4_ACROSS_Y 80u
 #define BVH4_ACROSS_Z 112u
@@ -68,9 +73,9 @@ typedef struct bvh4_ray {
 RT_INLINE bvh4_ray bvh4_prepare(const rt_rays *ray)
 {
     bvh4_ray own;
-    own.near_x = ray->ix < 0.0f ? 48u : 0u;
-    own.near_y = ray->iy < 0.0f ? 64u : 16u;
-    own.near_z = ray->iz < 0.0f ? 80u : 32u;
+    own.near_x = BVH4_NEAR_X(ray->ix < 0.0f);
+    own.near_y = BVH4_NEAR_Y(ray->iy < 0.0f);
+    own.near_z = BVH4_NEAR_Z(ray->iz < 0.0f);
     own.wide_x = ray->ix * RT_WIDE;
     own.wide_y = ray->iy * RT_WIDE;
     own.wide_z = ray->iz * RT_WIDE;
@@ -80,9 +85,10 @@ RT_INLINE bvh4_ray bvh4_prepare(const rt_rays *ray)
     return own;
 }
 
-/* Where the children are entered, INFINITY: nowhere before `t`. Arguments: rows of near and of far planes. */
-RT_INLINE float4 bvh4_enter(const rt_rays *ray, const bvh4_ray *own, float t, float4 near_x, float4 near_y, float4 near_z,
-                            float4 far_x, float4 far_y, float4 far_z)
+/* Where the ray is in all slabs of the children, before `t`: from *in to *out, in none if that is less. Arguments: rows of near
+ * and of far planes. */
+RT_INLINE void bvh4_slabs(const rt_rays *ray, const bvh4_ray *own, float t, float4 near_x, float4 near_y, float4 near_z,
+                          float4 far_x, float4 far_y, float4 far_z, float4 *in, float4 *out)
 {
     const float4 ax = fma((float4)(ray->ix), near_x, (float4)(ray->near_x));
     const float4 ay = fma((float4)(ray->iy), near_y, (float4)(ray->near_y));
@@ -90,8 +96,16 @@ RT_INLINE float4 bvh4_enter(const rt_rays *ray, const bvh4_ray *own, float t, fl
     const float4 bx = fma((float4)(own->wide_x), far_x, (float4)(own->exit_x));
     const float4 by = fma((float4)(own->wide_y), far_y, (float4)(own->exit_y));
     const float4 bz = fma((float4)(own->wide_z), far_z, (float4)(own->exit_z));
-    const float4 in = BVH4_MAX(BVH4_MAX(ax, ay), BVH4_MAX(az, (float4)(ray->t_min)));
-    const float4 out = BVH4_MIN(BVH4_MIN(bx, by), BVH4_MIN(bz, (float4)(t)));
+    *in = BVH4_MAX(BVH4_MAX(ax, ay), BVH4_MAX(az, (float4)(ray->t_min)));
+    *out = BVH4_MIN(BVH4_MIN(bx, by), BVH4_MIN(bz, (float4)(t)));
+}
+
+/* Where the children are entered, INFINITY: nowhere. */
+RT_INLINE float4 bvh4_enter(const rt_rays *ray, const bvh4_ray *own, float t, float4 near_x, float4 near_y, float4 near_z,
+                            float4 far_x, float4 far_y, float4 far_z)
+{
+    float4 in, out;
+    bvh4_slabs(ray, own, t, near_x, near_y, near_z, far_x, far_y, far_z, &in, &out);
     return in <= out ? in : (float4)(INFINITY);
 }
 
