@@ -17,7 +17,7 @@ LaunchTimes LongRays::trace(const Prepared& prepared, const TraceProgram& progra
     cl::CommandQueue& queue = device_->queue();
     const cl::Buffer before = list_.get();
     const cl::Buffer& list = list_.fit(device_->context(), (2 + size_t(rays)) * sizeof(cl_uint));
-    clean_ &= list() == before();
+    if (list() != before()) turns_.forget();
 
     cl::Kernel first = program.kernel(), rest(program.program, any_hit ? "trace_long_any" : "trace_long_closest");
     first.setArg(0, view.frame());
@@ -37,17 +37,17 @@ LaunchTimes LongRays::trace(const Prepared& prepared, const TraceProgram& progra
 
     const size_t long_items = size_t(std::max(1u, device_->info().compute_units)) * kLongGroupsPerUnit * kLongItems;
     const auto enqueue = [&](unsigned begin, unsigned count) {
-        if (!clean_) queue.enqueueFillBuffer(list, cl_uint(0), 0, 2 * sizeof(cl_uint));
-        clean_ = false;  // unless all goes well
         Launcher::Piece piece;
         first.setArg(1, cl_uint(begin));
-        first.setArg(8, turn_);
-        queue.enqueueNDRangeKernel(first, cl::NullRange, cl::NDRange(size_t(count) * kGroupSize), cl::NDRange(kGroupSize),
-                                   nullptr, &piece.first);
-        rest.setArg(5, turn_);
-        queue.enqueueNDRangeKernel(rest, cl::NullRange, cl::NDRange(long_items), cl::NDRange(kLongItems), nullptr, &piece.last);
-        turn_ ^= 1u;
-        clean_ = true;
+        turns_.take([&](cl_uint) { queue.enqueueFillBuffer(list, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
+                    [&](cl_uint turn) {
+                        first.setArg(8, turn);
+                        queue.enqueueNDRangeKernel(first, cl::NullRange, cl::NDRange(size_t(count) * kGroupSize),
+                                                   cl::NDRange(kGroupSize), nullptr, &piece.first);
+                        rest.setArg(5, turn);
+                        queue.enqueueNDRangeKernel(rest, cl::NullRange, cl::NDRange(long_items), cl::NDRange(kLongItems),
+                                                   nullptr, &piece.last);
+                    });
         return piece;
     };
     const unsigned groups = (rays + kGroupSize - 1) / kGroupSize;

@@ -18,7 +18,7 @@ LaunchTimes QueuedRays::trace(const Prepared& prepared, const TraceProgram& prog
     cl::CommandQueue& queue = device_->queue();
     const cl::Buffer before = queue_.get();
     const cl::Buffer& drawn = queue_.fit(device_->context(), 2 * sizeof(cl_uint));
-    clean_ &= drawn() == before();
+    if (drawn() != before()) turns_.forget();
 
     const unsigned most = std::max(1u, device_->info().compute_units) * kGroupsPerUnit;
     cl::Kernel kernel = program.kernel();
@@ -30,16 +30,16 @@ LaunchTimes QueuedRays::trace(const Prepared& prepared, const TraceProgram& prog
     kernel.setArg(7, drawn);
     view.bind(*prepared.on_device, kernel, 9);
     const auto enqueue = [&](unsigned begin, unsigned count) {
-        if (!clean_) queue.enqueueFillBuffer(drawn, cl_uint(0), 0, 2 * sizeof(cl_uint));
-        clean_ = false;  // unless all goes well
         kernel.setArg(1, cl_uint(begin * kGroupSize));
         kernel.setArg(2, cl_uint(std::min(size_t(rays), (size_t(begin) + count) * kGroupSize)));
-        kernel.setArg(8, turn_);
         cl::Event event;
-        queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size_t(std::min(count, most)) * kGroupSize),
-                                   cl::NDRange(kGroupSize), nullptr, &event);
-        turn_ ^= 1u;
-        clean_ = true;
+        turns_.take([&](cl_uint) { queue.enqueueFillBuffer(drawn, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
+                    [&](cl_uint turn) {
+                        kernel.setArg(8, turn);
+                        queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+                                                   cl::NDRange(size_t(std::min(count, most)) * kGroupSize),
+                                                   cl::NDRange(kGroupSize), nullptr, &event);
+                    });
         return Launcher::Piece{event, event};
     };
     const unsigned groups = (rays + kGroupSize - 1) / kGroupSize;

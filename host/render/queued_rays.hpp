@@ -4,6 +4,7 @@
 #include "render/launch.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
+#include "render/turns.hpp"
 #include "render/view_buffers.hpp"
 
 namespace clarity {
@@ -20,8 +21,7 @@ class QueuedRays {
     std::shared_ptr<Device> device_;
     Launcher launcher_;
     GrowingBuffer queue_{CL_MEM_READ_WRITE};
-    cl_uint turn_ = 0;
-    bool clean_ = false;  // the queue is, for this turn
+    Turns turns_;
 };
 
 }  // namespace clarity

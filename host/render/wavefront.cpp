@@ -77,28 +77,26 @@ void Wavefront::bind(const WavefrontFrame& frame, const Room& room) {
 Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame& frame, const Room& room, unsigned first,
                                    unsigned count) {
     const size_t local = frame.layout.local_size(), global = work_groups_ * local;
-    const cl::Buffer &control = control_[turn_], &idle = control_[turn_ ^ 1],
-                     &sums = room.parting && frame.sample > 0 ? sums_.get() : frame.film;
+    const cl::Buffer& sums = room.parting && frame.sample > 0 ? sums_.get() : frame.film;
     first += frame.begin;
-    if (!clean_) queue.enqueueFillBuffer(control, cl_uint(0), 0, kControlBytes);
-    clean_ = false;  // unless all goes well
     Launcher::Piece piece;
-    const unsigned levels = room.parting ? frame.depth : 1;
-    for (cl_uint level = 0; level < levels; ++level) {
-        Arguments arguments(trace_);
-        arguments << frame.view_buffers.frame() << cl_uint(first) << cl_uint(count) << level
-                  << cl_uint(first == 0 && level == 0) << cl_uint(room.rays) << cl_uint(room.parting) << sums << shares_.get()
-                  << counters_.get() << frame.distances << rays_[level & 1].get() << rays_[~level & 1].get() << control << idle;
-        frame.view_buffers.bind(*frame.prepared.on_device, trace_, arguments.count());
-        queue.enqueueNDRangeKernel(trace_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr, &piece.last);
-        if (level == 0) piece.first = piece.last;
-    }
-    if (room.parting) {
+    const auto enqueue_levels = [&](cl_uint turn) {
+        const unsigned levels = room.parting ? frame.depth : 1;
+        for (cl_uint level = 0; level < levels; ++level) {
+            Arguments arguments(trace_);
+            arguments << frame.view_buffers.frame() << cl_uint(first) << cl_uint(count) << level
+                      << cl_uint(first == 0 && level == 0) << cl_uint(room.rays) << cl_uint(room.parting) << sums
+                      << shares_.get() << counters_.get() << frame.distances << rays_[level & 1].get()
+                      << rays_[~level & 1].get() << control_[turn] << control_[turn ^ 1];
+            frame.view_buffers.bind(*frame.prepared.on_device, trace_, arguments.count());
+            queue.enqueueNDRangeKernel(trace_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr, &piece.last);
+            if (level == 0) piece.first = piece.last;
+        }
+        if (!room.parting) return;
         Arguments(add_) << frame.view_buffers.frame() << cl_uint(first) << frame.film << sums << shares_.get();
         queue.enqueueNDRangeKernel(add_, cl::NullRange, cl::NDRange(count * local), cl::NDRange(local), nullptr, &piece.last);
-    }
-    turn_ ^= 1;
-    clean_ = true;
+    };
+    turns_.take([&](cl_uint turn) { queue.enqueueFillBuffer(control_[turn], cl_uint(0), 0, kControlBytes); }, enqueue_levels);
     return piece;
 }
 

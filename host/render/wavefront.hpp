@@ -6,6 +6,7 @@
 #include "render/kernel_source.hpp"
 #include "render/launch.hpp"
 #include "render/renderer.hpp"
+#include "render/turns.hpp"
 #include "render/view_buffers.hpp"
 
 namespace clarity {
@@ -50,9 +51,9 @@ class Wavefront {
     cl::Kernel trace_, add_;
     GrowingBuffer rays_[2] = {GrowingBuffer(CL_MEM_READ_WRITE), GrowingBuffer(CL_MEM_READ_WRITE)};
     GrowingBuffer sums_{CL_MEM_READ_WRITE}, shares_{CL_MEM_READ_WRITE}, counters_{CL_MEM_READ_WRITE};
-    cl::Buffer control_[2];  // by turns: a picture's first kernel clears the other one
-    unsigned turn_ = 0, work_groups_ = 0;
-    bool clean_ = false;  // control_[turn_] is zeroes
+    cl::Buffer control_[2];  // a picture's first kernel clears the other one
+    Turns turns_;            // of control_
+    unsigned work_groups_ = 0;
 };
 
 }  // namespace clarity
