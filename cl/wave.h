@@ -9,8 +9,7 @@
 #if RT_CPU
 #define RT_WAVE 1u
 #elif defined(RT_WARP_VOTES)
-#define RT_WAVE_IS_WARP
-#define RT_WAVE 32u
+#define RT_WAVE RT_VOTERS
 #else
 #define RT_WAVE ((uint)RT_LOCAL_SIZE)
 #endif
@@ -27,7 +26,7 @@ RT_INLINE uint rt_wave_before(uint value, uint *sum, local uint *scratch)
     return 0u;
 }
 
-#elif defined(RT_WAVE_IS_WARP)
+#elif defined(RT_WARP_VOTES)
 
 RT_INLINE uint rt_wave_item(void) { return rt_voter(); }
 RT_INLINE uint rt_wave_first(uint value, local uint *scratch) { return rt_value_of(0u, value); }
@@ -78,7 +77,7 @@ RT_INLINE uint rt_wave_before(uint value, uint *sum, local uint *scratch)
 #if RT_CPU
 #define RT_WAVE_BREAK_UNLESS(condition)                                                                                          \
     if (!(condition)) break;
-#elif defined(RT_WAVE_IS_WARP)
+#elif defined(RT_WARP_VOTES)
 #define RT_WAVE_BREAK_UNLESS(condition)                                                                                          \
     if (rt_ballot(condition) == 0u) break;
 #else
@@ -87,7 +86,7 @@ RT_INLINE uint rt_wave_before(uint value, uint *sum, local uint *scratch)
 
 /* Gives out the chunks of a piece of work, each to one wave: in order, to whoever is free; *tickets counts them. Work-groups that are
  * waves take turns instead: PoCL 3.1 loses work-items where a loop with barriers is left from its middle. */
-#if RT_CPU || defined(RT_WAVE_IS_WARP)
+#if RT_CPU || defined(RT_WARP_VOTES)
 RT_INLINE uint rt_wave_ticket(volatile global uint *tickets, local uint *scratch)
 {
     uint ticket = 0u;

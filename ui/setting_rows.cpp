@@ -63,7 +63,7 @@ bool real_slider(const char* id_text, double& value, double min, double max, boo
     const BareFrames bare;
     const bool edited = ImGui::SliderFloat(id_text, &shown, static_cast<float>(min), static_cast<float>(max), format, flags);
     if (!settled(id, edited, at_once, shown, held, &PendingEdit::real)) return false;
-    read_number(exact_text(held), value);  // what is shown as 0.02 is 0.02, not the float next to it
+    value = short_double(held);
     return true;
 }
 

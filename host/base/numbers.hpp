@@ -25,4 +25,11 @@ bool read_number(std::string_view text, Number& value) {
     return true;
 }
 
+// The double that prints as the float does: 0.1, not 0.10000000149011612.
+inline double short_double(float value) {
+    double result = value;
+    read_number(exact_text(value), result);
+    return result;
+}
+
 }  // namespace clarity

@@ -16,13 +16,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The double that prints as the float does: 0.1, not 0.10000000149011612.
-double short_double(float value) {
-    double result = value;
-    read_number(exact_text(value), result);
-    return result;
-}
-
 Json vector_json(const std::array<float, 3>& v) {
     return {short_double(v[0]), short_double(v[1]), short_double(v[2])};
 }

@@ -30,15 +30,13 @@ cl::Event DisplayRelay::begin(const ColorFilm& film, const Settings& settings, b
         device_->queue().flush();  // or the other queue may wait for what is not on its way
         copies.flush();
     }
-    exposure_ = settings.exposure;
-    tone_ = settings.tone;
+    tones_ = Tones(settings);
     begun_ = std::move(image);
     return aside ? begun_.mapped_ : begun_.copied_;
 }
 
 PendingImage DisplayRelay::take(const ColorFilm& film, const Settings& settings, bool aside) {
-    const bool same = begun_ && begun_.width_ == film.width && begun_.height_ == film.height &&
-                      exposure_ == settings.exposure && tone_ == settings.tone;
+    const bool same = begun_ && begun_.width_ == film.width && begun_.height_ == film.height && tones_ == Tones(settings);
     if (!same) begin(film, settings, aside);
     return std::move(begun_);
 }

@@ -4,7 +4,6 @@
 // event. Displays are double; the memory of the host that they are copied to goes with the picture.
 #pragma once
 #include <memory>
-#include <string>
 
 #include "render/film.hpp"
 #include "render/growing_buffer.hpp"
@@ -42,8 +41,7 @@ class DisplayRelay {
     Display displays_[2];
     unsigned turn_ = 0;
     PendingImage begun_;
-    double exposure_ = 0;  // of what is begun
-    std::string tone_;
+    Tones tones_;  // of what is begun
 };
 
 }  // namespace clarity

@@ -22,6 +22,15 @@ inline unsigned value_channels(const std::string& aov) {
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
                       FrameStats* stats, FalseColorScale* scale);
 
+// What a film of colours is shown with.
+struct Tones {
+    double exposure = 0;
+    std::string tone;
+    Tones() = default;
+    explicit Tones(const Settings& settings) : exposure(settings.exposure), tone(settings.tone) {}
+    bool operator==(const Tones& other) const { return exposure == other.exposure && tone == other.tone; }
+};
+
 struct RayCounts {
     uint64_t shadow = 0, secondary = 0, dropped = 0, overflowed = 0;
 };

@@ -24,7 +24,7 @@ struct MultiFrames::Impl {
     // has it: to where, and with which tones.
     bool shown = false;
     std::shared_ptr<uint8_t> display;
-    Settings display_settings;
+    Tones display_tones;
 
     const std::string& aov() const { return prepared->first()->settings.aov; }
     FloatImage image(unsigned channels) const {
@@ -45,7 +45,7 @@ struct MultiFrames::Impl {
 
     uint8_t* place_for_display(const Settings& settings) {
         display = nullptr;
-        display_settings = settings;
+        display_tones = Tones(settings);
         if (!std::exchange(shown, false) || aov() != "color") return nullptr;
         try {
             display = room(size_t(width) * height * 4);
@@ -75,9 +75,10 @@ FrameStats MultiFrames::trace(const std::shared_ptr<const MultiPrepared>& prepar
     im.width = unsigned(settings.width);
     im.height = unsigned(settings.height);
     const unsigned end = sample + samples;
-    if (im.shared && meanwhile) meanwhile();
-    if (im.shared)
+    if (im.shared) {
+        if (meanwhile) meanwhile();
         return im.shared->trace(prepared, settings, view, sample, end, count_rays, progress, im.place_for_display(settings));
+    }
     im.samples = sample;
     const auto complete = [&](unsigned done) {
         im.samples = done;
@@ -114,8 +115,7 @@ ByteImage MultiFrames::read_display(const Settings& settings, FrameStats* stats,
     const size_t bytes = size_t(im.width) * im.height * 4;
     std::vector<std::vector<KernelTime>> times(im.shared->size());
     std::shared_ptr<uint8_t> rgba = std::exchange(im.display, nullptr);
-    const bool same_tones = im.display_settings.exposure == settings.exposure && im.display_settings.tone == settings.tone;
-    if (!rgba || !same_tones || !im.shared->displayed(times)) {
+    if (!rgba || !(im.display_tones == Tones(settings)) || !im.shared->displayed(times)) {
         rgba = im.room(bytes);
         im.shared->read([&](size_t i, Frames& frames) {
             times[i].clear();

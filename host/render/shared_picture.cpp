@@ -186,18 +186,18 @@ double SharedPicture::trace_rows(Member& member, const Samples& samples, bool co
 }
 
 void SharedPicture::trace_part(size_t index, const Batch& batch, bool count_rays, Progress& progress) {
-    const auto [begin, sample, end, fresh, display] = batch;
+    const unsigned sample = batch.sample, end = batch.end;
     Member& member = members_[index];
     const auto woken = Clock::now();
-    const auto complete = [&, sample = sample, end = end](unsigned done) {
+    const auto complete = [&](unsigned done) {
         member.samples = done;
         // Progress is told by one thread, the caller's.
         return done == end ||
                (index == 0 ? progress.report(float(done - sample) / float(end - sample)) : !progress.cancelled());
     };
     unsigned first = sample;
-    auto since = begin;  // of all devices: who gets to work late has to have less
-    if (fresh && dealer_->by_turns()) {
+    auto since = batch.begin;  // of all devices: who gets to work late has to have less
+    if (batch.fresh && dealer_->by_turns()) {
         for (auto strips = dealer_->next(index); !strips.empty(); strips = dealer_->next(index)) {
             give(member, strips);
             dealer_->took(index, strips.size(), trace_rows(member, sample, false, progress));
@@ -209,13 +209,13 @@ void SharedPicture::trace_part(size_t index, const Batch& batch, bool count_rays
         }
         if (!complete(++first)) throw Cancelled();
         since = Clock::now();
-    } else if (fresh) {
+    } else if (batch.fresh) {
         give(member, dealer_->next(index));
     }
     member.rows.begin = 0;
     if (first < end) {
-        trace_rows(member, {first, end - first, complete}, count_rays, progress, display);
-        member.displayed = display != nullptr;
+        trace_rows(member, {first, end - first, complete}, count_rays, progress, batch.display);
+        member.displayed = batch.display != nullptr;
         dealer_->took(index, member.strips.size() * (end - first), ms_since(since));
     }
     member.samples = end;
