@@ -158,7 +158,7 @@ TEST(CommandLine, EscapesInNamesAndMessagesAreShown) {
          {std::vector<std::string>{"info", scene}, std::vector<std::string>{"info", broken, "--log-file", log},
           std::vector<std::string>{"info", scratch.path("\x1b[2Jmissing")},
           std::vector<std::string>{"render", scene, "-o", scratch.path("\x1b[2J/a.png")},
-          std::vector<std::string>{"render", scene, "--\x1b[2J"}}) {
+          std::vector<std::string>{"render", scene, "-o", scratch.path("a.png"), "--\x1b[2J"}}) {
         const ProgramResult result = run_program(words);
         EXPECT_EQ((result.out + result.err).find_first_of("\x1b\x07"), std::string::npos) << result.out << result.err;
         EXPECT_NE((result.out + result.err).find("\\x1b["), std::string::npos) << result.out << result.err;
