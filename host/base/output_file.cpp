@@ -94,9 +94,10 @@ int create_temporary(const std::string& folder, std::string& name) {
         const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file < 0 && errno == EEXIST) continue;
         if (file < 0) return -1;
-        // Another process may have taken it for a leftover before the lock was set.
+        // Another process may have taken it for a leftover before the lock was set: then wait until it has removed the name.
+        while (flock(file, LOCK_EX) != 0 && errno == EINTR) {
+        }
         struct stat status {};
-        flock(file, LOCK_EX | LOCK_NB);
         if (fstat(file, &status) == 0 && status.st_nlink > 0) return file;
         ::close(file);
     }
