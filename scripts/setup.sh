@@ -5,12 +5,15 @@ build_dir=build/release
 # The compiler and its tools (make is for plugins out of tree: cmake's default there); what the program is built from; what it
 # needs to run. libgl1-mesa-dri: OpenGL without a driver of the machine's own, so that the window also opens on a virtual display.
 build_packages="g++ cmake ninja-build make pkg-config
-    ocl-icd-opencl-dev opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
-    libcli11-dev nlohmann-json3-dev libtbb-dev libimgui-dev libglfw3-dev libepoxy-dev
+    ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
+    libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev libimgui-dev libglfw3-dev libepoxy-dev
     libgl1-mesa-dri fonts-dejavu-core"
 # Tests compare with Embree, on PoCL, in a window on a virtual display.
 test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format
     xvfb xauth xdotool imagemagick"
+
+# What scripts/full_test adds.
+check_packages="clang-tidy"
 
 say() { printf '%s\n' "$*" >&2; }
 die() {

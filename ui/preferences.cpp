@@ -4,9 +4,11 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
+#include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/output_file.hpp"
+#include "base/read_file.hpp"
 #include "ui/preferences_json.hpp"
 
 namespace clarity {
@@ -38,10 +40,13 @@ Preferences load_preferences(const std::string& folder) {
     const Preferences p;
     if (folder.empty()) return p;
     const fs::path path = fs::path(folder) / "window.json";
-    std::ifstream in(path);
-    if (!in) return p;
+    std::error_code missing;
+    if (!fs::exists(path, missing)) return p;
     try {
-        return preferences_from(nlohmann::json::parse(in));
+        return preferences_from(nlohmann::json::parse(read_file(path.string(), kMaxTextFileBytes, Exit::failed)));
+    } catch (const Error& error) {
+        log(LogLevel::warning, std::string(error.what()) + "; the window starts with its defaults");
+        return p;
     } catch (const nlohmann::json::exception& error) {
         log(LogLevel::warning, path.string() + ": not understood, so the defaults are used: " + error.what());
         return p;
@@ -50,19 +55,12 @@ Preferences load_preferences(const std::string& folder) {
 
 void save_preferences(const std::string& folder, const Preferences& p) {
     if (folder.empty()) return;
-    const fs::path path = fs::path(folder) / "window.json",
-                   temporary = fs::path(folder) / ("window.json." + std::to_string(getpid()));
-    std::error_code error;
-    {
-        std::ofstream out(temporary);
-        out << to_json(p).dump(4, ' ', false, nlohmann::json::error_handler_t::replace) << "\n";
-        out.close();
-        if (!out) error = std::make_error_code(std::errc::io_error);
+    const std::string path = (fs::path(folder) / "window.json").string();
+    try {
+        write_text_file(path, to_json(p).dump(4, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    } catch (const Error& error) {
+        log(LogLevel::warning, error.what());
     }
-    if (!error) fs::rename(temporary, path, error);
-    if (!error) return;
-    log(LogLevel::warning, path.string() + ": cannot be written: " + error.message());
-    fs::remove(temporary, error);
 }
 
 }  // namespace clarity

@@ -12,6 +12,7 @@
 #include <mutex>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 
 namespace clarity {
 namespace {
@@ -84,7 +85,7 @@ std::string stderr_line(LogLevel level, const std::string& text) {
         line += ": ";
         if (color) line += "\033[0m";
     }
-    return line + text + "\n";
+    return line + printable(text) + "\n";
 }
 
 std::string file_line(LogLevel level, const std::string& text) {
@@ -95,7 +96,7 @@ std::string file_line(LogLevel level, const std::string& text) {
     char stamp[64], line_head[96];
     std::strftime(stamp, sizeof stamp, "%Y-%m-%dT%H:%M:%S", &utc);
     std::snprintf(line_head, sizeof line_head, "%s.%03ldZ %-7s ", stamp, now.tv_nsec / 1000000, level_name(level));
-    return line_head + text + "\n";
+    return line_head + printable(text) + "\n";
 }
 
 }  // namespace

@@ -7,7 +7,8 @@ namespace clarity {
 
 enum class LogLevel { debug, info, warning, error };
 
-// Thread-safe. Colour only on a terminal and without NO_COLOR.
+// Thread-safe. Colour only on a terminal and without NO_COLOR. Control characters of `text` are written as \xNN, on stderr and
+// in the file; listeners get the text as it is.
 void log(LogLevel level, const std::string& text);
 // -q: warning, default: info, -v: debug.
 void set_log_level(LogLevel least);

@@ -1,6 +1,8 @@
 #include "base/output_file.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -8,6 +10,9 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <memory>
+#include <mutex>
+#include <set>
 
 #include "base/error.hpp"
 
@@ -28,16 +33,73 @@ std::string follow_links(const std::string& path) {
     return result;
 }
 
-// Creates PATH's temporary neighbour and opens it; -1 with errno set if that fails. The name begins with a dot and tells the
-// program, so that what a power cut left can be told from a picture.
-int create_temporary(const std::string& path, std::string& temporary) {
-    static std::atomic<unsigned> number{0};
+std::string folder_of(const std::string& path) {
     const size_t slash = path.rfind('/');
-    const std::string folder = slash == std::string::npos ? "" : path.substr(0, slash + 1);
+    return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
+}
+
+// The name by which another process, or linkat(), reaches a file that has none.
+std::string descriptor_path(int file) {
+    return "/proc/self/fd/" + std::to_string(file);
+}
+
+// ".clarity-PID-N.tmp": the dot hides it, the program's name explains what a power cut left behind.
+constexpr const char *kPrefix = ".clarity-", *kSuffix = ".tmp";
+std::string next_temporary_name(const std::string& folder) {
+    static std::atomic<unsigned> number{0};
+    return folder + kPrefix + std::to_string(getpid()) + "-" + std::to_string(number++) + kSuffix;
+}
+bool is_temporary_name(const std::string& name) {
+    const size_t prefix = std::strlen(kPrefix), suffix = std::strlen(kSuffix);
+    return name.size() > prefix + suffix && name.compare(0, prefix, kPrefix) == 0 &&
+           name.compare(name.size() - suffix, suffix, kSuffix) == 0;
+}
+
+// Removes what killed processes left in `folder`. A living writer holds a lock on its file, which the system takes away when
+// the process ends, on whatever machine that shares the folder. Failures do no harm: another write tries again.
+void remove_leftovers(const std::string& folder) {
+    const std::unique_ptr<DIR, int (*)(DIR*)> all(opendir(folder.c_str()), closedir);
+    if (!all) return;
+    while (const dirent* entry = readdir(all.get())) {
+        if (!is_temporary_name(entry->d_name)) continue;
+        const int file = openat(dirfd(all.get()), entry->d_name, O_WRONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW);
+        if (file < 0) continue;
+        if (flock(file, LOCK_EX | LOCK_NB) == 0) unlinkat(dirfd(all.get()), entry->d_name, 0);
+        ::close(file);
+    }
+}
+
+// Once a folder: a sequence of pictures would otherwise list its growing folder for each of them.
+void remove_leftovers_once(const std::string& folder) {
+    static std::mutex& mutex = *new std::mutex;
+    static std::set<std::string>& done = *new std::set<std::string>;
+    {
+        const std::lock_guard<std::mutex> lock(mutex);
+        if (!done.insert(folder).second) return;
+    }
+    remove_leftovers(folder);
+}
+
+// Opens a new file in `folder`; -1 with errno set if that fails. `name` stays empty where the file system can hold a file
+// without a name, which vanishes with its writer; elsewhere (NFS, FAT) it is the file's temporary name.
+int create_temporary(const std::string& folder, std::string& name) {
+    name.clear();
+    const int nameless = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
+    if (nameless >= 0) {
+        if (access(descriptor_path(nameless).c_str(), F_OK) == 0) return nameless;
+        ::close(nameless);  // /proc is not mounted: the file could never get a name
+    }
     for (;;) {
-        temporary = folder + ".clarity-" + std::to_string(getpid()) + "-" + std::to_string(number++) + ".tmp";
-        const int file = open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-        if (file >= 0 || errno != EEXIST) return file;
+        name = next_temporary_name(folder);
+        const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+        if (file < 0 && errno == EEXIST) continue;
+        if (file < 0) return -1;
+        // Another process may have taken it for a leftover before the lock was set: then wait until it has removed the name.
+        while (flock(file, LOCK_EX) != 0 && errno == EINTR) {
+        }
+        struct stat status {};
+        if (fstat(file, &status) == 0 && status.st_nlink > 0) return file;
+        ::close(file);
     }
 }
 
@@ -52,22 +114,23 @@ std::string why_not_writable(const std::string& path) {
         return std::strerror(errno);
     }
     std::string temporary;
-    const int file = create_temporary(follow_links(path), temporary);
+    const int file = create_temporary(folder_of(follow_links(path)), temporary);
     if (file < 0) return errno == ENOENT ? "its folder does not exist; create it first" : std::strerror(errno);
+    if (!temporary.empty()) unlink(temporary.c_str());
     ::close(file);
-    unlink(temporary.c_str());
     return {};
 }
 
 }  // namespace
 
 OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
-    if (is_stream(path_)) {
-        temporary_ = path_;
+    stream_ = is_stream(path_);
+    if (stream_) {
         file_ = open(path_.c_str(), O_WRONLY | O_CLOEXEC);
     } else {
         path_ = follow_links(path_);
-        file_ = create_temporary(path_, temporary_);
+        remove_leftovers_once(folder_of(path_));
+        file_ = create_temporary(folder_of(path_), temporary_);
     }
     if (file_ < 0) {
         const int error = errno;
@@ -77,8 +140,8 @@ OutputFile::OutputFile(std::string path) : path_(std::move(path)) {
 }
 
 OutputFile::~OutputFile() {
+    if (!temporary_.empty()) unlink(temporary_.c_str());
     close();
-    if (!committed_ && !temporary_.empty() && temporary_ != path_) unlink(temporary_.c_str());
 }
 
 void OutputFile::write(const void* data, size_t bytes) {
@@ -94,16 +157,34 @@ void OutputFile::write(const void* data, size_t bytes) {
 
 void OutputFile::commit() {
     struct stat replaced {};
-    if (temporary_ != path_ && stat(path_.c_str(), &replaced) == 0) {
+    const bool replaces = !stream_ && stat(path_.c_str(), &replaced) == 0;
+    if (replaces) {
         // The old file's rights stay. A file system without rights refuses them, which does no harm.
         const bool kept = fchmod(file_, replaced.st_mode & 07777) == 0;
         if (!kept && errno != EPERM && errno != ENOTSUP) fail("cannot be given the rights of the file that it replaces", errno);
     }
+    // A link never replaces a file: then the file needs a name for the moment until rename().
+    if (!stream_ && temporary_.empty() && (replaces || !link_to(path_))) {
+        if (!replaces && errno != EEXIST) fail("cannot be put in place", errno);
+        flock(file_, LOCK_EX | LOCK_NB);  // so that nobody takes it for a leftover
+        std::string name;
+        do {
+            name = next_temporary_name(folder_of(path_));
+        } while (!link_to(name) && errno == EEXIST);
+        temporary_ = name;
+    }
+    // Network file systems report a full disk when a descriptor is closed, which has to be known before the old file goes.
+    const int other = dup(file_);
+    if (other >= 0 && ::close(other) != 0 && errno != EINTR) fail("cannot be written", errno);
+    if (!temporary_.empty() && rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be put in place", errno);
+    temporary_.clear();
     const int file = file_;
     file_ = -1;
-    if (::close(file) != 0 && errno != EINTR) fail("cannot be written", errno);  // network file systems tell here
-    if (temporary_ != path_ && rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be put in place", errno);
-    committed_ = true;
+    if (::close(file) != 0 && errno != EINTR) fail("cannot be written", errno);
+}
+
+bool OutputFile::link_to(const std::string& name) const {
+    return linkat(AT_FDCWD, descriptor_path(file_).c_str(), AT_FDCWD, name.c_str(), AT_SYMLINK_FOLLOW) == 0;
 }
 
 void OutputFile::close() {

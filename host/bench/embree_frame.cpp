@@ -15,7 +15,7 @@
 #include <cstring>
 
 #include "base/elapsed.hpp"
-#include "plugin/host_services.hpp"
+#include "base/parallel_for.hpp"
 
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__clang__)
 #define EACH_ISA __attribute__((target_clones("avx512f", "avx2", "default")))

@@ -15,8 +15,8 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/parallel_for.hpp"
 #include "bench/embree_frame.hpp"
-#include "plugin/host_services.hpp"
 
 namespace clarity {
 namespace {

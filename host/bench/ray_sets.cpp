@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/parallel_for.hpp"
 #include "bench/vec3.hpp"
-#include "plugin/host_services.hpp"
 
 namespace clarity {
 namespace {

@@ -7,8 +7,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "base/parallel_for.hpp"
 #include "bench/vec3.hpp"
-#include "plugin/host_services.hpp"
 
 namespace clarity {
 namespace {

@@ -119,7 +119,8 @@ void add_render(CLI::App& app, RenderOptions& render) {
         ->required();
     single(app.add_option("--frames", render.frames, "Numbers of the frames to render (a scene that does not move: all alike)"))
         ->type_name("A-B[/STEP]");
-    single(app.add_option("--time", render.time_s, "Time within the scene, seconds; scenes do not move yet"))
+    single(app.add_option("--time", render.time_s,
+                          "Time within the scene, seconds; ignored with a warning: scenes do not move yet"))
         ->type_name("SECONDS");
     single(app.add_option("--repeat", render.repeat, "Trace each frame N times, after one to warm up, for timing"))
         ->type_name("N");

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/printable.hpp"
 #include "cli/commands.hpp"
 #include "device/device.hpp"
 
@@ -82,12 +83,12 @@ Json device_json(const DeviceInfo& device, size_t number, const Default& chosen)
 }
 
 void print_device(const DeviceInfo& device, size_t number, const Default& chosen) {
-    std::printf("%zu = %-5s %s  [%s, %u compute units", number, device.id().c_str(), device.name.c_str(), type_name(device),
-                device.compute_units);
-    if (device.clock_mhz > 0) std::printf(" at %u MHz", device.clock_mhz);
-    std::printf(", %s, lanes %u]\n", memory_text(device.global_bytes).c_str(), lanes_of(device));
-    std::printf("          %s, driver %s\n", device.platform.c_str(), device.driver.c_str());
-    if (chosen.has(device)) std::printf("          default: %s\n", chosen.why.c_str());
+    print_text("%zu = %-5s %s  [%s, %u compute units", number, device.id().c_str(), device.name.c_str(), type_name(device),
+               device.compute_units);
+    if (device.clock_mhz > 0) print_text(" at %u MHz", device.clock_mhz);
+    print_text(", %s, lanes %u]\n", memory_text(device.global_bytes).c_str(), lanes_of(device));
+    print_text("          %s, driver %s\n", device.platform.c_str(), device.driver.c_str());
+    if (chosen.has(device)) print_text("          default: %s\n", chosen.why.c_str());
 }
 
 }  // namespace
@@ -105,9 +106,9 @@ int run_devices(bool json) {
     } else {
         for (size_t i = 0; i < devices.size(); ++i) print_device(devices[i], i, chosen);
         for (const std::string& warning : warnings)
-            if (!devices.empty()) std::printf("          %s\n", warning.c_str());  // else they are part of the error
-        if (chosen.devices.empty() && !devices.empty()) std::printf("          no default: %s\n", chosen.why.c_str());
-        if (!devices.empty()) std::fputs(kSeveral, stdout);
+            if (!devices.empty()) print_text("          %s\n", warning.c_str());  // else they are part of the error
+        if (chosen.devices.empty() && !devices.empty()) print_text("          no default: %s\n", chosen.why.c_str());
+        if (!devices.empty()) print_text("%s", kSeveral);
     }
     if (devices.empty()) choose_device({});  // throws, with what to install
     return static_cast<int>(Exit::done);

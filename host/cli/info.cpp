@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/numbers.hpp"
+#include "base/printable.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -69,7 +70,7 @@ std::string grouped(uint64_t number) {
 }
 
 void row(const char* label, const std::string& value) {
-    std::printf("  %-14s%s\n", label, value.c_str());
+    print_text("  %-14s%s\n", label, value.c_str());
 }
 
 // Nothing is said about what a scene does not have.
@@ -84,7 +85,7 @@ std::string vector_text(const std::array<float, 3>& v) {
 }
 
 void print_scene(const Scene& scene, const std::vector<std::string>& files) {
-    for (const std::string& file : files) std::printf("%s\n", file.c_str());
+    for (const std::string& file : files) print_text("%s\n", printable_line(file).c_str());
     const uint64_t placed = scene.placed_triangle_count(), faces = face_count(scene);
     std::string more;
     if (placed != scene.triangle_count()) more += ", " + grouped(scene.triangle_count()) + " of them different";
@@ -103,7 +104,7 @@ void print_scene(const Scene& scene, const std::vector<std::string>& files) {
     for (const Camera& camera : scene.cameras) {
         char fov[32];
         std::snprintf(fov, sizeof fov, "  fov %.4g deg", double(camera.fov_y_rad) * 57.29577951308232);
-        row("", (camera.name.empty() ? "(no name)" : camera.name) + fov);
+        row("", (camera.name.empty() ? "(no name)" : printable_line(camera.name)) + fov);
     }
     const Bounds bounds = scene.bounds();
     if (bounds.empty) {
@@ -127,7 +128,9 @@ int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool js
     check_scene_files(options.files);
     ProgressBar progress(quiet);
     const CancelOnSignal cancel(progress);
-    const Scene scene = import_scene(plugins, options.files, options.import, progress);
+    ImportOptions import = options.import;
+    import.log_warnings = false;  // they are part of what is printed
+    const Scene scene = import_scene(plugins, options.files, import, progress);
     progress.clear();
     if (json)  // names in files need not be UTF-8; JSON must
         std::printf("%s\n", scene_json(scene, options.files).dump(2, ' ', false, Json::error_handler_t::replace).c_str());

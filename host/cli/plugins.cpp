@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "base/printable.hpp"
 #include "cli/commands.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
@@ -98,20 +99,20 @@ constexpr const char* kIndent = "          ";
 
 void print_plugin(const PluginRecord& record) {
     const rt_plugin& plugin = *record.plugin;
-    std::printf("%-9s %s  (%s, %s)%s\n%s%s\n", plugin.accel ? "accel" : "importer", plugin.id, plugin.name, plugin.version,
-                record.shadowed ? "  SHADOWED: a library above has the same id, this one is not used" : "", kIndent,
-                record.path.c_str());
-    if (plugin.reference) std::printf("%sreference: %s\n", kIndent, plugin.reference);
+    print_text("%-9s %s  (%s, %s)%s\n%s%s\n", plugin.accel ? "accel" : "importer", plugin.id, plugin.name, plugin.version,
+               record.shadowed ? "  SHADOWED: a library above has the same id, this one is not used" : "", kIndent,
+               record.path.c_str());
+    if (plugin.reference) print_text("%sreference: %s\n", kIndent, plugin.reference);
     if (plugin.importer && plugin.importer->extensions[0]) {
-        std::printf("%sfiles:", kIndent);
-        for (const char* const* e = plugin.importer->extensions; *e; ++e) std::printf(" .%s", *e);
-        std::printf("\n");
+        print_text("%sfiles:", kIndent);
+        for (const char* const* e = plugin.importer->extensions; *e; ++e) print_text(" .%s", *e);
+        print_text("\n");
     }
     const ParameterValues defaults = default_parameters(plugin);
     for (rt_u32 i = 0; i < plugin.param_count; ++i) {
         const rt_param& param = plugin.params[i];
-        std::printf("%s%-20s %s (%s; needs a %s)\n", kIndent, parameter_text(plugin, defaults, i).c_str(), param.help,
-                    range_text(param).c_str(), effect_name(param.effect));
+        print_text("%s%-20s %s (%s; needs a %s)\n", kIndent, parameter_text(plugin, defaults, i).c_str(), param.help,
+                   range_text(param).c_str(), effect_name(param.effect));
     }
 }
 
@@ -129,10 +130,10 @@ int run_plugins(const PluginRegistry& plugins, bool json) {
         if (record.plugin)
             print_plugin(record);
         else
-            std::printf("REFUSED   %s\n%s%s\n", record.path.c_str(), kIndent, record.why.c_str());
+            print_text("REFUSED   %s\n%s%s\n", record.path.c_str(), kIndent, record.why.c_str());
     }
     if (plugins.records().empty())
-        std::printf("no plugins found; name a folder of them in CLARITY_PLUGIN_PATH, or a library with --plugin FILE\n");
+        print_text("no plugins found; name a folder of them in CLARITY_PLUGIN_PATH, or a library with --plugin FILE\n");
     return 0;
 }
 

@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "base/log.hpp"
+#include "base/printable.hpp"
 
 namespace clarity {
 namespace {
@@ -44,7 +45,7 @@ ProgressBar::~ProgressBar() {
 void ProgressBar::stage(const std::string& name) {
     log(LogLevel::debug, name);
     const std::lock_guard<std::mutex> lock(mutex_);
-    name_ = name;
+    name_ = printable_line(name);
     begun_ = Clock::now();
     if (drawn_) draw(-1, begun_);
 }

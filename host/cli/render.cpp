@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/file_watch.hpp"
 #include "base/log.hpp"
+#include "base/numbers.hpp"
 #include "base/output_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/frame_range.hpp"
@@ -42,6 +43,9 @@ class PartOf : public Progress {
     const double from_, share_;
 };
 
+// Each repetition keeps two times of 8 bytes, and one more pass warms up: this bound leaves both far from their limits.
+constexpr unsigned kMaxRepeat = 1000000;
+
 // Everything that can be found wrong before any work is done.
 void check_options(const RenderOptions& options, const Settings& settings, const FrameRange& range) {
     check_output_path(frame_path(options.output, range.first));
@@ -51,9 +55,15 @@ void check_options(const RenderOptions& options, const Settings& settings, const
     if (writes_display(options.output) && uint64_t(settings.width) * uint64_t(settings.height) > kPngMaxPixels)
         throw Error(Exit::usage, "--size: a PNG of so many pixels is beyond its encoder; write .exr or .pfm");
     if (!options.stats_file.empty() && options.stats_file != "-") check_writable(options.stats_file);
-    if (options.repeat < 1) throw Error(Exit::usage, "--repeat must be at least 1");
+    if (options.repeat < 1 || options.repeat > kMaxRepeat)
+        throw Error(Exit::usage, "--repeat " + std::to_string(options.repeat) + ": expected a number from 1 to " +
+                                     std::to_string(kMaxRepeat));
     if (!std::isfinite(options.time_s) || options.time_s < 0)
         throw Error(Exit::usage, "--time: expected seconds from the scene's start, 0 or more");
+    if (options.time_s > 0)
+        log(LogLevel::warning, "--time " + exact_text(options.time_s) +
+                                   ": ignored, because this version shows every scene at rest, as it is at time 0; leave "
+                                   "--time out");
     // A camera's numbers can be read without a scene; its name cannot.
     const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
                                                          options.trace.camera.find_first_of("0123456789+-.") != 0);
@@ -184,7 +194,6 @@ class RenderJob {
         auto scene =
             std::make_shared<const Scene>(import_scene(plugins_, options_.scene.files, options_.scene.import, progress));
         stats_.import_ms = ms_since(begin);
-        for (const std::string& warning : scene->warnings) log(LogLevel::warning, warning);
         const float aspect = float(settings_.width) / float(settings_.height);
         EditedView edited;
         edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);

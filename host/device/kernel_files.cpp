@@ -5,12 +5,11 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <mutex>
 
 #include "base/error.hpp"
+#include "base/read_file.hpp"
 
 namespace clarity {
 namespace {
@@ -24,12 +23,12 @@ const Embedded kEmbedded[] = {
 #include "kernels.inc"
 };
 
-bool read_file(const fs::path& path, std::string& text) {
+// False if there is no such file. Throws Error(kernel_build_failed) if there is one that cannot be read.
+bool read_if_present(const fs::path& path, std::string& text) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return false;
-    std::ifstream in(path, std::ios::binary);
-    text.assign(std::istreambuf_iterator<char>(in), {});
-    return !in.bad();
+    text = read_file(path.string(), kMaxTextFileBytes, Exit::kernel_build_failed);
+    return true;
 }
 
 // <checkout>/cl, or empty. A build folder has a CMakeCache.txt; an installed program has none beside it.
@@ -134,7 +133,7 @@ std::string kernel_text(const std::string& name) {
                         "kernels inside the program");
     const char* embedded = embedded_text(name);
     std::string text;
-    if (!where.kernels.empty() && read_file(where.kernels / name, text)) {
+    if (!where.kernels.empty() && read_if_present(where.kernels / name, text)) {
         if (name == "rt_types.h" && embedded)
             require_same(where.kernels / name, text, embedded,
                          "this program was compiled with, so its structs may: build the program again, or set "
@@ -152,7 +151,7 @@ std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
     std::string text;
     if (file.name)
         for (const fs::path& path : plugin_places(accel, file.name)) {
-            if (!read_file(path, text)) continue;
+            if (!read_if_present(path, text)) continue;
             if (&file == &accel.accel->types && file.text)
                 require_same(path, text, file.text,
                              std::string("plugin ") + accel.id +

@@ -27,7 +27,8 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
                                      : import_in_worker(plugins, files, options, progress);
     const std::string why = validate(scene);
     if (!why.empty()) throw Error(Exit::import_failed, files.front() + ": the imported scene is not sound: " + why);
-    for (const std::string& warning : scene.warnings) log(LogLevel::warning, warning);
+    for (const std::string& warning : scene.warnings)
+        if (options.log_warnings) log(LogLevel::warning, warning);
     return scene;
 }
 

@@ -22,8 +22,8 @@
 namespace clarity {
 namespace {
 
-// AddressSanitizer reserves terabytes of address space; there the parent's watch over resident memory must do.
-#if defined(__SANITIZE_ADDRESS__)
+// Sanitizers reserve terabytes of address space; there the parent's watch over resident memory must do.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitAddressSpace = false;
 #else
 constexpr bool kLimitAddressSpace = true;
@@ -73,7 +73,7 @@ std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, 
             const uint64_t mapped = mapped_bytes();
             limit(RLIMIT_AS, mapped + limits.memory_bytes, mapped + most, "memory", notes);
         } else {
-            notes.push_back("address space is not limited in a build with AddressSanitizer");
+            notes.push_back("address space is not limited in a build with a sanitizer");
         }
     }
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) notes.push_back("no_new_privs is not available");

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "base/read_file.hpp"
 #include "import/mesh_copy.hpp"
 #include "import/scene_sink.hpp"
 #include "import/texture.hpp"
@@ -171,10 +172,10 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string&
     if (found.path.empty()) return missing(found.why);
     const auto known = textures_.find(found.path);
     if (known != textures_.end()) return known->second;
-    std::vector<uint8_t> bytes;
+    std::string bytes;
     rt_texture texture{};
-    std::string why = read_whole_file(found.path, kMaxTexelBytes, bytes);
-    if (why.empty()) why = decode_texture(bytes.data(), bytes.size(), scene_.texels, texture);
+    std::string why = try_read_file(found.path, kMaxTexelBytes, bytes);
+    if (why.empty()) why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels, texture);
     const rt_u32 id = why.empty() ? static_cast<rt_u32>(scene_.textures.size()) : RT_NONE;
     if (why.empty()) scene_.textures.push_back(texture);
     textures_[found.path] = id;

@@ -1,9 +1,7 @@
 #include "import/texture.hpp"
 
-#include <cerrno>
 #include <climits>
 #include <cstring>
-#include <fstream>
 #include <memory>
 
 // Static: the window's libraries may bring a copy of their own.
@@ -61,19 +59,6 @@ std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width
     if (!why.empty()) return why;
     if (byte_count < 4 * uint64_t(width) * height) return "its picture in memory is shorter than its size says";
     append(bytes, width, height, texels, texture);
-    return {};
-}
-
-std::string read_whole_file(const std::string& path, uint64_t limit_bytes, std::vector<uint8_t>& bytes) {
-    errno = 0;
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    const std::streamoff size = file ? static_cast<std::streamoff>(file.tellg()) : -1;
-    if (size < 0) return std::string("cannot be read: ") + std::strerror(errno != 0 ? errno : EIO);
-    if (static_cast<uint64_t>(size) > limit_bytes)
-        return "the file has more than " + std::to_string(limit_bytes >> 20) + " MiB";
-    bytes.resize(static_cast<size_t>(size));
-    file.seekg(0);
-    if (!file.read(reinterpret_cast<char*>(bytes.data()), size)) return "cannot be read to its end";
     return {};
 }
 

@@ -19,7 +19,4 @@ std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vecto
 std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
                          rt_texture& texture);
 
-// The whole of a file of at most `limit_bytes`. Empty on success, else why not.
-std::string read_whole_file(const std::string& path, uint64_t limit_bytes, std::vector<uint8_t>& bytes);
-
 }  // namespace clarity

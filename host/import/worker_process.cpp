@@ -31,8 +31,8 @@ namespace {
 
 // ---- last words: what the parent cannot see from outside
 
-// AddressSanitizer handles crashes itself, and says more.
-#if defined(__SANITIZE_ADDRESS__)
+// Sanitizers handle crashes themselves, and say more.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kHasCrashReports = true;
 #else
 constexpr bool kHasCrashReports = false;

@@ -7,46 +7,10 @@
 #include "base/default_floats.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "plugin/thread_loop.hpp"
-#ifdef CLARITY_HAVE_TBB
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-#endif
+#include "base/parallel_for.hpp"
 
 namespace clarity {
 namespace {
-
-// The exception of the lowest index, so that a failing loop reports the same one on every run.
-class FirstException {
- public:
-    // False: a body before this one failed, its result can no longer matter.
-    bool wanted(uint32_t i) const { return i < index_.load(std::memory_order_relaxed); }
-    void keep(uint32_t i) {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        if (i >= index_) return;
-        index_ = i;
-        exception_ = std::current_exception();
-    }
-    void rethrow() const {
-        if (exception_) std::rethrow_exception(exception_);
-    }
-
- private:
-    std::mutex mutex_;
-    std::atomic<uint64_t> index_{uint64_t{1} << 32};
-    std::exception_ptr exception_;
-};
-
-template <class Body>
-void run_on_all_cores(uint32_t count, const Body& body) {
-#ifdef CLARITY_HAVE_TBB
-    // Isolated: a thread that waits for this loop takes no iteration of an outer one. A body may hold a lock or a
-    // thread-local scratch across its inner loop.
-    tbb::this_task_arena::isolate([&] { tbb::parallel_for(uint32_t{0}, count, body); });
-#else
-    thread_loop(count, body);
-#endif
-}
 
 int32_t host_fail(void* ctx, const char* why) {
     static_cast<HostServices*>(ctx)->fail(why ? why : "");
@@ -54,21 +18,6 @@ int32_t host_fail(void* ctx, const char* why) {
 }
 
 }  // namespace
-
-void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body) {
-    if (count == 0) return;
-    if (count == 1) return body(0);
-    FirstException first;
-    run_on_all_cores(count, [&](uint32_t i) {
-        if (!first.wanted(i)) return;
-        try {
-            body(i);
-        } catch (...) {
-            first.keep(i);
-        }
-    });
-    first.rethrow();
-}
 
 HostServices::HostServices(std::string who, Progress& progress) : who_(std::move(who)), progress_(progress) {
     host_.struct_bytes = sizeof(rt_host);

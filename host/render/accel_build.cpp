@@ -11,6 +11,7 @@
 #include "base/default_floats.hpp"
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/parallel_for.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/plugin_check.hpp"
 

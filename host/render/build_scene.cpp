@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "base/error.hpp"
-#include "plugin/host_services.hpp"
+#include "base/parallel_for.hpp"
 #include "render/accel_build.hpp"
 #include "render/memory_plan.hpp"
 

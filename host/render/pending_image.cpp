@@ -7,7 +7,7 @@
 
 namespace clarity {
 
-PendingImage& PendingImage::operator=(PendingImage&& other) {
+PendingImage& PendingImage::operator=(PendingImage&& other) noexcept {
     settle();
     device_ = std::move(other.device_);
     memory_ = std::move(other.memory_);

@@ -16,7 +16,7 @@ class PendingImage {
  public:
     PendingImage() = default;
     PendingImage(PendingImage&& other) = default;
-    PendingImage& operator=(PendingImage&& other);
+    PendingImage& operator=(PendingImage&& other) noexcept;
     ~PendingImage() { settle(); }
     // Waits for it; once. Throws Error(failed). times: where given, gains those of tones and copy.
     ByteImage wait(std::vector<KernelTime>* times = nullptr);

@@ -1,13 +1,10 @@
 #include "render/preset.hpp"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
 #include "base/output_file.hpp"
+#include "base/read_file.hpp"
 #include "plugin/parameters.hpp"
 
 namespace clarity {
@@ -112,10 +109,7 @@ void save_preset(const PluginRegistry& plugins, const Preset& preset, const std:
 }
 
 Preset load_preset(const PluginRegistry& plugins, const std::string& path) {
-    std::ifstream in(path, std::ios::binary);
-    if (!in) throw Error(Exit::usage, path + ": cannot be read: " + std::strerror(errno));
-    const std::string text((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-    return parse_preset(plugins, text, path);
+    return parse_preset(plugins, read_file(path, kMaxTextFileBytes, Exit::usage), path);
 }
 
 std::string render_command(const PluginRegistry& plugins, const Preset& preset, const std::vector<std::string>& files,

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstring>
 
-#include "plugin/host_services.hpp"
+#include "base/parallel_for.hpp"
 
 namespace clarity {
 namespace {

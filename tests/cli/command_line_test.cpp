@@ -110,6 +110,10 @@ TEST(CommandLine, UsageErrorsAreOneLineAndExit2AndWriteNothing) {
         {{"render", scene, "-o", out, "--frames", "99999999999"}, "99999999999"},
         {{"render", scene, "-o", out, "--repeat", "0"}, "--repeat"},
         {{"render", scene, "-o", out, "--repeat", "-1"}, "--repeat"},
+        {{"render", scene, "-o", out, "--repeat", "4294967295"}, "1000000"},
+        {{"render", scene, "-o", out, "--preset", "/dev/zero"}, "/dev/zero: is no regular file"},
+        {{"render", scene, "-o", out, "--preset", scratch.path("folder.png")}, "folder.png: is a folder"},
+        {{"render", scene, "-o", out, "--preset", scratch.path("missing.json")}, "missing.json: cannot be read: No such file"},
         {{"render", scene, "-o", out, "--time", "-1"}, "--time"},
         {{"render", scene, "-o", out, "--time", "nan"}, "--time"},
         {{"render", scene, "-o", out, "--camera", "1,2,3"}, "1,2,3"},
@@ -140,6 +144,27 @@ TEST(CommandLine, UsageErrorsAreOneLineAndExit2AndWriteNothing) {
         left.push_back(entry.path().filename().string());
     std::sort(left.begin(), left.end());
     EXPECT_EQ(left, (std::vector<std::string>{"a.scene", "folder.png"}));
+}
+
+// Names and messages that come from files are shown, not obeyed by the terminal.
+TEST(CommandLine, EscapesInNamesAndMessagesAreShown) {
+    const Scratch scratch;
+    const std::string name = "a\x1b]0;owned\x07\x1b[2J.scene", log = scratch.path("log.txt");
+    const std::string scene =
+        scratch.write(name, "camera \"c\x1b[31m\" eye 0 0 5 target 0 0 0 fov 40\nsphere center 0 0 0 radius 1\n");
+    const std::string broken = scratch.write("\x1b[31mb.scene", "sphere \x1b[2J\n");
+    std::string all;
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"info", scene}, std::vector<std::string>{"info", broken, "--log-file", log},
+          std::vector<std::string>{"info", scratch.path("\x1b[2Jmissing")},
+          std::vector<std::string>{"render", scene, "-o", scratch.path("\x1b[2J/a.png")},
+          std::vector<std::string>{"render", scene, "-o", scratch.path("a.png"), "--\x1b[2J"}}) {
+        const ProgramResult result = run_program(words);
+        EXPECT_EQ((result.out + result.err).find_first_of("\x1b\x07"), std::string::npos) << result.out << result.err;
+        EXPECT_NE((result.out + result.err).find("\\x1b["), std::string::npos) << result.out << result.err;
+    }
+    EXPECT_EQ(scratch.read("log.txt").find('\x1b'), std::string::npos);
+    EXPECT_NE(scratch.read("log.txt").find("\\x1b[31mb.scene"), std::string::npos);
 }
 
 TEST(CommandLine, ARefusedPluginThatWasNamedEndsIt) {

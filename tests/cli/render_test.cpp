@@ -116,6 +116,25 @@ TEST_F(Render, FramesAreNumbered) {
     EXPECT_EQ(scratch_.read("out/f_008.png"), scratch_.read("out/f_012.png")) << "nothing moves";
 }
 
+// `animate` is ignored with a warning of the importer, and --time with one of its own: each is said once.
+TEST_F(Render, AWarningIsSaidOnce) {
+    const auto count = [](const std::string& text, const std::string& part) {
+        size_t found = 0;
+        for (size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++found;
+        return found;
+    };
+    scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    scene_ = scratch_.write("moving.scene",
+                            "load cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\nsphere center 0 1 0 radius 1\n");
+    const ProgramResult result = run_program(words({"-o", out("a.png"), "--time", "1.5"}));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(count(result.err, "animation is not supported"), 1u) << result.err;
+    EXPECT_EQ(count(result.err, "warning: --time 1.5: ignored"), 1u) << result.err;
+    const ProgramResult info = run_program({"info", scene_});
+    EXPECT_EQ(count(info.out + info.err, "animation is not supported"), 1u) << info.out << info.err;
+    EXPECT_EQ(run_program(words({"-o", out("a.png")})).err.find("--time"), std::string::npos);
+}
+
 TEST_F(Render, CameraAndLightChangeThePicture) {
     ASSERT_EQ(run_program(words({"-o", out("a.png")})).exit_code, 0);
     ASSERT_EQ(run_program(words({"-o", out("b.png"), "--camera", "-3,2,5,0,1,0,50"})).exit_code, 0);

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "plugin/host_services.hpp"
+#include "base/parallel_for.hpp"
 
 namespace clarity::test {
 namespace {

@@ -40,10 +40,10 @@ class ImportCase : public ::testing::Test {
 
 ::testing::AssertionResult contains(const std::string& text, const std::string& part);
 
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kAddressSanitizer = true;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kSanitizer = true;
 #else
-inline constexpr bool kAddressSanitizer = false;
+inline constexpr bool kSanitizer = false;
 #endif
 
 }  // namespace clarity

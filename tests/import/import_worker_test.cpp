@@ -27,18 +27,18 @@ class Worker : public ImportCase {
         EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
         ImportCase::TearDown();
     }
-    // AddressSanitizer turns a death by signal into an exit with a report of its own.
+    // A sanitizer turns a death by signal into an exit with a report of its own.
     void expect_death(const std::string& text, const std::string& how) {
         const std::string message = failure_of_text(text);
         EXPECT_TRUE(contains(message, path("case.cltest") + ": the importer cltest ")) << text;
-        EXPECT_TRUE(contains(message, kAddressSanitizer ? "worker process" : how)) << text;
+        EXPECT_TRUE(contains(message, kSanitizer ? "worker process" : how)) << text;
     }
 };
 
 TEST_F(Worker, crashes_are_told_apart) {
     expect_death("crash", "crashed (segmentation fault) while reading");
     expect_death("recurse", "crashed (segmentation fault: stack overflow)");
-    EXPECT_TRUE(contains(failure_of_text("abort"), kAddressSanitizer ? "the importer cltest" : "crashed (aborted)"));
+    EXPECT_TRUE(contains(failure_of_text("abort"), kSanitizer ? "the importer cltest" : "crashed (aborted)"));
     EXPECT_TRUE(contains(failure_of_text("throw_in_thread"), "thrown where nobody catches"));
     EXPECT_TRUE(contains(failure_of_text("exit 0"), "ended the worker process (exit code 0) without a result"));
     EXPECT_TRUE(contains(failure_of_text("exit 42"), "exit code 42"));
@@ -55,7 +55,7 @@ TEST_F(Worker, memory_is_bounded) {
 }
 
 TEST_F(Worker, memory_follows_the_size_of_what_is_loaded) {
-    if (kAddressSanitizer) GTEST_SKIP() << "address space is not limited with AddressSanitizer";
+    if (kSanitizer) GTEST_SKIP() << "address space is not limited with a sanitizer";
     const std::string need = "reserve 1300\ntriangles good 1\n";
     EXPECT_TRUE(contains(failure_of_text(need), "no room for 1300")) << "a small file gets 1 GiB";
     file("large.cltest", need + "# " + std::string(32u << 20, 'x') + "\n");
@@ -114,7 +114,7 @@ TEST_F(Worker, cancel_answers_at_once) {
         const double answer_s = seconds_since(cancelled);
         canceller.join();
         // The promise is 0.1 s; the rest is for machines that do other things as well.
-        EXPECT_LT(answer_s, kAddressSanitizer ? 1.0 : 0.3) << text;
+        EXPECT_LT(answer_s, kSanitizer ? 1.0 : 0.3) << text;
     }
 }
 

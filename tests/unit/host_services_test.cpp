@@ -19,57 +19,6 @@ namespace {
 using clarity::Exit;
 using clarity::HostServices;
 
-TEST(ParallelFor, RunsEachIndexOnce) {
-    for (const uint32_t count : {0u, 1u, 2u, 1000u, 100000u}) {
-        std::vector<std::atomic<int>> runs(count);
-        clarity::parallel_for(count, [&](uint32_t i) { ++runs[i]; });
-        for (uint32_t i = 0; i < count; ++i) ASSERT_EQ(runs[i], 1) << i << " of " << count;
-    }
-}
-
-TEST(ParallelFor, Nests) {
-    std::atomic<uint64_t> sum{0};
-    clarity::parallel_for(16, [&](uint32_t a) {
-        clarity::parallel_for(
-            16, [&](uint32_t b) { clarity::parallel_for(16, [&](uint32_t c) { sum += uint64_t{a} * 256 + b * 16 + c; }); });
-    });
-    EXPECT_EQ(sum, uint64_t{4096} * 4095 / 2);
-}
-
-// A body that waits in an inner loop with a lock held must not be handed another body of the outer one: it would lock again.
-TEST(ParallelFor, AWaitingBodyIsNotHandedAnotherOuterOne) {
-    static thread_local int depth = 0;
-    std::atomic<int> deepest{0};
-    clarity::parallel_for(64, [&](uint32_t) {
-        ++depth;
-        deepest = std::max(deepest.load(), depth);
-        clarity::parallel_for(64, [](uint32_t) { std::this_thread::sleep_for(std::chrono::microseconds(20)); });
-        --depth;
-    });
-    EXPECT_EQ(deepest, 1);
-}
-
-TEST(ParallelFor, RethrowsTheLowestOfSeveralExceptions) {
-    for (int round = 0; round < 50; ++round) {
-        try {
-            clarity::parallel_for(1000, [](uint32_t i) {
-                if (i % 10 == 7) throw std::runtime_error(std::to_string(i));
-            });
-            FAIL() << "nothing was thrown";
-        } catch (const std::runtime_error& e) {
-            ASSERT_STREQ(e.what(), "7");
-        }
-    }
-}
-
-TEST(ParallelFor, MayBeCalledByManyThreads) {
-    std::atomic<uint64_t> sum{0};
-    std::vector<std::thread> threads;
-    for (int t = 0; t < 8; ++t) threads.emplace_back([&] { clarity::parallel_for(1000, [&](uint32_t i) { sum += i; }); });
-    for (std::thread& thread : threads) thread.join();
-    EXPECT_EQ(sum, 8u * 499500u);
-}
-
 // Runs a plugin's call and gives the Error's text; "" if there was none, "cancelled" for Cancelled.
 template <class Call>
 std::string outcome(clarity::Progress& progress, Call call, Exit code = Exit::failed) {
