@@ -227,6 +227,10 @@ class Contest {
         entry.once = [=, &set, blocks = packed] {
             Take take;
             take.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
+            const RayTuning tuning = held.frames->ray_tuning();
+            take.trial = tuning.trial;
+            take.settled = tuning.settled;
+            take.way = tuning.way;
             return take;
         };
         entry.finish = [=, &set](BenchRecord& row) {

@@ -25,6 +25,8 @@ Summary summarize(std::vector<double> values) {
     summary.q1 = quantile(values, 0.25);
     summary.median = quantile(values, 0.5);
     summary.q3 = quantile(values, 0.75);
+    summary.p95 = quantile(values, 0.95);
+    summary.p99 = quantile(values, 0.99);
     return summary;
 }
 

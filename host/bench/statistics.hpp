@@ -5,14 +5,15 @@
 namespace clarity {
 
 struct Summary {
-    double median = 0, q1 = 0, q3 = 0, min = 0, max = 0;
-    unsigned n = 0;  // 0: not measured
+    double median = 0, q1 = 0, q3 = 0, min = 0, max = 0;  // the median is called p50 wherever a person reads it
+    unsigned n = 0;                                       // 0: not measured
+    double p95 = 0, p99 = 0;                              // 0: not known, as in records of earlier versions
     // Relative spread: the middle half's width by the median. 0 for fewer than two measurements.
     double spread() const { return n > 1 && median > 0 ? (q3 - q1) / median : 0; }
 };
 
-// Quartiles by linear interpolation between the sorted values (Hyndman and Fan 1996, Sample Quantiles in Statistical Packages,
-// definition 7).
+// Quartiles and percentiles by linear interpolation between the sorted values (Hyndman and Fan 1996, Sample Quantiles in
+// Statistical Packages, definition 7).
 Summary summarize(std::vector<double> values);
 
 }  // namespace clarity
