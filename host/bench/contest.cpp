@@ -14,6 +14,7 @@
 #include "bench/analysis.hpp"
 #include "bench/bench.hpp"
 #include "bench/breakdown.hpp"
+#include "bench/failure.hpp"
 #include "bench/machine.hpp"
 #include "bench/moving.hpp"
 #include "bench/pictures.hpp"
@@ -75,10 +76,11 @@ class Contest {
             work(entry.row);
         } catch (const Cancelled&) {
             throw;
-        } catch (const Error& e) {
-            // A setting that this device or structure cannot have is no fault of anybody's.
-            entry.row.status = e.code() == Exit::usage ? RowStatus::skipped : RowStatus::failed;
-            entry.row.why = e.what();
+        } catch (const std::exception& e) {
+            // A setting that this device or structure cannot have is not a failure.
+            const auto* error = dynamic_cast<const Error*>(&e);
+            entry.row.status = error && error->code() == Exit::usage ? RowStatus::skipped : RowStatus::failed;
+            entry.row.why = failure_text(e);
         }
     }
 
@@ -349,10 +351,10 @@ class Contest {
             use(stand_.peer(kind));
         } catch (const Cancelled&) {
             throw;
-        } catch (const Error& e) {
+        } catch (const std::exception& e) {
             BenchRecord& row = add_peer_entry(kind.name + " " + kind.quality).row;
             row.status = RowStatus::failed;
-            row.why = e.what();
+            row.why = failure_text(e);
         }
     }
 

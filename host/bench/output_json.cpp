@@ -301,11 +301,19 @@ std::string bench_json(const BenchReport& report) {
     return list.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+std::string bench_json_row(const BenchReport& report, const BenchRecord& record) {
+    // The list "[\n {...}\n]" without its brackets.
+    const std::string list = Json::array({record_json(report, record)}).dump(1, ' ', false, Json::error_handler_t::replace);
+    return list.substr(2, list.size() - 4);
+}
+
 BenchReport read_bench_json(const std::string& text) {
     BenchReport report;
     size_t at = 0;
     try {
-        const Json list = Json::parse(text);
+        Json list = Json::parse(text, nullptr, false);
+        if (list.is_discarded()) list = Json::parse(text + "\n]", nullptr, false);  // of a run that was killed
+        if (list.is_discarded()) list = Json::parse(text);                          // says where the text is wrong
         if (!list.is_array()) throw Error(Exit::failed, "expected a list of records, as `clarity bench --json` writes it");
         for (; at < list.size(); ++at) {
             BenchRecord record = read_record(list[at]);

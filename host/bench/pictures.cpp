@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "bench/bench.hpp"
+#include "bench/failure.hpp"
 #include "bench/row.hpp"
 #include "bench/versus.hpp"
 #include "bench/whitted.hpp"
@@ -160,9 +161,9 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
             }
         } catch (const Cancelled&) {
             throw;
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             row.status = RowStatus::failed;
-            row.why = error.what();
+            row.why = failure_text(error);
             rows.push_back(row);
             continue;
         }

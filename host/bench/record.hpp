@@ -116,6 +116,7 @@ struct BenchReport {
     const BenchRun& run_of(const BenchRecord& record) const { return record.run == 0 ? run : joined.at(record.run - 1); }
     std::vector<std::string> notes;  // what was left out and why, for a person
     bool interrupted = false;
+    std::string failure;  // why the run ended early; "": it did not
 };
 
 }  // namespace clarity

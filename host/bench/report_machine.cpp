@@ -70,6 +70,9 @@ std::string left_out_section(const BenchReport& report, const SeriesNames& names
     for (const std::string& note : report.notes) table.add({"left out", "", "", "", note});
     std::string out = table.markup();
     if (report.interrupted) out = "<p class=\"warn\">The run was interrupted: what is here was complete by then.</p>\n" + out;
+    if (!report.failure.empty())
+        out = "<p class=\"warn\">" +
+              escape_markup("The run ended early, and what is here was complete by then: " + report.failure) + "</p>\n" + out;
     return out.empty() ? out : "<h2 id=\"left-out\">Left out</h2>\n" + out;
 }
 
