@@ -441,8 +441,7 @@ class Contest {
                 if (rows[i].status != RowStatus::ok || rows[k].fps <= 0 ||
                     same_but_overlapped(rows[k]) != same_but_overlapped(rows[i]))
                     continue;
-                rows[i].versus.peer = rows[k].variant;
-                rows[i].versus.ratio = rows[i].fps / rows[k].fps;
+                rows[i].versus = versus(rows[i], rows[k]);
             }
     }
     static std::string same_but_overlapped(const BenchRecord& row) {

@@ -21,7 +21,10 @@ Json number(double value) {
 
 Json summary_json(const Summary& s) {
     if (s.n == 0) return nullptr;
-    return {{"median", number(s.median)},
+    return {{"p50", number(s.median)},
+            {"p95", s.p95 > 0 ? number(s.p95) : Json()},
+            {"p99", s.p99 > 0 ? number(s.p99) : Json()},
+            {"median", number(s.median)},  // the name of p50 in earlier versions
             {"q1", number(s.q1)},
             {"q3", number(s.q3)},
             {"min", number(s.min)},
@@ -94,14 +97,17 @@ void get_size(const Json& json, const char* key, int& w, int& h) {
 
 Summary read_summary(const Json& json) {
     Summary s;
-    get(json, "median", s.median);
+    get(json, "median", s.median);  // records of earlier versions
+    get(json, "p50", s.median);
+    get(json, "p95", s.p95);
+    get(json, "p99", s.p99);
     get(json, "q1", s.q1);
     get(json, "q3", s.q3);
     get(json, "min", s.min);
     get(json, "max", s.max);
     get_whole(json, "n", s.n);
     // Of what was withheld only the spread is known: it is kept.
-    if (json.contains("spread") && !json.contains("median")) {
+    if (json.contains("spread") && !json.contains("median") && !json.contains("p50")) {
         s.median = s.q1 = s.q3 = 1;
         get(json, "spread", s.q3);
         s.q3 += 1;
@@ -147,6 +153,7 @@ Json versus_json(const BenchRecord& r, const std::vector<VersusMean>& means) {
     if (!mean) return nullptr;
     return {{"peer", r.versus.peer},
             {"ratio", number(r.versus.ratio)},
+            {"spread", number(r.versus.spread)},
             {"bytes_ratio", r.versus.bytes_ratio > 0 ? number(r.versus.bytes_ratio) : Json()},
             {"geometric_mean", number(mean->mean)},
             {"least", number(mean->least)},
@@ -221,6 +228,7 @@ BenchRecord read_record(const Json& json) {
     get(json, "sah_cost", r.sah_cost);
     get(part(json, "versus"), "peer", r.versus.peer);
     get(part(json, "versus"), "ratio", r.versus.ratio);
+    get(part(json, "versus"), "spread", r.versus.spread);
     get(part(json, "versus"), "bytes_ratio", r.versus.bytes_ratio);
     r.parts_ms = read_parts(json, "parts_ms");
     r.within_ms = read_parts(json, "within_ms");

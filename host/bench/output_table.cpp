@@ -5,6 +5,7 @@
 
 #include "bench/output.hpp"
 #include "bench/text_table.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -62,33 +63,35 @@ std::string device_cell(const BenchReport& report, const BenchRecord& r) {
 // Frames per second by steps: the thesis's charts.
 std::string steps_table(const BenchReport& report, const std::string& suite) {
     Groups groups;
-    std::map<std::string, double> then;  // frames per second by scene, device and depth
+    std::map<std::string, const BenchRecord*> then;  // by scene, device and depth
     const auto key = [](const BenchRecord& r) { return r.scene + "\n" + r.device_id + r.device; };
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || r.measure != "frame" || !shown(r)) continue;
         groups.of(key(r) + "\n" + who(r)).push_back(&r);
-        if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = r.fps;
+        if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = &r;
     }
-    TextTable table(
-        {"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel ms", "all in", "spread %", "Mrays/s", "x then"},
-        3);
+    TextTable table({"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel p50", "all in p50", "p95", "p99",
+                     "spread %", "Mrays/s", "x then"},
+                    3);
     for (const auto& group : groups.all()) {
         const BenchRecord& last = *group.back();
         std::vector<std::string> fps(5);
         for (const BenchRecord* r : group)
             if (r->depth >= 1 && r->depth <= 4) fps[r->depth] = short_number(r->fps);
         const auto naive = then.find(key(last) + "\n" + std::to_string(last.depth));
-        const bool compared = naive != then.end() && last.variant != "then" && naive->second > 0;
+        Versus by_then;
+        if (naive != then.end() && last.variant != "then") by_then = versus(last, *naive->second);
         table.add({last.scene, who(last), device_cell(report, last), fps[1], fps[2], fps[3], fps[4],
-                   short_number(last.time_ms.median), short_number(last.wall_ms.median),
-                   percent(std::max(last.time_ms.spread(), last.wall_ms.spread())), short_number(last.mrays_per_s),
-                   compared ? short_number(last.fps / naive->second) : ""});
+                   short_number(last.time_ms.median), short_number(last.wall_ms.median), short_number(last.wall_ms.p95),
+                   short_number(last.wall_ms.p99), percent(std::max(last.time_ms.spread(), last.wall_ms.spread())),
+                   short_number(last.mrays_per_s),
+                   about_same(by_then.ratio, by_then.spread) ? "same" : short_number(by_then.ratio)});
     }
     return table.empty()
                ? std::string()
                : suite +
                      ": frames per second, from the call to the pixels on the host; the right-hand columns are of the last "
-                     "step\n" +
+                     "step, in ms, p95 and p99 of all in; same: about the same, within the measured spread\n" +
                      table.text(26) + "\n";
 }
 
@@ -171,7 +174,7 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
                    build ? short_number(build->sah_cost) : "", rays("primary"), rays("shadow"), rays("reflection"),
                    rays("diffuse"), frame ? short_number(frame->time_ms.median) : "", percent(spread)});
     }
-    return table.empty() ? std::string() : suite + ": Mrays/s by kind of ray, medians\n" + table.text(28) + "\n";
+    return table.empty() ? std::string() : suite + ": Mrays/s by kind of ray, p50\n" + table.text(28) + "\n";
 }
 
 std::string analysis_table(const BenchReport& report) {

@@ -83,8 +83,7 @@ void compare_with_one(std::vector<BenchRecord>& rows) {
     for (BenchRecord& row : rows) {
         if (!one) one = &row;
         if (&row == one || row.status != RowStatus::ok || one->status != RowStatus::ok || speed(*one) <= 0) continue;
-        row.versus.peer = one->variant;
-        row.versus.ratio = speed(row) / speed(*one);
+        row.versus = versus(row, *one);
     }
 }
 

@@ -38,6 +38,7 @@ using Parts = std::vector<std::pair<std::string, double>>;
 struct Versus {
     std::string peer;        // which; "": there was none
     double ratio = 0;        // how many times as fast we are
+    double spread = 0;       // measured, of the ratio; 0: not known, as in records of earlier versions
     double bytes_ratio = 0;  // of memory, above 1 is more
 };
 

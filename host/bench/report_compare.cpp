@@ -4,6 +4,7 @@
 
 #include "bench/report_markup.hpp"
 #include "bench/report_sections.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -59,7 +60,7 @@ std::string against_peers(const RecordGroups& scenes, const SeriesNames& names) 
             }
             if (!ours || !theirs) continue;
             table.add({ours->scene, measure.title, names.label(*ours), who_is(*theirs), figure(value_of(*ours)),
-                       figure(value_of(*theirs)), figure(value_of(*ours) / value_of(*theirs))});
+                       figure(value_of(*theirs)), ratio_figure(versus(*ours, *theirs))});
         }
     return table.markup();
 }

@@ -47,15 +47,17 @@ std::string devices_of(const BenchReport& report, const SeriesNames& names) {
 }
 
 std::string rows_of(const BenchReport& report, const SeriesNames& names) {
-    MarkupTable table({"suite", "case", "series", "structure", "state", "kernels ms", "q1", "q3", "takes", "all in ms", "fps",
-                       "Mrays/s", "rays"},
+    MarkupTable table({"suite", "case", "series", "structure", "state", "kernels p50, ms", "p95", "p99", "q1", "q3", "takes",
+                       "all in p50, ms", "p95", "p99", "fps", "Mrays/s", "rays"},
                       5);
     for (const BenchRecord& r : report.records) {
         const bool shown = has_figures(r);
         table.add({r.suite, r.case_name, names.label(r), r.accel + (r.accel_params.empty() ? "" : "," + r.accel_params),
-                   status_word(r.status), shown ? figure(r.time_ms.median) : "", shown ? figure(r.time_ms.q1) : "",
+                   status_word(r.status), shown ? figure(r.time_ms.median) : "", percentile_figure(shown ? r.time_ms.p95 : 0),
+                   percentile_figure(shown ? r.time_ms.p99 : 0), shown ? figure(r.time_ms.q1) : "",
                    shown ? figure(r.time_ms.q3) : "", shown ? std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) : "",
-                   shown ? figure(r.wall_ms.median) : "", r.fps > 0 ? figure(r.fps) : "",
+                   shown ? figure(r.wall_ms.median) : "", percentile_figure(shown ? r.wall_ms.p95 : 0),
+                   percentile_figure(shown ? r.wall_ms.p99 : 0), r.fps > 0 ? figure(r.fps) : "",
                    r.mrays_per_s > 0 ? figure(r.mrays_per_s) : "", r.rays() > 0 ? figure(double(r.rays())) : ""});
     }
     return table.markup();
@@ -82,7 +84,8 @@ std::string machine_section(const BenchReport& report, const SeriesNames& names)
     const std::vector<const BenchRun*> runs = measured_runs(report);
     for (const BenchRun* run : runs) max_spread = std::max(max_spread, run->max_spread);
     out += paragraph(
-        "A figure is the median of many takes after a warm-up. What stands in one chart and comes from one run was taken "
+        "A figure is the p50 (the median) of many takes after a warm-up. What stands in one chart and comes from one run was "
+        "taken "
         "turn by turn, A B A B, so that what disturbs the machine for a while disturbs all alike. The spread is the width of "
         "the middle half by the median; where it stays above " +
         percent_figure(max_spread) +
