@@ -149,7 +149,7 @@ class Contest {
     // Medians of a frame's parts, by name.
     using Parts = std::map<std::string, std::vector<double>>;
     static void put_parts(BenchRecord& row, const Parts& parts) {
-        for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, summarize(ms).median);
+        for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, median(ms));
     }
 
     // A frame from the call to tone-mapped pixels in host memory: ms by the wall clock. What of it the device did nothing for

@@ -151,7 +151,7 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
                 team.row.fps = team.row.wall_ms.median > 0 ? 1000 / team.row.wall_ms.median : 0;
                 team.row.mrays_per_s =
                     team.row.time_ms.median > 0 ? double(team.row.rays()) / team.row.time_ms.median / 1000 : 0;
-                for (const auto& [name, values] : team.times) team.row.kernels_ms.emplace_back(name, summarize(values).median);
+                for (const auto& [name, values] : team.times) team.row.kernels_ms.emplace_back(name, median(values));
                 FloatImage picture = team.frames->read_values();
                 if (truth.pixels.empty())
                     truth = std::move(picture);

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/statistics.hpp"
+#include "base/statistics.hpp"
 
 namespace clarity {
 

@@ -16,4 +16,7 @@ struct Summary {
 // Statistical Packages, definition 7).
 Summary summarize(std::vector<double> values);
 
+// The mean of the middle two of an even number; 0 of none.
+double median(std::vector<double> values);
+
 }  // namespace clarity

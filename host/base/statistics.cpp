@@ -1,7 +1,8 @@
-#include "bench/statistics.hpp"
+#include "base/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace clarity {
 namespace {
@@ -28,6 +29,10 @@ Summary summarize(std::vector<double> values) {
     summary.p95 = quantile(values, 0.95);
     summary.p99 = quantile(values, 0.99);
     return summary;
+}
+
+double median(std::vector<double> values) {
+    return summarize(std::move(values)).median;
 }
 
 }  // namespace clarity
