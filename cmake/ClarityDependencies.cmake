@@ -1,7 +1,8 @@
 # Finds what Clarity stands on. A part whose library is missing is left out, and the report at the end of the configuration
-# says which and why; only an OpenCL loader, its C++ headers and the header-only libraries are required.
+# says which and why; only an OpenCL loader, its C++ headers, zlib and the header-only libraries are required.
 find_package(Threads REQUIRED)
 find_package(OpenCL REQUIRED)
+find_package(ZLIB REQUIRED)  # zlib1g-dev
 
 set(CLARITY_LEFT_OUT "")
 function(clarity_left_out what why)
