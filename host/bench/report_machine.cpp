@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "bench/record_fields.hpp"
 #include "bench/report_markup.hpp"
 #include "bench/report_sections.hpp"
 
@@ -47,18 +48,26 @@ std::string devices_of(const BenchReport& report, const SeriesNames& names) {
 }
 
 std::string rows_of(const BenchReport& report, const SeriesNames& names) {
-    MarkupTable table({"suite", "case", "series", "structure", "state", "kernels p50, ms", "p95", "p99", "q1", "q3", "takes",
-                       "all in p50, ms", "p95", "p99", "fps", "Mrays/s", "rays"},
-                      5);
+    constexpr const char* kKeys[] = {"fps", "mrays_per_s", "rays"};
+    std::vector<std::string> head = {"suite", "case", "series", "structure", "state", "takes"};
+    for (const char* clock : {"kernels ", "all in "})
+        for (const Field<Summary>& field : summary_fields())
+            if (field.look.title) head.push_back(std::string(clock) + field.look.title + ", " + field.look.unit);
+    for (const char* key : kKeys) head.push_back(record_field(key).look.title);
+    MarkupTable table(head, 5);
     for (const BenchRecord& r : report.records) {
         const bool shown = has_figures(r);
-        table.add({r.suite, r.case_name, names.label(r), r.accel + (r.accel_params.empty() ? "" : "," + r.accel_params),
-                   status_word(r.status), shown ? figure(r.time_ms.median) : "", percentile_figure(shown ? r.time_ms.p95 : 0),
-                   percentile_figure(shown ? r.time_ms.p99 : 0), shown ? figure(r.time_ms.q1) : "",
-                   shown ? figure(r.time_ms.q3) : "", shown ? std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) : "",
-                   shown ? figure(r.wall_ms.median) : "", percentile_figure(shown ? r.wall_ms.p95 : 0),
-                   percentile_figure(shown ? r.wall_ms.p99 : 0), r.fps > 0 ? figure(r.fps) : "",
-                   r.mrays_per_s > 0 ? figure(r.mrays_per_s) : "", r.rays() > 0 ? figure(double(r.rays())) : ""});
+        std::vector<std::string> cells = {r.suite,
+                                          r.case_name,
+                                          names.label(r),
+                                          r.accel + (r.accel_params.empty() ? "" : "," + r.accel_params),
+                                          status_word(r.status),
+                                          shown ? std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) : ""};
+        for (const Summary* times : {&r.time_ms, &r.wall_ms})
+            for (const Field<Summary>& field : summary_fields())
+                if (field.look.title) cells.push_back(figure_or_nothing(shown ? field.number(*times) : 0));
+        for (const char* key : kKeys) cells.push_back(figure_or_nothing(record_field(key).number(r)));
+        table.add(cells);
     }
     return table.markup();
 }

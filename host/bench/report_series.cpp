@@ -93,8 +93,8 @@ std::string ratio_figure(const Versus& versus) {
     return versus.ratio > 0 ? figure(versus.ratio) : std::string();
 }
 
-std::string percentile_figure(double ms) {
-    return ms > 0 ? figure(ms) : std::string();
+std::string figure_or_nothing(double value) {
+    return value > 0 ? figure(value) : std::string();
 }
 
 std::string hint_of(const BenchRecord& r) {

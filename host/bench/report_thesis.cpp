@@ -80,8 +80,8 @@ std::string table_of(const RecordGroups& rows, const SeriesNames& names) {
         Versus by_then;
         if (naive != then.end() && last->variant != "then") by_then = versus(*last, *naive->second);
         table.add({test ? test->title : last->scene, names.label(*last), fps[1], fps[2], fps[3], fps[4],
-                   figure(last->time_ms.median), figure(last->wall_ms.median), percentile_figure(last->wall_ms.p95),
-                   percentile_figure(last->wall_ms.p99),
+                   figure(last->time_ms.median), figure(last->wall_ms.median), figure_or_nothing(last->wall_ms.p95),
+                   figure_or_nothing(last->wall_ms.p99),
                    percent_figure(std::max(last->time_ms.spread(), last->wall_ms.spread())), figure(last->mrays_per_s),
                    test ? figure(last->fps / test->fps) : "", ratio_figure(by_then)});
     }
