@@ -13,7 +13,7 @@ RowsFile::RowsFile(std::string path) : path_(std::move(path)) {
 }
 
 RowsFile::~RowsFile() {
-    if (!file_ || !any_) return;
+    if (!file_ || !any_ || torn_) return;
     try {
         file_->write("\n]\n", 3);
         file_->commit();
@@ -25,7 +25,9 @@ RowsFile::~RowsFile() {
 void RowsFile::add(const BenchReport& report) {
     if (!file_ || report.records.empty()) return;
     const std::string text = (any_ ? ",\n" : "[\n") + bench_json_row(report, report.records.back());
+    torn_ = true;
     file_->write(text.data(), text.size());
+    torn_ = false;
     any_ = true;
 }
 

@@ -27,6 +27,7 @@ class RowsFile {
     const std::string path_;
     std::unique_ptr<OutputFile> file_;  // null: a pipe or device, which cannot be replaced, or done
     bool any_ = false;
+    bool torn_ = false;  // the last row is there in part: the disk is full, say
 };
 
 }  // namespace clarity
