@@ -6,7 +6,7 @@ build_dir=build/release
 # needs to run. libgl1-mesa-dri: OpenGL without a driver of the machine's own, so that the window also opens on a virtual display.
 build_packages="g++ cmake ninja-build make pkg-config
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
-    libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev libimgui-dev libglfw3-dev libepoxy-dev
+    libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
     libgl1-mesa-dri fonts-dejavu-core"
 # Tests compare with Embree, on PoCL, in a window on a virtual display.
 test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "bench/contest.hpp"
+#include "bench/failure.hpp"
 #include "bench/machine.hpp"
 #include "bench/stand.hpp"
 #include "render/accel_choice.hpp"
@@ -78,18 +79,49 @@ class Session {
             }
             MeasureRules rules = options_.rules;
             rules.budget_s = left / double(suite_.cases.size() - i);
-            std::vector<BenchRecord> rows = run_case(stand_, plugins_, request_, c, rules, progress_);
+            std::vector<BenchRecord> rows = measure(c, rules);
             log(LogLevel::info, stage + c.suite + " " + c.name);
             for (BenchRecord& row : rows) {
                 log(LogLevel::info, row_text(row));
-                report.records.push_back(std::move(row));
+                add(report, std::move(row));
             }
         }
+    }
+
+    // Throws the error of the first scene that a person named and that could not be read, if no row has figures.
+    void throw_if_nothing(const BenchReport& report) const {
         const auto failed = [](const BenchRecord& row) { return row.status == RowStatus::failed; };
         if (first_error_ && std::all_of(report.records.begin(), report.records.end(), failed)) throw *first_error_;
     }
 
  private:
+    void add(BenchReport& report, BenchRecord row) const {
+        report.records.push_back(std::move(row));
+        if (options_.on_row) options_.on_row(report);
+    }
+
+    // Where not even the rows can be made (too little memory, say), one row says why.
+    std::vector<BenchRecord> measure(const BenchCase& c, const MeasureRules& rules) {
+        try {
+            return run_case(stand_, plugins_, request_, c, rules, progress_);
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& e) {
+            return {failed_row(c, failure_text(e))};
+        }
+    }
+
+    BenchRecord failed_row(const BenchCase& c, const std::string& why) const {
+        BenchRecord row;
+        row.suite = c.suite;
+        row.case_name = c.name;
+        row.scene = suite_.scenes[c.scene].source.name;
+        row.measure = c.measure;
+        row.status = RowStatus::failed;
+        row.why = why;
+        return row;
+    }
+
     // A scene that is not to be had is a failed row where a person named it, else a note.
     bool load(const BenchCase& c, BenchReport& report) {
         const SuiteScene& source = suite_.scenes[c.scene];
@@ -99,22 +131,17 @@ class Session {
             return true;
         } catch (const Cancelled&) {
             throw;
-        } catch (const Error& e) {
+        } catch (const std::exception& e) {
+            const std::string why = failure_text(e);
             if (request_.files.empty()) {
-                report.notes.push_back(source.source.name + " is left out: " + e.what());
+                report.notes.push_back(source.source.name + " is left out: " + why);
                 log(LogLevel::warning, report.notes.back());
                 return false;
             }
-            BenchRecord row;
-            row.suite = c.suite;
-            row.case_name = c.name;
-            row.scene = source.source.name;
-            row.measure = c.measure;
-            row.status = RowStatus::failed;
-            row.why = e.what();
-            report.records.push_back(row);
-            log(LogLevel::error, row.why);
-            if (!first_error_) first_error_ = e;
+            add(report, failed_row(c, why));
+            log(LogLevel::error, why);
+            const auto* error = dynamic_cast<const Error*>(&e);
+            if (!first_error_) first_error_ = error ? *error : Error(Exit::failed, why);
             return false;
         }
     }
@@ -174,11 +201,15 @@ BenchReport run_bench(const PluginRegistry& plugins, const BenchRequest& request
     run.load_before = load_average();
     run.max_spread = options.rules.max_spread;
     const auto begin = Clock::now();
+    Session session(plugins, request, suite, options, progress);
     try {
-        Session(plugins, request, suite, options, progress).run(report);
+        session.run(report);
     } catch (const Cancelled&) {
         report.interrupted = true;
+    } catch (const std::exception& e) {
+        report.failure = failure_text(e);
     }
+    session.throw_if_nothing(report);
     run.seconds = seconds_since(begin);
     run.clock_mhz_after = host_clock_mhz();
     run.load_after = load_average();
@@ -186,9 +217,9 @@ BenchReport run_bench(const PluginRegistry& plugins, const BenchRequest& request
 }
 
 bool all_ok(const BenchReport& report) {
-    return std::none_of(report.records.begin(), report.records.end(), [](const BenchRecord& row) {
-        return row.status == RowStatus::refused || row.status == RowStatus::failed;
-    });
+    return report.failure.empty() && std::none_of(report.records.begin(), report.records.end(), [](const BenchRecord& row) {
+               return row.status == RowStatus::refused || row.status == RowStatus::failed;
+           });
 }
 
 }  // namespace clarity

@@ -28,7 +28,7 @@ double median_of(const std::vector<KernelTime>& kernels, const char* name) {
     std::vector<double> ms;
     for (const KernelTime& kernel : kernels)
         if (kernel.name == name) ms.push_back(kernel.ms);
-    return summarize(ms).median;
+    return median(ms);
 }
 
 }  // namespace

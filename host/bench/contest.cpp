@@ -14,6 +14,7 @@
 #include "bench/analysis.hpp"
 #include "bench/bench.hpp"
 #include "bench/breakdown.hpp"
+#include "bench/failure.hpp"
 #include "bench/machine.hpp"
 #include "bench/moving.hpp"
 #include "bench/pictures.hpp"
@@ -75,10 +76,11 @@ class Contest {
             work(entry.row);
         } catch (const Cancelled&) {
             throw;
-        } catch (const Error& e) {
-            // A setting that this device or structure cannot have is no fault of anybody's.
-            entry.row.status = e.code() == Exit::usage ? RowStatus::skipped : RowStatus::failed;
-            entry.row.why = e.what();
+        } catch (const std::exception& e) {
+            // A setting that this device or structure cannot have is not a failure.
+            const auto* error = dynamic_cast<const Error*>(&e);
+            entry.row.status = error && error->code() == Exit::usage ? RowStatus::skipped : RowStatus::failed;
+            entry.row.why = failure_text(e);
         }
     }
 
@@ -147,7 +149,7 @@ class Contest {
     // Medians of a frame's parts, by name.
     using Parts = std::map<std::string, std::vector<double>>;
     static void put_parts(BenchRecord& row, const Parts& parts) {
-        for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, summarize(ms).median);
+        for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, median(ms));
     }
 
     // A frame from the call to tone-mapped pixels in host memory: ms by the wall clock. What of it the device did nothing for
@@ -227,6 +229,10 @@ class Contest {
         entry.once = [=, &set, blocks = packed] {
             Take take;
             take.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{set.any_hit, false, true});
+            const RayTuning tuning = held.frames->ray_tuning();
+            take.trial = tuning.trial;
+            take.settled = tuning.settled;
+            take.way = tuning.way;
             return take;
         };
         entry.finish = [=, &set](BenchRecord& row) {
@@ -345,10 +351,10 @@ class Contest {
             use(stand_.peer(kind));
         } catch (const Cancelled&) {
             throw;
-        } catch (const Error& e) {
+        } catch (const std::exception& e) {
             BenchRecord& row = add_peer_entry(kind.name + " " + kind.quality).row;
             row.status = RowStatus::failed;
-            row.why = e.what();
+            row.why = failure_text(e);
         }
     }
 
@@ -435,8 +441,7 @@ class Contest {
                 if (rows[i].status != RowStatus::ok || rows[k].fps <= 0 ||
                     same_but_overlapped(rows[k]) != same_but_overlapped(rows[i]))
                     continue;
-                rows[i].versus.peer = rows[k].variant;
-                rows[i].versus.ratio = rows[i].fps / rows[k].fps;
+                rows[i].versus = versus(rows[i], rows[k]);
             }
     }
     static std::string same_but_overlapped(const BenchRecord& row) {

@@ -3,6 +3,7 @@
 
 #include "bench/output.hpp"
 #include "bench/text_table.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -31,15 +32,16 @@ std::string devices_table(const BenchReport& report) {
     TextTable table({"scene", "", "shares", "picture ms", "traced ms", "tone map", "read-back", "spread %", "x the first"}, 3);
     for (const BenchRecord& r : report.records) {
         if ((r.measure != "picture" && r.measure != "moving") || r.status != RowStatus::ok) continue;
-        char spread[16], ratio[16] = "";
+        char spread[16];
         std::snprintf(spread, sizeof spread, "%.1f", 100 * std::max(r.time_ms.spread(), r.wall_ms.spread()));
-        if (r.versus.ratio > 0) std::snprintf(ratio, sizeof ratio, "%.2f", r.versus.ratio);
         table.add({r.scene, r.variant, shares(r), short_number(r.wall_ms.median), short_number(r.time_ms.median),
-                   short_number(kernel_ms(r, "tone map")), short_number(kernel_ms(r, "read-back")), spread, ratio});
+                   short_number(kernel_ms(r, "tone map")), short_number(kernel_ms(r, "read-back")), spread,
+                   ratio_text(r.versus.ratio, r.versus.spread, "same")});
     }
     return table.empty() ? std::string()
-                         : "devices: a picture with all its samples, from the call to the pixels on the host, medians, or one "
-                           "of a hundred while the camera moves; kernels' times are the slowest device's\n" +
+                         : "devices: a picture with all its samples, from the call to the pixels on the host, p50, or one of "
+                           "a hundred while the camera moves; kernels' times are the slowest device's; same: about the same, "
+                           "the difference is within the measured spread\n" +
                                table.text(26) + "\n";
 }
 

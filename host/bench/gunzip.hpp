@@ -18,7 +18,7 @@ class TemporaryFile {
     std::string path_;
 };
 
-// "dir/bunny.ply.gz" -> a file that ends in "bunny.ply", unpacked by the program gzip. Throws Error(import_failed).
+// "dir/bunny.ply.gz" -> a file that ends in "bunny.ply". Throws Error(import_failed).
 TemporaryFile gunzip(const std::string& path);
 
 }  // namespace clarity

@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "bench/failure.hpp"
 
 namespace clarity {
 namespace {
@@ -16,12 +17,16 @@ double seconds_since(Clock::time_point begin) {
 }
 
 struct Runner {
-    const Contender* contender;
+    const Contender* contender = nullptr;
     Measured result;
     double once_s = 0;  // wall time of a repetition, as the warm-up had it
+    unsigned way = 0;   // that its samples were taken by
     std::vector<double> time_ms, wall_ms;
     bool running() const { return result.status == RowStatus::ok; }
 };
+
+// A contender that tunes itself and never settles is measured as it is after so many repetitions.
+constexpr unsigned kMostTrials = 100;
 
 // One repetition; a contender that fails is out.
 bool take(Runner& runner, Take& result) {
@@ -30,23 +35,27 @@ bool take(Runner& runner, Take& result) {
         return true;
     } catch (const Cancelled&) {
         throw;
-    } catch (const Error& e) {
+    } catch (const std::exception& e) {
         runner.result.status = RowStatus::failed;
-        runner.result.why = e.what();
+        runner.result.why = failure_text(e);
         return false;
     }
 }
 
-// Twice: the first compiles, pages in and wakes threads, the second says what a repetition takes.
+// At least twice: the first repetition compiles, pages in and wakes threads, the second says how long one takes. A contender
+// that tunes itself goes on until its choice is made and confirmed, or a quarter of the budget is used up.
 void warm_up(std::vector<Runner>& runners, const MeasureRules& rules, Progress& progress) {
+    const auto first = Clock::now();
     for (Runner& runner : runners) {
-        for (int pass = 0; pass < 2 && runner.running(); ++pass) {
+        for (unsigned pass = 0; pass < kMostTrials && runner.running(); ++pass) {
             if (!progress.report(-1)) throw Cancelled();
             const auto begin = Clock::now();
-            Take ignored;
-            if (!take(runner, ignored)) break;
+            Take last;
+            if (!take(runner, last)) break;
             runner.once_s = seconds_since(begin);
+            runner.way = last.way;
             if (runner.once_s > rules.budget_s) break;
+            if (pass > 0 && (last.settled || seconds_since(first) > 0.25 * rules.budget_s)) break;
         }
         if (!runner.running() || runner.once_s * rules.few_rounds <= rules.budget_s) continue;
         char why[160];
@@ -64,6 +73,28 @@ bool all_steady(const std::vector<Runner>& runners, double spread) {
     });
 }
 
+// A repetition that is a sample: tries of a contender that tunes itself are done, but not counted. Where the tuning has chosen
+// another way than before, the samples of the old way are dropped.
+void take_sample(Runner& runner) {
+    Take t;
+    for (unsigned i = 0; i < kMostTrials; ++i) {
+        if (!take(runner, t)) return;
+        if (!t.trial) break;
+    }
+    if (t.way != runner.way) {
+        runner.time_ms.clear();
+        runner.wall_ms.clear();
+        runner.way = t.way;
+    }
+    runner.time_ms.push_back(t.time_ms);
+    runner.wall_ms.push_back(t.wall_ms);
+}
+
+bool all_have(const std::vector<Runner>& runners, size_t samples) {
+    return std::all_of(runners.begin(), runners.end(),
+                       [&](const Runner& runner) { return !runner.running() || runner.time_ms.size() >= samples; });
+}
+
 // Rounds until all are steady or the budget is used up.
 void take_rounds(std::vector<Runner>& runners, const MeasureRules& rules, double budget_s, Progress& progress) {
     const auto begin = Clock::now();
@@ -72,18 +103,15 @@ void take_rounds(std::vector<Runner>& runners, const MeasureRules& rules, double
         runner.wall_ms.clear();
     }
     for (unsigned round = 0; round < rules.max_rounds; ++round) {
-        if (round >= rules.few_rounds) {
+        if (round >= rules.few_rounds && all_have(runners, rules.few_rounds)) {
             const double used = seconds_since(begin), next = used / round;
             if (used + next > budget_s) break;
-            if (round >= rules.min_rounds && all_steady(runners, rules.goal_spread)) break;
+            if (all_have(runners, rules.min_rounds) && all_steady(runners, rules.goal_spread)) break;
         }
         for (Runner& runner : runners) {
             if (!runner.running()) continue;
             if (!progress.report(float(round) / rules.max_rounds)) throw Cancelled();
-            Take t;
-            if (!take(runner, t)) continue;
-            runner.time_ms.push_back(t.time_ms);
-            runner.wall_ms.push_back(t.wall_ms);
+            take_sample(runner);
         }
     }
 }
@@ -110,7 +138,7 @@ std::vector<Measured> measure_in_turns(const std::vector<Contender>& contenders,
                                        Progress& progress) {
     const auto begin = Clock::now();
     std::vector<Runner> runners;
-    for (const Contender& contender : contenders) runners.push_back({&contender, {}, 0, {}, {}});
+    for (const Contender& contender : contenders) runners.emplace_back().contender = &contender;
     warm_up(runners, rules, progress);
     for (unsigned attempt = 0; attempt <= rules.retries; ++attempt) {
         // Half of the budget is for the first attempt, warm-up included, the rest for all others.

@@ -14,6 +14,11 @@ namespace clarity {
 struct Take {
     double time_ms = 0;  // by the device's clock
     double wall_ms = 0;  // by the host's
+
+    // Of a contender that tunes itself (render/faster_way.hpp):
+    bool trial = false;   // a try of one of several ways: the time does not count, and the repetition is done again
+    bool settled = true;  // the way is chosen: the warm-up may end
+    unsigned way = 0;     // the number of the way; samples of another way than the last one's are dropped
 };
 
 struct Contender {

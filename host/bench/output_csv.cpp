@@ -34,9 +34,9 @@ std::vector<std::string> columns() {
     BenchReport report;
     BenchRecord full;
     full.measure = "frame";
-    full.time_ms = full.wall_ms = {1, 1, 1, 1, 1, 1};
+    full.time_ms = full.wall_ms = {1, 1, 1, 1, 1, 1, 1, 1};
     full.analysis.present = true;
-    full.versus = {"embree", 1, 1};
+    full.versus = {"embree", 1, 1, 1};
     report.records.push_back(full);
     std::vector<std::string> paths;
     const Json json = flat(report, full);

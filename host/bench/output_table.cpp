@@ -4,7 +4,9 @@
 #include <map>
 
 #include "bench/output.hpp"
+#include "bench/record_fields.hpp"
 #include "bench/text_table.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -62,33 +64,35 @@ std::string device_cell(const BenchReport& report, const BenchRecord& r) {
 // Frames per second by steps: the thesis's charts.
 std::string steps_table(const BenchReport& report, const std::string& suite) {
     Groups groups;
-    std::map<std::string, double> then;  // frames per second by scene, device and depth
+    std::map<std::string, const BenchRecord*> then;  // by scene, device and depth
     const auto key = [](const BenchRecord& r) { return r.scene + "\n" + r.device_id + r.device; };
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || r.measure != "frame" || !shown(r)) continue;
         groups.of(key(r) + "\n" + who(r)).push_back(&r);
-        if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = r.fps;
+        if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = &r;
     }
-    TextTable table(
-        {"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel ms", "all in", "spread %", "Mrays/s", "x then"},
-        3);
+    TextTable table({"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel p50", "all in p50", "p95", "p99",
+                     "spread %", "Mrays/s", "x then"},
+                    3);
     for (const auto& group : groups.all()) {
         const BenchRecord& last = *group.back();
         std::vector<std::string> fps(5);
         for (const BenchRecord* r : group)
             if (r->depth >= 1 && r->depth <= 4) fps[r->depth] = short_number(r->fps);
         const auto naive = then.find(key(last) + "\n" + std::to_string(last.depth));
-        const bool compared = naive != then.end() && last.variant != "then" && naive->second > 0;
+        Versus by_then;
+        if (naive != then.end() && last.variant != "then") by_then = versus(last, *naive->second);
         table.add({last.scene, who(last), device_cell(report, last), fps[1], fps[2], fps[3], fps[4],
-                   short_number(last.time_ms.median), short_number(last.wall_ms.median),
-                   percent(std::max(last.time_ms.spread(), last.wall_ms.spread())), short_number(last.mrays_per_s),
-                   compared ? short_number(last.fps / naive->second) : ""});
+                   short_number(last.time_ms.median), short_number(last.wall_ms.median), short_number(last.wall_ms.p95),
+                   short_number(last.wall_ms.p99), percent(std::max(last.time_ms.spread(), last.wall_ms.spread())),
+                   short_number(last.mrays_per_s),
+                   about_same(by_then.ratio, by_then.spread) ? "same" : short_number(by_then.ratio)});
     }
     return table.empty()
                ? std::string()
                : suite +
                      ": frames per second, from the call to the pixels on the host; the right-hand columns are of the last "
-                     "step\n" +
+                     "step, in ms, p95 and p99 of all in; same: about the same, within the measured spread\n" +
                      table.text(26) + "\n";
 }
 
@@ -131,6 +135,9 @@ std::vector<std::vector<const BenchRecord*>> ours_first(std::vector<std::vector<
     return groups;
 }
 
+// Columns that say what a structure costs, besides the time of its building.
+constexpr const char* kBuildKeys[] = {"mtris_per_s", "bytes_per_triangle", "sah_cost"};
+
 // One row a scene and structure or peer: what it costs and what it gives.
 std::string accel_table(const BenchReport& report, const std::string& suite) {
     Groups groups;
@@ -140,9 +147,10 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
         groups.of(r.scene + "\n" + (r.measure == "build" || !r.peer.empty() ? "" : r.device) + "\n" + who(r)).push_back(&r);
     }
     // Builds go with the rows of ours that have the same structure.
-    TextTable table({"scene", "structure", "device", "triangles", "build ms", "Mtri/s", "B/tri", "SAH", "primary", "shadow",
-                     "reflect", "diffuse", "frame ms", "worst +-%"},
-                    3);
+    std::vector<std::string> head = {"scene", "structure", "device", "triangles", "build ms"};
+    for (const char* key : kBuildKeys) head.push_back(record_field(key).look.column);
+    for (const char* word : {"primary", "shadow", "reflect", "diffuse", "frame ms", "worst +-%"}) head.push_back(word);
+    TextTable table(head, 3);
     std::map<std::string, const BenchRecord*> builds;
     for (const auto& group : groups.all())
         if (const BenchRecord* build = find(group, "build")) builds[build->scene + "\n" + who(*build)] = build;
@@ -165,25 +173,29 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
         };
         const BenchRecord* frame = find(group, "frame");
         if (!frame) frame = find(group, "whitted");
-        table.add({first.scene, who(first), only_build || !first.peer.empty() ? "" : device_cell(report, first),
-                   std::to_string(first.triangles), build ? short_number(build->time_ms.median) : "",
-                   build ? short_number(build->mtris_per_s) : "", build ? short_number(build->bytes_per_triangle) : "",
-                   build ? short_number(build->sah_cost) : "", rays("primary"), rays("shadow"), rays("reflection"),
-                   rays("diffuse"), frame ? short_number(frame->time_ms.median) : "", percent(spread)});
+        std::vector<std::string> cells = {first.scene, who(first),
+                                          only_build || !first.peer.empty() ? "" : device_cell(report, first),
+                                          std::to_string(first.triangles), build ? short_number(build->time_ms.median) : ""};
+        for (const char* key : kBuildKeys) cells.push_back(build ? shown_text(record_field(key), *build) : "");
+        for (const char* kind : {"primary", "shadow", "reflection", "diffuse"}) cells.push_back(rays(kind));
+        cells.push_back(frame ? short_number(frame->time_ms.median) : "");
+        cells.push_back(percent(spread));
+        table.add(cells);
     }
-    return table.empty() ? std::string() : suite + ": Mrays/s by kind of ray, medians\n" + table.text(28) + "\n";
+    return table.empty() ? std::string() : suite + ": Mrays/s by kind of ray, p50\n" + table.text(28) + "\n";
 }
 
 std::string analysis_table(const BenchReport& report) {
-    TextTable table(
-        {"scene", "rays", "structure", "nodes/ray", "own", "leaf tests", "lanes alive %", "warp %", "bytes/ray", "shared %"},
-        3);
+    std::vector<std::string> head = {"scene", "rays", "structure"};
+    for (const Field<Analysis>& field : analysis_fields())
+        if (field.look.column) head.push_back(field.look.column);
+    TextTable table(head, 3);
     for (const BenchRecord& r : report.records) {
-        const Analysis& a = r.analysis;
-        if (!a.present || r.status != RowStatus::ok) continue;
-        table.add({r.scene, r.measure, who(r), short_number(a.nodes_per_ray), short_number(a.own_nodes_per_ray),
-                   short_number(a.leaf_tests_per_ray), percent(a.lanes_alive), a.warp_alive > 0 ? percent(a.warp_alive) : "",
-                   short_number(a.bytes_per_ray), percent(a.bytes_shared)});
+        if (!r.analysis.present || r.status != RowStatus::ok) continue;
+        std::vector<std::string> cells = {r.scene, r.measure, who(r)};
+        for (const Field<Analysis>& field : analysis_fields())
+            if (field.look.column) cells.push_back(shown_text(field, r.analysis));
+        table.add(cells);
     }
     return table.empty()
                ? std::string()

@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "bench/bench.hpp"
+#include "bench/failure.hpp"
 #include "bench/row.hpp"
 #include "bench/versus.hpp"
 #include "bench/whitted.hpp"
@@ -82,8 +83,7 @@ void compare_with_one(std::vector<BenchRecord>& rows) {
     for (BenchRecord& row : rows) {
         if (!one) one = &row;
         if (&row == one || row.status != RowStatus::ok || one->status != RowStatus::ok || speed(*one) <= 0) continue;
-        row.versus.peer = one->variant;
-        row.versus.ratio = speed(row) / speed(*one);
+        row.versus = versus(row, *one);
     }
 }
 
@@ -151,7 +151,7 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
                 team.row.fps = team.row.wall_ms.median > 0 ? 1000 / team.row.wall_ms.median : 0;
                 team.row.mrays_per_s =
                     team.row.time_ms.median > 0 ? double(team.row.rays()) / team.row.time_ms.median / 1000 : 0;
-                for (const auto& [name, values] : team.times) team.row.kernels_ms.emplace_back(name, summarize(values).median);
+                for (const auto& [name, values] : team.times) team.row.kernels_ms.emplace_back(name, median(values));
                 FloatImage picture = team.frames->read_values();
                 if (truth.pixels.empty())
                     truth = std::move(picture);
@@ -160,9 +160,9 @@ std::vector<BenchRecord> measure_pictures(Stand& stand, const PluginRegistry& pl
             }
         } catch (const Cancelled&) {
             throw;
-        } catch (const Error& error) {
+        } catch (const std::exception& error) {
             row.status = RowStatus::failed;
-            row.why = error.what();
+            row.why = failure_text(error);
             rows.push_back(row);
             continue;
         }

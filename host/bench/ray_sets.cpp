@@ -159,10 +159,10 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
             if (!is_active(ray) || !std::isfinite(hits[i].t) || hits[i].prim < 0) continue;
             const Vec3 direction = vec(ray.direction), point = vec(ray.origin) + double(hits[i].t) * direction;
             Vec3 normal = normals.at(hits[i].prim, point);
-            if (dot(normal, direction) > 0) normal = -1 * normal;
+            if (dot(normal, direction) > 0) normal = -normal;
             const Vec3 origin = point + eps * normal;
             const Vec3 to_light = light.kind == RT_LIGHT_POINT ? vec(light.position) - origin : vec(light.position);
-            const double distance = light.kind == RT_LIGHT_POINT ? std::sqrt(dot(to_light, to_light)) : INFINITY;
+            const double distance = light.kind == RT_LIGHT_POINT ? glm::length(to_light) : INFINITY;
             sets[0].rays[i] = make_ray(origin, normalized(to_light, normal), distance);
             sets[1].rays[i] = make_ray(origin, direction - 2 * dot(direction, normal) * normal, INFINITY);
             sets[2].rays[i] = make_ray(origin, cosine_direction(normal, order[i]), INFINITY);

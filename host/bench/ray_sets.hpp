@@ -1,10 +1,10 @@
 // ray_sets.hpp -- the rays that everybody traces: made once on the host, the same for structures, settings, devices and peers.
 #pragma once
-#include <array>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "bench/vec3.hpp"
 #include "render/renderer.hpp"
 
 namespace clarity {
@@ -41,7 +41,7 @@ class SurfaceNormals {
  public:
     explicit SurfaceNormals(const Scene& scene);
     // Unit, either side, at a point of the primitive; (0, 1, 0) for one without area.
-    std::array<double, 3> at(rt_i32 prim, const std::array<double, 3>& point) const;
+    Vec3 at(rt_i32 prim, const Vec3& point) const;
 
  private:
     const Scene& scene_;

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "bench/statistics.hpp"
+#include "base/statistics.hpp"
 
 namespace clarity {
 
@@ -38,6 +38,7 @@ using Parts = std::vector<std::pair<std::string, double>>;
 struct Versus {
     std::string peer;        // which; "": there was none
     double ratio = 0;        // how many times as fast we are
+    double spread = 0;       // measured, of the ratio; 0: not known, as in records of earlier versions
     double bytes_ratio = 0;  // of memory, above 1 is more
 };
 
@@ -116,6 +117,7 @@ struct BenchReport {
     const BenchRun& run_of(const BenchRecord& record) const { return record.run == 0 ? run : joined.at(record.run - 1); }
     std::vector<std::string> notes;  // what was left out and why, for a person
     bool interrupted = false;
+    std::string failure;  // why the run ended early; "": it did not
 };
 
 }  // namespace clarity

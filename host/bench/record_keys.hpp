@@ -1,12 +1,9 @@
 // record_keys.hpp -- one record with the keys that JSON and CSV share.
 #pragma once
-#include <nlohmann/json.hpp>
-
+#include "bench/fields.hpp"
 #include "bench/output.hpp"
 
 namespace clarity {
-
-using Json = nlohmann::ordered_json;
 
 // Every key is there, null where there is nothing to say.
 Json record_json(const BenchReport& report, const BenchRecord& record);

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <map>
 
+#include "bench/record_fields.hpp"
 #include "bench/report_markup.hpp"
 #include "bench/report_sections.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -37,12 +39,16 @@ std::string chart_of(const std::vector<const BenchRecord*>& scene, const Measure
 }
 
 std::string builds_of(const std::vector<const BenchRecord*>& scene) {
-    MarkupTable table({"structure", "build ms", "Mtri/s", "bytes/triangle", "nodes", "SAH cost"}, 1);
-    for (const BenchRecord* r : scene)
-        if (r->measure == "build" && has_figures(*r))
-            table.add({who_is(*r), figure(r->time_ms.median), figure(r->mtris_per_s),
-                       r->bytes_per_triangle > 0 ? figure(r->bytes_per_triangle) : "",
-                       r->nodes > 0 ? figure(double(r->nodes)) : "", r->sah_cost > 0 ? figure(r->sah_cost) : ""});
+    constexpr const char* kKeys[] = {"mtris_per_s", "bytes_per_triangle", "nodes", "sah_cost"};
+    std::vector<std::string> head = {"structure", "build p50, ms"};
+    for (const char* key : kKeys) head.push_back(record_field(key).look.title);
+    MarkupTable table(head, 1);
+    for (const BenchRecord* r : scene) {
+        if (r->measure != "build" || !has_figures(*r)) continue;
+        std::vector<std::string> cells = {who_is(*r), figure(r->time_ms.median)};
+        for (const char* key : kKeys) cells.push_back(figure_or_nothing(record_field(key).number(*r)));
+        table.add(cells);
+    }
     return table.markup();
 }
 
@@ -59,7 +65,7 @@ std::string against_peers(const RecordGroups& scenes, const SeriesNames& names) 
             }
             if (!ours || !theirs) continue;
             table.add({ours->scene, measure.title, names.label(*ours), who_is(*theirs), figure(value_of(*ours)),
-                       figure(value_of(*theirs)), figure(value_of(*ours) / value_of(*theirs))});
+                       figure(value_of(*theirs)), ratio_figure(versus(*ours, *theirs))});
         }
     return table.markup();
 }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "bench/record_fields.hpp"
 #include "bench/report_markup.hpp"
 #include "bench/report_sections.hpp"
 
@@ -47,16 +48,26 @@ std::string devices_of(const BenchReport& report, const SeriesNames& names) {
 }
 
 std::string rows_of(const BenchReport& report, const SeriesNames& names) {
-    MarkupTable table({"suite", "case", "series", "structure", "state", "kernels ms", "q1", "q3", "takes", "all in ms", "fps",
-                       "Mrays/s", "rays"},
-                      5);
+    constexpr const char* kKeys[] = {"fps", "mrays_per_s", "rays"};
+    std::vector<std::string> head = {"suite", "case", "series", "structure", "state", "takes"};
+    for (const char* clock : {"kernels ", "all in "})
+        for (const Field<Summary>& field : summary_fields())
+            if (field.look.title) head.push_back(std::string(clock) + field.look.title + ", " + field.look.unit);
+    for (const char* key : kKeys) head.push_back(record_field(key).look.title);
+    MarkupTable table(head, 5);
     for (const BenchRecord& r : report.records) {
         const bool shown = has_figures(r);
-        table.add({r.suite, r.case_name, names.label(r), r.accel + (r.accel_params.empty() ? "" : "," + r.accel_params),
-                   status_word(r.status), shown ? figure(r.time_ms.median) : "", shown ? figure(r.time_ms.q1) : "",
-                   shown ? figure(r.time_ms.q3) : "", shown ? std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) : "",
-                   shown ? figure(r.wall_ms.median) : "", r.fps > 0 ? figure(r.fps) : "",
-                   r.mrays_per_s > 0 ? figure(r.mrays_per_s) : "", r.rays() > 0 ? figure(double(r.rays())) : ""});
+        std::vector<std::string> cells = {r.suite,
+                                          r.case_name,
+                                          names.label(r),
+                                          r.accel + (r.accel_params.empty() ? "" : "," + r.accel_params),
+                                          status_word(r.status),
+                                          shown ? std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) : ""};
+        for (const Summary* times : {&r.time_ms, &r.wall_ms})
+            for (const Field<Summary>& field : summary_fields())
+                if (field.look.title) cells.push_back(figure_or_nothing(shown ? field.number(*times) : 0));
+        for (const char* key : kKeys) cells.push_back(figure_or_nothing(record_field(key).number(r)));
+        table.add(cells);
     }
     return table.markup();
 }
@@ -70,6 +81,9 @@ std::string left_out_section(const BenchReport& report, const SeriesNames& names
     for (const std::string& note : report.notes) table.add({"left out", "", "", "", note});
     std::string out = table.markup();
     if (report.interrupted) out = "<p class=\"warn\">The run was interrupted: what is here was complete by then.</p>\n" + out;
+    if (!report.failure.empty())
+        out = "<p class=\"warn\">" +
+              escape_markup("The run ended early, and what is here was complete by then: " + report.failure) + "</p>\n" + out;
     return out.empty() ? out : "<h2 id=\"left-out\">Left out</h2>\n" + out;
 }
 
@@ -79,7 +93,8 @@ std::string machine_section(const BenchReport& report, const SeriesNames& names)
     const std::vector<const BenchRun*> runs = measured_runs(report);
     for (const BenchRun* run : runs) max_spread = std::max(max_spread, run->max_spread);
     out += paragraph(
-        "A figure is the median of many takes after a warm-up. What stands in one chart and comes from one run was taken "
+        "A figure is the p50 (the median) of many takes after a warm-up. What stands in one chart and comes from one run was "
+        "taken "
         "turn by turn, A B A B, so that what disturbs the machine for a while disturbs all alike. The spread is the width of "
         "the middle half by the median; where it stays above " +
         percent_figure(max_spread) +

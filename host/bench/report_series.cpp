@@ -4,6 +4,7 @@
 #include <array>
 
 #include "bench/report_markup.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -87,9 +88,18 @@ bool has_figures(const BenchRecord& record) {
     return record.status == RowStatus::ok && (record.time_ms.n > 0 || record.wall_ms.n > 0);
 }
 
+std::string ratio_figure(const Versus& versus) {
+    if (about_same(versus.ratio, versus.spread)) return "about the same";
+    return versus.ratio > 0 ? figure(versus.ratio) : std::string();
+}
+
+std::string figure_or_nothing(double value) {
+    return value > 0 ? figure(value) : std::string();
+}
+
 std::string hint_of(const BenchRecord& r) {
     if (r.status != RowStatus::ok) return r.why;
-    std::string text = who_is(r) + ": kernels " + figure(r.time_ms.median) + " ms, all in " + figure(r.wall_ms.median) +
+    std::string text = who_is(r) + ": kernels p50 " + figure(r.time_ms.median) + " ms, all in p50 " + figure(r.wall_ms.median) +
                        " ms, spread " + percent_figure(std::max(r.time_ms.spread(), r.wall_ms.spread())) + " of " +
                        std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) + " takes";
     if (r.rays() > 0) text += ", " + figure(double(r.rays())) + " rays";

@@ -43,6 +43,10 @@ std::vector<const BenchRun*> measured_runs(const BenchReport& report);
 std::string who_is(const BenchRecord& record);
 // Whether there are figures to be shown.
 bool has_figures(const BenchRecord& record);
+// "1.23", or "about the same" where the difference is within the measured spread; "" where nothing was compared.
+std::string ratio_figure(const Versus& versus);
+// "" for 0, which says that there is no such figure.
+std::string figure_or_nothing(double value);
 // Spread, rays, settings: shown when pointed at.
 std::string hint_of(const BenchRecord& record);
 // A bar of a record: its value, or in words why there is none.

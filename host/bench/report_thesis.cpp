@@ -4,6 +4,7 @@
 
 #include "bench/report_markup.hpp"
 #include "bench/report_sections.hpp"
+#include "bench/versus.hpp"
 
 namespace clarity {
 namespace {
@@ -57,13 +58,13 @@ std::string chart_of(const std::vector<const BenchRecord*>& scene, const SeriesN
 
 // One row a scene, device and design; then the share of each kernel.
 std::string table_of(const RecordGroups& rows, const SeriesNames& names) {
-    std::map<std::string, double> then;
+    std::map<std::string, const BenchRecord*> then;
     for (const auto& row : rows.all())
         for (const BenchRecord* r : row)
             if (r->variant == "then" && has_figures(*r))
-                then[r->scene + "\n" + r->device + "\n" + std::to_string(r->depth)] = r->fps;
-    MarkupTable table({"test", "design", "1 step", "2 steps", "3 steps", "4 steps", "kernels, ms", "all in, ms", "spread",
-                       "Mrays/s", "x thesis's axis", "x then"},
+                then[r->scene + "\n" + r->device + "\n" + std::to_string(r->depth)] = r;
+    MarkupTable table({"test", "design", "1 step", "2 steps", "3 steps", "4 steps", "kernels p50, ms", "all in p50, ms", "p95",
+                       "p99", "spread", "Mrays/s", "x thesis's axis", "x then"},
                       2);
     for (const auto& row : rows.all()) {
         std::vector<std::string> fps(5);
@@ -76,11 +77,13 @@ std::string table_of(const RecordGroups& rows, const SeriesNames& names) {
         if (!last) continue;
         const ThesisTest* test = test_of(last->scene);
         const auto naive = then.find(last->scene + "\n" + last->device + "\n" + std::to_string(last->depth));
-        table.add(
-            {test ? test->title : last->scene, names.label(*last), fps[1], fps[2], fps[3], fps[4], figure(last->time_ms.median),
-             figure(last->wall_ms.median), percent_figure(std::max(last->time_ms.spread(), last->wall_ms.spread())),
-             figure(last->mrays_per_s), test ? figure(last->fps / test->fps) : "",
-             naive != then.end() && last->variant != "then" && naive->second > 0 ? figure(last->fps / naive->second) : ""});
+        Versus by_then;
+        if (naive != then.end() && last->variant != "then") by_then = versus(*last, *naive->second);
+        table.add({test ? test->title : last->scene, names.label(*last), fps[1], fps[2], fps[3], fps[4],
+                   figure(last->time_ms.median), figure(last->wall_ms.median), figure_or_nothing(last->wall_ms.p95),
+                   figure_or_nothing(last->wall_ms.p99),
+                   percent_figure(std::max(last->time_ms.spread(), last->wall_ms.spread())), figure(last->mrays_per_s),
+                   test ? figure(last->fps / test->fps) : "", ratio_figure(by_then)});
     }
     return table.markup();
 }

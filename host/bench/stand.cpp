@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
+#include "base/memory_text.hpp"
 #include "base/numbers.hpp"
 #include "bench/machine.hpp"
 #include "bench/subdivide.hpp"
@@ -27,11 +28,11 @@ std::string key_of(size_t device, const Settings& settings) {
 void check_memory(uint64_t triangles) {
     const uint64_t free = free_memory_bytes();
     if (free == 0 || triangles * kBytesPerTriangle <= free) return;
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "%.1f M triangles would take about %.1f GB of memory, %.1f GB are free: take a smaller --max-triangles",
-                  1e-6 * double(triangles), 1e-9 * double(triangles * kBytesPerTriangle), 1e-9 * double(free));
-    throw Error(Exit::failed, text);
+    char millions[32];
+    std::snprintf(millions, sizeof millions, "%.1f M", 1e-6 * double(triangles));
+    throw Error(Exit::failed, std::string(millions) + " triangles would take about " +
+                                  memory_text(triangles * kBytesPerTriangle) + " of memory, " + memory_text(free) +
+                                  " are free: take a smaller --max-triangles");
 }
 
 }  // namespace

@@ -56,7 +56,7 @@ Flattened flatten(const Scene& scene) {
     mesh.normals.assign(mesh.points.size(), Vec3{0, 0, 0});
     for (const auto& t : mesh.triangles) {
         const Vec3 normal = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
-        for (const rt_u32 corner : t) mesh.normals[corner] = mesh.normals[corner] + normal;
+        for (const rt_u32 corner : t) mesh.normals[corner] += normal;
     }
     for (Vec3& normal : mesh.normals) normal = normalized(normal, {0, 0, 0});
     return mesh;
@@ -68,8 +68,8 @@ double roughness(const Vec3& p, double size, double finest) {
     for (double wave = size / 4; wave > 4 * finest; wave /= 2) {
         const double k = 2 * 3.14159265358979323846 / wave;
         sum += 0.015 * wave *
-               (std::sin(k * dot(p, {0.62, 0.51, 0.60})) * std::sin(k * dot(p, {-0.55, 0.80, 0.24}) + 1) +
-                std::sin(k * dot(p, {0.33, -0.41, 0.85}) + 2));
+               (std::sin(k * dot(p, Vec3(0.62, 0.51, 0.60))) * std::sin(k * dot(p, Vec3(-0.55, 0.80, 0.24)) + 1) +
+                std::sin(k * dot(p, Vec3(0.33, -0.41, 0.85)) + 2));
     }
     return sum;
 }
@@ -153,14 +153,14 @@ Vec3 place(const Flattened& mesh, const std::array<rt_u32, 3>& t, const double w
     Vec3 flat{}, normal{};
     for (const int c : order) {
         if (weights[c] == 0) continue;
-        flat = flat + weights[c] * mesh.points[t[c]];
-        normal = normal + weights[c] * mesh.normals[t[c]];
+        flat += weights[c] * mesh.points[t[c]];
+        normal += weights[c] * mesh.normals[t[c]];
     }
     Vec3 bulged{};
     for (const int c : order) {
         if (weights[c] == 0) continue;
         const double height = dot(flat - mesh.points[t[c]], mesh.normals[t[c]]);
-        bulged = bulged + weights[c] * (flat - height * mesh.normals[t[c]]);
+        bulged += weights[c] * (flat - height * mesh.normals[t[c]]);
     }
     constexpr double kBulge = 0.75;  // the paper's choice between flat and round
     const Vec3 p = (1 - kBulge) * flat + kBulge * bulged;

@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace clarity {
 namespace {
 
 bool measured(const BenchRecord& record) {
     return record.status == RowStatus::ok && speed(record) > 0;
+}
+
+// Whether whole pictures were timed: these are counted by the host's clock.
+bool is_picture(const BenchRecord& record) {
+    const std::string& m = record.measure;
+    return m == "frame" || m == "whitted" || m == "picture" || m == "moving";
 }
 
 bool ends_with(const std::string& text, const std::string& end) {
@@ -34,8 +41,32 @@ std::string like_quality(const std::string& accel) {
 
 double speed(const BenchRecord& record) {
     if (record.measure == "build") return record.mtris_per_s;
-    const bool whole = record.measure == "frame" || record.measure == "whitted" || record.measure == "picture";
-    return whole ? record.fps : record.mrays_per_s;
+    return is_picture(record) ? record.fps : record.mrays_per_s;
+}
+
+double speed_spread(const BenchRecord& record) {
+    return (is_picture(record) ? record.wall_ms : record.time_ms).spread();
+}
+
+Versus versus(const BenchRecord& row, const BenchRecord& other) {
+    Versus result;
+    result.peer = other.peer.empty() ? other.variant : other.peer;
+    if (speed(other) <= 0) return result;
+    result.ratio = speed(row) / speed(other);
+    result.spread = std::hypot(speed_spread(row), speed_spread(other));
+    return result;
+}
+
+bool about_same(double ratio, double spread) {
+    return ratio > 0 && std::max(ratio, 1 / ratio) <= 1 + spread;
+}
+
+std::string ratio_text(double ratio, double spread, const char* same) {
+    if (!(ratio > 0)) return {};
+    if (about_same(ratio, spread)) return same;
+    char text[16];
+    std::snprintf(text, sizeof text, "%.2f", ratio);
+    return text;
 }
 
 void compare_with_peers(std::vector<BenchRecord>& rows) {
@@ -43,8 +74,7 @@ void compare_with_peers(std::vector<BenchRecord>& rows) {
         if (!row.peer.empty() || !measured(row)) continue;
         const BenchRecord* const best = best_peer(rows, row);
         if (!best) continue;
-        row.versus.peer = best->peer;
-        row.versus.ratio = speed(row) / speed(*best);
+        row.versus = versus(row, *best);
         if (best->accel_bytes > 0) row.versus.bytes_ratio = double(row.accel_bytes) / double(best->accel_bytes);
     }
 }
@@ -54,15 +84,20 @@ std::vector<VersusMean> versus_means(const BenchReport& report) {
     for (const BenchRecord& r : report.records) {
         if (r.versus.peer.empty() || r.status != RowStatus::ok) continue;
         auto* mean = const_cast<VersusMean*>(mean_of(means, r));
-        if (!mean) mean = &means.emplace_back(VersusMean{r.suite, r.variant, r.device_id, r.measure, r.run, 0, 0, 0, {}});
+        if (!mean) mean = &means.emplace_back(VersusMean{r.suite, r.variant, r.device_id, r.measure, r.run, 0, 0, 0, {}, 0, 0});
         if (mean->rows == 0 || r.versus.ratio < mean->least) {
             mean->least = r.versus.ratio;
             mean->least_scene = r.scene;
+            mean->least_spread = r.versus.spread;
         }
         mean->mean += std::log(r.versus.ratio);  // a sum of logarithms until all are in
+        mean->mean_spread = std::hypot(mean->mean_spread, r.versus.spread);
         ++mean->rows;
     }
-    for (VersusMean& mean : means) mean.mean = std::exp(mean.mean / mean.rows);
+    for (VersusMean& mean : means) {
+        mean.mean = std::exp(mean.mean / mean.rows);
+        mean.mean_spread /= mean.rows;
+    }
     return means;
 }
 

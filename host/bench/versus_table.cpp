@@ -1,6 +1,5 @@
 // versus_table.cpp -- how many times the best peer we are: scenes down, measures across, and what comes out of them.
 #include <algorithm>
-#include <cstdio>
 
 #include "bench/output.hpp"
 #include "bench/text_table.hpp"
@@ -11,18 +10,13 @@ namespace {
 
 constexpr const char* kMeasures[] = {"primary", "shadow", "reflection", "diffuse", "whitted", "build"};
 
-std::string ratio_text(double ratio) {
-    char text[16];
-    std::snprintf(text, sizeof text, "%.2f", ratio);
-    return ratio > 0 ? text : "";
-}
+constexpr const char* kSame = "same";
 
 // One line of the table: a structure on a device in one scene.
 struct Line {
     const BenchRecord* first;
-    double ratio[std::size(kMeasures)] = {};
+    Versus versus[std::size(kMeasures)];
     double bytes = 0;
-    std::vector<std::string> best;  // "primary packet16 high"
 };
 
 bool together(const BenchRecord& a, const BenchRecord& b) {
@@ -32,15 +26,15 @@ bool together(const BenchRecord& a, const BenchRecord& b) {
 }
 
 void add_mean(TextTable& table, const std::vector<VersusMean>& means, const BenchRecord& of, const char* what,
-              double VersusMean::*value) {
+              double VersusMean::*value, double VersusMean::*spread) {
     std::vector<std::string> cells = {what, of.variant};
     for (const char* measure : kMeasures) {
-        double found = 0;
+        std::string found;
         for (const VersusMean& m : means)
             if (m.run == of.run && m.suite == of.suite && m.variant == of.variant && m.measure == measure &&
                 (m.device_id == of.device_id || m.measure == "build"))
-                found = m.*value;
-        cells.push_back(ratio_text(found));
+                found = ratio_text(m.*value, m.*spread, kSame);
+        cells.push_back(found);
     }
     cells.emplace_back();  // of bytes there is no mean
     table.add(cells);
@@ -55,9 +49,9 @@ std::string versus_table(const BenchReport& report) {
             std::find_if(std::begin(kMeasures), std::end(kMeasures), [&](const char* m) { return r.measure == m; });
         if (r.versus.peer.empty() || r.status != RowStatus::ok || r.suite != "cpu" || at == std::end(kMeasures)) continue;
         auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& l) { return together(*l.first, r); });
-        if (line == lines.end()) line = lines.insert(lines.end(), Line{&r, {}, 0, {}});
+        if (line == lines.end()) line = lines.insert(lines.end(), Line{&r, {}, 0});
         if (line->first->measure == "build") line->first = &r;  // so that the device is known
-        line->ratio[at - std::begin(kMeasures)] = r.versus.ratio;
+        line->versus[at - std::begin(kMeasures)] = r.versus;
         if (r.measure == "build") line->bytes = r.versus.bytes_ratio;
     }
     if (lines.empty()) return {};
@@ -65,8 +59,8 @@ std::string versus_table(const BenchReport& report) {
     std::vector<const BenchRecord*> structures;
     for (const Line& line : lines) {
         std::vector<std::string> cells = {line.first->scene, line.first->variant};
-        for (const double ratio : line.ratio) cells.push_back(ratio_text(ratio));
-        cells.push_back(ratio_text(line.bytes));
+        for (const Versus& v : line.versus) cells.push_back(ratio_text(v.ratio, v.spread, kSame));
+        cells.push_back(ratio_text(line.bytes, 0, "1.00"));
         table.add(cells);
         const auto same = [&](const BenchRecord* r) {
             return r->run == line.first->run && r->variant == line.first->variant && r->device_id == line.first->device_id;
@@ -75,11 +69,12 @@ std::string versus_table(const BenchReport& report) {
     }
     const std::vector<VersusMean> means = versus_means(report);
     for (const BenchRecord* structure : structures) {
-        add_mean(table, means, *structure, "GEOMETRIC MEAN", &VersusMean::mean);
-        add_mean(table, means, *structure, "LEAST", &VersusMean::least);
+        add_mean(table, means, *structure, "GEOMETRIC MEAN", &VersusMean::mean, &VersusMean::mean_spread);
+        add_mean(table, means, *structure, "LEAST", &VersusMean::least, &VersusMean::least_spread);
     }
     return "cpu: how many times as fast as the fastest peer in the same case (build: as the medium one, "
-           "builder=morton: low, spatial: high), medians; bytes: as many times\n" +
+           "builder=morton: low, spatial: high), p50; bytes: as many times; same: about the same, the difference is within the "
+           "measured spread\n" +
            table.text(26) + "\n";
 }
 

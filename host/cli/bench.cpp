@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 
 #include "base/error.hpp"
@@ -12,6 +13,7 @@
 #include "base/output_file.hpp"
 #include "bench/output.hpp"
 #include "bench/report.hpp"
+#include "bench/rows_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -90,6 +92,7 @@ void join(BenchReport& report, const std::vector<std::string>& files) {
     for (BenchRecord& record : report.records) all.records.push_back(std::move(record));
     all.notes = report.notes;
     all.interrupted = report.interrupted;
+    all.failure = report.failure;
     report = std::move(all);
 }
 
@@ -104,11 +107,11 @@ void check_outputs(const BenchCommand& command) {
     check_writable((std::filesystem::path(command.report_folder) / "index.html").string());
 }
 
-void write(const BenchCommand& command, const BenchReport& report) {
+void write(const BenchCommand& command, const BenchReport& report, RowsFile* rows) {
     const bool json_out = command.json_file == "-";
     const std::string text = json_out ? bench_json(report) : bench_table(report);
     std::fwrite(text.data(), 1, text.size(), stdout);
-    if (!command.json_file.empty() && !json_out) write_text_file(command.json_file, bench_json(report));
+    if (rows) rows->finish(report);
     if (!command.csv_file.empty()) write_text_file(command.csv_file, bench_csv(report));
     if (command.report_folder.empty()) return;
     write_report(command.report_folder, report);
@@ -128,6 +131,8 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
         print_list(suite);
         return static_cast<int>(Exit::done);
     }
+    std::optional<RowsFile> rows;
+    if (!command.json_file.empty() && command.json_file != "-") rows.emplace(command.json_file);
     BenchReport report;
     join(report, command.join_files);  // what cannot be read is found before anything is measured
     report = {};
@@ -136,6 +141,7 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
         options.devices = choose_devices(command.device);
         options.rules.max_spread = command.max_spread;
         options.import = command.import;
+        if (rows) options.on_row = [&](const BenchReport& so_far) { rows->add(so_far); };
         ProgressBar bar(command.quiet);
         const CancelOnSignal cancel(bar);
         report = run_bench(plugins, request, suite, options, bar);
@@ -148,10 +154,15 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
     }
     report.run.command = command.text;
     join(report, command.join_files);
-    write(command, report);
+    write(command, report, rows ? &*rows : nullptr);
     if (report.interrupted) {
         log(LogLevel::warning, "interrupted: " + std::to_string(report.records.size()) + " rows are complete and were written");
         return static_cast<int>(Exit::interrupted);
+    }
+    if (!report.failure.empty()) {
+        log(LogLevel::error, "the run ended early, and " + std::to_string(report.records.size()) +
+                                 " rows are complete and were written: " + report.failure);
+        return static_cast<int>(Exit::failed);
     }
     if (all_ok(report)) return static_cast<int>(Exit::done);
     log(LogLevel::error, "some rows are refused or failed: the table says which, why and what to do");

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "base/error.hpp"
+#include "base/memory_text.hpp"
 #include "base/printable.hpp"
 #include "cli/commands.hpp"
 #include "device/device.hpp"
@@ -55,12 +56,6 @@ Default find_default(const std::vector<DeviceInfo>& devices) {
     const bool same_kind = devices[1].gpu == best.gpu && devices[1].cpu == best.cpu;
     if (same_kind) return {{best}, std::string("most compute units x clock of every ") + type_name(best)};
     return {{best}, best.gpu ? "a GPU goes before a CPU" : "a CPU goes before other devices"};
-}
-
-std::string memory_text(uint64_t bytes) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.1f GiB", double(bytes) / double(1u << 30));
-    return text;
 }
 
 Json device_json(const DeviceInfo& device, size_t number, const Default& chosen) {

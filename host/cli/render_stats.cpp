@@ -3,17 +3,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "base/statistics.hpp"
+
 namespace clarity {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    std::sort(values.begin(), values.end());
-    const size_t middle = values.size() / 2;
-    return values.size() % 2 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 // Times to the microsecond: further digits are noise.
 double rounded(double ms) {

@@ -375,4 +375,8 @@ double Frames::trace_rays(const Prepared& prepared, const RayBlocks& rays, RayQu
     return impl_->queries.trace(prepared, rays, query, hits);
 }
 
+RayTuning Frames::ray_tuning() const {
+    return impl_->queries.tuning();
+}
+
 }  // namespace clarity

@@ -1,7 +1,6 @@
 #include "render/memory_plan.hpp"
 
 #include <algorithm>
-#include <cstdio>
 
 #include "base/error.hpp"
 
@@ -15,16 +14,6 @@ constexpr const char* kAdvice =
 constexpr const char* kSmallerNodes = "; take a structure of smaller nodes (cwbvh has the smallest)";
 
 }  // namespace
-
-std::string memory_text(uint64_t bytes) {
-    char text[32];
-    const double mebibytes = double(bytes) / (1u << 20);
-    if (mebibytes < 1000)
-        std::snprintf(text, sizeof text, "%.*f MiB", mebibytes < 10 ? 1 : 0, mebibytes);
-    else
-        std::snprintf(text, sizeof text, "%.1f GiB", mebibytes / 1024);
-    return text;
-}
 
 std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& scene, const rt_accel& accel) {
     std::vector<MemoryPiece> pieces;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "base/memory_text.hpp"
 #include "device/device.hpp"
 #include "render/accel_build.hpp"
 
@@ -29,8 +30,5 @@ std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& sce
 // Throws Error(failed), with the numbers and what to do, where the pieces do not fit into the device, or one of them is larger
 // than it allows in one piece. scene: "871414 triangles in bvh4".
 void check_fits(const std::vector<MemoryPiece>& pieces, const DeviceInfo& device, const std::string& scene);
-
-// "12.3 GiB", "512 MiB".
-std::string memory_text(uint64_t bytes);
 
 }  // namespace clarity

@@ -48,6 +48,7 @@ LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgr
 double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
     return guarded(*device_, "tracing rays", [&] {
         if (hits) hits->clear();
+        tuning_ = {};
         if (rays.ray_count() == 0) return 0.0;
         const Layout layout = make_layout(prepared.settings, device_->info().cpu);
         bool fresh = false;
@@ -75,6 +76,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
             way_ = FasterWay(static_cast<unsigned>(ways_.size()));
         }
         const KernelKind kind = ways_[way_.way()];
+        tuning_ = {way_.way(), way_.trying(), false};
         const KernelSource source =
             assemble_kernel(prepared.settings, layout, kind, features_of(*prepared.scene, prepared.accel->scene),
                             *prepared.accel->plugin, prepared.accel->defines);
@@ -93,6 +95,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
                 ? queued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out)
                 : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
         way_.took(times.device_ms);
+        tuning_.settled = way_.settled();
         if (hits) {
             std::vector<float> answers(slots * fields);
             queue.enqueueReadBuffer(out, CL_TRUE, 0, answers.size() * sizeof(float), answers.data());

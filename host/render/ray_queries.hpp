@@ -22,6 +22,8 @@ class RayQueries {
     // Returns what the kernel took, ms by the device's clock. hits: null: the answers stay on the device. Throws Error(failed)
     // if the rays were packed for other lanes.
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
+    // How the last trace() was done.
+    RayTuning tuning() const { return tuning_; }
 
  private:
     LaunchTimes trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout, size_t blocks,
@@ -49,6 +51,7 @@ class RayQueries {
     uint64_t packing_ = 0;
     std::vector<KernelKind> ways_;
     FasterWay way_;
+    RayTuning tuning_;
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
 };
 

@@ -126,6 +126,13 @@ struct RayQuery {
     bool brief = false;    // only t and prim of the nearest hit: less to write, for timing beside others who write no more
 };
 
+// How the last trace_rays() was done. Each set of rays is tried in several ways (faster_way.hpp).
+struct RayTuning {
+    unsigned way = 0;     // its number; 0 is the plain kernel
+    bool trial = false;   // a try of this way, which may be a slow one: its time is no measurement
+    bool settled = true;  // the way is chosen, and a run has confirmed it
+};
+
 // Samples of a picture, one after the other; 0 starts the film anew, n adds the n-th.
 struct Samples {
     Samples(unsigned first_sample, unsigned how_many = 1, std::function<bool(unsigned)> told = {})
@@ -175,6 +182,7 @@ class Frames {
                                    double* device_ms = nullptr);
     // The same packed beforehand for prepared.settings.lanes, for who traces them again and again: ms by the device's clock.
     double trace_rays(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits = nullptr);
+    RayTuning ray_tuning() const;
 
  private:
     struct Impl;

@@ -111,6 +111,14 @@ TEST_F(Catalog, CompressedModelsAreUnpackedAndRemoved) {
         EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), plain);
     }
     EXPECT_FALSE(fs::exists(unpacked));
+    // One that ends too early, as a broken download does, leaves nothing behind.
+    std::ifstream packed(folder_ / "a.obj.gz", std::ios::binary);
+    const std::string bytes(std::istreambuf_iterator<char>(packed), {});
+    write("short.obj.gz", bytes.substr(0, bytes.size() / 2));
+    EXPECT_THROW(gunzip((folder_ / "short.obj.gz").string()), Error);
+    write("damaged.obj.gz", bytes.substr(0, bytes.size() - 8) + std::string(8, 'x'));
+    EXPECT_THROW(gunzip((folder_ / "damaged.obj.gz").string()), Error);
+    EXPECT_THROW(gunzip((folder_ / "missing.obj.gz").string()), Error);
     write("broken.obj.gz", "no gzip at all");
     EXPECT_THROW(gunzip((folder_ / "broken.obj.gz").string()), Error);
     const BenchScene scene = scene_of_file((folder_ / "a.obj.gz").string());

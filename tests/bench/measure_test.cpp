@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "base/error.hpp"
+#include "render/faster_way.hpp"
 
 namespace {
 
@@ -31,6 +32,16 @@ TEST(Statistics, QuartilesByInterpolation) {
     EXPECT_DOUBLE_EQ(s.min, 1);
     EXPECT_DOUBLE_EQ(s.max, 4);
     EXPECT_DOUBLE_EQ(s.spread(), 0.6);
+}
+
+TEST(Statistics, PercentilesByInterpolation) {
+    std::vector<double> values;
+    for (int i = 100; i >= 0; --i) values.push_back(i);
+    const Summary s = summarize(values);
+    EXPECT_DOUBLE_EQ(s.median, 50);
+    EXPECT_DOUBLE_EQ(s.p95, 95);
+    EXPECT_DOUBLE_EQ(s.p99, 99);
+    EXPECT_DOUBLE_EQ(summarize({1, 2}).p95, 1.95);
 }
 
 TEST(Statistics, OddCountHasItsMiddleAndOutliersDoNotMatter) {
@@ -130,6 +141,73 @@ TEST(Measure, ACancelEndsIt) {
                               }};
     EXPECT_THROW(measure_in_turns({contender}, MeasureRules{}, progress), Cancelled);
     EXPECT_EQ(taken, 4);
+}
+
+TEST(Measure, ARowThatRunsOutOfMemoryFailsAlone) {
+    const Contender greedy{"greedy", []() -> Take { throw std::bad_alloc(); }};
+    Progress progress;
+    const auto measured = measure_in_turns({greedy, fake("A", {1})}, MeasureRules{}, progress);
+    EXPECT_EQ(measured[0].status, RowStatus::failed);
+    EXPECT_NE(measured[0].why.find("not enough memory"), std::string::npos) << measured[0].why;
+    EXPECT_EQ(measured[1].status, RowStatus::ok);
+}
+
+// A contender that tunes itself as rays on a GPU do. ms: what each way takes once the clock has risen; slowdown: how many times
+// as long the n-th run takes before.
+Contender tuned(
+    std::vector<double> ms, std::function<double(unsigned)> slowdown = [](unsigned) { return 1.0; }) {
+    const auto way = std::make_shared<FasterWay>(static_cast<unsigned>(ms.size()));
+    const auto runs = std::make_shared<unsigned>(0);
+    return {"tuned", [=] {
+                Take take;
+                take.way = way->way();
+                take.trial = way->trying();
+                take.time_ms = take.wall_ms = ms[take.way] * slowdown((*runs)++);
+                way->took(take.time_ms);
+                take.settled = way->settled();
+                return take;
+            }};
+}
+
+TEST(Measure, TriesOfSlowWaysAreNoSamples) {
+    MeasureRules rules;
+    rules.few_rounds = rules.min_rounds = rules.max_rounds = 3;
+    Progress progress;
+    const auto measured = measure_in_turns({tuned({2.5, 1.8, 1, 1.4, 2}), fake("other", {3})}, rules, progress);
+    EXPECT_EQ(measured[0].time_ms.n, 3u);
+    EXPECT_DOUBLE_EQ(measured[0].time_ms.min, 1);
+    EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);
+    EXPECT_DOUBLE_EQ(measured[1].time_ms.median, 3);
+}
+
+TEST(Measure, AChoiceMadeWhileTheClockRoseIsMadeAgain) {
+    MeasureRules rules;
+    rules.few_rounds = rules.min_rounds = rules.max_rounds = 3;
+    Progress progress;
+    // The clock rises so fast that the way tried last looks best; it is the slowest.
+    const auto rising = [](unsigned run) { return run < 12 ? 10.0 - 0.75 * run : 1.0; };
+    const auto measured = measure_in_turns({tuned({1, 1.1, 1.2}, rising)}, rules, progress);
+    EXPECT_EQ(measured[0].time_ms.n, 3u);
+    EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);
+}
+
+TEST(Measure, SamplesOfAWayThatWasGivenUpAreDropped) {
+    MeasureRules rules;
+    rules.few_rounds = 3;
+    rules.min_rounds = rules.max_rounds = 9;
+    Progress progress;
+    // The clock rises during the samples.
+    const auto late = [](unsigned run) { return run < 9 ? 5.0 : 1.0; };
+    const Contender base = tuned({1, 1.5}, late);
+    unsigned runs = 0;
+    const Contender contender{"A", [&] {
+                                  Take take = base.once();
+                                  take.way = ++runs > 12 ? 7 : 3;  // what the second tuning chooses
+                                  return take;
+                              }};
+    const auto measured = measure_in_turns({contender}, rules, progress);
+    EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);
+    EXPECT_EQ(measured[0].time_ms.n, 4u);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace {
 
 using namespace clarity;
 using namespace clarity::test;
-using Vec = std::array<double, 3>;
+using Vec = Vec3;
 
 double dot(const Vec& a, const Vec& b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];

@@ -2,12 +2,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "base/error.hpp"
 #include "bench/bench.hpp"
 #include "bench/output.hpp"
+#include "bench/rows_file.hpp"
+#include "unit/scratch.hpp"
 
 namespace {
 
@@ -255,6 +260,102 @@ TEST(Report, RefusedAndFailedRowsAreNotOkSkippedOnesAre) {
     EXPECT_FALSE(all_ok(report));
     report.records[0].status = RowStatus::failed;
     EXPECT_FALSE(all_ok(report));
+    report.records[0].status = RowStatus::ok;
+    EXPECT_TRUE(all_ok(report));
+    report.failure = "not enough memory";
+    EXPECT_FALSE(all_ok(report));
+}
+
+// Everything of `before` that is not null is in `now`, with the same value.
+void expect_kept(const Json& before, const Json& now, const std::string& path) {
+    if (before.is_null()) return;
+    if (before.is_object()) {
+        for (const auto& [key, value] : before.items()) {
+            ASSERT_TRUE(now.contains(key)) << path << "/" << key;
+            expect_kept(value, now[key], path + "/" + key);
+        }
+    } else if (before.is_array()) {
+        ASSERT_EQ(before.size(), now.size()) << path;
+        for (size_t i = 0; i < before.size(); ++i) expect_kept(before[i], now[i], path + "/" + std::to_string(i));
+    } else {
+        EXPECT_EQ(before, now) << path;
+    }
+}
+
+// Written by `clarity bench` 0.1.0: a build, rays, a frame, a breakdown, pictures of two devices, a refused row; three runs.
+std::string old_records() {
+    std::ifstream file(CLARITY_SOURCE_DIR "/tests/bench/data/record_of_0_1_0.json");
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+TEST(Json, RecordsOfEarlierVersionsLoad) {
+    const std::string text = old_records();
+    const BenchReport report = read_bench_json(text);
+    ASSERT_EQ(report.records.size(), 7u);
+    EXPECT_EQ(report.joined.size(), 2u);
+    EXPECT_EQ(report.records[1].measure, "primary");
+    EXPECT_GT(report.records[1].time_ms.median, 0);
+    EXPECT_TRUE(report.records[1].analysis.present);
+    EXPECT_GT(report.records[5].versus.ratio, 1);
+    EXPECT_GT(report.records[6].time_ms.spread(), 0);
+    const std::string now = bench_json(report);
+    expect_kept(Json::parse(text), Json::parse(now), "");
+    EXPECT_EQ(bench_json(read_bench_json(now)), now);
+    EXPECT_NE(bench_table(report).find("REFUSED  quick tetrahedron/primary"), std::string::npos);
+    EXPECT_EQ(bench_csv(report).find("nan"), std::string::npos);
+}
+
+TEST(Json, PercentilesHaveTheirUsualNamesAndTheOldOne) {
+    BenchReport report = sample();
+    report.records[0].time_ms = summarize({1, 2, 3, 4, 5});
+    const Json time = Json::parse(bench_json(report))[0]["time_ms"];
+    EXPECT_EQ(time["p50"], 3);
+    EXPECT_EQ(time["median"], 3);
+    EXPECT_EQ(time["p95"], 4.8);
+    EXPECT_EQ(time["p99"], 4.96);
+    const BenchReport read = read_bench_json(bench_json(report));
+    EXPECT_EQ(read.records[0].time_ms.p99, 4.96);
+    const std::string csv = bench_csv(report), table = bench_table(report);
+    for (const char* name : {"time_ms.p50", "time_ms.p95", "wall_ms.p99", "time_ms.median"})
+        EXPECT_NE(csv.find(name), std::string::npos) << name;
+    for (const char* name : {"p50", "p95", "p99"}) EXPECT_NE(table.find(name), std::string::npos) << table;
+}
+
+TEST(RowsFile, HoldsEveryRowAtOnceAndIsWholeAfterAFailure) {
+    const Scratch scratch;
+    const std::string path = scratch.path("a.json");
+    BenchReport all = sample(), so_far = all;
+    so_far.records.clear();
+    try {
+        RowsFile file(path);
+        for (const BenchRecord& record : all.records) {
+            so_far.records.push_back(record);
+            file.add(so_far);
+            // As a kill would leave it: in a file beside the one that is wanted, with all rows.
+            EXPECT_FALSE(std::filesystem::exists(path));
+            const auto entry = *std::filesystem::directory_iterator(scratch.path(""));
+            EXPECT_EQ(read_bench_json(scratch.read(entry.path().filename().string())).records.size(), so_far.records.size());
+        }
+        throw std::bad_alloc();
+    } catch (const std::bad_alloc&) {
+    }
+    EXPECT_EQ(Json::parse(scratch.read("a.json")).size(), all.records.size());
+    EXPECT_EQ(bench_json(read_bench_json(scratch.read("a.json"))), bench_json(all));
+}
+
+TEST(RowsFile, IsTheWholeReportOnceItIsFinished) {
+    const Scratch scratch;
+    BenchReport report = sample();
+    {
+        RowsFile file(scratch.path("a.json"));
+        file.add(report);
+        report.run.seconds = 12;
+        file.finish(report);
+    }
+    EXPECT_EQ(scratch.read("a.json"), bench_json(report));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(scratch.path("")), {}), 1);
+    { RowsFile untouched(scratch.path("b.json")); }
+    EXPECT_FALSE(std::filesystem::exists(scratch.path("b.json")));
 }
 
 }  // namespace

@@ -127,4 +127,65 @@ TEST(Versus, IsInTableAndRecordsAndComesBack) {
     EXPECT_NE(bench_csv(report).find("versus.geometric_mean"), std::string::npos);
 }
 
+// The same structure twice, on a machine where times spread over a quarter of the median.
+std::vector<BenchRecord> twice_on_a_busy_machine(const char* measure, double ratio) {
+    std::vector<BenchRecord> rows = {row("a", measure, "bvh2", "", 20 * ratio),
+                                     row("a", measure, "", "embree packet16 high", 20)};
+    for (BenchRecord& r : rows) r.time_ms = r.wall_ms = {1, 0.9, 1.15, 0.8, 2, 9};
+    compare_with_peers(rows);
+    return rows;
+}
+
+TEST(Versus, ADifferenceWithinTheSpreadIsAboutTheSame) {
+    for (const char* measure : {"primary", "whitted"})
+        for (const double ratio : {1.23, 1 / 1.23, 1.0}) {
+            BenchReport report;
+            report.records = twice_on_a_busy_machine(measure, ratio);
+            EXPECT_NEAR(report.records[0].versus.spread, std::sqrt(2) * 0.25, 1e-12);
+            const std::string table = versus_table(report);
+            EXPECT_NE(table.find(" same\n"), std::string::npos) << table;
+            EXPECT_EQ(table.find("1.23"), std::string::npos) << table;
+            EXPECT_EQ(table.find("0.81"), std::string::npos) << table;
+        }
+    BenchReport report;
+    report.records = twice_on_a_busy_machine("primary", 1.5);
+    EXPECT_NE(versus_table(report).find("1.50"), std::string::npos) << versus_table(report);
+    EXPECT_EQ(versus_table(report).find(" same\n"), std::string::npos);
+}
+
+TEST(Versus, TheSpreadOfAComparisonComesBack) {
+    BenchReport report;
+    report.records = twice_on_a_busy_machine("primary", 1.23);
+    EXPECT_NEAR(read_bench_json(bench_json(report)).records[0].versus.spread, std::sqrt(2) * 0.25, 1e-5);
+}
+
+TEST(Versus, MeansOfManyScenesHaveLessSpread) {
+    BenchReport report;
+    for (const char* scene : {"a", "b", "c", "d"}) {
+        std::vector<BenchRecord> rows = twice_on_a_busy_machine("primary", 1.3);
+        for (BenchRecord& r : rows) r.scene = scene;
+        report.records.insert(report.records.end(), rows.begin(), rows.end());
+    }
+    const auto means = versus_means(report);
+    ASSERT_EQ(means.size(), 1u);
+    EXPECT_NEAR(means[0].mean_spread, std::sqrt(2) * 0.25 / 2, 1e-12);
+    EXPECT_FALSE(about_same(means[0].mean, means[0].mean_spread));
+    EXPECT_TRUE(about_same(means[0].least, means[0].least_spread));
+}
+
+TEST(Versus, FramesBesideThenAreAboutTheSameToo) {
+    BenchReport report;
+    for (const char* variant : {"then", "now"}) {
+        BenchRecord r = row("a", "frame", variant, "", 0);
+        r.suite = "quick";
+        r.depth = 4;
+        r.fps = variant[0] == 'n' ? 12.3 : 10;
+        r.wall_ms = {100, 90, 115, 80, 200, 9};
+        report.records.push_back(r);
+    }
+    const std::string table = bench_table(report);
+    EXPECT_NE(table.find(" same\n"), std::string::npos) << table;
+    EXPECT_EQ(table.find("1.23"), std::string::npos) << table;
+}
+
 }  // namespace

@@ -118,3 +118,59 @@ TEST(FasterWay, StaysWithTheFirstForLittle) {
     for (int i = 0; i < 6; ++i) way.took(i % 2 == 0 ? 100 : 98);
     EXPECT_EQ(way.way(), 0u);
 }
+
+// Each way takes its time by `ms`; the clock is slower by `slowdown`.
+unsigned use(FasterWay& way, const std::vector<double>& ms, double slowdown, int runs) {
+    unsigned trials = 0;
+    for (int i = 0; i < runs; ++i) {
+        trials += way.trying();
+        way.took(slowdown * ms[way.way()]);
+    }
+    return trials;
+}
+
+TEST(FasterWay, IsSettledOnceARunConfirmsTheChoice) {
+    FasterWay way(2);
+    const std::vector<double> ms = {10, 5};
+    EXPECT_EQ(use(way, ms, 1, 5), 5u);
+    EXPECT_FALSE(way.trying());
+    EXPECT_FALSE(way.settled());
+    way.took(20);
+    EXPECT_FALSE(way.settled()) << "another time than it was chosen by";
+    way.took(5.2);
+    EXPECT_TRUE(way.settled());
+    EXPECT_TRUE(FasterWay(1).settled());
+    EXPECT_FALSE(FasterWay(1).trying());
+}
+
+TEST(FasterWay, LooksAgainWhenRunsTakeAnotherTime) {
+    FasterWay way(2);
+    use(way, {10, 12}, 8, 6);
+    EXPECT_EQ(way.way(), 0u);
+    const std::vector<double> warm = {10, 7};  // at full clock the second way is the faster one
+    EXPECT_EQ(use(way, warm, 1, 3), 0u);
+    EXPECT_TRUE(way.trying()) << "three runs took an eighth of the time";
+    EXPECT_EQ(use(way, warm, 1, 4), 4u);
+    EXPECT_EQ(way.way(), 1u);
+    // One disturbed run, or two, change nothing.
+    for (const double ms : {7.0, 30.0, 30.0, 7.0, 30.0}) way.took(ms);
+    EXPECT_FALSE(way.trying());
+}
+
+TEST(FasterWay, LooksAgainLessAndLess) {
+    FasterWay way(2);
+    const std::vector<double> ms = {10, 9};
+    EXPECT_EQ(use(way, ms, 1, 6), 6u);
+    EXPECT_EQ(use(way, ms, 1, 16), 0u);
+    EXPECT_EQ(use(way, ms, 1, 4), 4u) << "after 16 uses";
+    EXPECT_EQ(use(way, ms, 1, 64), 0u);
+    EXPECT_EQ(use(way, ms, 1, 4), 4u) << "after 64 more";
+    EXPECT_EQ(use(way, ms, 1, 200), 0u);
+}
+
+TEST(FasterWay, AMachineThatIsNeverSteadyDoesNotTuneForEver) {
+    FasterWay way(2);
+    unsigned trials = 0;
+    for (int i = 0; i < 2000; ++i) trials += use(way, {10, 9}, i / 5 % 2 ? 1 : 3, 1);
+    EXPECT_LT(trials, 100u);
+}

@@ -199,4 +199,30 @@ TEST(ReportCharts, NamesOfCurvesKeepApart) {
     EXPECT_EQ(curve_chart({"t", "x", "y", {{"one point", 0, {{1, 1}}}}}), "");
 }
 
+TEST(ReportPage, SaysAboutTheSameWithinTheSpread) {
+    BenchReport report = sample_report();
+    const auto same = count_of(report_page(report), "about the same");
+    for (BenchRecord& r : report.records)
+        if (r.suite == "accel" || r.suite == "quick") r.mrays_per_s = r.peer.empty() ? 100 : 103;  // spreads are 5 % each
+    EXPECT_GE(count_of(report_page(report), "about the same"), same + 3);
+    for (BenchRecord& r : report.records)
+        if (r.suite == "accel" || r.suite == "quick") r.mrays_per_s = r.peer.empty() ? 150 : 100;
+    EXPECT_EQ(count_of(report_page(report), "about the same"), 0u);
+}
+
+TEST(ReportPage, NamesPercentiles) {
+    BenchReport report = sample_report();
+    for (BenchRecord& r : report.records) r.wall_ms.p95 = r.time_ms.p99 = 77.7;
+    const std::string page = report_page(report);
+    for (const char* name : {"p50", "p95", "p99", "77.7"}) EXPECT_GT(count_of(page, name), 0u) << name;
+}
+
+TEST(ReportPage, SaysWhyARunEndedEarly) {
+    BenchReport report = sample_report();
+    report.failure = "not enough memory <on the host>";
+    const std::string page = report_page(report);
+    EXPECT_NE(page.find("not enough memory &lt;on the host&gt;"), std::string::npos);
+    EXPECT_EQ(xml_error(page), "");
+}
+
 }  // namespace

@@ -1,7 +1,8 @@
-#include "bench/statistics.hpp"
+#include "base/statistics.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace clarity {
 namespace {
@@ -25,7 +26,13 @@ Summary summarize(std::vector<double> values) {
     summary.q1 = quantile(values, 0.25);
     summary.median = quantile(values, 0.5);
     summary.q3 = quantile(values, 0.75);
+    summary.p95 = quantile(values, 0.95);
+    summary.p99 = quantile(values, 0.99);
     return summary;
+}
+
+double median(std::vector<double> values) {
+    return summarize(std::move(values)).median;
 }
 
 }  // namespace clarity

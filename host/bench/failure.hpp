@@ -1,0 +1,15 @@
+// failure.hpp -- what a person is told about an exception that ends a row of a benchmark.
+#pragma once
+#include <exception>
+#include <new>
+#include <string>
+
+namespace clarity {
+
+inline std::string failure_text(const std::exception& e) {
+    if (dynamic_cast<const std::bad_alloc*>(&e))
+        return "not enough memory on the host: close other programs, or measure fewer structures or a smaller scene at a time";
+    return e.what();
+}
+
+}  // namespace clarity

@@ -1,0 +1,72 @@
+// run_test.cpp -- what is left of a run that ends early.
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "base/error.hpp"
+#include "bench/bench.hpp"
+#include "support/scenes.hpp"
+#include "support/workbench.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+// Three cases of a row each, which are counted and not timed.
+class Run : public testing::Test {
+ protected:
+    Run() {
+        request_.breakdown = true;
+        request_.files = {source_file("scenes/thesis/models/ball.obj")};
+        request_.accels = {"bvh2"};
+        request_.settings = {{"size", "32x24"}};
+        request_.time_limit_s = 120;
+        request_.only = {"/primary", "/shadow", "/reflection"};
+        options_.devices = {Workbench::get().device().info()};
+    }
+    BenchReport run(Progress& progress) {
+        const PluginRegistry& plugins = Workbench::get().plugins();
+        const Suite suite = make_suite(request_, SceneCatalog("", ""), plugins);
+        EXPECT_EQ(suite.cases.size(), 3u);
+        return run_bench(plugins, request_, suite, options_, progress);
+    }
+
+    BenchRequest request_;
+    BenchOptions options_;
+};
+
+TEST_F(Run, TellsEachRowAtOnce) {
+    std::vector<size_t> counts;
+    options_.on_row = [&](const BenchReport& report) { counts.push_back(report.records.size()); };
+    Progress progress;
+    const BenchReport report = run(progress);
+    EXPECT_EQ(counts, (std::vector<size_t>{1, 2, 3}));
+    EXPECT_EQ(report.failure, "");
+    EXPECT_TRUE(all_ok(report));
+}
+
+TEST_F(Run, KeepsItsRowsWhenMemoryRunsOut) {
+    struct Greedy : Progress {
+        void stage(const std::string& text) override {
+            if (text.rfind("3/3 ", 0) == 0) throw std::bad_alloc();
+        }
+    } progress;
+    const BenchReport report = run(progress);
+    ASSERT_EQ(report.records.size(), 2u);
+    EXPECT_EQ(report.records[1].status, RowStatus::ok) << report.records[1].why;
+    EXPECT_NE(report.failure.find("not enough memory"), std::string::npos) << report.failure;
+    EXPECT_FALSE(all_ok(report));
+}
+
+TEST_F(Run, KeepsItsRowsWhenTheyCannotBeWritten) {
+    options_.on_row = [](const BenchReport& report) {
+        if (report.records.size() == 2) throw Error(Exit::failed, "a.json: cannot be written: the disk is full");
+    };
+    Progress progress;
+    const BenchReport report = run(progress);
+    EXPECT_EQ(report.records.size(), 2u);
+    EXPECT_EQ(report.failure, "a.json: cannot be written: the disk is full");
+}
+
+}  // namespace
