@@ -55,13 +55,16 @@ kernel void map_tones(const global float *film, global uchar *display, const uin
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
-/* The same for some rows of work-groups alone, of row_quads quadruples each; items: of all these rows. */
+/* The same for some rows of work-groups alone. rows: their numbers. row_pixels: pixels of one. row_quads: quadruples that a row
+ * touches at most; where row_pixels is no multiple of 4, rows share quadruples with their neighbours, and two work-items may
+ * write the same bytes. items: row_quads times the number of rows. */
 kernel void map_tones_of_rows(const global float *film, global uchar *display, const uint count, const float exposure,
-                              const uint tone, const global uint *rows, const uint row_quads, const uint items)
+                              const uint tone, const global uint *rows, const uint row_pixels, const uint row_quads,
+                              const uint items)
 {
     const uint item = (uint)get_global_id(0);
     if (item >= items) return;
-    const uint i = rows[item / row_quads] * row_quads + item % row_quads;
+    const uint i = rows[item / row_quads] * row_pixels / 4u + item % row_quads;
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 

@@ -24,6 +24,12 @@ cl_uint number_of_tone(const std::string& tone) {
     return numbers.at(tone);
 }
 
+// Vectors of pixels that a row of work-groups touches at most. A row that is no whole number of vectors begins within one.
+size_t quads_touched(size_t row_pixels) {
+    constexpr size_t each = FilmKernels::kPixelsAtOnce;
+    return row_pixels % each == 0 ? row_pixels / each : (row_pixels + 2 * (each - 1)) / each;
+}
+
 }  // namespace
 
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
@@ -131,10 +137,11 @@ cl::Event FilmKernels::begin_rows(const cl::Buffer& film, unsigned width, unsign
     const size_t pixels = size_t(width) * height;
     const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
     set_map(map_tones_of_rows_, film, display, pixels, settings);
-    const size_t row_quads = size_t(width) * row_height / kPixelsAtOnce;
+    const size_t row_pixels = size_t(width) * row_height, row_quads = quads_touched(row_pixels);
     map_tones_of_rows_.setArg(5, table_of(rows));
-    map_tones_of_rows_.setArg(6, static_cast<cl_uint>(row_quads));
-    map_tones_of_rows_.setArg(7, static_cast<cl_uint>(row_quads * rows.size()));
+    map_tones_of_rows_.setArg(6, static_cast<cl_uint>(row_pixels));
+    map_tones_of_rows_.setArg(7, static_cast<cl_uint>(row_quads));
+    map_tones_of_rows_.setArg(8, static_cast<cl_uint>(row_quads * rows.size()));
     rows_mapped_ = run(map_tones_of_rows_, row_quads * rows.size());
     rows_read_.clear();
     read_bands(device_->queue(), display, bands_of(rows, row_height, height), size_t(width) * 4, rgba, &rows_read_);
