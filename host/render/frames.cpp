@@ -191,8 +191,10 @@ struct Frames::Impl {
         return sum;
     }
     cl::Event begin_sum(unsigned samples = 1) {
-        if (program->is_wavefront()) return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count());
-        return film_kernels.begin_sum(counters.get(), samples * groups() * layout.group_packets());
+        using Width = FilmKernels::CounterWidth;
+        if (program->is_wavefront())
+            return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count(), Width::bits64);
+        return film_kernels.begin_sum(counters.get(), samples * groups() * layout.group_packets(), Width::bits32);
     }
     void end_sum(FrameStats& stats) {
         stats.kernels.emplace_back();
