@@ -55,13 +55,16 @@ kernel void map_tones(const global float *film, global uchar *display, const uin
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
-/* The same for some rows of work-groups alone, of row_quads quadruples each; items: of all these rows. */
+/* The same for some rows of work-groups alone. rows: their numbers. row_pixels: pixels of one. row_quads: quadruples that a row
+ * touches at most; where row_pixels is no multiple of 4, rows share quadruples with their neighbours, and two work-items may
+ * write the same bytes. items: row_quads times the number of rows. */
 kernel void map_tones_of_rows(const global float *film, global uchar *display, const uint count, const float exposure,
-                              const uint tone, const global uint *rows, const uint row_quads, const uint items)
+                              const uint tone, const global uint *rows, const uint row_pixels, const uint row_quads,
+                              const uint items)
 {
     const uint item = (uint)get_global_id(0);
     if (item >= items) return;
-    const uint i = rows[item / row_quads] * row_quads + item % row_quads;
+    const uint i = rows[item / row_quads] * row_pixels / 4u + item % row_quads;
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
@@ -80,19 +83,47 @@ kernel void add_layers(global float4 *film, const global float4 *layers, const u
     film[i] = sum;
 }
 
-/* sums: 4 zeroed uints. On a GPU a packet is a pixel, so many work-items add up first what is their group's. */
-kernel void sum_counters(const global uint4 *counters, const uint count, global uint *sums)
+#define RT_SUMMERS 64u
+
+/* Adds to a number of 64 bits, low half first: OpenCL 1.2 promises atomics of 32 bits alone. */
+void rt_add_wide(volatile global uint *sum, const ulong value)
 {
-    local uint ours[4];
+    const uint low = (uint)value, before = atomic_add(sum, low);
+    const uint high = (uint)(value >> 32) + (before + low < before ? 1u : 0u);
+    if (high != 0u) atomic_add(sum + 1, high);
+}
+
+/* A work-group's share of a sum into all of it. On a GPU a packet is a pixel, so a group adds up its own first. */
+void rt_add_group(local ulong4 *of_items, const ulong4 mine, volatile global uint *sums)
+{
     const uint lane = (uint)get_local_id(0);
-    if (lane < 4u) ours[lane] = 0u;
+    of_items[lane] = mine;
+    for (uint half_of = RT_SUMMERS / 2u; half_of > 0u; half_of /= 2u) {
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (lane < half_of) of_items[lane] += of_items[lane + half_of];
+    }
     barrier(CLK_LOCAL_MEM_FENCE);
-    uint4 mine = (uint4)(0u);
+    if (lane >= 4u) return;
+    const ulong sum = ((const local ulong *)of_items)[lane];
+    if (sum != 0u) rt_add_wide(sums + 2u * lane, sum);
+}
+
+/* counters: of each packet 4 numbers of 32 bits; their sums may need 64. sums: 4 zeroed numbers, see rt_add_wide(). */
+kernel __attribute__((reqd_work_group_size(RT_SUMMERS, 1, 1))) void
+sum_counters(const global uint4 *counters, const uint count, volatile global uint *sums)
+{
+    local ulong4 of_items[RT_SUMMERS];
+    ulong4 mine = (ulong4)(0u);
+    for (uint i = (uint)get_global_id(0); i < count; i += (uint)get_global_size(0)) mine += convert_ulong4(counters[i]);
+    rt_add_group(of_items, mine, sums);
+}
+
+/* The same of counters that are 64 bits wide themselves. */
+kernel __attribute__((reqd_work_group_size(RT_SUMMERS, 1, 1))) void
+sum_wide_counters(const global ulong4 *counters, const uint count, volatile global uint *sums)
+{
+    local ulong4 of_items[RT_SUMMERS];
+    ulong4 mine = (ulong4)(0u);
     for (uint i = (uint)get_global_id(0); i < count; i += (uint)get_global_size(0)) mine += counters[i];
-    if (mine.x) atomic_add(ours + 0, mine.x);
-    if (mine.y) atomic_add(ours + 1, mine.y);
-    if (mine.z) atomic_add(ours + 2, mine.z);
-    if (mine.w) atomic_add(ours + 3, mine.w);
-    barrier(CLK_LOCAL_MEM_FENCE);
-    if (lane < 4u && ours[lane]) atomic_add(sums + lane, ours[lane]);
+    rt_add_group(of_items, mine, sums);
 }

@@ -50,6 +50,17 @@ typedef struct rt_hits {
 /* For traversals that do not know who is in a node: all who are still looking. */
 #define RT_COUNT_STEP(hit) RT_COUNT_VISIT(hit, rt_bits(RT_MASK((hit)->t >= rt_vfloat(0.0f))))
 
+/* Kernels that have no rt_tally count full stacks into one number, in debug programs: an argument before the context's. */
+#ifdef RT_DEBUG
+#define RT_OVERFLOWS_PARAM volatile global uint *overflows,
+#define RT_CLEAR_OVERFLOW(hit) (hit)->overflow = 0u; /* where rt_clear_hits() is not called for every hit */
+#define RT_COUNT_OVERFLOW(hit) if ((hit)->overflow != 0u) atomic_add(overflows, (hit)->overflow);
+#else
+#define RT_OVERFLOWS_PARAM
+#define RT_CLEAR_OVERFLOW(hit)
+#define RT_COUNT_OVERFLOW(hit)
+#endif
+
 /* Before each turn of a traversal's loop; see CONTRACT.md. */
 #ifdef RT_PATIENCE
 #define RT_MAY_GO_ON(hit) ((hit)->patience-- > 0)

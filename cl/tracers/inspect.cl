@@ -1,7 +1,7 @@
 /* inspect.cl -- one packet, traced as ever, with the rays of one of its pixels written down: see inspect.h. */
 
 /* One work-group. records: room for `capacity`. summary: how many there were, which may be more; the pixel's colour in the next
- * three, as bits of floats. packet: the one to trace, of the group's; pixel: the one to watch, of the packet's. */
+ * three, as bits of floats; then how many stacks of the packet were full (debug programs). packet: the one to trace, of the group's; pixel: the one to watch, of the packet's. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_inspect(const constant rt_frame *frame, const uint group, const uint packet_wanted, const uint pixel,
               global rt_ray_record *records, const uint capacity, global uint *summary, global float *distances, RT_CTX_PARAMS)
@@ -23,5 +23,6 @@ trace_inspect(const constant rt_frame *frame, const uint group, const uint packe
         summary[1] = as_uint(sums[pixel].x);
         summary[2] = as_uint(sums[pixel].y);
         summary[3] = as_uint(sums[pixel].z);
+        summary[4] = tally.overflow;
     }
 }

@@ -8,7 +8,7 @@
  * list: how many long rays there are, of this launch and of the next, for which it is cleared, in turn; then their numbers. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_short(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit, const uint fields,
-            const global float *rays, global float *answers, volatile global uint *list, const uint turn, RT_CTX_PARAMS)
+            const global float *rays, global float *answers, volatile global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     const uint at = (first_group + (uint)get_group_id(0)) * RT_LOCAL_SIZE + (uint)get_local_id(0);
@@ -32,6 +32,7 @@ trace_short(const constant rt_frame *frame, const uint first_group, const uint c
         }
         if (hit.patience < 0 && !(any_hit && hit.t == 0.0f)) list[2u + atomic_inc(list + turn)] = at;
     }
+    RT_COUNT_OVERFLOW(&hit)
     rt_store_hit_block(answers, at, fields, &hit);
 }
 
@@ -39,7 +40,7 @@ trace_short(const constant rt_frame *frame, const uint first_group, const uint c
 
 RT_LONG_KERNEL
 trace_long_closest(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
-                   const global uint *list, const uint turn, RT_CTX_PARAMS)
+                   const global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     local rt_long_scratch scratch;
@@ -59,6 +60,7 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
         if (before < INFINITY) hit.prim = as_int(answers[at * (size_t)fields + (fields == RT_ANSWER_NEAREST ? 1u : 3u)]);
         if (get_local_id(0) == 0) nearest = lowest = 0x7FFFFFFFu;
         rt_scene_long_closest(&ctx, frame->root, &ray, &hit, &scratch);
+        RT_COUNT_OVERFLOW(&hit)
         /* Several may have met something, of which one is the nearest. */
         const bool found = hit.leaf != -1;
         if (found) atomic_min(&nearest, as_uint(hit.t));
@@ -73,7 +75,7 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
 /* Apart from the other, for PoCL 3.1 loses work-items where there are barriers under a condition. */
 RT_LONG_KERNEL
 trace_long_any(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
-               const global uint *list, const uint turn, RT_CTX_PARAMS)
+               const global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     local rt_long_scratch scratch;
@@ -85,7 +87,9 @@ trace_long_any(const constant rt_frame *frame, const uint fields, const global f
         rt_load_ray_block(rays, at, &ray, &hit.t);
         rt_prepare(&ray, 1u);
         hit.patience = INT_MAX;
+        RT_CLEAR_OVERFLOW(&hit)
         rt_scene_long_any(&ctx, frame->root, &ray, &hit, &scratch);
+        RT_COUNT_OVERFLOW(&hit)
         if (get_local_id(0) == 0 && scratch.nearest == 0u) answers[at * (size_t)fields] = 0.0f;
         barrier(CLK_LOCAL_MEM_FENCE);
     }

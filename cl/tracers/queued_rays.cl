@@ -12,7 +12,8 @@
  * each work-item of a warp draws at a time, in the mean. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_queued(const constant rt_frame *frame, const uint first, const uint end, const uint share, const uint fields,
-             const global float *rays, global float *answers, volatile global uint *queue, const uint turn, RT_CTX_PARAMS)
+             const global float *rays, global float *answers, volatile global uint *queue, const uint turn,
+             RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     /* Where those begin and end that were drawn and not begun; not in registers, which the turns need more. */
@@ -38,6 +39,7 @@ trace_queued(const constant rt_frame *frame, const uint first, const uint end, c
         }
         if (idle) {
             if (mine != RT_NO_RAY) {
+                RT_COUNT_OVERFLOW(&hit)
                 hit.t = hit.prim >= 0 ? hit.t : INFINITY;
                 rt_store_hit_block(answers, mine, fields, &hit);
             }

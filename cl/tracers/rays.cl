@@ -1,7 +1,7 @@
 /* rays.cl -- rays that the host brings, a block of RT_LANES at a time: for tests and benches. Memory: ray_blocks.h. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit, const uint fields,
-           const global float *rays, global float *answers, RT_CTX_PARAMS)
+           const global float *rays, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     const uint group = first_group + (uint)get_group_id(0), packet_blocks = RT_BLOCKS(frame);
@@ -24,6 +24,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
                 if (RT_BUNDLE == 1) rt_clear_hits(hit + b, active[b]); /* else there is an answer for blocks without rays */
                 hit[b].t = rt_vfloat(-1.0f);
+                RT_CLEAR_OVERFLOW(hit + b)
                 if (!rt_any(active[b])) continue;
 #if RT_LANES > 1
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
@@ -43,6 +44,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
             else
                 rt_trace_bundle_closest(&ctx, frame, ray, hit, count);
             RT_FOR_EACH(b, count) {
+                RT_COUNT_OVERFLOW(hit + b)
                 if (RT_BUNDLE > 1 && !rt_any(active[b])) { /* mostly so where little of a picture is hit */
                     rt_hits none;
                     rt_clear_hits(&none, active[b]);

@@ -47,7 +47,7 @@ RT_INLINE void rt_trace_warp(const rt_ctx *ctx, const constant rt_frame *frame, 
 
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_warps(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit, const uint fields,
-            const global float *rays, global float *answers, RT_CTX_PARAMS)
+            const global float *rays, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     const uint warp = (first_group + (uint)get_group_id(0)) * (RT_LOCAL_SIZE / RT_VOTERS) + (uint)get_local_id(0) / RT_VOTERS;
@@ -75,6 +75,7 @@ trace_warps(const constant rt_frame *frame, const uint first_group, const uint c
     RT_FOR_EACH_OWN(i) {
         const uint at = first + i * RT_VOTERS;
         if (at >= count) continue;
+        RT_COUNT_OVERFLOW(hit + i)
         if (any_hit)
             hit[i].t = active[i] && hit[i].t < 0.0f ? 0.0f : INFINITY;
         else

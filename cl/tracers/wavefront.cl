@@ -37,11 +37,11 @@ RT_INLINE float rt_share(const global uint *cell)
 }
 
 /* One level. sums: of each pixel's first way, w = 1; where nothing parts, the film. shares: see above; of no use unless `parting`. counters: shadow, secondary,
- * dropped rays and full stacks, of each work-group; begun anew with `fresh`. distances: as iterative.cl has them. rays: of this
+ * dropped rays and full stacks, of each work-group, in all launches of a picture; begun anew with `fresh`. distances: as iterative.cl has them. rays: of this
  * level; next: of the coming one, `room` at most. idle_control: that of the pictures after this, of whom nobody is under way. */
 RT_PICTURE_KERNEL
 trace_wavefront(const constant rt_frame *frame, const uint first_group, const uint group_count, const uint level, const uint fresh,
-                const uint room, const uint parting, global float4 *sums, global uint *shares, global uint4 *counters,
+                const uint room, const uint parting, global float4 *sums, global uint *shares, global ulong4 *counters,
                 global float *distances, const global float4 *rays, global float4 *next, global uint *control,
                 global uint *idle_control, RT_CTX_PARAMS)
 {
@@ -157,7 +157,10 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
     barrier(CLK_LOCAL_MEM_FENCE);
     const uint4 all = (uint4)(group_tally[0], group_tally[1], group_tally[2], group_tally[3]);
 #endif
-    if (get_local_id(0) == 0) counters[get_group_id(0)] = fresh != 0u ? all : counters[get_group_id(0)] + all;
+    if (get_local_id(0) == 0) {
+        const ulong4 before = fresh != 0u ? (ulong4)(0u) : counters[get_group_id(0)];
+        counters[get_group_id(0)] = before + convert_ulong4(all);
+    }
 }
 
 /* Where rays part, a sample into the film: the first one in place of what was there. */

@@ -15,13 +15,19 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kSumBytes = 4 * sizeof(cl_uint);
-constexpr unsigned kSummersPerUnit = 2048;  // work-items that a GPU's unit has at a time
+constexpr size_t kSumBytes = 4 * sizeof(uint64_t);  // each as two uints, the low half first
+constexpr unsigned kSummersPerUnit = 2048;          // work-items that a GPU's unit has at a time
 
 // As film.cl numbers them.
 cl_uint number_of_tone(const std::string& tone) {
     static const std::map<std::string, cl_uint> numbers = {{"linear", 0}, {"reinhard", 1}, {"aces", 2}, {"agx", 3}};
     return numbers.at(tone);
+}
+
+// Vectors of pixels that a row of work-groups touches at most. A row that is no whole number of vectors begins within one.
+size_t quads_touched(size_t row_pixels) {
+    constexpr size_t each = FilmKernels::kPixelsAtOnce;
+    return row_pixels % each == 0 ? row_pixels / each : (row_pixels + 2 * (each - 1)) / each;
 }
 
 }  // namespace
@@ -50,6 +56,7 @@ FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), memo
         map_tones_ = cl::Kernel(program_, "map_tones");
         map_tones_of_rows_ = cl::Kernel(program_, "map_tones_of_rows");
         sum_counters_ = cl::Kernel(program_, "sum_counters");
+        sum_wide_counters_ = cl::Kernel(program_, "sum_wide_counters");
         add_layers_ = cl::Kernel(program_, "add_layers");
     });
 }
@@ -59,15 +66,16 @@ FilmKernels::~FilmKernels() {
     if (sums_read_()) clWaitForEvents(1, &sums_read_());
 }
 
-cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned packets) {
+cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned count, CounterWidth width) {
     cl::CommandQueue& queue = device_->queue();
     const cl::Buffer& out = sums_.fit(device_->context(), kSumBytes);
     if (!read_sums_) read_sums_ = memory_.lend(kSumBytes);
     queue.enqueueFillBuffer(out, cl_uint(0), 0, kSumBytes);
-    sum_counters_.setArg(0, counters);
-    sum_counters_.setArg(1, packets);
-    sum_counters_.setArg(2, out);
-    summed_ = run(sum_counters_, std::min(packets, device_->info().compute_units * kSummersPerUnit));
+    cl::Kernel& kernel = width == CounterWidth::bits64 ? sum_wide_counters_ : sum_counters_;
+    kernel.setArg(0, counters);
+    kernel.setArg(1, count);
+    kernel.setArg(2, out);
+    summed_ = run(kernel, std::min(count, device_->info().compute_units * kSummersPerUnit));
     queue.enqueueReadBuffer(out, CL_FALSE, 0, kSumBytes, read_sums_.get(), nullptr, &sums_read_);
     return sums_read_;
 }
@@ -75,9 +83,10 @@ cl::Event FilmKernels::begin_sum(const cl::Buffer& counters, unsigned packets) {
 RayCounts FilmKernels::end_sum(KernelTime& time) {
     sums_read_.wait();
     time = {"counters", event_ms(summed_)};
-    cl_uint sums[4];
-    std::memcpy(sums, read_sums_.get(), sizeof sums);
-    return {sums[0], sums[1], sums[2], sums[3]};
+    cl_uint halves[8];
+    std::memcpy(halves, read_sums_.get(), sizeof halves);
+    const auto sum = [&](int i) { return uint64_t(halves[2 * i + 1]) << 32 | halves[2 * i]; };
+    return {sum(0), sum(1), sum(2), sum(3)};
 }
 
 void FilmKernels::set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::Buffer& display, size_t pixels,
@@ -131,10 +140,11 @@ cl::Event FilmKernels::begin_rows(const cl::Buffer& film, unsigned width, unsign
     const size_t pixels = size_t(width) * height;
     const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
     set_map(map_tones_of_rows_, film, display, pixels, settings);
-    const size_t row_quads = size_t(width) * row_height / kPixelsAtOnce;
+    const size_t row_pixels = size_t(width) * row_height, row_quads = quads_touched(row_pixels);
     map_tones_of_rows_.setArg(5, table_of(rows));
-    map_tones_of_rows_.setArg(6, static_cast<cl_uint>(row_quads));
-    map_tones_of_rows_.setArg(7, static_cast<cl_uint>(row_quads * rows.size()));
+    map_tones_of_rows_.setArg(6, static_cast<cl_uint>(row_pixels));
+    map_tones_of_rows_.setArg(7, static_cast<cl_uint>(row_quads));
+    map_tones_of_rows_.setArg(8, static_cast<cl_uint>(row_quads * rows.size()));
     rows_mapped_ = run(map_tones_of_rows_, row_quads * rows.size());
     rows_read_.clear();
     read_bands(device_->queue(), display, bands_of(rows, row_height, height), size_t(width) * 4, rgba, &rows_read_);

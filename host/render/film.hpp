@@ -44,8 +44,11 @@ class FilmKernels {
     // Throws Error(kernel_build_failed).
     explicit FilmKernels(std::shared_ptr<Device> device);
     ~FilmKernels();
-    // Enqueues sums over counters of so many packets, as trace_iterative leaves them; returns the last event.
-    cl::Event begin_sum(const cl::Buffer& counters, unsigned packets);
+    // The width of each of the four numbers that are counted: 32 bits of a packet (trace_iterative), 64 bits of all that a
+    // work-group has traced (trace_wavefront).
+    enum class CounterWidth { bits32, bits64 };
+    // Enqueues sums over so many counters of four numbers each; returns the last event. The sums have 64 bits.
+    cl::Event begin_sum(const cl::Buffer& counters, unsigned count, CounterWidth width);
     // Waits for them.
     RayCounts end_sum(KernelTime& time);
     // Enqueues the tones of a film, room(pixels) float4, sums of samples, into a display of room(pixels) * 4 bytes.
@@ -69,7 +72,7 @@ class FilmKernels {
 
     std::shared_ptr<Device> device_;
     cl::Program program_;
-    cl::Kernel map_tones_, map_tones_of_rows_, sum_counters_, add_layers_;
+    cl::Kernel map_tones_, map_tones_of_rows_, sum_counters_, sum_wide_counters_, add_layers_;
     GrowingBuffer display_{CL_MEM_WRITE_ONLY}, sums_{CL_MEM_READ_WRITE}, rows_{CL_MEM_READ_ONLY};
     std::vector<rt_u32> rows_written_;
     HostMemory memory_;

@@ -12,6 +12,7 @@
 #include "render/frame_stats.hpp"
 #include "render/guarded.hpp"
 #include "render/launch.hpp"
+#include "render/overflow_counter.hpp"
 #include "render/ray_queries.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
@@ -79,6 +80,8 @@ struct Frames::Impl {
     std::shared_ptr<const TraceProgram> program;  // whose pace and kernel these are:
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
+    bool debug = false;
+    OverflowCounter overflows;  // where counts_overflows()
     Launcher launcher;
     enum class Shown { no, read, begun };
     Shown shown = Shown::no;     // the picture before: then this one will be
@@ -106,6 +109,7 @@ struct Frames::Impl {
         if (program != prepared.program) kernel = prepared.program->kernel();
         program = prepared.program;
         bound = prepared.on_device;
+        debug = prepared.settings.debug;
         aov = prepared.settings.aov;
         width = new_width;
         height = new_height;
@@ -175,6 +179,10 @@ struct Frames::Impl {
             kernel.setArg(at++, counters.fit(device->context(), packets() * at_once * 16));
             kernel.setArg(at++, distances.get());
         }
+        if (counts_overflows()) {
+            if (begun == 0) overflows.clear(queue);
+            at = overflows.bind(kernel, at, true);
+        }
         view.bind(*prepared.on_device, kernel, at);
         return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, beside);
     }
@@ -191,8 +199,10 @@ struct Frames::Impl {
         return sum;
     }
     cl::Event begin_sum(unsigned samples = 1) {
-        if (program->is_wavefront()) return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count());
-        return film_kernels.begin_sum(counters.get(), samples * groups() * layout.group_packets());
+        using Width = FilmKernels::CounterWidth;
+        if (program->is_wavefront())
+            return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count(), Width::bits64);
+        return film_kernels.begin_sum(counters.get(), samples * groups() * layout.group_packets(), Width::bits32);
     }
     void end_sum(FrameStats& stats) {
         stats.kernels.emplace_back();
@@ -202,6 +212,8 @@ struct Frames::Impl {
         stats.dropped = counts.dropped;
         stats.overflowed = counts.overflowed;
     }
+    // Debug programs that trace camera rays alone count nothing else, and that apart from the counters.
+    bool counts_overflows() const { return debug && !program->has_generations(); }
     cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
         return film_kernels.begin_rows(film.get(), width, height, rows, row_height(), settings, rgba);
     }
@@ -261,6 +273,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
             one.launches = times.launches;
             one.primary = at_once * im.pixels();
             if (sum) im.end_sum(one);
+            if (count_rays && im.counts_overflows()) one.overflowed = im.overflows.read(im.device->queue());
             sample += at_once;
             one.samples = sample;
             add_stats(stats, one);
@@ -272,8 +285,10 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
 
 void Frames::count(FrameStats& stats) {
     Impl& im = *impl_;
-    if (!im.program || !im.program->has_generations() || im.rows.empty()) return;
+    if (!im.program || im.rows.empty()) return;
     guarded(*im.device, "counting rays", [&] {
+        if (im.counts_overflows()) stats.overflowed = im.overflows.read(im.device->queue());
+        if (!im.program->has_generations()) return;
         im.begin_sum();
         im.end_sum(stats);
     });

@@ -5,13 +5,15 @@
 
 #include "render/frame_constants.hpp"
 #include "render/guarded.hpp"
+#include "render/overflow_counter.hpp"
 #include "render/trace_program.hpp"
 #include "render/view_buffers.hpp"
 
 namespace clarity {
 namespace {
 
-constexpr cl_uint kMostRays = 4096;  // 400 kB; a pixel of a usual picture has fewer than 100
+constexpr cl_uint kMostRays = 4096;    // 400 kB; a pixel of a usual picture has fewer than 100
+constexpr unsigned kSummaryWords = 5;  // as inspect.cl writes them
 
 std::array<float, 3> three(const rt_f32* v) {
     return {v[0], v[1], v[2]};
@@ -77,7 +79,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         const cl::Context& context = im.device->context();
         im.view.write(im.queue, *prepared.scene, {make_frame(view, settings, layout, *prepared.accel, 0)}, view);
         const cl::Buffer& records = im.records.fit(context, kMostRays * sizeof(rt_ray_record));
-        const cl::Buffer& summary = im.summary.fit(context, 4 * sizeof(rt_u32));
+        const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
         const unsigned packet_x = x / layout.packet_w, packet_y = y / layout.packet_h;
         const cl_uint group = packet_y / layout.group_h * layout.groups_x(width) + packet_x / layout.group_w,
                       packet = packet_y % layout.group_h * layout.group_w + packet_x % layout.group_w,
@@ -96,13 +98,15 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         const size_t items = layout.local_size();
         im.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(items));
 
-        rt_u32 found[4] = {};
+        rt_u32 found[kSummaryWords] = {};
         im.queue.enqueueReadBuffer(summary, CL_TRUE, 0, sizeof found, found);
         std::vector<rt_ray_record> read(std::min<size_t>(found[0], kMostRays));
         if (!read.empty()) im.queue.enqueueReadBuffer(records, CL_TRUE, 0, read.size() * sizeof(rt_ray_record), read.data());
         RayTree tree;
         tree.truncated = found[0] > kMostRays;
         std::memcpy(tree.color.data(), found + 1, sizeof tree.color);
+        tree.overflowed = found[4];
+        report_overflows(tree.overflowed, prepared.accel->plugin->id);
         for (const rt_ray_record& record : read) tree.rays.push_back(record_of(record));
         return tree;
     });

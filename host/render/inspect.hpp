@@ -36,6 +36,7 @@ struct RayTree {
     std::vector<RayRecord> rays;   // parents before children; the first is the camera ray
     bool truncated = false;        // there were more than the room for them
     std::array<float, 3> color{};  // linear RGB of the pixel: the sum of all rays' light
+    unsigned overflowed = 0;       // traversal stacks of its packet that were full (debug programs); the log tells, too
 };
 
 // Usable from one thread at a time, beside a Frames of the same device on another.

@@ -13,7 +13,8 @@ constexpr unsigned kLongGroupsPerUnit = 16;  // that run side by side on a compu
 }  // namespace
 
 LaunchTimes LongRays::trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
-                            bool any_hit, cl_uint fields, const cl::Buffer& in, const cl::Buffer& out) {
+                            bool any_hit, cl_uint fields, const cl::Buffer& in, const cl::Buffer& out,
+                            OverflowCounter& overflows) {
     cl::CommandQueue& queue = device_->queue();
     const cl::Buffer before = list_.get();
     const cl::Buffer& list = list_.fit(device_->context(), (2 + size_t(rays)) * sizeof(cl_uint));
@@ -27,13 +28,13 @@ LaunchTimes LongRays::trace(const Prepared& prepared, const TraceProgram& progra
     first.setArg(5, in);
     first.setArg(6, out);
     first.setArg(7, list);
-    view.bind(*prepared.on_device, first, 9);
+    view.bind(*prepared.on_device, first, overflows.bind(first, 9, prepared.settings.debug));
     rest.setArg(0, view.frame());
     rest.setArg(1, fields);
     rest.setArg(2, in);
     rest.setArg(3, out);
     rest.setArg(4, list);
-    view.bind(*prepared.on_device, rest, 6);
+    view.bind(*prepared.on_device, rest, overflows.bind(rest, 6, prepared.settings.debug));
 
     const size_t long_items = size_t(std::max(1u, device_->info().compute_units)) * kLongGroupsPerUnit * kLongItems;
     const auto enqueue = [&](unsigned begin, unsigned count) {

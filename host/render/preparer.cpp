@@ -4,6 +4,7 @@
 #include "render/device_scene.hpp"
 #include "render/frame_constants.hpp"
 #include "render/memory_plan.hpp"
+#include "render/overflow_counter.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 #include "render/wavefront.hpp"
@@ -60,6 +61,7 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
         return;
     }
     cl::Kernel kernel = program.kernel();
+    OverflowCounter overflows;
     cl_uint at = 0;
     kernel.setArg(at++, frame_buffer);
     kernel.setArg(at++, cl_uint(0));
@@ -67,6 +69,9 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
     if (program.has_generations()) {
         kernel.setArg(at++, counters);
         kernel.setArg(at++, distances);
+    } else if (prepared.settings.debug) {
+        overflows.clear(queue);
+        at = overflows.bind(kernel, at, true);
     }
     prepared.on_device->bind(kernel, at, lights);
     queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size), cl::NDRange(size));

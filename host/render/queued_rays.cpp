@@ -14,7 +14,7 @@ constexpr unsigned kManyEach = 1024 / 32;
 }  // namespace
 
 LaunchTimes QueuedRays::trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
-                              cl_uint fields, const cl::Buffer& in, const cl::Buffer& out) {
+                              cl_uint fields, const cl::Buffer& in, const cl::Buffer& out, OverflowCounter& overflows) {
     cl::CommandQueue& queue = device_->queue();
     const cl::Buffer before = queue_.get();
     const cl::Buffer& drawn = queue_.fit(device_->context(), 2 * sizeof(cl_uint));
@@ -28,7 +28,7 @@ LaunchTimes QueuedRays::trace(const Prepared& prepared, const TraceProgram& prog
     kernel.setArg(5, in);
     kernel.setArg(6, out);
     kernel.setArg(7, drawn);
-    view.bind(*prepared.on_device, kernel, 9);
+    view.bind(*prepared.on_device, kernel, overflows.bind(kernel, 9, prepared.settings.debug));
     const auto enqueue = [&](unsigned begin, unsigned count) {
         kernel.setArg(1, cl_uint(begin * kGroupSize));
         kernel.setArg(2, cl_uint(std::min(size_t(rays), (size_t(begin) + count) * kGroupSize)));

@@ -2,6 +2,7 @@
 // (cl/tracers/queued_rays.cl).
 #pragma once
 #include "render/launch.hpp"
+#include "render/overflow_counter.hpp"
 #include "render/renderer.hpp"
 #include "render/trace_program.hpp"
 #include "render/turns.hpp"
@@ -12,9 +13,9 @@ namespace clarity {
 class QueuedRays {
  public:
     explicit QueuedRays(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // program: of kind queued_rays.
+    // program: of kind queued_rays. overflows: cleared, if it is a debug program.
     LaunchTimes trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
-                      cl_uint fields, const cl::Buffer& in, const cl::Buffer& out);
+                      cl_uint fields, const cl::Buffer& in, const cl::Buffer& out, OverflowCounter& overflows);
     void forget() { launcher_.forget(); }
 
  private:

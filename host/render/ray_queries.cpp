@@ -37,7 +37,7 @@ LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgr
     kernel.setArg(at++, fields);
     kernel.setArg(at++, in);
     kernel.setArg(at++, out);
-    view_.bind(*prepared.on_device, kernel, at);
+    view_.bind(*prepared.on_device, kernel, overflows_.bind(kernel, at, prepared.settings.debug));
     const unsigned each = warp_rays_each(program.kind);
     const size_t in_group = each ? layout.local_size() * each : size_t(layout.group_packets()) * layout.blocks();
     const size_t groups = (blocks + in_group - 1) / in_group;
@@ -88,12 +88,15 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
         // Before every run, though it be the same again: then a CPU's caches are as warm each time.
         queue.enqueueWriteBuffer(in, CL_TRUE, 0, rays.floats().size() * sizeof(float), rays.floats().data());
+        const bool debug = prepared.settings.debug;
+        if (debug) overflows_.clear(queue);
         const LaunchTimes times =
-            kind == KernelKind::long_rays
-                ? long_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), query.any_hit, fields, in, out)
+            kind == KernelKind::long_rays ? long_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots),
+                                                             query.any_hit, fields, in, out, overflows_)
             : kind == KernelKind::queued_rays
-                ? queued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out)
+                ? queued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out, overflows_)
                 : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
+        if (debug) report_overflows(overflows_.read(queue), prepared.accel->plugin->id);
         way_.took(times.device_ms);
         tuning_.settled = way_.settled();
         if (hits) {

@@ -7,6 +7,7 @@
 #include "render/kernel_source.hpp"
 #include "render/launch.hpp"
 #include "render/long_rays.hpp"
+#include "render/overflow_counter.hpp"
 #include "render/queued_rays.hpp"
 #include "render/ray_blocks.hpp"
 #include "render/renderer.hpp"
@@ -20,7 +21,7 @@ class RayQueries {
     explicit RayQueries(std::shared_ptr<Device> device)
         : device_(device), programs_(device), long_rays_(device), queued_rays_(device) {}
     // Returns what the kernel took, ms by the device's clock. hits: null: the answers stay on the device. Throws Error(failed)
-    // if the rays were packed for other lanes.
+    // if the rays were packed for other lanes. A debug program whose traversal stacks were full is an error in the log.
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
     // How the last trace() was done.
     RayTuning tuning() const { return tuning_; }
@@ -52,6 +53,7 @@ class RayQueries {
     std::vector<KernelKind> ways_;
     FasterWay way_;
     RayTuning tuning_;
+    OverflowCounter overflows_;  // of debug programs
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
 };
 

@@ -155,7 +155,7 @@ class Frames {
     FrameStats trace(const Prepared& prepared, const Settings& settings, const View& view, const Samples& samples,
                      bool count_rays, Progress& progress, const SharedRows* shared = nullptr,
                      const std::function<void()>& meanwhile = {});
-    // Adds the rays of the last sample, as trace() does if it is to count them.
+    // Adds the rays of the last sample and its full stacks, as trace() does if it is to count them.
     void count(FrameStats& stats);
 
     // The film's mean as floats: 3 channels for color, normal, uv; 1 for the others, prim and instance as numbers, -1 for none.

@@ -68,7 +68,7 @@ void Wavefront::bind(const WavefrontFrame& frame, const Room& room) {
     for (cl::Buffer& control : control_)
         if (!control()) control = cl::Buffer(context, CL_MEM_READ_WRITE, kControlBytes);
     work_groups_ = std::max(1u, device_->info().compute_units) * kGroupsPerUnit;
-    counters_.fit(context, size_t(work_groups_) * 16);
+    counters_.fit(context, size_t(work_groups_) * sizeof(cl_ulong4));
     for (GrowingBuffer& rays : rays_) rays.fit(context, room.rays * kRayBytes);
     shares_.fit(context, room.parting ? pixels * kShareBytes : 0);
     sums_.fit(context, room.parting && frame.sample > 0 ? pixels * sizeof(cl_float4) : 0);

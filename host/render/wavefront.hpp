@@ -31,7 +31,7 @@ class Wavefront {
     // A sample of these pixels. go_on is asked between pieces and stops by throwing.
     LaunchTimes trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
                       const std::function<void()>& go_on, const Beside& beside = {});
-    // Of the last sample: shadow, secondary, dropped rays and full stacks of each work-group.
+    // Of the last sample: shadow, secondary, dropped rays and full stacks of each work-group, 64 bits each.
     const cl::Buffer& counters() const { return counters_.get(); }
     unsigned counter_count() const { return work_groups_; }
 

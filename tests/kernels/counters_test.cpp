@@ -2,10 +2,12 @@
 // nothing.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <random>
 
+#include "render/film.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 
@@ -168,6 +170,37 @@ TEST(Counters, AsPictures) {
     EXPECT_GT(split, 100u);
     const FloatImage steps = picture("steps", "bvh2", 16);
     EXPECT_GT(steps.pixels[25 * 66 + 33], steps.pixels[0]);
+}
+
+// What film.cl sums up of `count` packets that have these four numbers each.
+template <class Number>
+RayCounts summed(FilmKernels& kernels, const std::array<Number, 4>& of_each, unsigned count) {
+    std::vector<Number> counters;
+    for (unsigned i = 0; i < count; ++i) counters.insert(counters.end(), of_each.begin(), of_each.end());
+    const cl::Buffer buffer(bench().shared_device()->context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR,
+                            counters.size() * sizeof(Number), counters.data());
+    kernels.begin_sum(buffer, count,
+                      sizeof(Number) == 8 ? FilmKernels::CounterWidth::bits64 : FilmKernels::CounterWidth::bits32);
+    KernelTime time;
+    return kernels.end_sum(time);
+}
+
+TEST(Counters, SumsOfManyRays) {
+    FilmKernels kernels(bench().shared_device());
+    const uint32_t most = ~0u;
+    for (const unsigned count : {1u, 3u, 64u, 65u, 1000u, 100000u}) {
+        const RayCounts sums = summed<uint32_t>(kernels, {most, 3000000000u, 7, 0}, count);
+        EXPECT_EQ(sums.shadow, uint64_t(most) * count);
+        EXPECT_EQ(sums.secondary, uint64_t(3000000000u) * count);
+        EXPECT_EQ(sums.dropped, uint64_t(7) * count);
+        EXPECT_EQ(sums.overflowed, 0u);
+        const uint64_t large = uint64_t(most) << 8 | 0x80u;
+        const RayCounts wide = summed<uint64_t>(kernels, {large, most, 0, 1}, count);
+        EXPECT_EQ(wide.shadow, large * count);
+        EXPECT_EQ(wide.secondary, uint64_t(most) * count);
+        EXPECT_EQ(wide.dropped, 0u);
+        EXPECT_EQ(wide.overflowed, count);
+    }
 }
 
 }  // namespace

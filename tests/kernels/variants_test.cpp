@@ -6,7 +6,11 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <utility>
 
+#include "base/log.hpp"
+#include "render/inspect.hpp"
+#include "render/ray_blocks.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 #include "unit/scratch.hpp"
@@ -94,19 +98,110 @@ TEST(Debug, NoStackOverflowsOnTheDeepestTrees) {
     expect_no_overflow(shared_scene(scene_of(mesh)), "doubling triangles", bench().accels());
 }
 
+// Kernels in which a structure's traversal has a stack of two entries.
+class SmallStack {
+ public:
+    explicit SmallStack(const std::string& accel, const std::string& macro) {
+        std::filesystem::copy(source_file("cl"), scratch_.path("cl"), std::filesystem::copy_options::recursive);
+        const std::string file = "plugins/accel/" + accel + "/" + accel + ".cl";
+        std::ifstream in(source_file(file));
+        const std::string traversal{std::istreambuf_iterator<char>(in), {}};
+        scratch_.write(file, "#undef " + macro + "\n#define " + macro + " 2u\n" + traversal);
+        environment_.set("CLARITY_KERNEL_PATH", scratch_.path("cl"));
+    }
+
+ private:
+    Scratch scratch_;
+    Environment environment_;
+};
+
 // The watch itself works: bvh2's traversal with a stack of two entries must say that they are too few, and still end.
 TEST(Debug, AFullStackIsCounted) {
-    Scratch scratch;
-    Environment environment;
-    std::filesystem::copy(source_file("cl"), scratch.path("cl"), std::filesystem::copy_options::recursive);
-    std::ifstream in(source_file("plugins/accel/bvh2/bvh2.cl"));
-    const std::string traversal{std::istreambuf_iterator<char>(in), {}};
-    scratch.write("plugins/accel/bvh2/bvh2.cl", "#undef BVH2_STACK\n#define BVH2_STACK 2u\n" + traversal);
-    environment.set("CLARITY_KERNEL_PATH", scratch.path("cl"));
+    const SmallStack small("bvh2", "BVH2_STACK");
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     FrameStats stats;
     picture(scene, make_view(*scene, 4.0f / 3), {"bvh2", 16, 4, 4}, "color", false, true, &stats);
     EXPECT_GT(stats.overflowed, 0u);
+}
+
+// Of camera rays there are as many in every picture, whatever it shows of them.
+TEST(Debug, AFullStackIsCountedForEveryAov) {
+    const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
+    const View view = make_view(*scene, 4.0f / 3);
+    const auto overflowed = [&](const std::string& aov) {
+        FrameStats stats;
+        picture(scene, view, {"bvh2", 16, 4, 4}, aov, false, true, &stats);
+        return stats.overflowed;
+    };
+    EXPECT_EQ(overflowed("t"), 0u) << "with the stack that the builder asked for";
+    const SmallStack small("bvh2", "BVH2_STACK");
+    const uint64_t of_camera_rays = overflowed("t");
+    EXPECT_GT(of_camera_rays, 0u);
+    EXPECT_EQ(overflowed("t"), of_camera_rays) << "a picture counts anew";
+    for (const std::string& aov : find_setting("aov")->choices) {
+        const bool spawns = aov == "color" || aov == "generations";
+        if (spawns)
+            EXPECT_GE(overflowed(aov), of_camera_rays) << aov;
+        else
+            EXPECT_EQ(overflowed(aov), of_camera_rays) << aov;
+    }
+}
+
+// What the log gets while it exists.
+class Listener {
+ public:
+    Listener() {
+        set_log_listener([this](LogLevel level, const std::string& text) {
+            if (level == LogLevel::error) errors_ += text + "\n";
+        });
+    }
+    ~Listener() { set_log_listener({}); }
+    std::string take() { return std::exchange(errors_, {}); }
+
+ private:
+    std::string errors_;
+};
+
+// Rays of the caller's own, by each of the kernels that trace them, and the inspector's.
+TEST(Debug, AFullStackOfRayQueriesIsReported) {
+    const ScenePtr scene = shared_scene(scene_of(uv_sphere(1, 48, 24)));
+    const View view = view_from({0, 0, 5}, {0, 0, 0}, 40);
+    std::vector<rt_ray> rays;
+    for (int i = 0; i < 4096; ++i)
+        rays.push_back({{0, 0, 5}, 0, {0.005f * float(i % 64 - 32), 0.005f * float(i / 64 - 32), -1}, INFINITY});
+    Listener listener;
+    const auto watched = [&](const std::string& accel, const char* lanes) {
+        Settings settings = make_settings({{"accel", accel}, {"lanes", lanes}, {"debug", "true"}, {"size", "64x48"}});
+        if (std::string(lanes) == "1") set_setting(settings, "packet", "1x1"), set_setting(settings, "portable", "true");
+        const auto prepared = bench().prepare(scene, settings);
+        std::string silent;
+        // Each way to trace them is tried in turn, so that many runs see all.
+        for (const RayQuery query : {RayQuery{false, false}, RayQuery{true, false}, RayQuery{false, true}}) {
+            const RayBlocks packed(rays, unsigned(settings.lanes));
+            for (int run = 0; run < (query.count ? 1 : 6); ++run) {
+                bench().frames().trace_rays(*prepared, packed, query);
+                if (listener.take().find("stack") == std::string::npos) silent += accel + " " + lanes + "; ";
+            }
+        }
+        return silent;
+    };
+    EXPECT_NE(watched("bvh2", "16"), "");
+    EXPECT_EQ(listener.take(), "");
+    {
+        const SmallStack small("bvh2", "BVH2_STACK");
+        EXPECT_EQ(watched("bvh2", "16"), "");
+    }
+    {
+        const SmallStack small("bvh4", "BVH4_STACK");
+        EXPECT_EQ(watched("bvh4", "1"), "");
+    }
+    const Settings settings = make_settings({{"accel", "bvh2"}, {"debug", "true"}, {"size", "64x48"}});
+    Inspector inspector(bench().shared_device());
+    EXPECT_EQ(inspector.trace(*bench().prepare(scene, settings), settings, view, 32, 24).overflowed, 0u);
+    EXPECT_EQ(listener.take(), "");
+    const SmallStack small("bvh2", "BVH2_STACK");
+    EXPECT_GT(inspector.trace(*bench().prepare(scene, settings), settings, view, 32, 24).overflowed, 0u);
+    EXPECT_NE(listener.take().find("stack"), std::string::npos);
 }
 
 }  // namespace
