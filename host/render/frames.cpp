@@ -113,7 +113,7 @@ struct Frames::Impl {
         aov = prepared.settings.aov;
         width = new_width;
         height = new_height;
-        layout = make_layout(prepared.settings, device->info().cpu);
+        layout = prepared.layout;
         if (picture.shared) {
             rows = picture.shared->rows;
         } else {
@@ -122,7 +122,8 @@ struct Frames::Impl {
         }
         begun = picture.shared ? layout.groups_x(width) * static_cast<unsigned>(picture.shared->begin) : 0;
         film.fit(device->context(), film_bytes(FilmKernels::room(size_t(width) * height)));
-        if (program->has_generations()) distances.fit(device->context(), packets() * layout.rays() * sizeof(float));
+        if (program->has_generations())
+            distances.fit(device->context(), layout.packets(width, height) * layout.rays() * sizeof(float));
     }
 
     // Of `left` samples, how many one launch traces.
@@ -176,7 +177,7 @@ struct Frames::Impl {
         const cl_uint first_group = at++;
         kernel.setArg(at++, into);
         if (program->has_generations()) {
-            kernel.setArg(at++, counters.fit(device->context(), packets() * at_once * 16));
+            kernel.setArg(at++, counters.fit(device->context(), layout.packets(width, height) * at_once * 16));
             kernel.setArg(at++, distances.get());
         }
         if (counts_overflows()) {
@@ -188,16 +189,9 @@ struct Frames::Impl {
     }
 
     size_t film_bytes(size_t of_pixels) const { return of_pixels * film_channels(aov) * sizeof(float); }
-    size_t packets() const { return size_t(layout.groups_x(width)) * layout.groups_y(height) * layout.group_packets(); }
-    unsigned row_height() const { return layout.group_h * layout.packet_h; }
-    std::vector<Band> bands() const { return bands_of(rows, row_height(), height); }
+    GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
     // That are traced.
-    uint64_t pixels() const {
-        uint64_t sum = 0;
-        for (size_t i = begun / layout.groups_x(width); i < rows.size(); ++i)
-            sum += uint64_t(width) * std::min(row_height(), height - rows[i] * row_height());
-        return sum;
-    }
+    uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
     cl::Event begin_sum(unsigned samples = 1) {
         using Width = FilmKernels::CounterWidth;
         if (program->is_wavefront())
@@ -215,7 +209,7 @@ struct Frames::Impl {
     // Debug programs that trace camera rays alone count nothing else, and that apart from the counters.
     bool counts_overflows() const { return debug && !program->has_generations(); }
     cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
-        return film_kernels.begin_rows(film.get(), width, height, rows, row_height(), settings, rgba);
+        return film_kernels.begin_rows(film.get(), group_rows(), settings, rgba);
     }
     ColorFilm film_of_colors() const { return {film.get(), width, height}; }
     unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
@@ -257,8 +251,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
                 beside.behind = [&] {
                     cl::Event behind;
                     if (at_once > 1)
-                        behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.width, im.height,
-                                                                    im.rows, im.row_height());
+                        behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
                     if (sum) behind = im.begin_sum(at_once);
                     if (display) behind = im.begin_rows(settings, display);
                     if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
@@ -307,7 +300,7 @@ void Frames::read_values(FloatImage& image) {
         const size_t stored = size_t(im.width) * film_channels(im.aov);  // floats of a row of pixels
         if (color) im.scratch.resize(stored * im.height);
         float* const film = color ? im.scratch.data() : image.pixels.data();
-        const std::vector<Band> bands = im.bands();
+        const std::vector<Band> bands = im.group_rows().bands();
         read_bands(im.device->queue(), im.film.get(), bands, stored * sizeof(float), film);
         im.device->queue().finish();
         for (const Band& band : bands) {

@@ -42,7 +42,7 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
     tiny.depth = 1;
     View view;
     view.camera.eye = {0, 0, 1e6f};
-    const Layout layout = make_layout(tiny, device.info().cpu);
+    const Layout& layout = prepared.layout;
     const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
     cl::CommandQueue queue(device.context(), device.info().cl_device, CL_QUEUE_PROFILING_ENABLE);
     cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame,
@@ -166,8 +166,9 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
                                 : aov == "generations" ? KernelKind::generations
                                                        : KernelKind::aov;
         const auto start = std::chrono::steady_clock::now();
-        const KernelSource source = assemble_kernel(next->settings, make_layout(next->settings, device_->info().cpu), kind,
-                                                    features_of(*scene, next->accel->scene), *plugin, next->accel->defines);
+        next->layout = make_layout(next->settings, device_->info().cpu);
+        const KernelSource source = assemble_kernel(next->settings, next->layout, kind, features_of(*scene, next->accel->scene),
+                                                    *plugin, next->accel->defines);
         bool fresh = false;
         const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
         auto program = programs_->get(source, kind, what, &fresh);

@@ -49,7 +49,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
     return guarded(*device_, "tracing rays", [&] {
         if (hits) hits->clear();
         if (rays.ray_count() == 0) return 0.0;
-        const Layout layout = make_layout(prepared.settings, device_->info().cpu);
+        const Layout& layout = prepared.layout;
         bool fresh = false;
         if (rays.lanes() != layout.lanes)
             throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
