@@ -10,15 +10,6 @@
 
 namespace clarity {
 
-// Floats a pixel: in the film, and in a picture of its values.
-inline unsigned film_channels(const std::string& aov) {
-    if (aov == "color") return 4;
-    return aov == "normal" || aov == "uv" ? 3 : 1;
-}
-inline unsigned value_channels(const std::string& aov) {
-    return aov == "color" ? 3 : film_channels(aov);
-}
-
 // Reads what is no colour and paints it in false ones. stats, scale: where given, gain the times and what the colours mean.
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
                       FrameStats* stats, FalseColorScale* scale);

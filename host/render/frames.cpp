@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "render/aov.hpp"
 #include "render/bands.hpp"
 #include "render/display_relay.hpp"
 #include "render/film.hpp"
@@ -73,7 +74,7 @@ struct Frames::Impl {
     GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, counters{CL_MEM_READ_WRITE},
         distances{CL_MEM_READ_WRITE};
     unsigned width = 0, height = 0;
-    std::string aov;
+    const Aov* aov = &aov_table().front();        // what is in the film
     Layout layout;                                // of the picture in the film
     std::vector<rt_u32> rows;                     // of work-groups, that are traced; counters and distances are in this order
     unsigned begun = 0;                           // work-groups of these rows that were traced before
@@ -110,7 +111,7 @@ struct Frames::Impl {
         program = prepared.program;
         bound = prepared.on_device;
         debug = prepared.settings.debug;
-        aov = prepared.settings.aov;
+        aov = &find_aov(prepared.settings.aov);
         width = new_width;
         height = new_height;
         layout = prepared.layout;
@@ -129,7 +130,7 @@ struct Frames::Impl {
     // Of `left` samples, how many one launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
         const bool parting = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
-        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || aov != "color" || !program->has_generations() ||
+        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || !program->has_generations() ||
             parting || begun > 0)
             return 1;
         const DeviceInfo& info = device->info();
@@ -188,7 +189,7 @@ struct Frames::Impl {
         return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, beside);
     }
 
-    size_t film_bytes(size_t of_pixels) const { return of_pixels * film_channels(aov) * sizeof(float); }
+    size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
     GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
     // That are traced.
     uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
@@ -233,7 +234,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         // Who was shown the last picture gets this one by a single wait, not by one for the trace and one for the copy.
         im.relay.forget_begun();
         const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
-        const bool show = im.aov == "color" && !shared && !im.device->info().cpu && before != Impl::Shown::no;
+        const bool show = im.aov->is_color() && !shared && !im.device->info().cpu && before != Impl::Shown::no;
         const bool sum = count_rays && prepared.program->has_generations() && im.groups() > im.begun;
         FrameStats stats;
         for (unsigned sample = samples.first, end = sample + samples.count; sample < end;) {
@@ -288,7 +289,7 @@ void Frames::count(FrameStats& stats) {
 }
 
 FloatImage Frames::read_values() {
-    FloatImage image = impl_->image(value_channels(impl_->aov));
+    FloatImage image = impl_->image(impl_->aov->value_channels());
     read_values(image);
     return image;
 }
@@ -296,8 +297,8 @@ FloatImage Frames::read_values() {
 void Frames::read_values(FloatImage& image) {
     Impl& im = *impl_;
     guarded(*im.device, "reading the film", [&] {
-        const bool color = im.aov == "color";
-        const size_t stored = size_t(im.width) * film_channels(im.aov);  // floats of a row of pixels
+        const bool color = im.aov->is_color();
+        const size_t stored = size_t(im.width) * im.aov->film_channels();  // floats of a row of pixels
         if (color) im.scratch.resize(stored * im.height);
         float* const film = color ? im.scratch.data() : image.pixels.data();
         const std::vector<Band> bands = im.group_rows().bands();
@@ -308,7 +309,7 @@ void Frames::read_values(FloatImage& image) {
             if (color) {
                 for (size_t i = begin; i < end; ++i)
                     for (int k = 0; k < 3; ++k) image.pixels[3 * i + k] = film[4 * i + k] / std::max(film[4 * i + 3], 1.0f);
-            } else if (im.aov == "prim" || im.aov == "instance") {
+            } else if (im.aov->film == Aov::Film::numbers) {
                 for (size_t i = begin; i < end; ++i) {
                     rt_i32 number;
                     std::memcpy(&number, &film[i], sizeof number);
@@ -326,7 +327,7 @@ FloatImage Frames::read_distance() {
 
 bool Frames::read_distance(FloatImage& image) {
     Impl& im = *impl_;
-    if (im.aov == "t") {
+    if (im.aov->film == Aov::Film::distances) {
         read_values(image);
         return true;
     }
@@ -355,7 +356,7 @@ void Frames::add_display_times(std::vector<KernelTime>& times) {
 ByteImage Frames::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
     Impl& im = *impl_;
     if (scale) *scale = {};
-    if (im.aov != "color") return show_values([this] { return read_values(); }, im.aov, settings, stats, scale);
+    if (!im.aov->is_color()) return show_values([this] { return read_values(); }, im.aov->name, settings, stats, scale);
     im.shown = Impl::Shown::read;
     return guarded(*im.device, "reading the picture", [&] { return im.relay.take(im.film_of_colors(), settings, false); })
         .wait(stats ? &stats->kernels : nullptr);
@@ -368,7 +369,7 @@ PendingImage Frames::begin_display(const Settings& settings) {
 }
 
 bool Frames::copies_aside() const {
-    return impl_->aov == "color" && !impl_->device->info().cpu;
+    return impl_->program && impl_->aov->is_color() && !impl_->device->info().cpu;
 }
 
 std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

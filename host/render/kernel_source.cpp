@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "device/kernel_files.hpp"
+#include "render/aov.hpp"
 
 namespace clarity {
 namespace {
@@ -27,6 +28,13 @@ void define(std::ostream& out, const std::string& name, unsigned value) {
 }
 void define_int(std::ostream& out, const std::string& name, unsigned value) {
     out << "#define " << name << ' ' << value << "\n";
+}
+
+// Each quantity's number, for aov.cl to compare, and RT_AOV, the one that the program is for.
+void define_aovs(std::ostream& out, const Aov& wanted) {
+    for (const Aov& aov : aov_table()) define_int(out, kernel_macro(aov), static_cast<unsigned>(&aov - aov_table().data()));
+    out << "#define RT_AOV " << kernel_macro(wanted) << "\n";
+    if (wanted.counts_steps) out << "#define RT_COUNT_STEPS\n";
 }
 
 // #line keeps the compiler's messages at the author's file.
@@ -212,16 +220,11 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
                 source.entry = "trace_parts";
             }
             break;
-        case KernelKind::aov: {
-            static const std::map<std::string, unsigned> numbers = {{"t", 1},  {"prim", 2},  {"instance", 3},   {"normal", 4},
-                                                                    {"uv", 5}, {"steps", 6}, {"leaf_tests", 7}, {"lanes", 8}};
-            const unsigned number = numbers.at(settings.aov);
-            define_int(out, "RT_AOV", number);
-            if (number >= numbers.at("steps")) out << "#define RT_COUNT_STEPS\n";
+        case KernelKind::aov:
+            define_aovs(out, find_aov(settings.aov));
             kernel_file = "tracers/aov.cl";
             source.entry = "trace_aov";
             break;
-        }
         case KernelKind::counted_rays:
             out << "#define RT_COUNT_STEPS\n";
             [[fallthrough]];

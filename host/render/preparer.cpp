@@ -1,6 +1,7 @@
 // preparer.cpp -- what is slow between settings and frames, and what of it can be kept.
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "render/aov.hpp"
 #include "render/device_scene.hpp"
 #include "render/frame_constants.hpp"
 #include "render/memory_plan.hpp"
@@ -31,6 +32,18 @@ Settings resolve(const Settings& asked, const Device& device, const Scene& scene
     if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
     if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a bundle: cl/bundle.h
     return s;
+}
+
+KernelKind kind_for(const Aov& aov) {
+    switch (aov.program) {
+        case Aov::Program::color:
+            return KernelKind::color;
+        case Aov::Program::generations:
+            return KernelKind::generations;
+        case Aov::Program::camera_rays:
+            break;
+    }
+    return KernelKind::aov;
 }
 
 // PoCL compiles when a kernel first runs with a work-group size, so the first frame would wait for it: one pixel is traced
@@ -161,10 +174,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         if (progress.cancelled()) throw Cancelled();
         progress.stage("compiling kernels");
         progress.report(-1);
-        const std::string& aov = next->settings.aov;
-        const KernelKind kind = aov == "color"         ? KernelKind::color
-                                : aov == "generations" ? KernelKind::generations
-                                                       : KernelKind::aov;
+        const KernelKind kind = kind_for(find_aov(next->settings.aov));
         const auto start = std::chrono::steady_clock::now();
         next->layout = make_layout(next->settings, device_->info().cpu);
         const KernelSource source = assemble_kernel(next->settings, next->layout, kind, features_of(*scene, next->accel->scene),
