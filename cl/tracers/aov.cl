@@ -1,14 +1,7 @@
 /* aov.cl -- what the camera rays meet, without shading: one kernel a quantity (RT_AOV, chosen when the program is built).
- * out: RT_AOV_CHANNELS floats a pixel, top row first. prim and instance are ints in the same bits. */
-#define RT_AOV_T 1
-#define RT_AOV_PRIM 2
-#define RT_AOV_INSTANCE 3
-#define RT_AOV_NORMAL 4
-#define RT_AOV_UV 5
-/* From here on counted, for the packet of rays that the pixel's ray belongs to. */
-#define RT_AOV_STEPS 6
-#define RT_AOV_LEAF_TESTS 7
-#define RT_AOV_LANES 8
+ * Quantities are rows of the host's table (host/render/aov.cpp), which defines their numbers RT_AOV_T, RT_AOV_PRIM and so on.
+ * out: 1 or 3 floats a pixel as the table says, top row first. prim and instance are ints in the same bits. Steps, leaf tests and
+ * lanes are counted for the packet of rays that the pixel's ray belongs to. */
 
 RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, vint x, vint y, const rt_rays *ray, const rt_hits *hit,
                            uint bits, global float *out)
@@ -35,11 +28,13 @@ RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, v
     RT_FOR_LANES_STORE(out, at3, s.geometric.x, bits)
     RT_FOR_LANES_STORE(out, at3 + 1, s.geometric.y, bits)
     RT_FOR_LANES_STORE(out, at3 + 2, s.geometric.z, bits)
-#else
+#elif RT_AOV == RT_AOV_UV
     const vint at3 = at * 3;
     RT_FOR_LANES_STORE(out, at3, s.tex_u, bits)
     RT_FOR_LANES_STORE(out, at3 + 1, s.tex_v, bits)
     RT_FOR_LANES_STORE(out, at3 + 2, rt_vfloat(0.0f), bits)
+#else
+#error "rt_store_aov() has no branch for this AOV: add one"
 #endif
 #endif
 }

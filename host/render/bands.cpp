@@ -4,7 +4,13 @@
 
 namespace clarity {
 
-std::vector<Band> bands_of(const std::vector<rt_u32>& rows, unsigned row_height, unsigned height) {
+uint64_t GroupRows::pixels(size_t first) const {
+    uint64_t sum = 0;
+    for (size_t i = first; i < rows.size(); ++i) sum += uint64_t(width) * std::min(row_height, height - rows[i] * row_height);
+    return sum;
+}
+
+std::vector<Band> GroupRows::bands() const {
     std::vector<rt_u32> sorted = rows;
     std::sort(sorted.begin(), sorted.end());
     std::vector<Band> bands;

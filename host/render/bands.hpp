@@ -3,6 +3,7 @@
 #include <CL/opencl.hpp>
 #include <vector>
 
+#include "render/layout.hpp"
 #include "rt_types.h"
 
 namespace clarity {
@@ -11,8 +12,18 @@ struct Band {
     unsigned first = 0, count = 0;  // rows of pixels
 };
 
-// rows: of work-groups, each `row_height` pixels high, in any order. Neighbours become one band; from the top down.
-std::vector<Band> bands_of(const std::vector<rt_u32>& rows, unsigned row_height, unsigned height);
+// Those rows of work-groups of a picture that one device has.
+struct GroupRows {
+    unsigned width, height;           // of the whole picture, pixels
+    unsigned row_height;              // of one row of work-groups, pixels
+    const std::vector<rt_u32>& rows;  // their numbers, in any order
+    // Pixels of a row of work-groups that the picture does not cut off.
+    size_t row_pixels() const { return size_t(width) * row_height; }
+    // Pixels of the picture in rows[first] and those after it.
+    uint64_t pixels(size_t first = 0) const;
+    // The same as rows of pixels, from the top down. Neighbours become one band.
+    std::vector<Band> bands() const;
+};
 
 // Enqueues copies of these rows of a picture, each from and to its place: bands at even distances together, since a copy costs
 // a GPU's driver 6 us. events: what was enqueued.

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "render/aov.hpp"
+
 namespace clarity {
 namespace {
 
@@ -106,43 +108,35 @@ std::array<uint8_t, 3> color_at(const FalseColorScale& scale, float position) {
     return {entry[0], entry[1], entry[2]};
 }
 
-FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float most) {
-    using Map = FalseColorScale::Map;
-    FalseColorScale scale;
-    if (aov == "t")
-        scale = {Map::gray, 0, 1, false, "Distance", "scene units"};
-    else if (aov == "steps")
-        scale = {Map::heat, 0, 1, true, "Nodes visited", "per packet of rays"};
-    else if (aov == "leaf_tests")
-        scale = {Map::heat, 0, 1, true, "Primitives tested", "per packet of rays"};
-    else if (aov == "lanes")
-        scale = {Map::heat, 0, 1, false, "Lanes alive", "share per node visit"};
-    else if (aov == "generations")
-        scale = {Map::heat, 1, 2, true, "Generations", "of rays"};
-    if (scale.map == Map::none || (aov == "lanes" && !(most > 0))) return scale;
+FalseColorScale scale_of(const FloatImage& values, const std::string& name, float most) {
+    const Aov& aov = find_aov(name);
+    FalseColorScale scale = aov.scale;
+    const bool share = aov.range == Aov::Range::share;
+    if (scale.map == FalseColorScale::Map::none || (share && !(most > 0))) return scale;
     float low = INFINITY, high = -INFINITY;
     for (const float value : values.pixels) {  // no branch, so that it runs on vectors; NaN and infinity drop out
         low = value < low ? value : low;
         const float finite = value < INFINITY ? value : -INFINITY;
         high = finite > high ? finite : high;
     }
-    if (aov == "t" && low <= high) scale.min = low;
+    if (aov.range == Aov::Range::measured && low <= high) scale.min = low;
     if (most > 0) high = most;
-    scale.max = std::max(high, scale.whole || aov == "lanes" ? scale.min + 1 : scale.min);
+    scale.max = std::max(high, aov.range == Aov::Range::measured ? scale.min : scale.min + 1);
     return scale;
 }
 
-ByteImage false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale) {
+ByteImage false_colors(const FloatImage& values, const std::string& name, const FalseColorScale& scale) {
+    const Aov::Paint how = find_aov(name).paint;
     std::vector<uint8_t> pixels(4 * pixel_count(values));
     uint8_t* const rgba = pixels.data();
-    if (aov == "prim" || aov == "instance") {
+    if (how == Aov::Paint::hash) {
         paint(values, rgba, [](const float* v) { return color_of_number(*v); });
-    } else if (aov == "normal") {
+    } else if (how == Aov::Paint::direction) {
         paint(values, rgba, [](const float* v) {
             if (v[0] == 0 && v[1] == 0 && v[2] == 0) return Rgb{};
             return Rgb{byte_of(0.5 + 0.5 * v[0]), byte_of(0.5 + 0.5 * v[1]), byte_of(0.5 + 0.5 * v[2])};
         });
-    } else if (aov == "uv") {
+    } else if (how == Aov::Paint::texture) {
         paint(values, rgba, [](const float* v) {
             return Rgb{byte_of(v[0] - std::floor(v[0])), byte_of(v[1] - std::floor(v[1])), 0};
         });

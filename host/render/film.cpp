@@ -9,7 +9,6 @@
 #include "base/elapsed.hpp"
 #include "device/kernel_files.hpp"
 #include "device/program.hpp"
-#include "render/bands.hpp"
 #include "render/guarded.hpp"
 
 namespace clarity {
@@ -121,33 +120,32 @@ const cl::Buffer& FilmKernels::table_of(const std::vector<rt_u32>& rows) {
     return table;
 }
 
-cl::Event FilmKernels::add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds, unsigned width,
-                                  unsigned height, const std::vector<rt_u32>& rows, unsigned row_height) {
-    const size_t row_pixels = size_t(width) * row_height;
+cl::Event FilmKernels::add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds,
+                                  const GroupRows& rows) {
+    const size_t items = rows.row_pixels() * rows.rows.size();
     add_layers_.setArg(0, film);
     add_layers_.setArg(1, layers);
-    add_layers_.setArg(2, static_cast<cl_uint>(size_t(width) * height));
+    add_layers_.setArg(2, static_cast<cl_uint>(size_t(rows.width) * rows.height));
     add_layers_.setArg(3, static_cast<cl_uint>(count));
     add_layers_.setArg(4, static_cast<cl_uint>(adds));
-    add_layers_.setArg(5, table_of(rows));
-    add_layers_.setArg(6, static_cast<cl_uint>(row_pixels));
-    add_layers_.setArg(7, static_cast<cl_uint>(row_pixels * rows.size()));
-    return run(add_layers_, row_pixels * rows.size());
+    add_layers_.setArg(5, table_of(rows.rows));
+    add_layers_.setArg(6, static_cast<cl_uint>(rows.row_pixels()));
+    add_layers_.setArg(7, static_cast<cl_uint>(items));
+    return run(add_layers_, items);
 }
 
-cl::Event FilmKernels::begin_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
-                                  unsigned row_height, const Settings& settings, uint8_t* rgba) {
-    const size_t pixels = size_t(width) * height;
+cl::Event FilmKernels::begin_rows(const cl::Buffer& film, const GroupRows& rows, const Settings& settings, uint8_t* rgba) {
+    const size_t pixels = size_t(rows.width) * rows.height;
     const cl::Buffer& display = display_.fit(device_->context(), room(pixels) * 4);
     set_map(map_tones_of_rows_, film, display, pixels, settings);
-    const size_t row_pixels = size_t(width) * row_height, row_quads = quads_touched(row_pixels);
-    map_tones_of_rows_.setArg(5, table_of(rows));
-    map_tones_of_rows_.setArg(6, static_cast<cl_uint>(row_pixels));
+    const size_t row_quads = quads_touched(rows.row_pixels()), items = row_quads * rows.rows.size();
+    map_tones_of_rows_.setArg(5, table_of(rows.rows));
+    map_tones_of_rows_.setArg(6, static_cast<cl_uint>(rows.row_pixels()));
     map_tones_of_rows_.setArg(7, static_cast<cl_uint>(row_quads));
-    map_tones_of_rows_.setArg(8, static_cast<cl_uint>(row_quads * rows.size()));
-    rows_mapped_ = run(map_tones_of_rows_, row_quads * rows.size());
+    map_tones_of_rows_.setArg(8, static_cast<cl_uint>(items));
+    rows_mapped_ = run(map_tones_of_rows_, items);
     rows_read_.clear();
-    read_bands(device_->queue(), display, bands_of(rows, row_height, height), size_t(width) * 4, rgba, &rows_read_);
+    read_bands(device_->queue(), display, rows.bands(), size_t(rows.width) * 4, rgba, &rows_read_);
     return rows_read_.back();
 }
 

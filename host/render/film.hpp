@@ -3,20 +3,12 @@
 #include <functional>
 #include <memory>
 
+#include "render/bands.hpp"
 #include "render/growing_buffer.hpp"
 #include "render/host_memory.hpp"
 #include "render/renderer.hpp"
 
 namespace clarity {
-
-// Floats a pixel: in the film, and in a picture of its values.
-inline unsigned film_channels(const std::string& aov) {
-    if (aov == "color") return 4;
-    return aov == "normal" || aov == "uv" ? 3 : 1;
-}
-inline unsigned value_channels(const std::string& aov) {
-    return aov == "color" ? 3 : film_channels(aov);
-}
 
 // Reads what is no colour and paints it in false ones. stats, scale: where given, gain the times and what the colours mean.
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
@@ -53,13 +45,10 @@ class FilmKernels {
     RayCounts end_sum(KernelTime& time);
     // Enqueues the tones of a film, room(pixels) float4, sums of samples, into a display of room(pixels) * 4 bytes.
     cl::Event map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings);
-    // Enqueues adding layers (rt_types.h) to the film, in rows of work-groups `row_height` pixels high. adds: 0: anew.
-    cl::Event add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds, unsigned width,
-                         unsigned height, const std::vector<rt_u32>& rows, unsigned row_height);
-    // Enqueues the tones of some rows of work-groups alone, `row_height` pixels high, each to its place in the picture: rgba,
-    // 4 * pixels bytes. Returns the last event.
-    cl::Event begin_rows(const cl::Buffer& film, unsigned width, unsigned height, const std::vector<rt_u32>& rows,
-                         unsigned row_height, const Settings& settings, uint8_t* rgba);
+    // Enqueues adding layers (rt_types.h) to these rows of the film. adds: 0: anew.
+    cl::Event add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds, const GroupRows& rows);
+    // Enqueues the tones of these rows alone, each to its place in the picture: rgba, 4 * pixels bytes. Returns the last event.
+    cl::Event begin_rows(const cl::Buffer& film, const GroupRows& rows, const Settings& settings, uint8_t* rgba);
     // Waits for them and adds what they took.
     void end_rows(std::vector<KernelTime>& times);
 

@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "render/aov.hpp"
 #include "render/bands.hpp"
 #include "render/display_relay.hpp"
 #include "render/film.hpp"
@@ -73,7 +74,7 @@ struct Frames::Impl {
     GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, counters{CL_MEM_READ_WRITE},
         distances{CL_MEM_READ_WRITE};
     unsigned width = 0, height = 0;
-    std::string aov;
+    const Aov* aov = &aov_table().front();        // what is in the film
     Layout layout;                                // of the picture in the film
     std::vector<rt_u32> rows;                     // of work-groups, that are traced; counters and distances are in this order
     unsigned begun = 0;                           // work-groups of these rows that were traced before
@@ -110,10 +111,10 @@ struct Frames::Impl {
         program = prepared.program;
         bound = prepared.on_device;
         debug = prepared.settings.debug;
-        aov = prepared.settings.aov;
+        aov = &find_aov(prepared.settings.aov);
         width = new_width;
         height = new_height;
-        layout = make_layout(prepared.settings, device->info().cpu);
+        layout = prepared.layout;
         if (picture.shared) {
             rows = picture.shared->rows;
         } else {
@@ -122,13 +123,14 @@ struct Frames::Impl {
         }
         begun = picture.shared ? layout.groups_x(width) * static_cast<unsigned>(picture.shared->begin) : 0;
         film.fit(device->context(), film_bytes(FilmKernels::room(size_t(width) * height)));
-        if (program->has_generations()) distances.fit(device->context(), packets() * layout.rays() * sizeof(float));
+        if (program->has_generations())
+            distances.fit(device->context(), layout.packets(width, height) * layout.rays() * sizeof(float));
     }
 
     // Of `left` samples, how many one launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
         const bool parting = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
-        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || aov != "color" || !program->has_generations() ||
+        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || !program->has_generations() ||
             parting || begun > 0)
             return 1;
         const DeviceInfo& info = device->info();
@@ -176,7 +178,7 @@ struct Frames::Impl {
         const cl_uint first_group = at++;
         kernel.setArg(at++, into);
         if (program->has_generations()) {
-            kernel.setArg(at++, counters.fit(device->context(), packets() * at_once * 16));
+            kernel.setArg(at++, counters.fit(device->context(), layout.packets(width, height) * at_once * 16));
             kernel.setArg(at++, distances.get());
         }
         if (counts_overflows()) {
@@ -187,17 +189,10 @@ struct Frames::Impl {
         return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, beside);
     }
 
-    size_t film_bytes(size_t of_pixels) const { return of_pixels * film_channels(aov) * sizeof(float); }
-    size_t packets() const { return size_t(layout.groups_x(width)) * layout.groups_y(height) * layout.group_packets(); }
-    unsigned row_height() const { return layout.group_h * layout.packet_h; }
-    std::vector<Band> bands() const { return bands_of(rows, row_height(), height); }
+    size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
+    GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
     // That are traced.
-    uint64_t pixels() const {
-        uint64_t sum = 0;
-        for (size_t i = begun / layout.groups_x(width); i < rows.size(); ++i)
-            sum += uint64_t(width) * std::min(row_height(), height - rows[i] * row_height());
-        return sum;
-    }
+    uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
     cl::Event begin_sum(unsigned samples = 1) {
         using Width = FilmKernels::CounterWidth;
         if (program->is_wavefront())
@@ -215,7 +210,7 @@ struct Frames::Impl {
     // Debug programs that trace camera rays alone count nothing else, and that apart from the counters.
     bool counts_overflows() const { return debug && !program->has_generations(); }
     cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
-        return film_kernels.begin_rows(film.get(), width, height, rows, row_height(), settings, rgba);
+        return film_kernels.begin_rows(film.get(), group_rows(), settings, rgba);
     }
     ColorFilm film_of_colors() const { return {film.get(), width, height}; }
     unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
@@ -239,7 +234,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
         // Who was shown the last picture gets this one by a single wait, not by one for the trace and one for the copy.
         im.relay.forget_begun();
         const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
-        const bool show = im.aov == "color" && !shared && !im.device->info().cpu && before != Impl::Shown::no;
+        const bool show = im.aov->is_color() && !shared && !im.device->info().cpu && before != Impl::Shown::no;
         const bool sum = count_rays && prepared.program->has_generations() && im.groups() > im.begun;
         FrameStats stats;
         for (unsigned sample = samples.first, end = sample + samples.count; sample < end;) {
@@ -257,8 +252,7 @@ FrameStats Frames::trace(const Prepared& prepared, const Settings& settings, con
                 beside.behind = [&] {
                     cl::Event behind;
                     if (at_once > 1)
-                        behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.width, im.height,
-                                                                    im.rows, im.row_height());
+                        behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
                     if (sum) behind = im.begin_sum(at_once);
                     if (display) behind = im.begin_rows(settings, display);
                     if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
@@ -295,7 +289,7 @@ void Frames::count(FrameStats& stats) {
 }
 
 FloatImage Frames::read_values() {
-    FloatImage image = impl_->image(value_channels(impl_->aov));
+    FloatImage image = impl_->image(impl_->aov->value_channels());
     read_values(image);
     return image;
 }
@@ -303,11 +297,11 @@ FloatImage Frames::read_values() {
 void Frames::read_values(FloatImage& image) {
     Impl& im = *impl_;
     guarded(*im.device, "reading the film", [&] {
-        const bool color = im.aov == "color";
-        const size_t stored = size_t(im.width) * film_channels(im.aov);  // floats of a row of pixels
+        const bool color = im.aov->is_color();
+        const size_t stored = size_t(im.width) * im.aov->film_channels();  // floats of a row of pixels
         if (color) im.scratch.resize(stored * im.height);
         float* const film = color ? im.scratch.data() : image.pixels.data();
-        const std::vector<Band> bands = im.bands();
+        const std::vector<Band> bands = im.group_rows().bands();
         read_bands(im.device->queue(), im.film.get(), bands, stored * sizeof(float), film);
         im.device->queue().finish();
         for (const Band& band : bands) {
@@ -315,7 +309,7 @@ void Frames::read_values(FloatImage& image) {
             if (color) {
                 for (size_t i = begin; i < end; ++i)
                     for (int k = 0; k < 3; ++k) image.pixels[3 * i + k] = film[4 * i + k] / std::max(film[4 * i + 3], 1.0f);
-            } else if (im.aov == "prim" || im.aov == "instance") {
+            } else if (im.aov->film == Aov::Film::numbers) {
                 for (size_t i = begin; i < end; ++i) {
                     rt_i32 number;
                     std::memcpy(&number, &film[i], sizeof number);
@@ -333,7 +327,7 @@ FloatImage Frames::read_distance() {
 
 bool Frames::read_distance(FloatImage& image) {
     Impl& im = *impl_;
-    if (im.aov == "t") {
+    if (im.aov->film == Aov::Film::distances) {
         read_values(image);
         return true;
     }
@@ -362,7 +356,7 @@ void Frames::add_display_times(std::vector<KernelTime>& times) {
 ByteImage Frames::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
     Impl& im = *impl_;
     if (scale) *scale = {};
-    if (im.aov != "color") return show_values([this] { return read_values(); }, im.aov, settings, stats, scale);
+    if (!im.aov->is_color()) return show_values([this] { return read_values(); }, im.aov->name, settings, stats, scale);
     im.shown = Impl::Shown::read;
     return guarded(*im.device, "reading the picture", [&] { return im.relay.take(im.film_of_colors(), settings, false); })
         .wait(stats ? &stats->kernels : nullptr);
@@ -375,7 +369,7 @@ PendingImage Frames::begin_display(const Settings& settings) {
 }
 
 bool Frames::copies_aside() const {
-    return impl_->aov == "color" && !impl_->device->info().cpu;
+    return impl_->program && impl_->aov->is_color() && !impl_->device->info().cpu;
 }
 
 std::vector<rt_hit> Frames::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

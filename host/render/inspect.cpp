@@ -68,7 +68,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
     if (x >= width || y >= height)
         throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
                                      std::to_string(width) + "x" + std::to_string(height));
-    const Layout layout = make_layout(prepared.settings, im.device->info().cpu);
+    const Layout& layout = prepared.layout;
     bool fresh = false;
     const KernelSource source =
         assemble_kernel(prepared.settings, layout, KernelKind::inspect, features_of(*prepared.scene, prepared.accel->scene),
@@ -80,16 +80,13 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         im.view.write(im.queue, *prepared.scene, {make_frame(view, settings, layout, *prepared.accel, 0)}, view);
         const cl::Buffer& records = im.records.fit(context, kMostRays * sizeof(rt_ray_record));
         const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
-        const unsigned packet_x = x / layout.packet_w, packet_y = y / layout.packet_h;
-        const cl_uint group = packet_y / layout.group_h * layout.groups_x(width) + packet_x / layout.group_w,
-                      packet = packet_y % layout.group_h * layout.group_w + packet_x % layout.group_w,
-                      pixel = y % layout.packet_h * layout.packet_w + x % layout.packet_w;
+        const PixelPlace place = layout.place_of(x, y, width);
         cl::Kernel kernel = program->kernel();
         cl_uint at = 0;
         kernel.setArg(at++, im.view.frame());
-        kernel.setArg(at++, group);
-        kernel.setArg(at++, packet);
-        kernel.setArg(at++, pixel);
+        kernel.setArg(at++, cl_uint(place.group));
+        kernel.setArg(at++, cl_uint(place.packet));
+        kernel.setArg(at++, cl_uint(place.pixel));
         kernel.setArg(at++, records);
         kernel.setArg(at++, kMostRays);
         kernel.setArg(at++, summary);

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "device/kernel_files.hpp"
+#include "render/aov.hpp"
 
 namespace clarity {
 namespace {
@@ -19,9 +20,6 @@ constexpr Member kMembers[] = {
     {"float", "uvs"},       {"rt_texture", "textures"},   {"uint", "texels"},           {"rt_light", "lights"},
 };
 
-constexpr unsigned kMostRays = 32768;  // of one generation of a packet: 2.6 MB of private memory
-constexpr unsigned kUsualRays = 8192;
-
 // Turns of a traversal after which a ray is long. On an H200 32 to 64 serve nearly as well (docs/performance.md).
 constexpr unsigned kPatience = 48;
 
@@ -30,6 +28,13 @@ void define(std::ostream& out, const std::string& name, unsigned value) {
 }
 void define_int(std::ostream& out, const std::string& name, unsigned value) {
     out << "#define " << name << ' ' << value << "\n";
+}
+
+// Each quantity's number, for aov.cl to compare, and RT_AOV, the one that the program is for.
+void define_aovs(std::ostream& out, const Aov& wanted) {
+    for (const Aov& aov : aov_table()) define_int(out, kernel_macro(aov), static_cast<unsigned>(&aov - aov_table().data()));
+    out << "#define RT_AOV " << kernel_macro(wanted) << "\n";
+    if (wanted.counts_steps) out << "#define RT_COUNT_STEPS\n";
 }
 
 // #line keeps the compiler's messages at the author's file.
@@ -177,38 +182,6 @@ bool goes_by_warps(const rt_plugin& accel) {
     return defines_flag(accel, "RT_TRAVERSES_BY_WARPS");
 }
 
-Layout make_layout(const Settings& settings, bool cpu) {
-    Layout layout;
-    layout.lanes = static_cast<unsigned>(settings.lanes);
-    layout.packet_w = static_cast<unsigned>(settings.packet_w);
-    layout.packet_h = static_cast<unsigned>(settings.packet_h);
-    // As square as can be, but no wider or higher than twice the packet while the other side still has use for the lanes.
-    layout.block_w = layout.lanes >= 8 ? 4 : layout.lanes == 4 ? 2 : 1;
-    layout.block_h = layout.lanes / layout.block_w;
-    while (layout.block_w >= 2 * layout.packet_w && layout.block_h < layout.packet_h) layout.block_w /= 2, layout.block_h *= 2;
-    while (layout.block_h >= 2 * layout.packet_h && layout.block_w < layout.packet_w) layout.block_h /= 2, layout.block_w *= 2;
-
-    const unsigned pixels = layout.packet_w * layout.packet_h, slots = static_cast<unsigned>(settings.ray_slots);
-    if (pixels * slots > kMostRays)
-        throw Error(Exit::usage, "packet " + std::to_string(layout.packet_w) + "x" + std::to_string(layout.packet_h) +
-                                     " with ray_slots " + std::to_string(slots) + " needs room for " +
-                                     std::to_string(pixels * slots) + " rays a work-item, of " + std::to_string(kMostRays) +
-                                     " at most: take a smaller packet or fewer ray slots");
-    layout.max_pixels = 1;
-    while (layout.max_pixels < pixels) layout.max_pixels *= 2;
-    layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // so that tests without a GPU see what GPUs run
-    if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
-    // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
-    layout.group_side = 4;
-    const auto in_group = [&](unsigned packet_side) {
-        return std::clamp(16 / packet_side, 1u, layout.group_side);
-    };  // camera.h
-    layout.group_w = in_group(layout.packet_w);
-    layout.group_h = in_group(layout.packet_h);
-    layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kUsualRays / slots));
-    return layout;
-}
-
 KernelSource assemble_kernel(const Settings& settings, const Layout& layout, KernelKind kind, const SceneFeatures& features,
                              const rt_plugin& accel, const std::map<std::string, rt_u32>& defines, FramePart frame_part) {
     std::ostringstream out;
@@ -247,16 +220,11 @@ KernelSource assemble_kernel(const Settings& settings, const Layout& layout, Ker
                 source.entry = "trace_parts";
             }
             break;
-        case KernelKind::aov: {
-            static const std::map<std::string, unsigned> numbers = {{"t", 1},  {"prim", 2},  {"instance", 3},   {"normal", 4},
-                                                                    {"uv", 5}, {"steps", 6}, {"leaf_tests", 7}, {"lanes", 8}};
-            const unsigned number = numbers.at(settings.aov);
-            define_int(out, "RT_AOV", number);
-            if (number >= numbers.at("steps")) out << "#define RT_COUNT_STEPS\n";
+        case KernelKind::aov:
+            define_aovs(out, find_aov(settings.aov));
             kernel_file = "tracers/aov.cl";
             source.entry = "trace_aov";
             break;
-        }
         case KernelKind::counted_rays:
             out << "#define RT_COUNT_STEPS\n";
             [[fallthrough]];

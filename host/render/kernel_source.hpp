@@ -5,6 +5,7 @@
 #include <string>
 
 #include "render/accel_build.hpp"
+#include "render/layout.hpp"
 #include "render/settings.hpp"
 
 namespace clarity {
@@ -23,27 +24,6 @@ enum class KernelKind { color, generations, aov, rays, counted_rays, long_rays, 
 // How much of a frame a program of kind `color` does; see frame_parts.hpp. The first three are its beginning: the film alone,
 // camera rays, their nearest hits. twice: leaf tests are done twice, which changes no picture.
 enum class FramePart { film, rays, closest, closest_twice, whole, whole_closest_twice, whole_any_twice };
-
-// How a picture is cut. The first four are compiled in, the rest are numbers of the frame or follow from them.
-struct Layout {
-    unsigned lanes = 1;
-    bool cpu = false;                     // a work-group is one work-item that does its packets in turn
-    unsigned group_side = 8;              // packets of a work-group side by side, at most
-    unsigned max_pixels = 1;              // room for a packet's pixels
-    unsigned packet_w = 1, packet_h = 1;  // pixels of a work-item
-    unsigned group_w = 8, group_h = 8;    // packets of a work-group
-    unsigned block_w = 1, block_h = 1;    // pixels traced side by side, block_w * block_h = lanes
-    unsigned groups_x(unsigned width) const { return (width + packet_w * group_w - 1) / (packet_w * group_w); }
-    unsigned groups_y(unsigned height) const { return (height + packet_h * group_h - 1) / (packet_h * group_h); }
-    unsigned blocks_x() const { return (packet_w + block_w - 1) / block_w; }
-    unsigned blocks() const { return blocks_x() * ((packet_h + block_h - 1) / block_h); }
-    unsigned rays() const { return blocks() * lanes; }  // camera rays of a packet, those outside it included
-    unsigned group_packets() const { return group_w * group_h; }
-    unsigned local_size() const { return cpu ? 1 : group_packets(); }
-};
-// settings: packet and lanes resolved. Throws Error(usage) if packet x ray_slots asks for more private memory than devices
-// have.
-Layout make_layout(const Settings& settings, bool cpu);
 
 // Whether a plugin's traversal lets go of rays and takes one by many work-items (long_rays.cl).
 bool takes_long_rays(const rt_plugin& accel);

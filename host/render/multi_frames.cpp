@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "render/aov.hpp"
 #include "render/film.hpp"
 #include "render/frame_stats.hpp"
 #include "render/guarded.hpp"
@@ -26,7 +27,7 @@ struct MultiFrames::Impl {
     std::shared_ptr<uint8_t> display;
     Tones display_tones;
 
-    const std::string& aov() const { return prepared->first()->settings.aov; }
+    const Aov& aov() const { return find_aov(prepared->first()->settings.aov); }
     FloatImage image(unsigned channels) const {
         FloatImage image{width, height, channels, {}};
         image.pixels.resize(size_t(width) * height * channels);
@@ -46,7 +47,7 @@ struct MultiFrames::Impl {
     uint8_t* place_for_display(const Settings& settings) {
         display = nullptr;
         display_tones = Tones(settings);
-        if (!std::exchange(shown, false) || aov() != "color") return nullptr;
+        if (!std::exchange(shown, false) || !aov().is_color()) return nullptr;
         try {
             display = room(size_t(width) * height * 4);
         } catch (const Error&) {  // the device that was to lend it is lost, which tracing finds out
@@ -91,7 +92,7 @@ FrameStats MultiFrames::trace(const std::shared_ptr<const MultiPrepared>& prepar
 FloatImage MultiFrames::read_values() {
     Impl& im = *impl_;
     if (im.alone) return im.alone->read_values();
-    FloatImage image = im.image(value_channels(im.aov()));
+    FloatImage image = im.image(im.aov().value_channels());
     im.shared->read([&](size_t, Frames& frames) { frames.read_values(image); });
     return image;
 }
@@ -110,7 +111,7 @@ ByteImage MultiFrames::read_display(const Settings& settings, FrameStats* stats,
     Impl& im = *impl_;
     if (im.alone) return im.alone->read_display(settings, stats, scale);
     if (scale) *scale = {};
-    if (im.aov() != "color") return show_values([this] { return read_values(); }, im.aov(), settings, stats, scale);
+    if (!im.aov().is_color()) return show_values([this] { return read_values(); }, im.aov().name, settings, stats, scale);
     im.shown = true;
     const size_t bytes = size_t(im.width) * im.height * 4;
     std::vector<std::vector<KernelTime>> times(im.shared->size());

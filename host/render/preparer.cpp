@@ -1,6 +1,7 @@
 // preparer.cpp -- what is slow between settings and frames, and what of it can be kept.
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "render/aov.hpp"
 #include "render/device_scene.hpp"
 #include "render/frame_constants.hpp"
 #include "render/memory_plan.hpp"
@@ -33,6 +34,18 @@ Settings resolve(const Settings& asked, const Device& device, const Scene& scene
     return s;
 }
 
+KernelKind kind_for(const Aov& aov) {
+    switch (aov.program) {
+        case Aov::Program::color:
+            return KernelKind::color;
+        case Aov::Program::generations:
+            return KernelKind::generations;
+        case Aov::Program::camera_rays:
+            break;
+    }
+    return KernelKind::aov;
+}
+
 // PoCL compiles when a kernel first runs with a work-group size, so the first frame would wait for it: one pixel is traced
 // here, with a queue of its own, while frames go on elsewhere.
 void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program, const Prepared& prepared) {
@@ -42,7 +55,7 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
     tiny.depth = 1;
     View view;
     view.camera.eye = {0, 0, 1e6f};
-    const Layout layout = make_layout(tiny, device.info().cpu);
+    const Layout& layout = prepared.layout;
     const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
     cl::CommandQueue queue(device.context(), device.info().cl_device, CL_QUEUE_PROFILING_ENABLE);
     cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame,
@@ -161,13 +174,11 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         if (progress.cancelled()) throw Cancelled();
         progress.stage("compiling kernels");
         progress.report(-1);
-        const std::string& aov = next->settings.aov;
-        const KernelKind kind = aov == "color"         ? KernelKind::color
-                                : aov == "generations" ? KernelKind::generations
-                                                       : KernelKind::aov;
+        const KernelKind kind = kind_for(find_aov(next->settings.aov));
         const auto start = std::chrono::steady_clock::now();
-        const KernelSource source = assemble_kernel(next->settings, make_layout(next->settings, device_->info().cpu), kind,
-                                                    features_of(*scene, next->accel->scene), *plugin, next->accel->defines);
+        next->layout = make_layout(next->settings, device_->info().cpu);
+        const KernelSource source = assemble_kernel(next->settings, next->layout, kind, features_of(*scene, next->accel->scene),
+                                                    *plugin, next->accel->defines);
         bool fresh = false;
         const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
         auto program = programs_->get(source, kind, what, &fresh);

@@ -50,7 +50,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (hits) hits->clear();
         tuning_ = {};
         if (rays.ray_count() == 0) return 0.0;
-        const Layout layout = make_layout(prepared.settings, device_->info().cpu);
+        const Layout& layout = prepared.layout;
         bool fresh = false;
         if (rays.lanes() != layout.lanes)
             throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +

@@ -18,6 +18,7 @@
 #include "render/accel_build.hpp"
 #include "render/false_colors.hpp"
 #include "render/image_io.hpp"
+#include "render/layout.hpp"
 #include "render/pending_image.hpp"
 #include "render/settings.hpp"
 #include "scene/scene.hpp"
@@ -36,6 +37,7 @@ struct Prepared {
     std::shared_ptr<const DeviceScene> on_device;
     std::shared_ptr<const TraceProgram> program;
     Settings settings;                     // as asked for, with 0 = automatic resolved
+    Layout layout;                         // that follows from these settings on this device
     double compile_ms = 0, upload_ms = 0;  // 0 if shared with an earlier one
     bool compile_cached = false;
 };

@@ -2,6 +2,7 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "render/aov.hpp"
 
 namespace clarity {
 namespace {
@@ -128,12 +129,7 @@ const std::vector<Setting>& settings_table() {
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
         real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
              &Settings::min_weight),
-        choice(
-            "aov", "Show",
-            "colour, or of the first hit: distance, primitive, instance, normal, texture coordinates; or what it cost: nodes "
-            "visited, primitives tested, share of lanes alive per visit, generations of rays",
-            {"color", "t", "prim", "instance", "normal", "uv", "steps", "leaf_tests", "lanes", "generations"},
-            Effect::recompile, &Settings::aov),
+        choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov),
         real("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
              Effect::frame, &Settings::scale_max),
         real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::frame, &Settings::exposure),

@@ -27,7 +27,7 @@ struct Settings {
     int spp = 1;  // samples a pixel
     bool shadows = true;
     double min_weight = 1.0 / 512.0;  // rays that would add less are not followed
-    std::string aov = "color";        // color, t, prim, steps, ...: see the table
+    std::string aov = "color";        // a name of aov_table()
     // How it is shown.
     double exposure = 1.0;
     std::string tone = "linear";  // linear|reinhard|aces|agx

@@ -8,7 +8,6 @@
 #include "base/log.hpp"
 #include "render/frame_stats.hpp"
 #include "render/guarded.hpp"
-#include "render/kernel_source.hpp"
 
 namespace clarity {
 namespace {
@@ -19,12 +18,6 @@ constexpr unsigned kMostStrips = 256;  // about so many: enough to balance devic
 
 unsigned divided_up(unsigned a, unsigned b) {
     return (a + b - 1) / b;
-}
-
-// Rows of pixels of a row of work-groups.
-unsigned row_height(const Prepared& prepared, const Device& device) {
-    const Layout layout = make_layout(prepared.settings, device.info().cpu);
-    return layout.group_h * layout.packet_h;
 }
 
 }  // namespace
@@ -136,7 +129,7 @@ void SharedPicture::cut() {
         if (!first) first = &info;
         alike &= info.compute_units == first->compute_units && info.driver == first->driver && info.parts == first->parts &&
                  (info.parts > 0 || info.name == first->name);
-        unit = std::lcm(unit, row_height(*member.prepared, *member.device));
+        unit = std::lcm(unit, member.prepared->layout.row_height());
     }
     if (!first) throw last_failure_;
     const auto height = unsigned(settings_.height);
@@ -144,7 +137,7 @@ void SharedPicture::cut() {
     strip_count_ = divided_up(height, strip_height);
     for (Member& member : members_) {
         if (!member.works()) continue;
-        const unsigned row = row_height(*member.prepared, *member.device);
+        const unsigned row = member.prepared->layout.row_height();
         member.rows_in_strip = strip_height / row;
         member.rows_in_picture = divided_up(height, row);
     }
@@ -157,7 +150,7 @@ bool SharedPicture::goes_on(const MultiPrepared& prepared, const Settings& setti
     for (Member& member : members_) {
         if (!member.works()) continue;
         const auto* own = prepared.of(member.device);
-        if (own && row_height(**own, *member.device) != row_height(*member.prepared, *member.device)) return false;
+        if (own && (*own)->layout.row_height() != member.prepared->layout.row_height()) return false;
         member.prepared = own ? *own : nullptr;
         if (!own) member.strips.clear();
     }
