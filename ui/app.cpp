@@ -34,7 +34,8 @@ constexpr double kShortestTurn = 0.01;
 
 App::App(const ViewOptions& options) {
     folder_ = preferences_folder();
-    const Preferences preferences = load_preferences(folder_);
+    std::string damage;
+    const Preferences preferences = load_preferences(folder_, &damage);
     const std::string ini = folder_.empty() ? std::string() : folder_ + "/imgui.ini";
     window_ = std::make_unique<GlWindow>("Clarity", preferences.width, preferences.height, ini);
     state_.text_scale = preferences.text_scale;
@@ -49,6 +50,7 @@ App::App(const ViewOptions& options) {
         GlWindow::wake();
     };
     session_ = std::make_unique<Session>(options, wake);
+    if (!damage.empty()) session_->report(damage);
     memory_.begin(folder_, preferences, state_, session_->wish);
     overlay_ = std::make_unique<VolumeOverlay>(wake);
     script_ = Script::from_environment();
