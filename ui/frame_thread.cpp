@@ -96,10 +96,17 @@ void FrameThread::want_distance(bool wanted) {
     changed_.notify_all();
 }
 
-void FrameThread::save(const std::string& path) {
+uint64_t FrameThread::save(const std::string& path) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    to_save_.push_back(path);
+    to_save_.push_back({++last_save_, path, {}});
     changed_.notify_all();
+    return last_save_;
+}
+
+void FrameThread::cancel_save(uint64_t number) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto it = [&](const Saved& waiting) { return waiting.number == number; };
+    to_save_.erase(std::remove_if(to_save_.begin(), to_save_.end(), it), to_save_.end());
 }
 
 void FrameThread::release() {
@@ -196,20 +203,19 @@ void FrameThread::run() {
 }
 
 void FrameThread::save_waiting() {
-    std::vector<std::string> paths;
+    std::vector<Saved> waiting;
     std::shared_ptr<const Picture> picture;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
-        paths.swap(to_save_);
+        waiting.swap(to_save_);
         picture = latest_;
     }
-    for (const std::string& path : paths) {
-        Saved outcome{path, {}};
+    for (Saved& outcome : waiting) {
         try {
-            if (writes_display(path))
-                write_image(path, {}, picture->main.image);
+            if (writes_display(outcome.path))
+                write_image(outcome.path, {}, picture->main.image);
             else
-                write_image(path, tracers_[0].frames->read_values(), {});
+                write_image(outcome.path, tracers_[0].frames->read_values(), {});
         } catch (const std::exception& error) {
             outcome.failure = error.what();
         }

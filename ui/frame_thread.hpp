@@ -73,8 +73,10 @@ class FrameThread {
     std::vector<float> times(unsigned side = 0) const;
     // From now on pictures bring their distances, or do not.
     void want_distance(bool wanted);
-    // Writes the main picture once all its samples are in. Outcomes: see take_saved().
-    void save(const std::string& path);
+    // Writes the main picture once all its samples are in. Returns a number that take_saved() names the outcome by.
+    uint64_t save(const std::string& path);
+    // Forgets that picture, unless it is being written already.
+    void cancel_save(uint64_t number);
     // Ends the frame in hand and lets go of all that is on a device, until resume(): so that devices can be closed.
     void release();
     void resume();
@@ -135,9 +137,9 @@ class FrameThread {
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
     Times times_[2];
-    std::vector<std::string> to_save_;
-    std::vector<Saved> saved_;
-    std::thread thread_;  // last: it sees the rest complete
+    std::vector<Saved> to_save_, saved_;  // without an outcome yet; with one that nobody took
+    uint64_t last_save_ = 0;              // number of it
+    std::thread thread_;                  // last: it sees the rest complete
 };
 
 // The settings to trace with: those of `wished` that apply at once, the others as prepared.

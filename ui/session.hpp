@@ -70,8 +70,9 @@ class Session {
     // `clarity render ...` that makes the main picture as it is wished, on the device that it has.
     std::string render_command(const std::string& output) const;
     // The picture as it is now, when its samples are in: .png as shown, .exr or .pfm with the film's values. The outcome is a
-    // line in the log, or a message.
-    void save_picture(const std::string& path);
+    // line in the log, or a message. Returns a number for cancel_save().
+    uint64_t save_picture(const std::string& path);
+    void cancel_save(uint64_t number) { frames_.cancel_save(number); }
     Sequence& sequence() { return sequence_; }
 
     // Follows the rays of a pixel of the newest picture.
