@@ -289,6 +289,11 @@ bool FrameThread::finish(bool held_up) {
         picture.difference = compare_pictures(picture.main.image, picture.other->image);
     }
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (traced.finished) {
+        keep_image(picture.main, traced.finished->main);
+        if (picture.other && traced.finished->other) keep_image(*picture.other, *traced.finished->other);
+        picture.difference = traced.finished->difference;
+    }
     latest_ = traced.picture;
     if (!traced.fresh) return true;
     note_time(times_[0], picture.job.ready->main.prepared, picture.main.frame_ms);
@@ -300,6 +305,14 @@ bool FrameThread::finish(bool held_up) {
 }
 
 // The film has kernels of its own. If edited ones do not compile, the last good ones go on.
+// One sample would be jagged, and to see it between finished ones is worse than either.
+void FrameThread::keep_image(PictureSide& side, const PictureSide& finished) {
+    side.image = finished.image;
+    side.scale = finished.scale;
+    side.values = finished.values;
+    side.stats.samples = finished.stats.samples;
+}
+
 void FrameThread::fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision) {
     if (tracer.devices != devices) {
         tracer = {};
@@ -318,13 +331,14 @@ void FrameThread::fit_tracer(Tracer& tracer, const Devices& devices, uint64_t ke
 
 void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     std::shared_ptr<StopProgress> progress;
-    std::shared_ptr<const Picture> last;
+    std::shared_ptr<const Picture> last, shown;
     bool distance = false, reduced = false;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         progress = running_;
         last = traced_ ? traced_->picture : latest_;
         distance = distance_;
+        shown = traced_ && traced_->finished ? traced_->finished : last;
         reduced = traced_reduced_;
     }
     // What is only shown anew keeps the size that its film has.
@@ -366,6 +380,10 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     const bool pending = traced.images[0] || traced.images[1];
     {
         const std::lock_guard<std::mutex> lock(mutex_);
+    const bool same = shown && retrace && shown->job.revision == job.revision && shown->job.ready == job.ready &&
+                      shown->job.display_revision == job.display_revision && shown->reduced == reduced &&
+                      shown->other.has_value() == two;
+    if (same && shown->main.stats.samples > picture->main.stats.samples) traced.finished = shown;
         traced_ = std::move(traced);
         traced_revision_ = job.revision;
         shown_revision_ = job.display_revision;

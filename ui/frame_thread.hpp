@@ -104,6 +104,8 @@ class FrameThread {
         PendingImage images[2];  // of its sides
         bool fresh = false;      // not only shown anew
     };
+        // The finished picture that is traced again for its times: its images are shown until all samples are in again.
+        std::shared_ptr<const Picture> finished;
     void run();
     void trace(const FrameJob& job, unsigned sample, bool retrace);
     struct Order {  // what of a side is to be done
@@ -118,7 +120,8 @@ class FrameThread {
     bool has_saving() const;
     void save_waiting();
     float moving_scale(const FrameJob& job) const;
-    static void note_time(Times& times, const std::shared_ptr<const Prepared>& of, double ms);
+    static void keep_image(PictureSide& side, const PictureSide& finished);
+    static void note_time(Times& times, const std::shared_ptr<const Ready>& of, double ms);
 
     const std::function<void()> wake_;
     Tracer tracers_[2];
