@@ -63,9 +63,9 @@ void frame_rows(Session& session) {
     tooltip("milliseconds of the last frames, tracing and reading back; dashed: what `While moving` asks for");
     if (sides.empty()) return;
     row_text("Frames/s", rate.text, "mean of the last ten");
-    row_text("Half within", median.text, "the median");
-    row_text("95 % within", late.text, "19 frames of 20 were faster");
-    row_text("99 % within", latest.text, "99 frames of 100 were faster");
+    row_text("p50", median.text, "the median: half of the frames were faster");
+    row_text("p95", late.text, "19 frames of 20 were faster");
+    row_text("p99", latest.text, "99 frames of 100 were faster");
     row_label("Keep tracing", "trace the same picture again and again, to measure");
     ImGui::Checkbox("##continuous", &session.wish.continuous);
 }
