@@ -266,7 +266,6 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     }
     adopt_view(edited);
     history_.forget();
-    for (const std::string& warning : ready->loaded->scene->warnings) log(LogLevel::warning, warning);
 }
 
 void Session::report(const std::string& text, const std::string& details) {
