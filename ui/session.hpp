@@ -23,7 +23,7 @@
 namespace clarity {
 
 // What stands over the picture until it is dismissed or mended.
-struct Message {
+struct WindowMessage {
     std::string text, details;
 };
 
@@ -116,7 +116,7 @@ class Session {
     // Length that steps are measured by: the scene's diagonal.
     float scene_size() const;
 
-    const Message& message() const { return message_; }
+    const WindowMessage& message() const { return message_; }
     void dismiss_message() { message_ = {}; }
     void report(const std::string& text, const std::string& details = {});  // a failure: message and log
     uint64_t message_count() const { return message_count_; }
@@ -143,7 +143,7 @@ class Session {
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;
-    Message message_;
+    WindowMessage message_;
     uint64_t message_count_ = 0;
     History history_;
     Sequence sequence_;
