@@ -125,7 +125,7 @@ void App::turn() {
     }
     memory_.follow(*session_, state_);
     const auto ready = session_->ready();
-    overlay_->update(ready ? ready->main.prepared : nullptr, ready && ready->other ? ready->other->prepared : nullptr);
+    overlay_->update(ready ? ready->main.accel : nullptr, ready && ready->other ? ready->other->accel : nullptr);
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
     upload_picture();
     window_->begin_frame();

@@ -193,7 +193,7 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
         if (const std::string notice = current_notice(session, state); !notice.empty()) {
             status_item(cut_to(notice, ImGui::GetContentRegionAvail().x), colors::kGreen, notice);
         } else {
-            status_item(side.prepared->accel->plugin->id, colors::kDim, side.prepared->accel->plugin->name);
+            status_item(side.accel->plugin->id, colors::kDim, side.accel->plugin->name);
             const std::string name = side.device_name();
             status_item(cut_to(name, ImGui::GetContentRegionAvail().x), colors::kDim, name);
         }

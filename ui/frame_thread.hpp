@@ -81,6 +81,7 @@ class FrameThread {
     void release();
     void resume();
     struct Saved {
+        uint64_t number = 0;
         std::string path, failure;  // empty failure: it is there
     };
     std::vector<Saved> take_saved();
@@ -95,7 +96,7 @@ class FrameThread {
     };
     struct Times {
         std::vector<float> ms;
-        std::shared_ptr<const Prepared> of;
+        std::shared_ptr<const Ready> of;
         bool cold = false;  // only its first frame is in
     };
     // A picture whose images may still be on their way.
@@ -103,17 +104,18 @@ class FrameThread {
         std::shared_ptr<Picture> picture;
         PendingImage images[2];  // of its sides
         bool fresh = false;      // not only shown anew
-    };
         // The finished picture that is traced again for its times: its images are shown until all samples are in again.
         std::shared_ptr<const Picture> finished;
+    };
     void run();
     void trace(const FrameJob& job, unsigned sample, bool retrace);
     struct Order {  // what of a side is to be done
         unsigned sample = 0;
         bool retrace = false, distance = false;
     };
-    PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
-                           const Order& order, const PictureSide* last, Progress& progress, PendingImage& image);
+    PictureSide trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
+                           const View& view, const Order& order, const PictureSide* last, Progress& progress,
+                           PendingImage& image);
     bool finish(bool held_up);
     bool wants_work(unsigned& sample, bool& retrace) const;
     void fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision);

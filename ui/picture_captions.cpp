@@ -50,13 +50,13 @@ Differences differing_settings(const Picture& picture) {
         out.of[0].push_back(in_a_sentence(label) + " " + of_a);
         out.of[1].push_back(in_a_sentence(label) + " " + of_b);
     };
-    if (a.accel == b.accel && on_a.prepared->accel->plugin) {
-        const rt_plugin& plugin = *on_a.prepared->accel->plugin;
+    if (a.accel == b.accel && on_a.accel->plugin) {
+        const rt_plugin& plugin = *on_a.accel->plugin;
         for (size_t i = 0; i < std::min(a.accel_params.size(), b.accel_params.size()) && i < plugin.param_count; ++i)
             add(plugin.params[i].label, exact_text(a.accel_params[i]), exact_text(b.accel_params[i]));
     }
     for (const Setting& row : settings_table()) add(row.label, row.get(a), row.get(b));
-    if (on_a.devices != on_b.devices) {
+    if (on_a.devices_text() != on_b.devices_text()) {
         out.of[0].push_back(on_a.device_name());
         out.of[1].push_back(on_b.device_name());
     }

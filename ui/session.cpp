@@ -127,6 +127,7 @@ void Session::cancel() {
     worker_.cancel();
     if (!ready_) return;
     const PrepareRequest& was = ready_->request;
+    const bool was_withdrawn = ready_->withdrawn();
     // What only concerns frames stays as it is wished.
     const auto back = [](Side& side, const Side& to) {
         side.device = to.device;
@@ -140,7 +141,8 @@ void Session::cancel() {
     wish.hidden = was.hidden;
     files_ = was.files;
     files_revision_ = was.files_revision;
-    posted_key_ = prepare_key(wished_request());  // it is what we have: nothing to ask for
+    // It is what we have: nothing to ask for, unless its devices were closed meanwhile.
+    posted_key_ = was_withdrawn ? std::string() : prepare_key(wished_request());
 }
 
 Settings& Session::settings_for(const std::string& key) {

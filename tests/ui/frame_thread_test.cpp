@@ -110,7 +110,8 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
     Bytes truth(const Picture& picture, const PictureSide& side, const ReadySide& ready) {
         if (!frames_) frames_ = std::make_unique<Frames>(device_);
         for (unsigned sample = 0; sample < side.stats.samples; ++sample)
-            frames_->trace(*ready.prepared, side.settings, picture.job.view, sample, false, table().progress);
+            frames_->trace(*ready.loan->get()->prepared->first(), side.settings, picture.job.view, sample, false,
+                           table().progress);
         return bytes_of(frames_->read_display(side.settings));
     }
     void expect_right(const Picture& picture) {
@@ -167,7 +168,6 @@ TEST_P(FrameThreads, EveryPictureOfAMotionAndItsEnd) {
     EXPECT_EQ(thread_.take_failure(), "");
 }
 
-// As a window posts them: faster than they can be traced.
 // Traced on and on to be measured, a finished picture stays as it is: without its samples it would be jagged in turns.
 TEST_P(FrameThreads, AFinishedPictureStaysWhileItIsMeasured) {
     job_.settings.spp = 4;
@@ -194,6 +194,7 @@ TEST_P(FrameThreads, AFinishedPictureStaysWhileItIsMeasured) {
     expect_order();
 }
 
+// As a window posts them: faster than they can be traced.
 TEST_P(FrameThreads, JobsThatOvertakeEachOther) {
     faults.copy_ms = 3;
     for (uint64_t number = 1; number <= 60; ++number) {
