@@ -179,6 +179,8 @@ void Session::post_frame() {
     FrameJob job = posted_job_;
     job.ready = ready_;
     job.settings = wish.main.settings;
+    // A sample of anything but colours replaces the one before: sixteen would only make it tremble.
+    if (ready_->main.settings.aov != "color") job.settings.spp = 1;
     job.other_settings.reset();
     if (wish.other) job.other_settings = wish.other->settings;
     job.view = visible_view(edited_view(wish));

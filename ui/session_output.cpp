@@ -27,6 +27,7 @@ uint64_t Session::save_picture(const std::string& path) {
 
 Preset Session::wished_preset(const View& base) const {
     Preset preset{wish.main.device, wish.main.settings, {}};
+    if (preset.settings.aov != "color") preset.settings.spp = 1;  // as post_frame() has it
     if (ready_) preset.edits = edits_between(*ready_->loaded->scene, base, edited_view(wish));
     return preset;
 }

@@ -55,6 +55,17 @@ TEST_F(Window, SamplesAddUpAtRest) {
     EXPECT_NE(line.find("spp"), std::string::npos) << line;
     ASSERT_EQ(run_command_line(line), 0);
     EXPECT_EQ(difference(window->picture(), read_png(folder.path() + "/again.png"), 0), 0);
+    // Of what is no colour, the last sample would be all that is left: there is one.
+    const Pixels colors = window->picture();
+    ASSERT_EQ(window->command("set aov prim"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["samples"], 1);
+    ASSERT_EQ(run_command_line(command_line(*window, folder.path() + "/prim.png")), 0);
+    EXPECT_EQ(difference(window->picture(), read_png(folder.path() + "/prim.png"), 0), 0);
+    ASSERT_EQ(window->command("set aov color"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["samples"], 16);
+    EXPECT_EQ(difference(window->picture(), colors, 0), 0);
     // A number that was asked for is kept.
     WindowDriver single({"--size", "320x240", "--spp", "1", source_path("scenes/primitives.scene")});
     single.settle();
