@@ -34,7 +34,8 @@ constexpr double kShortestTurn = 0.01;
 
 App::App(const ViewOptions& options) {
     folder_ = preferences_folder();
-    const Preferences preferences = load_preferences(folder_);
+    std::string damage;
+    const Preferences preferences = load_preferences(folder_, &damage);
     const std::string ini = folder_.empty() ? std::string() : folder_ + "/imgui.ini";
     window_ = std::make_unique<GlWindow>("Clarity", preferences.width, preferences.height, ini);
     state_.text_scale = preferences.text_scale;
@@ -49,6 +50,7 @@ App::App(const ViewOptions& options) {
         GlWindow::wake();
     };
     session_ = std::make_unique<Session>(options, wake);
+    if (!damage.empty()) session_->report(damage);
     memory_.begin(folder_, preferences, state_, session_->wish);
     overlay_ = std::make_unique<VolumeOverlay>(wake);
     script_ = Script::from_environment();
@@ -123,7 +125,7 @@ void App::turn() {
     }
     memory_.follow(*session_, state_);
     const auto ready = session_->ready();
-    overlay_->update(ready ? ready->main.prepared : nullptr, ready && ready->other ? ready->other->prepared : nullptr);
+    overlay_->update(ready ? ready->main.accel : nullptr, ready && ready->other ? ready->other->accel : nullptr);
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
     upload_picture();
     window_->begin_frame();

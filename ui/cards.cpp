@@ -99,7 +99,7 @@ void draw_progress_card(const Rect& viewport, Session& session) {
 // A compiler's or a builder's failure is read in the log, at its place in the source: the first one opens it.
 void open_log_at_failure(const Session& session, UiState& state) {
     static bool failing = false;
-    const Message& message = session.message();
+    const WindowMessage& message = session.message();
     const bool source = !message.details.empty() || find_source_place(message.text) || message.text.rfind("accel ", 0) == 0;
     if (!message.text.empty() && source && !failing) {
         state.show_tab(Tab::log);
@@ -193,7 +193,7 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
         if (const std::string notice = current_notice(session, state); !notice.empty()) {
             status_item(cut_to(notice, ImGui::GetContentRegionAvail().x), colors::kGreen, notice);
         } else {
-            status_item(side.prepared->accel->plugin->id, colors::kDim, side.prepared->accel->plugin->name);
+            status_item(side.accel->plugin->id, colors::kDim, side.accel->plugin->name);
             const std::string name = side.device_name();
             status_item(cut_to(name, ImGui::GetContentRegionAvail().x), colors::kDim, name);
         }

@@ -96,10 +96,17 @@ void FrameThread::want_distance(bool wanted) {
     changed_.notify_all();
 }
 
-void FrameThread::save(const std::string& path) {
+uint64_t FrameThread::save(const std::string& path) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    to_save_.push_back(path);
+    to_save_.push_back({++last_save_, path, {}});
     changed_.notify_all();
+    return last_save_;
+}
+
+void FrameThread::cancel_save(uint64_t number) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto it = [&](const Saved& waiting) { return waiting.number == number; };
+    to_save_.erase(std::remove_if(to_save_.begin(), to_save_.end(), it), to_save_.end());
 }
 
 void FrameThread::release() {
@@ -126,7 +133,7 @@ std::vector<FrameThread::Saved> FrameThread::take_saved() {
 // With the lock held: whether there is something to do, which sample, and whether it needs tracing at all.
 bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     retrace = false;
-    if (!job_.ready || failed_ || released_ || !job_.ready->main.device->is_open()) return false;
+    if (!job_.ready || failed_ || released_ || job_.ready->withdrawn()) return false;
     const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
     const bool fresh = job_.revision != traced_revision_ || sharpen;
     sample = fresh ? 0 : samples_;
@@ -196,20 +203,19 @@ void FrameThread::run() {
 }
 
 void FrameThread::save_waiting() {
-    std::vector<std::string> paths;
+    std::vector<Saved> waiting;
     std::shared_ptr<const Picture> picture;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
-        paths.swap(to_save_);
+        waiting.swap(to_save_);
         picture = latest_;
     }
-    for (const std::string& path : paths) {
-        Saved outcome{path, {}};
+    for (Saved& outcome : waiting) {
         try {
-            if (writes_display(path))
-                write_image(path, {}, picture->main.image);
+            if (writes_display(outcome.path))
+                write_image(outcome.path, {}, picture->main.image);
             else
-                write_image(path, tracers_[0].frames->read_values(), {});
+                write_image(outcome.path, tracers_[0].frames->read_values(), {});
         } catch (const std::exception& error) {
             outcome.failure = error.what();
         }
@@ -229,8 +235,9 @@ float FrameThread::moving_scale(const FrameJob& job) const {
     return static_cast<float>(std::clamp(steps, 2.0, 16.0) / 16);
 }
 
-PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
-                                    const Order& order, const PictureSide* last, Progress& progress, PendingImage& image) {
+PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared,
+                                    const Settings& settings, const View& view, const Order& order, const PictureSide* last,
+                                    Progress& progress, PendingImage& image) {
     PictureSide side;
     side.settings = settings;
     const auto begin = Clock::now();
@@ -238,7 +245,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const ReadySide& ready, cons
         const auto show_last = [this] {
             if (finish(false)) wake_();
         };
-        side.stats = tracer.frames->trace(ready.shared, settings, view, order.sample, true, progress, 1, show_last);
+        side.stats = tracer.frames->trace(prepared, settings, view, order.sample, true, progress, 1, show_last);
     } else if (last) {
         side.stats = traced_part(last->stats);
     }
@@ -282,15 +289,28 @@ bool FrameThread::finish(bool held_up) {
         share_scale(picture.main, *picture.other);
         picture.difference = compare_pictures(picture.main.image, picture.other->image);
     }
+    if (traced.finished) {
+        keep_image(picture.main, traced.finished->main);
+        if (picture.other && traced.finished->other) keep_image(*picture.other, *traced.finished->other);
+        picture.difference = traced.finished->difference;
+    }
     const std::lock_guard<std::mutex> lock(mutex_);
     latest_ = traced.picture;
     if (!traced.fresh) return true;
-    note_time(times_[0], picture.job.ready->main.prepared, picture.main.frame_ms);
+    note_time(times_[0], picture.job.ready, picture.main.frame_ms);
     if (picture.other)
-        note_time(times_[1], picture.job.ready->other->prepared, picture.other->frame_ms);
+        note_time(times_[1], picture.job.ready, picture.other->frame_ms);
     else
         times_[1] = {};
     return true;
+}
+
+// One sample would be jagged, and to see it between finished ones is worse than either.
+void FrameThread::keep_image(PictureSide& side, const PictureSide& finished) {
+    side.image = finished.image;
+    side.scale = finished.scale;
+    side.values = finished.values;
+    side.stats.samples = finished.stats.samples;
 }
 
 // The film has kernels of its own. If edited ones do not compile, the last good ones go on.
@@ -312,15 +332,19 @@ void FrameThread::fit_tracer(Tracer& tracer, const Devices& devices, uint64_t ke
 
 void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     std::shared_ptr<StopProgress> progress;
-    std::shared_ptr<const Picture> last;
+    std::shared_ptr<const Picture> last, shown;
     bool distance = false, reduced = false;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         progress = running_;
         last = traced_ ? traced_->picture : latest_;
+        shown = traced_ && traced_->finished ? traced_->finished : last;
         distance = distance_;
         reduced = traced_reduced_;
     }
+    const bool two = job.other_settings && job.ready->other;
+    const auto on_main = job.ready->main.loan->get(), on_other = two ? job.ready->other->loan->get() : nullptr;
+    if (!on_main || (two && !on_other)) return;  // withdrawn: its devices are about to be opened anew
     // What is only shown anew keeps the size that its film has.
     float scale = job.resolution_scale;
     if (retrace) {
@@ -333,30 +357,33 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     traced.fresh = retrace;
     picture->job = job;
     const auto sized = [&](const ReadySide& side, const Settings& wished, const PictureSide* before) {
-        Settings settings = frame_settings(side.prepared->settings, wished);
+        Settings settings = frame_settings(side.settings, wished);
         const bool keep = !retrace && before;
         settings.width = keep ? before->settings.width : std::max(1, static_cast<int>(std::lround(settings.width * scale)));
         settings.height = keep ? before->settings.height : std::max(1, static_cast<int>(std::lround(settings.height * scale)));
         return settings;
     };
-    const bool two = job.other_settings && job.ready->other;
-    fit_tracer(tracers_[0], job.ready->main.devices, job.ready->request.kernel_revision);
+    fit_tracer(tracers_[0], on_main->devices, job.ready->request.kernel_revision);
     if (two)
-        fit_tracer(tracers_[1], job.ready->other->devices, job.ready->request.kernel_revision);
+        fit_tracer(tracers_[1], on_other->devices, job.ready->request.kernel_revision);
     else
         tracers_[1] = {};
     const Order order{sample, retrace, distance};
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
-    picture->main = trace_side(tracers_[0], job.ready->main, sized(job.ready->main, job.settings, before[0]), job.view, order,
+    picture->main = trace_side(tracers_[0], on_main->prepared, sized(job.ready->main, job.settings, before[0]), job.view, order,
                                before[0], *progress, traced.images[0]);
     double ms = picture->main.frame_ms;
     if (two) {
-        picture->other = trace_side(tracers_[1], *job.ready->other, sized(*job.ready->other, *job.other_settings, before[1]),
+        picture->other = trace_side(tracers_[1], on_other->prepared, sized(*job.ready->other, *job.other_settings, before[1]),
                                     job.view, order, before[1], *progress, traced.images[1]);
         ms += picture->other->frame_ms;
     }
     picture->job.settings = picture->main.settings;
     picture->reduced = reduced;
+    const bool same = shown && retrace && shown->job.revision == job.revision && shown->job.ready == job.ready &&
+                      shown->job.display_revision == job.display_revision && shown->reduced == reduced &&
+                      shown->other.has_value() == two;
+    if (same && shown->main.stats.samples > picture->main.stats.samples) traced.finished = shown;
     const bool pending = traced.images[0] || traced.images[1];
     {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -378,7 +405,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
 }
 
 // Times of another program say nothing of this one, nor does its first frame: drivers compile the last bit then.
-void FrameThread::note_time(Times& times, const std::shared_ptr<const Prepared>& of, double ms) {
+void FrameThread::note_time(Times& times, const std::shared_ptr<const Ready>& of, double ms) {
     constexpr size_t kTimes = 240;
     if (times.of != of) {
         times = {{}, of, true};

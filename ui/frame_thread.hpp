@@ -73,12 +73,15 @@ class FrameThread {
     std::vector<float> times(unsigned side = 0) const;
     // From now on pictures bring their distances, or do not.
     void want_distance(bool wanted);
-    // Writes the main picture once all its samples are in. Outcomes: see take_saved().
-    void save(const std::string& path);
+    // Writes the main picture once all its samples are in. Returns a number that take_saved() names the outcome by.
+    uint64_t save(const std::string& path);
+    // Forgets that picture, unless it is being written already.
+    void cancel_save(uint64_t number);
     // Ends the frame in hand and lets go of all that is on a device, until resume(): so that devices can be closed.
     void release();
     void resume();
     struct Saved {
+        uint64_t number = 0;
         std::string path, failure;  // empty failure: it is there
     };
     std::vector<Saved> take_saved();
@@ -93,7 +96,7 @@ class FrameThread {
     };
     struct Times {
         std::vector<float> ms;
-        std::shared_ptr<const Prepared> of;
+        std::shared_ptr<const Ready> of;
         bool cold = false;  // only its first frame is in
     };
     // A picture whose images may still be on their way.
@@ -101,6 +104,8 @@ class FrameThread {
         std::shared_ptr<Picture> picture;
         PendingImage images[2];  // of its sides
         bool fresh = false;      // not only shown anew
+        // The finished picture that is traced again for its times: its images are shown until all samples are in again.
+        std::shared_ptr<const Picture> finished;
     };
     void run();
     void trace(const FrameJob& job, unsigned sample, bool retrace);
@@ -108,15 +113,17 @@ class FrameThread {
         unsigned sample = 0;
         bool retrace = false, distance = false;
     };
-    PictureSide trace_side(Tracer& tracer, const ReadySide& ready, const Settings& settings, const View& view,
-                           const Order& order, const PictureSide* last, Progress& progress, PendingImage& image);
+    PictureSide trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
+                           const View& view, const Order& order, const PictureSide* last, Progress& progress,
+                           PendingImage& image);
     bool finish(bool held_up);
     bool wants_work(unsigned& sample, bool& retrace) const;
     void fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision);
     bool has_saving() const;
     void save_waiting();
     float moving_scale(const FrameJob& job) const;
-    static void note_time(Times& times, const std::shared_ptr<const Prepared>& of, double ms);
+    static void keep_image(PictureSide& side, const PictureSide& finished);
+    static void note_time(Times& times, const std::shared_ptr<const Ready>& of, double ms);
 
     const std::function<void()> wake_;
     Tracer tracers_[2];
@@ -135,9 +142,9 @@ class FrameThread {
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
     Times times_[2];
-    std::vector<std::string> to_save_;
-    std::vector<Saved> saved_;
-    std::thread thread_;  // last: it sees the rest complete
+    std::vector<Saved> to_save_, saved_;  // without an outcome yet; with one that nobody took
+    uint64_t last_save_ = 0;              // number of it
+    std::thread thread_;                  // last: it sees the rest complete
 };
 
 // The settings to trace with: those of `wished` that apply at once, the others as prepared.

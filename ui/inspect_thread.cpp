@@ -81,14 +81,15 @@ void InspectThread::run() {
 }
 
 void InspectThread::follow(const Request& request, Inspection& answer) {
-    const ReadySide& side = request.job.ready->main;
-    if (!side.device->is_open()) return;  // its picture is about to be replaced
-    if (device_ != side.device) {
+    const auto side = request.job.ready->main.loan->get();
+    if (!side) return;  // its devices were closed, and its picture is about to be replaced
+    const MultiPrepared::Part& part = side->prepared->parts.front();
+    if (device_ != part.device) {
         inspector_.reset();
-        device_ = side.device;
+        device_ = part.device;
         inspector_ = std::make_unique<Inspector>(device_);
     }
-    answer.result = inspector_->trace(*side.prepared, request.job.settings, request.job.view, request.x, request.y);
+    answer.result = inspector_->trace(*part.prepared, request.job.settings, request.job.view, request.x, request.y);
 }
 
 }  // namespace clarity

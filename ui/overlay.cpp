@@ -34,12 +34,12 @@ size_t VolumeOverlay::count(unsigned side) const {
     return volumes ? volumes->boxes.size() + volumes->spheres.size() : 0;
 }
 
-void VolumeOverlay::update(const std::shared_ptr<const Prepared>& main, const std::shared_ptr<const Prepared>& other) {
+void VolumeOverlay::update(const std::shared_ptr<const AccelData>& main, const std::shared_ptr<const AccelData>& other) {
     update_side(sides_[0], main);
     update_side(sides_[1], other);
 }
 
-void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const Prepared>& prepared) {
+void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const AccelData>& accel) {
     if (side.fetching.valid()) {
         if (side.fetching.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         try {
@@ -50,15 +50,15 @@ void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const Prepared
         }
         ++side.revision;
     }
-    if (!prepared || !level_) {
+    if (!accel || !level_) {
         if (side.volumes) ++side.revision;
         side.volumes.reset();
         side.accel.reset();
         side.fetched.reset();
         return;
     }
-    if (side.accel == prepared->accel && side.fetched == level_) return;
-    side.accel = prepared->accel;
+    if (side.accel == accel && side.fetched == level_) return;
+    side.accel = accel;
     side.fetched = level_;
     side.fetching = std::async(std::launch::async, [accel = side.accel, level = *level_, wake = wake_] {
         auto found = std::make_shared<Level>();

@@ -8,7 +8,6 @@
 #include <optional>
 
 #include "render/accel_build.hpp"
-#include "render/renderer.hpp"
 #include "ui/line_list.hpp"
 #include "ui/viewport.hpp"
 
@@ -33,7 +32,7 @@ class VolumeOverlay {
     static constexpr size_t kLimit = 20000;
 
     // Fetches what is missing; once a frame. other: of the side that is compared with, or nullptr.
-    void update(const std::shared_ptr<const Prepared>& main, const std::shared_ptr<const Prepared>& other = nullptr);
+    void update(const std::shared_ptr<const AccelData>& main, const std::shared_ptr<const AccelData>& other = nullptr);
     // Changes whenever the lines of a side would.
     uint64_t revision(unsigned side) const { return sides_[side].revision; }
     // Appends every stride-th of a side's volumes as lines; `eye` sees spheres' outlines.
@@ -53,7 +52,7 @@ class VolumeOverlay {
         std::future<Result> fetching;
         uint64_t revision = 0;
     };
-    void update_side(Side& side, const std::shared_ptr<const Prepared>& prepared);
+    void update_side(Side& side, const std::shared_ptr<const AccelData>& accel);
 
     std::function<void()> wake_;
     std::optional<rt_u32> level_;

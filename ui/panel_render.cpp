@@ -62,7 +62,7 @@ const ReadySide* edited_ready(const Session& session) {
 // What `--device` would read: the devices in use and this one, or without it.
 std::string with_or_without(const ReadySide& ready, const DeviceInfo& device) {
     std::string text;
-    for (const DeviceInfo& used : infos_of(ready.devices))
+    for (const DeviceInfo& used : ready.devices)
         if (used.id() != device.id()) text += (text.empty() ? "" : ",") + used.id();
     const bool used = ready.uses(device);
     return used ? text : text + (text.empty() ? "" : ",") + device.id();

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <numeric>
 
-#include "render/device_scene.hpp"
 #include "ui/frame_graph.hpp"
 #include "ui/panel.hpp"
 #include "ui/theme.hpp"
@@ -63,9 +62,9 @@ void frame_rows(Session& session) {
     tooltip("milliseconds of the last frames, tracing and reading back; dashed: what `While moving` asks for");
     if (sides.empty()) return;
     row_text("Frames/s", rate.text, "mean of the last ten");
-    row_text("Half within", median.text, "the median");
-    row_text("95 % within", late.text, "19 frames of 20 were faster");
-    row_text("99 % within", latest.text, "99 frames of 100 were faster");
+    row_text("p50", median.text, "the median: half of the frames were faster");
+    row_text("p95", late.text, "19 frames of 20 were faster");
+    row_text("p99", latest.text, "99 frames of 100 were faster");
     row_label("Keep tracing", "trace the same picture again and again, to measure");
     ImGui::Checkbox("##continuous", &session.wish.continuous);
 }
@@ -141,8 +140,8 @@ void ray_rows(const Session& session, const std::vector<const PictureSide*>& sid
     if (full) row_text("Stacks full", overflowed.text, "of traversal", colors::kAmber);
 }
 
-void structure_rows(const ReadySide& side, const LoadedScene& loaded) {
-    const AccelData& accel = *side.prepared->accel;
+void structure_rows(const ReadySide& side, const ImportedScene& loaded) {
+    const AccelData& accel = *side.accel;
     row_text("Structure", accel.plugin->name);
     const auto triangles = static_cast<double>(std::max<uint64_t>(1, accel.leaf_count));
     char rate[64];
@@ -158,8 +157,8 @@ void structure_rows(const ReadySide& side, const LoadedScene& loaded) {
 }
 
 void memory_rows(const ReadySide& side) {
-    const AccelData& accel = *side.prepared->accel;
-    const uint64_t all = side.prepared->on_device->bytes();
+    const AccelData& accel = *side.accel;
+    const uint64_t all = side.device_bytes;
     uint64_t slots = 0;
     for (size_t i = 0; i < accel.slots.size(); ++i) {
         const uint64_t bytes = accel.slots[i].memory.bytes();
@@ -173,29 +172,29 @@ void memory_rows(const ReadySide& side) {
     row_text("Scene in all", bytes_text(static_cast<double>(all)));
 }
 
-void preparation_rows(const LoadedScene& loaded, const Prepared& prepared) {
+void preparation_rows(const ImportedScene& loaded, const ReadySide& side) {
     row_text("Import", time_text(loaded.import_ms));
-    row_text("Upload", prepared.upload_ms > 0 ? time_text(prepared.upload_ms) : "shared with the last");
-    const std::string cached = prepared.compile_cached ? " (cached)" : "";
-    row_text("Compile", prepared.compile_ms > 0 ? time_text(prepared.compile_ms) + cached : "shared with the last");
+    row_text("Upload", side.upload_ms > 0 ? time_text(side.upload_ms) : "shared with the last");
+    const std::string cached = side.compile_cached ? " (cached)" : "";
+    row_text("Compile", side.compile_ms > 0 ? time_text(side.compile_ms) + cached : "shared with the last");
 }
 
 void device_rows(const ReadySide& side) {
-    for (const MultiPrepared::Part& part : side.shared->parts) {
-        const DeviceInfo& device = part.device->info();
+    for (const ReadySide::Part& part : side.parts) {
+        const DeviceInfo& device = part.device;
         row_text("Name", device.name);
         row_text("Platform", device.platform);
         row_text("Driver", device.driver);
         row_text("Units", std::to_string(device.compute_units) + " at " + std::to_string(device.clock_mhz) + " MHz");
         row_text("Memory", bytes_text(static_cast<double>(device.global_bytes)));
-        row_text("Lanes", std::to_string(part.prepared->settings.lanes));
+        row_text("Lanes", std::to_string(part.lanes));
     }
 }
 
 void side_sections(const Ready& ready, const ReadySide& side, const std::string& prefix) {
     if (folding_section((prefix + "STRUCTURE").c_str())) structure_rows(side, *ready.loaded);
     if (folding_section((prefix + "MEMORY ON THE DEVICE").c_str())) memory_rows(side);
-    if (folding_section((prefix + "PREPARATION").c_str())) preparation_rows(*ready.loaded, *side.prepared);
+    if (folding_section((prefix + "PREPARATION").c_str())) preparation_rows(*ready.loaded, side);
     if (folding_section((prefix + "DEVICE").c_str())) device_rows(side);
 }
 

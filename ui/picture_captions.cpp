@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/numbers.hpp"
+#include "ui/speed_verdict.hpp"
 #include "ui/theme.hpp"
 #include "ui/widgets.hpp"
 
@@ -49,24 +50,17 @@ Differences differing_settings(const Picture& picture) {
         out.of[0].push_back(in_a_sentence(label) + " " + of_a);
         out.of[1].push_back(in_a_sentence(label) + " " + of_b);
     };
-    if (a.accel == b.accel && on_a.prepared->accel->plugin) {
-        const rt_plugin& plugin = *on_a.prepared->accel->plugin;
+    if (a.accel == b.accel && on_a.accel->plugin) {
+        const rt_plugin& plugin = *on_a.accel->plugin;
         for (size_t i = 0; i < std::min(a.accel_params.size(), b.accel_params.size()) && i < plugin.param_count; ++i)
             add(plugin.params[i].label, exact_text(a.accel_params[i]), exact_text(b.accel_params[i]));
     }
     for (const Setting& row : settings_table()) add(row.label, row.get(a), row.get(b));
-    if (on_a.devices != on_b.devices) {
+    if (on_a.devices_text() != on_b.devices_text()) {
         out.of[0].push_back(on_a.device_name());
         out.of[1].push_back(on_b.device_name());
     }
     return out;
-}
-
-double median_of(std::vector<float> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
 }
 
 Caption caption_of(const Session& session, const Picture& picture, unsigned side) {
@@ -77,25 +71,24 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
     const auto recent = [&](unsigned of) {
         std::vector<float> times = session.frame_times(of);
         if (times.size() > 30) times.erase(times.begin(), times.end() - 30);
-        return median_of(std::move(times));
+        return times;
     };
-    const double mine = recent(side), others = recent(1 - side);
-    char text[64] = "";
-    if (mine > 0) {
-        std::snprintf(text, sizeof text, "%s, %.1f Mrays/s", ms_text(mine).c_str(), session.mrays_per_second(side));
+    const std::vector<float> mine = recent(side), others = recent(1 - side);
+    if (const double ms = median_of(mine); ms > 0) {
+        char text[64];
+        std::snprintf(text, sizeof text, "%s, %.1f Mrays/s", ms_text(ms).c_str(), session.mrays_per_second(side));
         caption.speed = text;
     }
-    if (mine > 0 && others / mine >= 1.005) {
-        std::snprintf(text, sizeof text, others / mine < 10 ? "%.2f\u00d7 faster" : "%.0f\u00d7 faster", others / mine);
-        caption.verdict = text;
-    }
+    caption.verdict = speed_verdict(mine, others);
+    caption.faster = !caption.verdict.empty() && caption.verdict != kAboutTheSame;
     return caption;
 }
 
 std::vector<CardText> caption_lines(const Caption& caption) {
     std::vector<CardText> lines = {{caption.title, colors::kText, true}};
     if (!caption.speed.empty()) lines.push_back({caption.speed, colors::kText, false, true});
-    if (!caption.verdict.empty()) lines.push_back({caption.verdict, colors::kGreen, true, true});
+    if (!caption.verdict.empty())
+        lines.push_back({caption.verdict, caption.faster ? colors::kGreen : colors::kDim, caption.faster, true});
     if (!caption.details.empty()) lines.push_back({caption.details, colors::kDim});
     return lines;
 }

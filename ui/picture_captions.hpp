@@ -19,13 +19,11 @@ struct Caption {
     std::string title;    // "A  bvh2"
     std::string details;  // "packet 4x4, lanes 8"; empty where nothing else differs
     std::string speed;    // "12.3 ms, 48.1 Mrays/s"
-    std::string verdict;  // "1.8x faster"; empty for the slower one, and as long as it is not known
+    std::string verdict;  // see speed_verdict()
+    bool faster = false;  // the verdict says so
 };
 Caption caption_of(const Session& session, const Picture& picture, unsigned side);
 std::vector<CardText> caption_lines(const Caption& caption);
 std::string difference_text(const PictureDifference& difference);
-
-// The middle one of the values; 0 of none.
-double median_of(std::vector<float> values);
 
 }  // namespace clarity

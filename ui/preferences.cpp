@@ -36,21 +36,58 @@ std::string preferences_folder() {
     return folder.string();
 }
 
-Preferences load_preferences(const std::string& folder) {
-    const Preferences p;
+namespace {
+
+// The first name that is free: window.damaged-1.json.
+fs::path name_for_damaged(const fs::path& path) {
+    for (int number = 1;; ++number) {
+        fs::path name = path;
+        name.replace_filename("window.damaged-" + std::to_string(number) + ".json");
+        std::error_code error;
+        if (!fs::exists(name, error)) return name;
+    }
+}
+
+// What becomes of the damaged file, as the end of a message.
+std::string keep_aside(const fs::path& path) {
+    const fs::path aside = name_for_damaged(path);
+    std::error_code error;
+    fs::rename(path, aside, error);
+    if (error) return "it cannot be kept as " + aside.string() + ": " + error.message();
+    return "the damaged file is kept as " + aside.string();
+}
+
+}  // namespace
+
+Preferences load_preferences(const std::string& folder, std::string* notice) {
+    Preferences p;
     if (folder.empty()) return p;
     const fs::path path = fs::path(folder) / "window.json";
-    std::error_code missing;
-    if (!fs::exists(path, missing)) return p;
+    std::error_code error;
+    if (!fs::exists(path, error)) return p;
+    std::string why;
+    bool some = false;  // entries could be read
     try {
-        return preferences_from(nlohmann::json::parse(read_file(path.string(), kMaxTextFileBytes, Exit::failed)));
-    } catch (const Error& error) {
-        log(LogLevel::warning, std::string(error.what()) + "; the window starts with its defaults");
-        return p;
-    } catch (const nlohmann::json::exception& error) {
-        log(LogLevel::warning, path.string() + ": not understood, so the defaults are used: " + error.what());
-        return p;
+        std::vector<std::string> problems;
+        p = preferences_from(nlohmann::json::parse(read_file(path.string(), kMaxTextFileBytes, Exit::failed)), &problems);
+        if (problems.empty()) return p;
+        some = true;
+        why = "cannot be understood in part (" + problems.front() +
+              (problems.size() > 1 ? ", and " + std::to_string(problems.size() - 1) + " more)" : ")");
+    } catch (const Error& failure) {
+        why = failure.what();
+    } catch (const nlohmann::json::exception& failure) {
+        why = std::string("cannot be understood: ") + failure.what();
     }
+    const std::string text =
+        path.string() + ": " + why + (some ? "; the rest is used, " : "; the defaults are used, ") + "and " + keep_aside(path);
+    // So that a window that ends by force loses nothing more.
+    if (some) save_preferences(folder, p);
+    if (notice)
+        *notice = text;
+    else
+        log(LogLevel::warning, text);
+    return p;
 }
 
 void save_preferences(const std::string& folder, const Preferences& p) {

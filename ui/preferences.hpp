@@ -27,8 +27,10 @@ inline constexpr size_t kRecentFiles = 20, kBookmarkedScenes = 100;
 // The folder, made if it is missing; empty if there is none to write to, or if CLARITY_UI_NO_SAVE is set (then nothing is
 // read either: a test starts from the defaults).
 std::string preferences_folder();
-// A missing or damaged file gives the defaults; values out of range are brought into it.
-Preferences load_preferences(const std::string& folder);
+// A missing file gives the defaults; values out of range are brought into it. Of a damaged file, every entry that can be read
+// counts. The file itself is kept under another name, since the next save would replace it. notice: gets the message that says
+// so, which otherwise is a warning in the log.
+Preferences load_preferences(const std::string& folder, std::string* notice = nullptr);
 // Written to a temporary file, then renamed. A failure is a warning in the log.
 void save_preferences(const std::string& folder, const Preferences& preferences);
 

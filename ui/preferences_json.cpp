@@ -43,16 +43,45 @@ Json bookmarks_json(const Preferences& p) {
     return scenes;
 }
 
-void read_bookmarks(const Json& scenes, Preferences& p) {
+// Reads entry by entry. A failure is thrown, or with `problems` named there, and then the other entries still count.
+class Reader {
+ public:
+    explicit Reader(std::vector<std::string>* problems) : problems_(problems) {}
+    template <class Read>
+    void entry(const std::string& name, const Read& read) {
+        try {
+            read();
+        } catch (const Json::exception& error) {
+            if (!problems_) throw;
+            problems_->push_back(name + ": " + error.what());
+        }
+    }
+    template <class Value>
+    void value(const Json& json, const char* key, Value& value) {
+        entry(key, [&] { value = json.value(key, value); });
+    }
+    template <class Value>
+    void number(const Json& json, const char* key, Value& value, Value least, Value most) {
+        entry(key, [&] { value = std::clamp(json.value(key, value), least, most); });
+    }
+
+ private:
+    std::vector<std::string>* problems_;
+};
+
+void read_bookmarks(const Json& scenes, Reader& reader, Preferences& p) {
     for (const Json& scene : scenes) {
         if (p.bookmarked.size() == kBookmarkedScenes) break;
-        const std::string key = scene.at("scene");
-        std::vector<Bookmark> views;
-        for (const Json& view : scene.at("views")) {
-            Bookmark bookmark{view.value("name", ""), {}};
-            if (read_camera(view.at("camera"), bookmark.camera)) views.push_back(bookmark);
-        }
-        if (p.bookmarks.emplace(key, std::move(views)).second) p.bookmarked.push_back(key);
+        reader.entry("bookmarks", [&] {
+            const std::string key = scene.at("scene");
+            std::vector<Bookmark> views;
+            for (const Json& view : scene.at("views"))
+                reader.entry("a bookmark of " + key, [&] {
+                    Bookmark bookmark{view.value("name", ""), {}};
+                    if (read_camera(view.at("camera"), bookmark.camera)) views.push_back(bookmark);
+                });
+            if (p.bookmarks.emplace(key, std::move(views)).second) p.bookmarked.push_back(key);
+        });
     }
 }
 
@@ -76,26 +105,29 @@ Json to_json(const Preferences& p) {
             {"bookmarks", bookmarks_json(p)}};
 }
 
-Preferences preferences_from(const Json& json) {
+Preferences preferences_from(const Json& json, std::vector<std::string>* problems) {
     Preferences p;
-    p.width = std::clamp(json.value("width", p.width), 640, 16384);
-    p.height = std::clamp(json.value("height", p.height), 400, 16384);
-    p.text_scale = std::clamp(json.value("text_scale", p.text_scale), 0.8f, 2.0f);
-    p.camera_speed = std::clamp(json.value("camera_speed", p.camera_speed), 0.05f, 10.0f);
-    p.light_speed = std::clamp(json.value("light_speed", p.light_speed), 0.05f, 10.0f);
-    p.key_map = json.value("key_map", p.key_map);
-    p.panel_visible = json.value("panel_visible", p.panel_visible);
-    p.panel_width = std::clamp(json.value("panel_width", p.panel_width), 200.0f, 4000.0f);
-    const std::string mode = json.value("compare_mode", "");
+    Reader reader(problems);
+    if (!json.is_object()) json.at("width");  // throws
+    reader.number(json, "width", p.width, 640, 16384);
+    reader.number(json, "height", p.height, 400, 16384);
+    reader.number(json, "text_scale", p.text_scale, 0.8f, 2.0f);
+    reader.number(json, "camera_speed", p.camera_speed, 0.05f, 10.0f);
+    reader.number(json, "light_speed", p.light_speed, 0.05f, 10.0f);
+    reader.value(json, "key_map", p.key_map);
+    reader.value(json, "panel_visible", p.panel_visible);
+    reader.number(json, "panel_width", p.panel_width, 200.0f, 4000.0f);
+    std::string mode;
+    reader.value(json, "compare_mode", mode);
     for (int i = 0; i < 3; ++i)
         if (mode == kCompareNames[i]) p.compare_mode = static_cast<CompareMode>(i);
-    p.moving_fps = std::clamp(json.value("moving_fps", p.moving_fps), 0.0f, 240.0f);
-    p.show_rays = json.value("show_rays", p.show_rays);
-    p.browser_folder = json.value("browser_folder", p.browser_folder);
-    p.pictures_folder = json.value("pictures_folder", p.pictures_folder);
-    p.recent_files = json.value("recent_files", p.recent_files);
+    reader.number(json, "moving_fps", p.moving_fps, 0.0f, 240.0f);
+    reader.value(json, "show_rays", p.show_rays);
+    reader.value(json, "browser_folder", p.browser_folder);
+    reader.value(json, "pictures_folder", p.pictures_folder);
+    reader.value(json, "recent_files", p.recent_files);
     if (p.recent_files.size() > kRecentFiles) p.recent_files.resize(kRecentFiles);
-    if (json.contains("bookmarks")) read_bookmarks(json.at("bookmarks"), p);
+    if (json.contains("bookmarks")) read_bookmarks(json.at("bookmarks"), reader, p);
     return p;
 }
 

@@ -51,12 +51,6 @@ class PrepareWorker::StageProgress : public Progress {
     Clock::time_point woken_{};
 };
 
-bool ReadySide::uses(const DeviceInfo& info) const {
-    return std::any_of(devices.begin(), devices.end(), [&](const auto& device) {
-        return device->info().platform_index == info.platform_index && device->info().device_index == info.device_index;
-    });
-}
-
 PrepareWorker::PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake)
     : plugins_(plugins), import_(std::move(import)), tracers_(std::move(tracers)), wake_(std::move(wake)), thread_([this] {
           run();
@@ -206,13 +200,13 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
 }
 
 void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress) {
-    ready.main = ReadySide(main_.devices, main_.preparer->prepare(visible_, request.main.settings, progress));
+    ready.main = lend(main_.devices, main_.preparer->prepare(visible_, request.main.settings, progress));
     ready.other.reset();
     if (!request.other || !other_.preparer) return;
     ready.request.other->device = other_.choice;
     // What the second side cannot have must not keep the first from changing.
     try {
-        ready.other = ReadySide(other_.devices, other_.preparer->prepare(visible_, request.other->settings, progress));
+        ready.other = lend(other_.devices, other_.preparer->prepare(visible_, request.other->settings, progress));
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
@@ -226,15 +220,33 @@ bool PrepareWorker::worn() const {
     return main_.preparer->worn() || (other_.preparer && other_.preparer->worn());
 }
 
-// Both sides', since PoCL frees only with the last context.
+ReadySide PrepareWorker::lend(const Devices& devices, std::shared_ptr<const MultiPrepared> prepared) {
+    ReadySide side(devices, std::move(prepared));
+    const auto gone = [](const std::weak_ptr<DeviceLoan>& loan) { return loan.expired(); };
+    loans_.erase(std::remove_if(loans_.begin(), loans_.end(), gone), loans_.end());
+    loans_.push_back(side.loan);
+    return side;
+}
+
+void PrepareWorker::withdraw_loans() {
+    for (const std::weak_ptr<DeviceLoan>& given : loans_)
+        if (const auto loan = given.lock()) loan->withdraw();
+    loans_.clear();
+}
+
+// Closes the devices of both sides before it opens any anew: PoCL frees memory only with the last context of a process.
 void PrepareWorker::renew_devices() {
     tracers_.release();
     const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
-    if (other_.preparer) other_.preparer->close_devices();
+    withdraw_loans();
+    main_.devices.clear();
+    other_.devices.clear();
+    std::vector<DeviceInfo> other;
+    if (other_.preparer) other = other_.preparer->close_devices();
     main_.devices = open_devices(main_.preparer->close_devices());
     main_.preparer->open_devices(main_.devices);
     if (!other_.preparer) return;
-    other_.devices = open_devices(infos_of(other_.devices), main_.devices);
+    other_.devices = open_devices(other, main_.devices);
     other_.preparer->open_devices(other_.devices);
 }
 
@@ -263,7 +275,7 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     if (request.files.empty()) return tried(request.files_revision);
     progress.stage("importing " + request.files.front());
     const auto begin = Clock::now();
-    auto loaded = std::make_shared<LoadedScene>();
+    auto loaded = std::make_shared<ImportedScene>();
     loaded->scene = std::make_shared<const Scene>(import_scene(plugins_, request.files, import_, progress));
     loaded->import_ms = ms_since(begin);
     loaded->files = request.files;

@@ -10,58 +10,10 @@
 #include <vector>
 
 #include "base/progress.hpp"
-#include "device/device.hpp"
 #include "import/import.hpp"
-#include "render/multi_preparer.hpp"
-#include "ui/wish.hpp"
+#include "ui/ready.hpp"
 
 namespace clarity {
-
-// All that a picture needs besides view and frame settings.
-struct PrepareRequest {
-    std::vector<std::string> files;
-    uint64_t files_revision = 0;  // a new number: import (again)
-    std::string camera, light;    // as on the command line, for the first view of newly imported files
-    Side main;
-    std::optional<Side> other;
-    std::vector<rt_u32> hidden;    // instances
-    uint64_t kernel_revision = 0;  // a new number: kernels are read (again)
-};
-
-// A scene as imported, with what the window asks about it, computed where it does not hold up the window.
-struct LoadedScene {
-    std::shared_ptr<const Scene> scene;
-    std::vector<std::string> files;
-    uint64_t files_revision = 0;
-    Bounds bounds;
-    uint64_t placed_triangles = 0;
-    double import_ms = 0;
-    View first_view;
-    std::string view_error;  // why it is not the one asked for: a camera that the scene does not have
-};
-
-struct ReadySide {
-    ReadySide() = default;
-    ReadySide(Devices chosen, std::shared_ptr<const MultiPrepared> what)
-        : devices(std::move(chosen)),
-          shared(std::move(what)),
-          device(shared->parts.front().device),
-          prepared(shared->first()) {}
-    Devices devices;
-    std::shared_ptr<const MultiPrepared> shared;
-    std::shared_ptr<Device> device;                                                   // the first that takes part,
-    std::shared_ptr<const Prepared> prepared;                                         // and what it has
-    bool uses(const DeviceInfo& device) const;                                        // whole or in parts
-    std::string devices_text() const { return device_list_text(infos_of(devices)); }  // as --device reads it
-    std::string device_name() const { return devices_name(infos_of(devices)); }
-};
-
-struct Ready {
-    PrepareRequest request;
-    std::shared_ptr<const LoadedScene> loaded;
-    ReadySide main;
-    std::optional<ReadySide> other;
-};
 
 struct Outcome {
     enum class Kind { ready, failed, cancelled };
@@ -80,9 +32,10 @@ struct Activity {
 
 class PrepareWorker {
  public:
-    // Those who trace on the devices that are opened here, in words to and fro.
+    // Callbacks to the threads that trace on our devices: `release` returns when they hold nothing on a device, `resume` lets
+    // them go on.
     struct Tracers {
-        std::function<void()> release, resume;  // let go of everything on a device; go on
+        std::function<void()> release, resume;
     };
     // wake: called from the worker whenever there is news.
     PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake);
@@ -109,6 +62,8 @@ class PrepareWorker {
     void prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress);
     bool worn() const;
     void renew_devices();
+    void withdraw_loans();
+    ReadySide lend(const Devices& devices, std::shared_ptr<const MultiPrepared> prepared);
     void open_side(const std::string& choice, Workshop& shop, const Workshop& neighbour, StageProgress& progress);
     void import_files(const PrepareRequest& request, StageProgress& progress);
     void hide(const PrepareRequest& request);
@@ -123,9 +78,10 @@ class PrepareWorker {
 
     // Of the worker thread alone.
     Workshop main_, other_;
-    std::shared_ptr<const LoadedScene> loaded_;
+    std::vector<std::weak_ptr<DeviceLoan>> loans_;  // of every side that may still be traced
+    std::shared_ptr<const ImportedScene> loaded_;
     std::shared_ptr<const Scene> visible_;  // visible_of_ without what is hidden
-    std::shared_ptr<const LoadedScene> visible_of_;
+    std::shared_ptr<const ImportedScene> visible_of_;
     std::vector<rt_u32> hidden_;
     uint64_t files_revision_ = 0;  // last one tried
 

@@ -30,9 +30,10 @@ std::array<float, N> between(const std::array<float, N>& a, const std::array<flo
 
 void Sequence::start_turntable(Session& session, const std::string& pattern, int frames) {
     if (frames < 1 || frames > 9999) throw Error(Exit::usage, "a turntable has 1 to 9999 frames");
+    const Camera from = running() ? before_ : session.wish.camera;
     std::vector<Camera> cameras;
     for (int i = 0; i < frames; ++i) {
-        cameras.push_back(session.wish.camera);
+        cameras.push_back(from);
         orbit_camera(cameras.back(), kTurn * static_cast<float>(i) / static_cast<float>(frames), 0);
     }
     start(session, pattern, std::move(cameras));
@@ -63,37 +64,42 @@ void Sequence::start(Session& session, const std::string& pattern, std::vector<C
     if (cameras.size() > 1 && frame_path(pattern, 1) == frame_path(pattern, 2))
         throw Error(Exit::usage, pattern + ": put #### into its name, for the frame's number");
     check_output_path(frame_path(pattern, 1));
+    drop_frame(session);
     if (!running()) before_ = session.wish.camera;
     pattern_ = pattern;
     cameras_ = std::move(cameras);
     next_ = 0;
-    waiting_for_.clear();
+}
+
+// A save that still waits for samples would get those of the camera that comes now.
+void Sequence::drop_frame(Session& session) {
+    if (save_ != 0) session.cancel_save(save_);
+    save_ = 0;
+    wished_ = false;
 }
 
 void Sequence::stop(Session& session) {
     if (!running()) return;
+    drop_frame(session);
     cameras_.clear();
     session.wish.camera = before_;
 }
 
 void Sequence::update(Session& session) {
-    if (!running() || !waiting_for_.empty()) return;
+    if (!running() || wished_) return;
     if (next_ == count()) return stop(session);
     session.wish.camera = cameras_[static_cast<size_t>(next_)];
-    waiting_for_ = frame_path(pattern_, next_ + 1);
+    wished_ = true;
 }
 
 void Sequence::posted(Session& session) {
-    if (!waiting_for_.empty() && !asked_) {
-        session.save_picture(waiting_for_);
-        asked_ = true;
-    }
+    if (wished_ && save_ == 0) save_ = session.save_picture(frame_path(pattern_, next_ + 1));
 }
 
-void Sequence::saved(Session& session, const std::string& path, bool worked) {
-    if (path != waiting_for_) return;
-    waiting_for_.clear();
-    asked_ = false;
+void Sequence::saved(Session& session, uint64_t number, bool worked) {
+    if (save_ == 0 || number != save_) return;
+    save_ = 0;
+    wished_ = false;
     ++next_;
     if (!worked) stop(session);
 }

@@ -11,7 +11,8 @@ class Session;
 
 class Sequence {
  public:
-    // pattern: "turn_####.png". Throws Error(usage) where that cannot be written. The camera comes back to where it was.
+    // pattern: "turn_####.png". Throws Error(usage) where that cannot be written; then what runs goes on. Else the new sequence
+    // replaces one that runs. At its end the camera comes back to where it was.
     void start_turntable(Session& session, const std::string& pattern, int frames);
     void start_path(Session& session, const std::string& pattern, int frames, const std::vector<Camera>& through);
     void stop(Session& session);
@@ -23,15 +24,17 @@ class Sequence {
     // For the session: before it posts the frame's job, after it did, and when a picture is written.
     void update(Session& session);
     void posted(Session& session);
-    void saved(Session& session, const std::string& path, bool worked);
+    void saved(Session& session, uint64_t number, bool worked);
 
  private:
     void start(Session& session, const std::string& pattern, std::vector<Camera> cameras);
+    void drop_frame(Session& session);
 
     std::vector<Camera> cameras_;
-    Camera before_;
-    std::string pattern_, waiting_for_;
-    bool asked_ = false;  // for waiting_for_ to be written
+    Camera before_;  // while it runs: the camera to come back to
+    std::string pattern_;
+    bool wished_ = false;  // the camera of frame next_ is in the session's wish
+    uint64_t save_ = 0;    // number of that frame's save; 0: not asked for yet
     int next_ = 0;
 };
 

@@ -127,6 +127,7 @@ void Session::cancel() {
     worker_.cancel();
     if (!ready_) return;
     const PrepareRequest& was = ready_->request;
+    const bool was_withdrawn = ready_->withdrawn();
     // What only concerns frames stays as it is wished.
     const auto back = [](Side& side, const Side& to) {
         side.device = to.device;
@@ -140,7 +141,8 @@ void Session::cancel() {
     wish.hidden = was.hidden;
     files_ = was.files;
     files_revision_ = was.files_revision;
-    posted_key_ = prepare_key(wished_request());  // it is what we have: nothing to ask for
+    // It is what we have: nothing to ask for, unless its devices were closed meanwhile.
+    posted_key_ = was_withdrawn ? std::string() : prepare_key(wished_request());
 }
 
 Settings& Session::settings_for(const std::string& key) {
@@ -177,6 +179,8 @@ void Session::post_frame() {
     FrameJob job = posted_job_;
     job.ready = ready_;
     job.settings = wish.main.settings;
+    // A sample of anything but colours replaces the one before: sixteen would only make it tremble.
+    if (ready_->main.settings.aov != "color") job.settings.spp = 1;
     job.other_settings.reset();
     if (wish.other) job.other_settings = wish.other->settings;
     job.view = visible_view(edited_view(wish));
@@ -266,7 +270,6 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     }
     adopt_view(edited);
     history_.forget();
-    for (const std::string& warning : ready->loaded->scene->warnings) log(LogLevel::warning, warning);
 }
 
 void Session::report(const std::string& text, const std::string& details) {

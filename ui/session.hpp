@@ -23,7 +23,7 @@
 namespace clarity {
 
 // What stands over the picture until it is dismissed or mended.
-struct Message {
+struct WindowMessage {
     std::string text, details;
 };
 
@@ -70,8 +70,9 @@ class Session {
     // `clarity render ...` that makes the main picture as it is wished, on the device that it has.
     std::string render_command(const std::string& output) const;
     // The picture as it is now, when its samples are in: .png as shown, .exr or .pfm with the film's values. The outcome is a
-    // line in the log, or a message.
-    void save_picture(const std::string& path);
+    // line in the log, or a message. Returns a number for cancel_save().
+    uint64_t save_picture(const std::string& path);
+    void cancel_save(uint64_t number) { frames_.cancel_save(number); }
     Sequence& sequence() { return sequence_; }
 
     // Follows the rays of a pixel of the newest picture.
@@ -115,7 +116,7 @@ class Session {
     // Length that steps are measured by: the scene's diagonal.
     float scene_size() const;
 
-    const Message& message() const { return message_; }
+    const WindowMessage& message() const { return message_; }
     void dismiss_message() { message_ = {}; }
     void report(const std::string& text, const std::string& details = {});  // a failure: message and log
     uint64_t message_count() const { return message_count_; }
@@ -142,7 +143,7 @@ class Session {
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;
-    Message message_;
+    WindowMessage message_;
     uint64_t message_count_ = 0;
     History history_;
     Sequence sequence_;

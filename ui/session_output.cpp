@@ -15,18 +15,19 @@ void Session::take_saved() {
             log(LogLevel::info, "saved " + saved.path);
         else
             report(saved.failure);
-        sequence_.saved(*this, saved.path, saved.failure.empty());
+        sequence_.saved(*this, saved.number, saved.failure.empty());
     }
 }
 
-void Session::save_picture(const std::string& path) {
+uint64_t Session::save_picture(const std::string& path) {
     check_output_path(path);
     if (!ready_) throw Error(Exit::usage, path + ": there is no picture yet to save");
-    frames_.save(path);
+    return frames_.save(path);
 }
 
 Preset Session::wished_preset(const View& base) const {
     Preset preset{wish.main.device, wish.main.settings, {}};
+    if (preset.settings.aov != "color") preset.settings.spp = 1;  // as post_frame() has it
     if (ready_) preset.edits = edits_between(*ready_->loaded->scene, base, edited_view(wish));
     return preset;
 }

@@ -10,6 +10,9 @@
 
 namespace clarity {
 
+// Samples a pixel that add up while nothing changes, unless the user asks for another number: with one, edges are jagged.
+inline constexpr int kSamplesAtRest = 16;
+
 struct ViewOptions {
     const PluginRegistry* plugins = nullptr;  // outlives ui_main
     std::vector<std::string> scenes;          // files that become one scene; empty: the window opens without one

@@ -184,7 +184,11 @@ class RenderJob {
         stats_.devices = infos_of(devices);
     }
 
+    // A device closes with its last user.
     void reopen_devices() {
+        prepared_.reset();
+        stats_.prepared.reset();
+        take_devices({});
         take_devices(open_devices(preparer_->close_devices()));
         preparer_->open_devices(devices_);
     }

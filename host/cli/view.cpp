@@ -1,4 +1,6 @@
 // clarity view: hands over to the window.
+#include <algorithm>
+
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #ifdef CLARITY_HAVE_UI
@@ -6,6 +8,20 @@
 #endif
 
 namespace clarity {
+
+#ifdef CLARITY_HAVE_UI
+namespace {
+
+// A preset says it even by leaving it out: what it does not name is as `clarity render` has it.
+bool names_samples(const TraceOptions& options) {
+    const auto named = [](const auto& pair) { return pair.first == "spp"; };
+    const auto set = [](const std::string& pair) { return pair.rfind("spp=", 0) == 0; };
+    return !options.preset.empty() || std::any_of(options.settings.begin(), options.settings.end(), named) ||
+           std::any_of(options.sets.begin(), options.sets.end(), set);
+}
+
+}  // namespace
+#endif
 
 int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
     const TraceWords words = read_trace_options(plugins, command.trace);
@@ -15,6 +31,7 @@ int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
     options.plugins = &plugins;
     options.scenes = command.scene.files;
     options.settings = words.settings;
+    if (!names_samples(command.trace)) options.settings.spp = kSamplesAtRest;
     options.edits = words.edits;
     options.device = words.device;
     options.camera = command.trace.camera;

@@ -23,12 +23,6 @@ std::shared_ptr<Device> Device::with_own_queue() const {
     return std::shared_ptr<Device>(new Device(info_, context_));
 }
 
-void Device::close() {
-    open_ = false;
-    queue_ = cl::CommandQueue();
-    context_ = cl::Context();
-}
-
 unsigned Device::preferred_lanes() const {
     if (!info_.cpu) return 1;
     if (info_.float_width >= 16) return 16;

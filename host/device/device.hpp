@@ -1,7 +1,6 @@
 // device.hpp -- OpenCL devices: listing, ranking, choosing, and one open device with its queue.
 #pragma once
 #include <CL/opencl.hpp>
-#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -45,9 +44,6 @@ class Device {
     cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
     // The same device and context with a queue of its own, so that kernels of both may run side by side.
     std::shared_ptr<Device> with_own_queue() const;
-    // Gives context and queue back; nothing may use them afterwards. info() stays.
-    void close();
-    bool is_open() const { return open_; }
     // Lanes that suit it: 1 on a GPU, the native float width on a CPU.
     unsigned preferred_lanes() const;
 
@@ -56,7 +52,6 @@ class Device {
     DeviceInfo info_;
     cl::Context context_;
     cl::CommandQueue queue_;
-    std::atomic<bool> open_{true};
 };
 
 }  // namespace clarity

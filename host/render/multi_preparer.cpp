@@ -54,7 +54,8 @@ const std::shared_ptr<const Prepared>* MultiPrepared::of(const std::shared_ptr<D
     return nullptr;
 }
 
-MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devices) : devices_(devices) {
+MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devices)
+    : infos_(infos_of(devices)), devices_(devices) {
     for (const auto& device : devices) preparers_.push_back(std::make_unique<Preparer>(plugins, device));
 }
 
@@ -66,11 +67,10 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
         return prepared;
     }
     // The roomiest decides whether the scene is built at all: one that it is too large for says so when its turn comes.
-    const auto roomiest = std::max_element(devices_.begin(), devices_.end(), [](const auto& a, const auto& b) {
-        return a->info().global_bytes < b->info().global_bytes;
-    });
+    const auto roomiest = std::max_element(
+        infos_.begin(), infos_.end(), [](const DeviceInfo& a, const DeviceInfo& b) { return a.global_bytes < b.global_bytes; });
     const std::shared_ptr<const AccelData> built =
-        preparers_[size_t(roomiest - devices_.begin())]->build(scene, settings, progress);
+        preparers_[size_t(roomiest - infos_.begin())]->build(scene, settings, progress);
     std::vector<Error> failures;
     for (size_t i = 0; i < preparers_.size(); ++i) {
         try {
@@ -90,15 +90,15 @@ bool MultiPreparer::worn() const {
 }
 
 std::vector<DeviceInfo> MultiPreparer::close_devices() {
-    std::vector<DeviceInfo> infos;
-    for (const auto& preparer : preparers_) infos.push_back(preparer->close_device());
-    return infos;
+    for (auto& device : devices_) device.reset();
+    for (const auto& preparer : preparers_) preparer->close_device();
+    return infos_;
 }
 
 void MultiPreparer::open_devices(const Devices& devices) {
     for (size_t i = 0; i < preparers_.size(); ++i)
         for (const auto& device : devices)
-            if (device->info().id() == devices_[i]->info().id()) {
+            if (device->info().id() == infos_[i].id()) {
                 devices_[i] = device;
                 preparers_[i]->open_device(device);
             }

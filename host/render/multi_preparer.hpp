@@ -36,13 +36,15 @@ class MultiPreparer {
     std::shared_ptr<const MultiPrepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                  Progress& progress);
     bool worn() const;
+    // As Preparer::close_device().
     std::vector<DeviceInfo> close_devices();
-    // Anew, those that closed; one that is missing stays closed.
+    // Gives each preparer the device of its id. A device that is missing here stays closed.
     void open_devices(const Devices& devices);
 
  private:
     std::vector<std::unique_ptr<Preparer>> preparers_;
-    Devices devices_;
+    const std::vector<DeviceInfo> infos_;  // one for each preparer
+    Devices devices_;                      // the same; nullptr: closed
 };
 
 }  // namespace clarity

@@ -94,29 +94,29 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
 }  // namespace
 
 Preparer::Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device)
-    : plugins_(plugins), device_(device), programs_(std::make_unique<ProgramCache>(device)) {}
+    : plugins_(plugins), info_(device->info()), device_(device), programs_(std::make_unique<ProgramCache>(device)) {}
 Preparer::~Preparer() = default;
 
 bool Preparer::worn() const {
     constexpr unsigned kPrograms = 16;
     const std::lock_guard<std::mutex> lock(mutex_);
-    return device_->info().pocl && programs_ && programs_->compiled() >= kPrograms;
+    return info_.pocl && programs_ && programs_->compiled() >= kPrograms;
 }
 
 DeviceInfo Preparer::close_device() {
     const std::lock_guard<std::mutex> lock(mutex_);
-    for (const std::weak_ptr<Prepared>& given : prepared_)
-        if (const auto prepared = given.lock()) {
-            prepared->on_device.reset();
-            prepared->program.reset();
-        }
-    prepared_.clear();
+    if (last_) {
+        auto structure = std::make_shared<Prepared>(*last_);
+        structure->on_device.reset();
+        structure->program.reset();
+        last_ = std::move(structure);
+    }
     programs_.reset();
-    device_->close();
+    device_.reset();
 #ifdef __GLIBC__
     malloc_trim(0);  // a compiler leaves tens of megabytes of holes
 #endif
-    return device_->info();
+    return info_;
 }
 
 void Preparer::open_device(std::shared_ptr<Device> device) {
@@ -146,7 +146,7 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->params == params)
         return last_->accel;
     const SceneCounts counts = count_scene(*scene);
-    check_fits(plan_memory(counts, *scene, *plugin.accel), device_->info(),
+    check_fits(plan_memory(counts, *scene, *plugin.accel), info_,
                std::to_string(counts.references) + " primitives in " + plugin.id);
     // A scene that nobody shows any more makes room for the next one.
     if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
@@ -191,9 +191,6 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
                                       " failed with OpenCL error " + std::to_string(e.err()));
     }
     last_ = next;
-    const auto gone = [](const std::weak_ptr<Prepared>& prepared) { return prepared.expired(); };
-    prepared_.erase(std::remove_if(prepared_.begin(), prepared_.end(), gone), prepared_.end());
-    prepared_.push_back(next);
     return next;
 }
 

@@ -30,7 +30,7 @@ class TraceProgram;  // compiled kernels of one specialisation
 class ProgramCache;
 class RayBlocks;  // rays as kernels read them: ray_blocks.hpp
 
-// Immutable, but that Preparer::close_device() takes away what is on the device.
+// Immutable. Keeps its device open and its memory there in use: see Preparer::close_device().
 struct Prepared {
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const AccelData> accel;
@@ -58,8 +58,9 @@ class Preparer {
     // Whether the device should be closed and opened anew: PoCL frees what its compiler made, 0.15 MB a program and more, only
     // with the last context of a process, and whoever edits kernels compiles hundreds.
     bool worn() const;
-    // Closes the device and takes from everything prepared so far what is on it, programs and buffers; structures stay. Frames
-    // and Inspectors of the device must be gone. Returns what to open a Device of again.
+    // Lets go of the device and of all programs and buffers on it; keeps the last structure. The device closes when the caller
+    // has let go of it too: of its Device, of every Prepared, and of Frames and Inspectors. Returns the info to open a new
+    // Device with. Until open_device(), prepare() throws Error(no_device).
     DeviceInfo close_device();
     void open_device(std::shared_ptr<Device> device);
 
@@ -68,10 +69,10 @@ class Preparer {
     std::shared_ptr<const AccelData> build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                    Progress& progress);
     const PluginRegistry& plugins_;
-    std::shared_ptr<Device> device_;
-    std::unique_ptr<ProgramCache> programs_;
-    std::shared_ptr<const Prepared> last_;
-    std::vector<std::weak_ptr<Prepared>> prepared_;
+    const DeviceInfo info_;
+    std::shared_ptr<Device> device_;          // nullptr: closed
+    std::unique_ptr<ProgramCache> programs_;  // nullptr: closed
+    std::shared_ptr<const Prepared> last_;    // without buffers and program after close_device()
     mutable std::mutex mutex_;
 };
 

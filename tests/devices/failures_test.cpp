@@ -41,8 +41,11 @@ class FailingDevice : public ::testing::Test {
         truth_ = whole.frames.read_values().pixels;
         display_ = whole.frames.read_display(settings_).pixels;
     }
-    // Closed behind its back, a device answers every call with an error.
-    void lose(Team& team, size_t device) { team.devices[device]->close(); }
+    // Without context and queue, a device answers every call with an error.
+    void lose(Team& team, size_t device) {
+        team.devices[device]->queue() = cl::CommandQueue();
+        team.devices[device]->context() = cl::Context();
+    }
     void expect_whole(Team& team, Warnings& warnings) {
         EXPECT_EQ(differing(truth_, team.frames.read_values().pixels), 0u);
         EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);

@@ -73,9 +73,13 @@ class Author {
  private:
     // As `render --watch` does.
     void renew_device() {
+        const std::weak_ptr<const TraceProgram> program = prepared_->program;
+        const std::weak_ptr<const DeviceScene> on_device = prepared_->on_device;
         frames_.reset();
-        const auto device = std::make_shared<Device>(preparer_->close_device());
-        EXPECT_FALSE(prepared_->program || prepared_->on_device);
+        prepared_.reset();
+        const DeviceInfo info = preparer_->close_device();
+        EXPECT_TRUE(program.expired() && on_device.expired());
+        const auto device = std::make_shared<Device>(info);
         preparer_->open_device(device);
         frames_ = std::make_unique<Frames>(device);
     }

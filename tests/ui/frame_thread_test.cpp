@@ -110,7 +110,8 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
     Bytes truth(const Picture& picture, const PictureSide& side, const ReadySide& ready) {
         if (!frames_) frames_ = std::make_unique<Frames>(device_);
         for (unsigned sample = 0; sample < side.stats.samples; ++sample)
-            frames_->trace(*ready.prepared, side.settings, picture.job.view, sample, false, table().progress);
+            frames_->trace(*ready.loan->get()->prepared->first(), side.settings, picture.job.view, sample, false,
+                           table().progress);
         return bytes_of(frames_->read_display(side.settings));
     }
     void expect_right(const Picture& picture) {
@@ -165,6 +166,32 @@ TEST_P(FrameThreads, EveryPictureOfAMotionAndItsEnd) {
     }
     expect_order();
     EXPECT_EQ(thread_.take_failure(), "");
+}
+
+// Traced on and on to be measured, a finished picture stays as it is: without its samples it would be jagged in turns.
+TEST_P(FrameThreads, AFinishedPictureStaysWhileItIsMeasured) {
+    job_.settings.spp = 4;
+    if (two_) job_.other_settings->spp = 4;
+    post(1, false);
+    ASSERT_TRUE(settles());
+    const Bytes finished = bytes_of(thread_.latest()->main.image);
+    const size_t times = thread_.times().size();
+    post(1, true);
+    ASSERT_TRUE(wait_for([&] { return thread_.times().size() >= times + 10; }));
+    post(1, false);
+    ASSERT_TRUE(settles());
+    EXPECT_EQ(thread_.latest()->main.stats.samples, 4u);
+    EXPECT_TRUE(bytes_of(thread_.latest()->main.image) == finished);
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        bool complete = false;
+        for (const Seen& seen : seen_) {
+            EXPECT_TRUE(!complete || seen.main == finished);
+            complete |= seen.picture->main.stats.samples == 4;
+        }
+        EXPECT_TRUE(complete);
+    }
+    expect_order();
 }
 
 // As a window posts them: faster than they can be traced.

@@ -63,6 +63,9 @@ TEST_F(Panel, PicturesDoNotDependOnHowTheyAreTraced) {
 
 TEST_F(Panel, SamplesAccumulateWhileTheCameraRests) {
     const auto window = open();
+    ASSERT_EQ(window->command("set spp 1"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["samples"], 1);
     const Pixels one = window->picture();
     ASSERT_EQ(window->command("set spp 8"), "");
     window->settle();

@@ -9,7 +9,7 @@
 #include "ui/camera_control.hpp"
 #include "ui/frame_thread.hpp"
 #include "ui/key_map.hpp"
-#include "ui/preferences.hpp"
+#include "ui/preferences_json.hpp"
 #include "ui/viewport.hpp"
 
 namespace clarity {
@@ -168,6 +168,47 @@ TEST(Preferences, ReturnAsTheyWere) {
         EXPECT_GE(p.width, 640) << damaged;
         EXPECT_LE(p.text_scale, 2) << damaged;
     }
+    fs::remove_all(folder);
+}
+
+// A damaged file costs neither what of it can be read nor the file.
+TEST(Preferences, KeepADamagedFileAside) {
+    const fs::path folder = fs::path(::testing::TempDir()) / "clarity_damaged_preferences_test";
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    Bookmark bookmark{"from above", {}};
+    bookmark.camera.eye = {1, 2, 3};
+    Preferences written;
+    written.text_scale = 1.5f;
+    written.bookmarked = {"/a.obj", "/b.obj"};
+    written.bookmarks = {{"/a.obj", {bookmark, bookmark}}, {"/b.obj", {bookmark}}};
+    nlohmann::json json = to_json(written);
+    const std::string whole = json.dump();
+    json["width"] = "wide";
+    json["bookmarks"][0]["views"][1]["camera"]["eye"] = "nowhere";
+    std::ofstream(folder / "window.json") << json.dump();
+    std::string notice;
+    for (const Preferences& p : {load_preferences(folder.string(), &notice), load_preferences(folder.string())}) {
+        EXPECT_EQ(p.text_scale, 1.5f);
+        EXPECT_EQ(p.width, Preferences{}.width);
+        EXPECT_EQ(p.bookmarked, written.bookmarked);
+        EXPECT_EQ(p.bookmarks.at("/a.obj").size(), 1u);
+        EXPECT_EQ(p.bookmarks.at("/b.obj").size(), 1u);
+    }
+    EXPECT_NE(notice.find("window.damaged-1.json"), std::string::npos) << notice;
+    EXPECT_NE(notice.find("width"), std::string::npos) << notice;
+    const auto text_of = [&](const char* name) {
+        std::ifstream in(folder / name);
+        return std::string(std::istreambuf_iterator<char>(in), {});
+    };
+    EXPECT_EQ(text_of("window.damaged-1.json"), json.dump());
+    // Cut off, as by a full disk: what the next save writes must not be all that is left.
+    const std::string half = whole.substr(0, whole.size() / 2);
+    std::ofstream(folder / "window.json") << half;
+    save_preferences(folder.string(), load_preferences(folder.string()));
+    EXPECT_EQ(text_of("window.damaged-2.json"), half);
+    EXPECT_TRUE(fs::exists(folder / "window.json"));
+    EXPECT_FALSE(fs::exists(folder / "window.damaged-3.json"));
     fs::remove_all(folder);
 }
 

@@ -12,6 +12,7 @@
 #include "ui/picture_layout.hpp"
 #include "ui/ray_lines.hpp"
 #include "ui/selection_box.hpp"
+#include "ui/speed_verdict.hpp"
 
 namespace clarity {
 namespace {
@@ -340,6 +341,31 @@ TEST(PictureDifference, CountsPixels) {
     EXPECT_EQ(difference.image.pixels[5], 96);
     b.width = 1;
     EXPECT_EQ(compare_pictures(a, b).share, 1);
+}
+
+// What two runs of one structure on a busy machine differ by is no verdict.
+TEST(SpeedVerdict, NamesNoFasterSideWithinTheSpread) {
+    const std::vector<float> calm = {10, 10.1f, 10.2f, 9.9f, 10, 10.1f, 9.8f, 10, 10.1f, 10};
+    const auto scaled = [](std::vector<float> times, float by) {
+        for (float& ms : times) ms *= by;
+        return times;
+    };
+    EXPECT_EQ(speed_verdict(calm, scaled(calm, 2)), "2.00\u00d7 faster");
+    EXPECT_EQ(speed_verdict(scaled(calm, 2), calm), "");
+    EXPECT_EQ(speed_verdict(calm, scaled(calm, 20)), "20\u00d7 faster");
+    EXPECT_EQ(speed_verdict(calm, calm), "about the same");
+    EXPECT_EQ(speed_verdict(calm, scaled(calm, 1.01f)), "about the same");
+    // Medians that differ by 1.23, and times that differ by more from frame to frame.
+    const std::vector<float> busy = {10, 14, 9, 18, 11, 10, 16, 12, 9, 13}, busier = scaled(busy, 1.23f);
+    EXPECT_EQ(speed_verdict(busy, busier), "about the same");
+    EXPECT_EQ(speed_verdict(busier, busy), "about the same");
+    // One frame that was held up changes nothing.
+    std::vector<float> held_up = calm;
+    held_up[3] = 500;
+    EXPECT_EQ(speed_verdict(held_up, scaled(calm, 2)), "1.98\u00d7 faster");
+    // Too few to know.
+    EXPECT_EQ(speed_verdict({1, 1, 1, 1}, {5, 5, 5, 5}), "");
+    EXPECT_EQ(speed_verdict({}, {}), "");
 }
 
 }  // namespace

@@ -27,6 +27,62 @@ TEST_F(Window, ManyChangesAtOnceEndInTheLast) {
     EXPECT_FALSE(now["behind"]);
 }
 
+// A device of PoCL is closed and opened anew after 16 programs; the Stats tab, drawn all the while, shows what was on it.
+TEST_F(Window, StatisticsStayWhileDevicesAreOpenedAnew) {
+    const auto window = open_scene(source_path("scenes/cornell.scene"), "64x48");
+    ASSERT_EQ(window->command("tab Stats"), "");
+    for (const char* change : {"accel linear", "set aov t", "set lanes 1"}) ASSERT_EQ(window->command(change), "");
+    for (const char* aov : {"t", "prim", "normal"})
+        for (const char* packet : {"1x1", "2x1", "1x2", "2x2", "4x1", "1x4", "4x2", "2x4", "4x4", "8x1"}) {
+            ASSERT_EQ(window->command(std::string("set aov ") + aov), "");
+            ASSERT_EQ(window->command(std::string("set packet ") + packet), "");
+            window->settle();
+            const auto now = window->state();
+            ASSERT_EQ(now["packet"], packet) << now["message"];
+            ASSERT_EQ(now["aov"], aov);
+        }
+    EXPECT_EQ(window->state()["message"], "");
+    window->quit();
+    EXPECT_EQ(window->exit_code(), 0);
+}
+
+// Samples add up while nothing changes, and what is shown then is what the command line makes.
+TEST_F(Window, SamplesAddUpAtRest) {
+    const TemporaryFolder folder;
+    const auto window = open();
+    EXPECT_EQ(window->state()["samples"], 16);
+    const std::string line = command_line(*window, folder.path() + "/again.png");
+    EXPECT_NE(line.find("spp"), std::string::npos) << line;
+    ASSERT_EQ(run_command_line(line), 0);
+    EXPECT_EQ(difference(window->picture(), read_png(folder.path() + "/again.png"), 0), 0);
+    // Of what is no colour, the last sample would be all that is left: there is one.
+    const Pixels colors = window->picture();
+    ASSERT_EQ(window->command("set aov prim"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["samples"], 1);
+    ASSERT_EQ(run_command_line(command_line(*window, folder.path() + "/prim.png")), 0);
+    EXPECT_EQ(difference(window->picture(), read_png(folder.path() + "/prim.png"), 0), 0);
+    ASSERT_EQ(window->command("set aov color"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["samples"], 16);
+    EXPECT_EQ(difference(window->picture(), colors, 0), 0);
+    // A number that was asked for is kept.
+    WindowDriver single({"--size", "320x240", "--spp", "1", source_path("scenes/primitives.scene")});
+    single.settle();
+    EXPECT_EQ(single.state()["samples"], 1);
+    EXPECT_GT(difference(window->picture(), single.picture(), 0), 0.01);
+}
+
+TEST_F(Window, SaysAWarningOfAnImportOnce) {
+    const TemporaryFolder folder;
+    std::ofstream(folder.path() + "/a.obj") << "mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const auto window = open_scene(folder.path() + "/a.obj", "64x48");
+    const std::string errors = window->errors();
+    const size_t first = errors.find("missing.mtl");
+    ASSERT_NE(first, std::string::npos) << errors;
+    EXPECT_EQ(errors.find("missing.mtl", errors.find('\n', first)), std::string::npos) << errors;
+}
+
 TEST_F(Window, SaysHowToRenderWithoutADisplay) {
     WindowDriver window({source_path("scenes/primitives.scene")}, {{"DISPLAY", ""}});
     const auto begin = Clock::now();

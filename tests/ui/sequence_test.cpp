@@ -58,6 +58,49 @@ TEST_F(SequenceOf, EscapeStopsItAndTheCameraComesBack) {
     EXPECT_EQ(window->state()["message"], "");
 }
 
+// Whose first frame waits for more samples than there is time for.
+TEST_F(SequenceOf, AnotherOneReplacesOneWhoseFrameIsPending) {
+    const auto window = open_scene(source_path("scenes/cornell.scene"), "96x72");
+    const auto was = window->state();
+    ASSERT_EQ(window->command("set spp 65536"), "");
+    ASSERT_EQ(window->command("turntable 5 " + folder.path() + "/first_####.png"), "");
+    ASSERT_EQ(window->command("state"), "");
+    ASSERT_EQ(window->command("turntable 3 " + folder.path() + "/second_####.png"), "");
+    ASSERT_EQ(window->command("state"), "");
+    // The same again: its outcome must not be taken for that of the one before.
+    ASSERT_EQ(window->command("turntable 3 " + folder.path() + "/second_####.png"), "");
+    ASSERT_EQ(window->command("set spp 1"), "");
+    window->settle();
+    EXPECT_EQ(files(), 3u);
+    const Pixels still = read_png(folder.path() + "/second_0001.png");
+    EXPECT_EQ(difference(still, window->picture(), 0), 0);
+    EXPECT_GT(difference(still, read_png(folder.path() + "/second_0002.png"), 0), 0);
+    EXPECT_EQ(window->state()["eye"], was["eye"]);
+    EXPECT_EQ(window->state()["message"], "");
+}
+
+TEST_F(SequenceOf, APendingFrameIsNotWrittenAfterAStop) {
+    const auto window = open_scene(source_path("scenes/cornell.scene"), "96x72");
+    const auto was = window->state();
+    ASSERT_EQ(window->command("turntable 2000 " + folder.path() + "/turn_####.png"), "");
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json&) { return files() >= 3; }));
+    ASSERT_EQ(window->command("set spp 65536"), "");
+    ASSERT_EQ(window->command("state"), "");
+    const size_t written = files();
+    window->key("Escape");
+    ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["eye"] == was["eye"]; }));
+    ASSERT_EQ(window->command("set spp 1"), "");
+    window->settle();
+    EXPECT_LE(files(), written + 1);  // one may have been on its way to the disk
+    const Pixels still = window->picture();
+    for (size_t i = 2; i <= files(); ++i) {
+        char name[32];
+        std::snprintf(name, sizeof name, "/turn_%04zu.png", i);
+        EXPECT_GT(difference(still, read_png(folder.path() + name), 0), 0) << name << " shows the restored camera";
+    }
+    EXPECT_EQ(window->state()["eye"], was["eye"]);
+}
+
 TEST_F(SequenceOf, RefusesWhatCannotBeWritten) {
     const auto window = open_scene(source_path("scenes/cornell.scene"), "96x72");
     const auto was = window->state();
