@@ -65,20 +65,18 @@ Preferences load_preferences(const std::string& folder, std::string* notice) {
     const fs::path path = fs::path(folder) / "window.json";
     std::error_code error;
     if (!fs::exists(path, error)) return p;
-    std::string why;
     bool some = false;  // entries could be read
-    try {
-        std::vector<std::string> problems;
-        p = preferences_from(nlohmann::json::parse(read_file(path.string(), kMaxTextFileBytes, Exit::failed)), &problems);
-        if (problems.empty()) return p;
-        some = true;
-        why = "cannot be understood in part (" + problems.front() +
-              (problems.size() > 1 ? ", and " + std::to_string(problems.size() - 1) + " more)" : ")");
-    } catch (const Error& failure) {
-        why = failure.what();
-    } catch (const nlohmann::json::exception& failure) {
-        why = std::string("cannot be understood: ") + failure.what();
-    }
+    std::string content, why = try_read_file(path.string(), kMaxTextFileBytes, content);
+    if (why.empty()) try {
+            std::vector<std::string> problems;
+            p = preferences_from(nlohmann::json::parse(content), &problems);
+            if (problems.empty()) return p;
+            some = true;
+            why = "cannot be understood in part (" + problems.front() +
+                  (problems.size() > 1 ? ", and " + std::to_string(problems.size() - 1) + " more)" : ")");
+        } catch (const nlohmann::json::exception& failure) {
+            why = std::string("cannot be understood: ") + failure.what();
+        }
     const std::string text =
         path.string() + ": " + why + (some ? "; the rest is used, " : "; the defaults are used, ") + "and " + keep_aside(path);
     // So that a window that ends by force loses nothing more.
