@@ -34,7 +34,7 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
     const uint any_mirror = mirror_bits, any_refract = refract_bits;
 #endif
     if (any_mirror != 0u) {
-        const rt_vec origin = rt_along(p->offset, p->geometric, p->at), direction = rt_mirror_direction(p),
+        const rt_vec origin = rt_along(p->outward, p->geometric, p->at), direction = rt_mirror_direction(p),
                      passed = rt_scale(split.mirrored, weight);
         RT_RECORD_SPAWN(RT_RAY_MIRROR, any_mirror, mirror_bits)
         const uint first = count;
@@ -42,7 +42,7 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
         RT_KEEP_AREA(mirror_bits)
     }
     if (any_refract != 0u) {
-        const rt_vec origin = rt_along(-p->offset, p->geometric, p->at), direction = rt_refracted_direction(p, &split),
+        const rt_vec origin = rt_along(p->inward, p->geometric, p->at), direction = rt_refracted_direction(p, &split),
                      passed = rt_scale(split.refracted, rt_mul(m->color, weight));
         RT_RECORD_SPAWN(RT_RAY_REFRACTED, any_refract, refract_bits)
         const uint first = count;
@@ -163,7 +163,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
                 }
                 any_hit = 1u;
                 const rt_surface surface = rt_resolve(ctx, rays + b, hit, bits);
-                points[b] = rt_point_of(rays + b, hit->t, &surface, points[b].hits);
+                points[b] = rt_point_of(rays + b, &surface, points[b].hits);
                 materials[b] = rt_load_materials(ctx, &surface, hit_bits, points[b].at);
 #ifdef RT_INSPECT
                 const rt_vec ambient = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]),

@@ -21,7 +21,7 @@ RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask
     vmask going = rt_vint(0);
     *parted = 0u;
     if (hit_bits != 0u) {
-        const rt_point point = rt_point_of(ray, hit->t, &surface, hits);
+        const rt_point point = rt_point_of(ray, &surface, hits);
         const rt_shade material = rt_load_materials(ctx, &surface, hit_bits, point.at);
         vmask mirrored, refracted;
         const rt_split split = rt_follow(frame, &point, &material, *weight, &mirrored, &refracted);
@@ -34,12 +34,12 @@ RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask
         if (rt_any(refracted)) bent = rt_refracted_direction(&point, &split);
         const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, *weight));
         if (*parted != 0u) {
-            aside->origin = rt_along(-point.offset, point.geometric, point.at);
+            aside->origin = rt_along(point.inward, point.geometric, point.at);
             aside->direction = bent;
             aside->weight = through;
         }
         /* The ray itself has served: the next is made in its place, before the shadow rays. */
-        const vfloat side = rt_select(mirrored, point.offset, -point.offset);
+        const vfloat side = rt_select(mirrored, point.outward, point.inward);
         const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(mirrored, bounced, bent);
         ray->ox = from.x, ray->oy = from.y, ray->oz = from.z;
         ray->dx = along.x, ray->dy = along.y, ray->dz = along.z;

@@ -3,8 +3,6 @@
 #ifndef RT_SHADING_H
 #define RT_SHADING_H
 
-#define RT_RAY_OFFSET 1.5e-5f /* 256 ulp, of the largest coordinate or the distance */
-
 typedef struct rt_tally {
     uint shadow, secondary, dropped, overflow;
 #ifdef RT_INSPECT
@@ -24,20 +22,20 @@ typedef struct rt_point {
 #ifdef RT_PARTS_SCATTERED
     vfloat area;      /* rt_surface.area */
 #endif
-    vfloat offset;    /* how far from the surface rays start: rounding of `at` grows with its coordinates and the ray's length */
+    vfloat outward;   /* rays that stay on this side start at: at + outward geometric */
+    vfloat inward;    /* rays that go through the surface start at: at + inward geometric */
 } rt_point;
 
-RT_INLINE rt_point rt_point_of(const rt_rays *ray, vfloat distance, const rt_surface *s, vmask hits)
+RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hits)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
-    const vfloat t = rt_select(hits, distance, zero);
     rt_point p;
     p.hits = hits;
 #ifdef RT_PARTS_SCATTERED
     p.area = s->area;
 #endif
     p.incoming = rt_vec_of(ray->dx, ray->dy, ray->dz);
-    p.at = rt_along(t, p.incoming, rt_vec_of(ray->ox, ray->oy, ray->oz));
+    p.at = s->at;
     p.leaving = RT_MASK(rt_dot(s->geometric, p.incoming) > zero);
     const vfloat side = rt_select(p.leaving, -one, one);
     p.geometric = rt_scale(side, s->geometric);
@@ -45,7 +43,9 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, vfloat distance, const rt_sur
     /* An interpolated normal may point away from the viewer at silhouettes: there the geometric one serves. */
     p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
     p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
-    p.offset = RT_RAY_OFFSET * rt_max(rt_largest(rt_vec_of(fabs(p.at.x), fabs(p.at.y), fabs(p.at.z))), t);
+    const vfloat height = side * s->height;
+    p.outward = rt_max(s->error - height, zero);
+    p.inward = -s->error - height;
     return p;
 }
 
@@ -75,7 +75,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
                 rt_clear_hits(hits + b, p->hits);
                 continue;
             }
-            const rt_vec above = rt_along(p->offset, p->geometric, p->at);
+            const rt_vec above = rt_along(p->outward, p->geometric, p->at);
             rt_vec towards = rt_spread(light->position);
             vfloat distance = RT_INFINITY;
             if (light->kind == RT_LIGHT_POINT) {
@@ -94,7 +94,7 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
             shadow->dx = towards.x;
             shadow->dy = towards.y;
             shadow->dz = towards.z;
-            shadow->t_min = p->offset; /* where surfaces meet, rounding may have put the point behind the other one */
+            shadow->t_min = zero;
             rt_clear_hits(hits + b, lit);
             hits[b].t = rt_select(lit, distance, rt_vfloat(-1.0f));
             if (frame->shadows != 0u && asked[b] != 0u) {

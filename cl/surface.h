@@ -1,4 +1,8 @@
-/* surface.h -- from a hit to what shading needs: normals, texture coordinates, material, primitive number. */
+/* surface.h -- from a hit to what shading needs: the point, normals, texture coordinates, material, primitive number.
+ *
+ * The point is the ray's origin + t times its direction, so rounding puts it beside the surface. Both the distance from the surface
+ * and a bound on all errors of rays that start there are computed from numbers near the point: they do not grow with the length of
+ * the ray. After Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section 3.9, Managing Rounding Error. */
 #ifndef RT_SURFACE_H
 #define RT_SURFACE_H
 
@@ -20,8 +24,21 @@
 #define RT_USES_UV(ctx, number) ((ctx)->materials[number].texture != RT_NONE)
 #endif
 
+/* The relative error of a sum of products after n roundings is at most RT_GAMMA(n) of the sum of the absolute terms. */
+#define RT_GAMMA(n) ((n)*RT_EPS / (1.0f - (n)*RT_EPS))
+/* Roundings in the height of a point above a plane or sphere: one in each difference to the anchor, three in the dot product, one
+ * more in a sphere's radius. The height is computed here, and again by the primitive's own test of a ray that starts here. */
+#define RT_HEIGHT_ERROR RT_GAMMA(10.0f)
+/* Each coordinate of a ray's origin is rounded once: half an ulp, times the square root of 3 along a slanted normal. */
+#define RT_ORIGIN_ERROR RT_GAMMA(2.0f)
+/* A point in an instance's object space is a sum of four terms: three roundings, here and in the test again. */
+#define RT_PLACED_ERROR RT_GAMMA(7.0f)
+
 typedef struct rt_surface {
     vmask hit;
+    rt_vec at;           /* the point, world */
+    vfloat height;       /* of `at` above the surface, along `geometric` */
+    vfloat error;        /* a ray that starts farther than this from the surface does not meet it again by rounding */
     rt_vec geometric;    /* unit normal, world, on the side that the primitive has it */
     rt_vec normal;       /* for shading: interpolated where there are vertex normals; unit, on the geometric one's side */
     vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
@@ -38,7 +55,18 @@ RT_INLINE rt_vec rt_world_normal(const global float *m, rt_vec n)
 {
     return rt_vec_of(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z);
 }
+
+/* A row of object_from_world at the point p; *magnitude: the sum of the absolute terms. */
+RT_INLINE vfloat rt_place_row(const global float *row, rt_vec p, vfloat *magnitude)
+{
+    *magnitude = fma(rt_vfloat(fabs(row[0])), fabs(p.x), fma(rt_vfloat(fabs(row[1])), fabs(p.y),
+                     fma(rt_vfloat(fabs(row[2])), fabs(p.z), rt_vfloat(fabs(row[3])))));
+    return fma(rt_vfloat(row[0]), p.x, fma(rt_vfloat(row[1]), p.y, fma(rt_vfloat(row[2]), p.z, rt_vfloat(row[3]))));
+}
 #endif
+
+/* sum |a_k| |b_k| */
+RT_INLINE vfloat rt_absolute_dot(rt_vec a, rt_vec b) { return fma(fabs(a.x), fabs(b.x), fma(fabs(a.y), fabs(b.y), fabs(a.z * b.z))); }
 
 /* Lanes that share a leaf are served together: neighbours mostly do where triangles are large. */
 RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, uint bits)
@@ -50,6 +78,19 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.material = rt_vint(0);
     s.tex_u = s.tex_v = zero;
     s.geometric = rt_vec_of(hit->nx, hit->ny, hit->nz);
+    /* Nearer than the hit by the errors of t and of each coordinate: then the point is in front of other surfaces, too, that meet this
+     * one here. Beside a wall, rays from the floor would else start behind it. */
+    const vfloat reach = rt_select(s.hit, hit->t, zero) * (1.0f - RT_GAMMA(4.0f));
+    s.at = rt_along(reach, rt_vec_of(ray->dx, ray->dy, ray->dz), rt_vec_of(ray->ox, ray->oy, ray->oz));
+    const vfloat rounding = RT_ORIGIN_ERROR * rt_largest(rt_vec_of(fabs(s.at.x), fabs(s.at.y), fabs(s.at.z)));
+    s.at = rt_sub(s.at, rt_vec_of(copysign(rounding, ray->dx), copysign(rounding, ray->dy), copysign(rounding, ray->dz)));
+    rt_vec anchor = rt_vec_of(zero, zero, zero); /* a point of the plane; the centre of a sphere */
+#if RT_HAS_PLANES
+    vfloat plane_offset = zero;
+#endif
+#if RT_HAS_SPHERES
+    vfloat radius = zero;
+#endif
 #if RT_HAS_NORMALS
     rt_vec normal[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}}; /* of each corner */
 #endif
@@ -74,6 +115,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_PLANES
         if (at < -1) {
             s.material = rt_select(mine, rt_vint((int)ctx->planes[-2 - at].material), s.material);
+            plane_offset = rt_select(mine, rt_vfloat(ctx->planes[-2 - at].offset), plane_offset);
 #ifdef RT_PARTS_SCATTERED
             s.area = rt_select(mine, RT_INFINITY, s.area);
 #endif
@@ -86,6 +128,14 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         const global rt_leaf *leaf = ctx->leaves + at;
         const uint kind = RT_REF_KIND(leaf->ref);
         s.material = rt_select(mine, rt_vint((int)leaf->material), s.material);
+#if RT_HAS_POLYGONS
+        anchor = rt_choose(mine, rt_spread(kind == RT_REF_POLYGON ? leaf->b : leaf->a), anchor);
+#else
+        anchor = rt_choose(mine, rt_spread(leaf->a), anchor);
+#endif
+#if RT_HAS_SPHERES
+        if (kind == RT_REF_SPHERE) radius = rt_select(mine, rt_vfloat(leaf->b[0]), radius);
+#endif
 #ifdef RT_PARTS_SCATTERED
         if (kind != RT_REF_TRIANGLE) s.area = rt_select(mine, RT_INFINITY, s.area);
 #endif
@@ -142,11 +192,17 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #if RT_HAS_TEXTURES
     if (rt_any(planar)) { /* one texture a unit, over the two axes that the plane faces least */
-        const rt_vec at = rt_along(hit->t, rt_vec_of(ray->dx, ray->dy, ray->dz), rt_vec_of(ray->ox, ray->oy, ray->oz));
         const vfloat x = fabs(s.geometric.x), y = fabs(s.geometric.y), z = fabs(s.geometric.z);
-        s.tex_u = rt_select(planar, rt_select(RT_MASK(x > y) & RT_MASK(x > z), at.z, at.x), s.tex_u);
-        s.tex_v = rt_select(planar, rt_select(RT_MASK(y >= x) & RT_MASK(y >= z), -at.z, at.y), s.tex_v);
+        s.tex_u = rt_select(planar, rt_select(RT_MASK(x > y) & RT_MASK(x > z), s.at.z, s.at.x), s.tex_u);
+        s.tex_v = rt_select(planar, rt_select(RT_MASK(y >= x) & RT_MASK(y >= z), -s.at.z, s.at.y), s.tex_v);
     }
+#endif
+
+    rt_vec from_anchor = rt_sub(s.at, anchor);
+    s.height = rt_dot(s.geometric, from_anchor);
+    s.error = RT_HEIGHT_ERROR * rt_absolute_dot(s.geometric, from_anchor);
+#if RT_HAS_PLANES
+    s.height -= plane_offset;
 #endif
 
 #if RT_HAS_INSTANCES
@@ -158,6 +214,14 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         left &= ~rt_bits(mine);
         const global rt_instance *instance = ctx->instances + at;
         if (instance->material != RT_NONE) s.material = rt_select(mine, rt_vint((int)instance->material), s.material);
+        /* In object space, where the ray is traced: there `anchor` and the hit's normal are exact. */
+        rt_vec placed, magnitude;
+        placed.x = rt_place_row(instance->object_from_world, s.at, &magnitude.x);
+        placed.y = rt_place_row(instance->object_from_world + 4, s.at, &magnitude.y);
+        placed.z = rt_place_row(instance->object_from_world + 8, s.at, &magnitude.z);
+        placed = rt_sub(placed, anchor);
+        s.height = rt_select(mine, rt_dot(s.geometric, placed), s.height);
+        s.error = rt_select(mine, RT_HEIGHT_ERROR * rt_absolute_dot(s.geometric, placed) + RT_PLACED_ERROR * rt_absolute_dot(s.geometric, magnitude), s.error);
         s.geometric = rt_choose(mine, rt_world_normal(instance->object_from_world, s.geometric), s.geometric);
 #if RT_HAS_ATTRIBUTES
         s.normal = rt_choose(mine, rt_world_normal(instance->object_from_world, s.normal), s.normal);
@@ -165,7 +229,14 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     }
 #endif
 
-    s.geometric = rt_normalize(s.geometric);
+    /* The normal's length is the scale of height and error: world_from_object's, too. */
+    const vfloat scale = rt_inverse_length(s.geometric);
+    s.geometric = rt_scale(scale, s.geometric);
+    s.height *= scale;
+#if RT_HAS_SPHERES
+    s.height = rt_select(RT_MASK(radius > zero), sqrt(rt_dot(from_anchor, from_anchor)) - radius, s.height);
+#endif
+    s.error = fma(scale, s.error, rounding);
 #if RT_HAS_ATTRIBUTES
     s.normal = rt_normalize(s.normal);
     /* Files disagree on which side corners turn; the geometric normal decides. */

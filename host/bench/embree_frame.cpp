@@ -30,7 +30,7 @@ namespace {
 constexpr unsigned kWide = 16;
 constexpr unsigned kTile = 32;  // pixels, in both directions: what a thread holds stays in its second-level cache
 constexpr unsigned kMost = kTile * kTile + kWide;  // rays of a generation, and room for a store of a whole packet
-constexpr float kOffset = 1.5e-5f;                 // RT_RAY_OFFSET
+constexpr float kOffset = 1.5e-5f;                 // of secondary rays from the surface, of the largest coordinate or t
 constexpr float kFar = 3e38f;                      // farther than anything
 
 struct Lanes {

@@ -165,17 +165,52 @@ bool mirrors(const Affine& m) {
     return m[0] * x + m[1] * y + m[2] * z < 0;
 }
 
-// The box of a mesh's group, placed.
-rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, rt_u32 index) {
+// The float at or below a number, and at or above it.
+float round_down(double value) {
+    const auto nearest = static_cast<float>(value);
+    return nearest <= value ? nearest : std::nextafter(nearest, -INFINITY);
+}
+float round_up(double value) {
+    return -round_down(-value);
+}
+
+// The box of a mesh's group in the world. It holds the triangles where rays meet them. Kernels transform each ray with
+// object_from_world, in float: where large coordinates cancel, triangles seem to be moved by that rounding, so the box grows by
+// a bound on it (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section 3.9): gamma(n) = n u / (1 - n u) of the sum
+// of the absolute terms, u = 2^-24 and n = 8: one rounding in the inverse, three in the origin, three in the direction, one in
+// the difference between corner and origin. The terms are those of a ray that starts no farther from the world's origin than
+// the box reaches. A ray that starts at a greater distance d is off by a few u d, which is no more than the rounding of its
+// direction.
+rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, const Affine& object_from_world,
+                      rt_u32 index) {
+    constexpr double kRounding = 8 * 0x1p-24, kGamma = kRounding / (1 - kRounding);
     rt_prim box = empty_prim(0, 0), prim = empty_prim(RT_REF_INSTANCE | index, index);
     for (rt_u32 i = 0; i < scene.groups[group].count; ++i) {
         grow(box, scene.prims[scene.groups[group].first + i].lo);
         grow(box, scene.prims[scene.groups[group].first + i].hi);
     }
-    for (int corner = 0; corner < 8; ++corner) {
-        const float p[3] = {corner & 1 ? box.hi[0] : box.lo[0], corner & 2 ? box.hi[1] : box.lo[1],
-                            corner & 4 ? box.hi[2] : box.lo[2]};
-        grow(prim, transform_point(world, p).data());
+    double lo[3], hi[3], farthest[3];
+    for (int k = 0; k < 3; ++k) {
+        lo[k] = hi[k] = world[4 * k + 3];
+        for (int j = 0; j < 3; ++j) {
+            const double a = double(world[4 * k + j]) * box.lo[j], b = double(world[4 * k + j]) * box.hi[j];
+            lo[k] += std::min(a, b);
+            hi[k] += std::max(a, b);
+        }
+        farthest[k] = std::max(std::fabs(lo[k]), std::fabs(hi[k]));
+    }
+    double error[3];  // in object space
+    for (int j = 0; j < 3; ++j) {
+        const float* row = &object_from_world[4 * j];
+        double terms = std::fabs(row[3]);
+        for (int k = 0; k < 3; ++k) terms += std::fabs(row[k]) * farthest[k];
+        error[j] = kGamma * terms;
+    }
+    for (int k = 0; k < 3; ++k) {
+        double room = 0;
+        for (int j = 0; j < 3; ++j) room += std::fabs(world[4 * k + j]) * error[j];
+        prim.lo[k] = round_down(lo[k] - room);
+        prim.hi[k] = round_up(hi[k] + room);
     }
     widen(prim, 1e-6f);
     return prim;
@@ -291,7 +326,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             placed.first_prim = next_prim;
             placed.material = instance.material;
             const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
-            rt_prim prim = instance_prim(out, group, instance.world_from_object, index);
+            rt_prim prim = instance_prim(out, group, instance.world_from_object, inverse[i], index);
             prim.mesh = static_cast<rt_u32>(i);
             grow(out.bounds, prim);
             instance_prims.push_back(prim);
