@@ -78,12 +78,13 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.material = rt_vint(0);
     s.tex_u = s.tex_v = zero;
     s.geometric = rt_vec_of(hit->nx, hit->ny, hit->nz);
-    /* Nearer than the hit by the errors of t and of each coordinate: then the point is in front of other surfaces, too, that meet this
-     * one here. Beside a wall, rays from the floor would else start behind it. */
+    /* Nearer than the hit by the errors of t and of each coordinate, but not beyond the ray's origin: then the point is in front of
+     * other surfaces, too, that meet this one here. Beside a wall, rays from the floor would else start behind it. */
     const vfloat reach = rt_select(s.hit, hit->t, zero) * (1.0f - RT_GAMMA(4.0f));
     s.at = rt_along(reach, rt_vec_of(ray->dx, ray->dy, ray->dz), rt_vec_of(ray->ox, ray->oy, ray->oz));
     const vfloat rounding = RT_ORIGIN_ERROR * rt_largest(rt_vec_of(fabs(s.at.x), fabs(s.at.y), fabs(s.at.z)));
-    s.at = rt_sub(s.at, rt_vec_of(copysign(rounding, ray->dx), copysign(rounding, ray->dy), copysign(rounding, ray->dz)));
+    s.at = rt_sub(s.at, rt_vec_of(rt_max(rt_min(reach * ray->dx, rounding), -rounding), rt_max(rt_min(reach * ray->dy, rounding), -rounding),
+                                  rt_max(rt_min(reach * ray->dz, rounding), -rounding)));
     rt_vec anchor = rt_vec_of(zero, zero, zero); /* a point of the plane; the centre of a sphere */
 #if RT_HAS_PLANES
     vfloat plane_offset = zero;
