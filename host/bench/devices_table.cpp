@@ -40,7 +40,7 @@ std::string devices_table(const BenchReport& report) {
     }
     return table.empty() ? std::string()
                          : "devices: a picture with all its samples, from the call to the pixels on the host, p50, or one of "
-                           "a hundred while the camera moves; kernels' times are the slowest device's; same: about the same, "
+                           "a hundred while the camera moves; kernels' times are the slowest device's\nsame: about the same, "
                            "the difference is within the measured spread\n" +
                                table.text(26) + "\n";
 }

@@ -92,8 +92,8 @@ std::string steps_table(const BenchReport& report, const std::string& suite) {
                ? std::string()
                : suite +
                      ": frames per second, from the call to the pixels on the host; the right-hand columns are of the last "
-                     "step, in ms, p95 and p99 of all in; same: about the same, within the measured spread\n" +
-                     table.text(26) + "\n";
+                     "step:\nms, p95 and p99 of all in; same: about the same, the difference is within the measured spread\n" +
+                     table.text(22) + "\n";
 }
 
 // Packet sizes down, lanes across.

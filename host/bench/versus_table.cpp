@@ -73,8 +73,8 @@ std::string versus_table(const BenchReport& report) {
         add_mean(table, means, *structure, "LEAST", &VersusMean::least, &VersusMean::least_spread);
     }
     return "cpu: how many times as fast as the fastest peer in the same case (build: as the medium one, "
-           "builder=morton: low, spatial: high), p50; bytes: as many times; same: about the same, the difference is within the "
-           "measured spread\n" +
+           "builder=morton: low, spatial: high), p50; bytes: as many times\n"
+           "same: about the same, the difference is within the measured spread\n" +
            table.text(26) + "\n";
 }
 
