@@ -32,14 +32,14 @@ typedef float rt_f32;
  *   sphere     a = centre, b[0] = radius
  *   polygon    a = unit normal, b = a point of its plane; corners in rt_polygon
  *   instance   a, b = lower and upper bounds in the world */
-typedef struct rt_leaf {
+typedef struct rt_packed_prim {
     rt_f32 a[3];
     rt_u32 ref;
     rt_f32 b[3];
     rt_u32 material;
     rt_f32 c[3];
     rt_u32 prim; /* number shown as `prim`; within an instance it counts from rt_instance.first_prim */
-} rt_leaf;
+} rt_packed_prim;
 
 /* Corners of a triangle as indices into the vertex attributes (normals, uvs). 12 B. Read by shading only. */
 typedef struct rt_triangle {
@@ -127,7 +127,7 @@ typedef struct rt_frame {
 } rt_frame;
 
 /* A ray and its answer, for tests and benches that bring their own rays. 32 B each; kernels see blocks of RT_LANES of them,
- * field by field: cl/ray_blocks.h. */
+ * field by field: cl/queries/ray_blocks.h. */
 typedef struct rt_ray {
     rt_f32 origin[3], t_min, direction[3], t_max;
 } rt_ray;
@@ -171,7 +171,7 @@ typedef struct rt_ray_record {
 
 /* A mix of the sizes of all structs above: host and plugin must have been compiled from the same page. */
 #define RT_TYPES_DIGEST                                                                                                          \
-    ((rt_u32)(sizeof(rt_leaf) + 131u * sizeof(rt_triangle) + 17161u * sizeof(rt_polygon) + 2248091u * sizeof(rt_plane) +         \
+    ((rt_u32)(sizeof(rt_packed_prim) + 131u * sizeof(rt_triangle) + 17161u * sizeof(rt_polygon) + 2248091u * sizeof(rt_plane) +         \
               294499921u * sizeof(rt_instance) + 31u * sizeof(rt_material) + 961u * sizeof(rt_light) +                           \
               29791u * sizeof(rt_texture) + 923521u * sizeof(rt_frame) + 28629151u * sizeof(rt_hit)))
 #endif

@@ -5,8 +5,8 @@
  * either direction: the polygons at an edge agree on it, whatever rounding did, so a ray that passes from the one to the other
  * meets an odd number of them. The product of one corner with the other decides only where the corners lie on different sides of
  * the half line's axis, and its sign is right or it is zero, as that of triangle.h is; a zero is no crossing, for both. */
-#define RT_PROJECT(at, x, y, z) rt_across(r, at, (float4)((at)[0], (at)[1], (at)[2], 0.0f), x, y, z);
-RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+#define RT_PROJECT(at, x, y, z) rt_to_ray_space(r, at, (float4)((at)[0], (at)[1], (at)[2], 0.0f), x, y, z);
+RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
     const rt_polygon polygon = ctx->polygons[RT_REF_INDEX(leaf->ref)];

@@ -1,7 +1,7 @@
 /* sphere.h -- ray/sphere on lanes. The discriminant is the squared distance of the centre from the ray's line, not b^2 - 4ac,
  * which cancels for far or small spheres (Haines, Guenther, Akenine-Moeller 2019, Precision Improvements for Ray/Sphere
  * Intersection, Ray Tracing Gems ch. 7). Seen from inside, the far side is the hit. */
-RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
     const float radius = leaf->b[0];

@@ -8,17 +8,17 @@
 #if RT_CPU
 #define RT_CORNER(corner, k) leaf->corner[k]
 #define RT_PRIM leaf->prim
-#define RT_PROJECT(corner, x, y, z) rt_across(r, leaf->corner, *(const global float4 *)leaf->corner, x, y, z);
+#define RT_PROJECT(corner, x, y, z) rt_to_ray_space(r, leaf->corner, *(const global float4 *)leaf->corner, x, y, z);
 #else
 #define RT_CORNER(corner, k) leaf->corner.s##k
 #define RT_PRIM as_uint(leaf->c.s3)
-#define RT_PROJECT(corner, x, y, z) rt_across(r, 0, leaf->corner, x, y, z);
+#define RT_PROJECT(corner, x, y, z) rt_to_ray_space(r, 0, leaf->corner, x, y, z);
 #endif
-#ifdef RT_EACH
+#ifdef RT_RAYS_PER_ITEM
 #define RT_PROJECT_AXIS(i, j, k)                                                                                                 \
-    RT_ACROSS_AXIS(a, i, j, k, ax, ay, az)                                                                                       \
-    RT_ACROSS_AXIS(b, i, j, k, bx, by, bz)                                                                                       \
-    RT_ACROSS_AXIS(c, i, j, k, cx, cy, cz)
+    RT_TO_RAY_SPACE_AXIS(a, i, j, k, ax, ay, az)                                                                                       \
+    RT_TO_RAY_SPACE_AXIS(b, i, j, k, bx, by, bz)                                                                                       \
+    RT_TO_RAY_SPACE_AXIS(c, i, j, k, cx, cy, cz)
 #define RT_PROJECT_ALL                                                                                                           \
     if (r->kz == 2u) {                                                                                                           \
         RT_PROJECT_AXIS(x, y, z)                                                                                                 \
@@ -45,7 +45,7 @@
 
 #if RT_CPU
 /* Whether a lane may hit it: the first half of the test, for who asks for many before it tests those that answered. */
-RT_INLINE uint RT_FN(rt_maybe_triangle)(const global rt_leaf *leaf, const rt_rays *r, const rt_hits *h)
+RT_INLINE uint RT_FN(rt_maybe_triangle)(const global rt_packed_prim *leaf, const rt_rays *r, const rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
     RT_TRIANGLE_EDGES
@@ -54,9 +54,9 @@ RT_INLINE uint RT_FN(rt_maybe_triangle)(const global rt_leaf *leaf, const rt_ray
 #endif
 
 #if RT_CPU
-RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 #else
-RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 #endif
 {
 #pragma OPENCL FP_CONTRACT OFF
@@ -92,16 +92,16 @@ RT_INLINE void RT_FN(rt_hit_loaded_triangle)(const rt_loaded_leaf *leaf, uint at
 #undef RT_TRIANGLE_EDGES
 
 #if !RT_CPU
-RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
-    const rt_loaded_leaf loaded = rt_load_leaf(leaf);
+    const rt_loaded_prim loaded = rt_load_leaf(leaf);
     RT_FN(rt_hit_loaded_triangle)(&loaded, at, r, h);
 }
 #endif
 
 /* A triangle whose record the traversal has fetched, of the group that is traversed. */
 #if RT_LANES == 1
-RT_INLINE void RT_FN(rt_loaded_leaf)(const rt_ctx *ctx, const rt_loaded_leaf *leaf, uint at, const rt_rays *r, rt_hits *h)
+RT_INLINE void RT_FN(rt_loaded_prim)(const rt_ctx *ctx, const rt_loaded_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
     RT_COUNT_LEAF(h);
 #if RT_CPU

@@ -1,7 +1,7 @@
 /* triangle_row.h -- one ray against four triangles that lie side by side in leaf order: which of them can it hit?
  *
  * The edge functions are those of triangle.h, operation by operation, so none is lost, not even where they are NaN; what else
- * decides is left to triangle_lone.h, to which hardly more than one triangle a ray comes. Four triangles are twelve quads of 16
+ * decides is left to triangle_single_ray.h, to which hardly more than one triangle a ray comes. Four triangles are twelve quads of 16
  * bytes, three vectors of sixteen floats. A permutation within quads takes the coordinate along one of the ray's axes out of
  * each, for all alike, and merging three of these gives all twelve in one vector, without the transposition that arrays of
  * structures otherwise need.
@@ -25,7 +25,7 @@ RT_INLINE float16 rt_row_coordinates(float16 quads0, float16 quads1, float16 qua
     return __builtin_ia32_selectps_512(0x4444, __builtin_ia32_vpermilvarps512(quads2, pick), two);
 }
 
-RT_INLINE uint rt_row_candidates(const rt_lone_rays *r, uint l, const global rt_leaf *leaf)
+RT_INLINE uint rt_row_candidates(const rt_single_rays *r, uint l, const global rt_packed_prim *leaf)
 {
 #pragma OPENCL FP_CONTRACT OFF
     const global float *words = (const global float *)leaf;
@@ -49,7 +49,7 @@ RT_INLINE uint rt_row_candidates(const rt_lone_rays *r, uint l, const global rt_
 #else
 
 /* Of the same corner of four triangles, what lies along one axis each. */
-RT_INLINE void rt_row_corners(const global float4 *quads, const rt_lone_rays *r, uint l, float4 *x, float4 *y, float4 *z)
+RT_INLINE void rt_row_corners(const global float4 *quads, const rt_single_rays *r, uint l, float4 *x, float4 *y, float4 *z)
 {
 #pragma OPENCL FP_CONTRACT OFF
     float4 q0 = quads[0], q1 = quads[3], q2 = quads[6], q3 = quads[9];
@@ -60,7 +60,7 @@ RT_INLINE void rt_row_corners(const global float4 *quads, const rt_lone_rays *r,
     *y = fma((float4)(RT_AT(r->sy, l)), *z, (float4)(RT_AT(r->py, l)) - (kz == 2 ? c1 : kz == 1 ? c0 : c2));
 }
 
-RT_INLINE uint rt_row_candidates(const rt_lone_rays *r, uint l, const global rt_leaf *leaf)
+RT_INLINE uint rt_row_candidates(const rt_single_rays *r, uint l, const global rt_packed_prim *leaf)
 {
 #pragma OPENCL FP_CONTRACT OFF
     const global float4 *quads = (const global float4 *)leaf;

@@ -45,20 +45,20 @@ trace_aov(const constant rt_frame *frame, const uint first_group, global float *
     RT_CTX_INIT(ctx);
     const uint blocks = RT_BLOCKS(frame);
     RT_FOR_PACKETS(frame, packet)
-    RT_FOR_BUNDLES(base, 0u, blocks) {
+    RT_FOR_STREAMS(base, 0u, blocks) {
         const uint2 origin = rt_packet_origin(frame, first_group + (uint)get_group_id(0), packet);
-        const uint count = RT_BUNDLE_OF(blocks - base);
-        rt_rays rays[RT_BUNDLE];
-        rt_hits hits[RT_BUNDLE];
-        RT_FOR_EACH(b, count) {
+        const uint count = RT_STREAM_OF(blocks - base);
+        rt_rays rays[RT_STREAM];
+        rt_hits hits[RT_STREAM];
+        RT_FOR_EACH_PACKET(b, count) {
             vint in_x, in_y;
             const vmask active = rt_block_pixels(frame, origin, base + b, &in_x, &in_y);
             rt_camera_rays(frame, in_x + rt_vint((int)origin.x), in_y + rt_vint((int)origin.y), rays + b);
             rt_prepare(rays + b, rt_bits(active));
             rt_clear_hits(hits + b, active);
         }
-        rt_trace_bundle_closest(&ctx, frame, rays, hits, count);
-        RT_FOR_EACH(b, count) {
+        rt_trace_stream_closest(&ctx, frame, rays, hits, count);
+        RT_FOR_EACH_PACKET(b, count) {
             RT_COUNT_OVERFLOW(hits + b)
             vint in_x, in_y;
             const uint bits = rt_bits(rt_block_pixels(frame, origin, base + b, &in_x, &in_y));

@@ -5,7 +5,7 @@
  *
  * Level 0 follows camera rays, level n the rays that were put aside at level n - 1; a level is a launch. The host enqueues all at
  * once: how many rays a level has is known to the device alone, so as many work-items as run side by side take chunks of
- * RT_WAVE * RT_LANES rays until none is left. Without glass there is one level, and no ray ever leaves its registers. With it a
+ * RT_TEAM_SIZE * RT_LANES rays until none is left. Without glass there is one level, and no ray ever leaves its registers. With it a
  * pixel of 2^n rays is the work of 2^n work-items, where iterative.cl has one that holds up its warp.
  *
  * A pixel's first way is a sum of its own, in the order of generations; what other ways add to it is summed as fixed-point
@@ -46,18 +46,18 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 global uint *idle_control, RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
-    local uint scratch[RT_WAVE_SCRATCH];
+    local uint scratch[RT_TEAM_SCRATCH];
     const uint group_packets = RT_GROUP_PACKETS(frame);
     const uint count = level == 0u ? group_count * group_packets * RT_BLOCKS(frame) * RT_LANES
                                    : min(control[level * RT_CONTROL], room);
-    const uint units = (count + RT_LANES - 1u) / RT_LANES, chunks = (units + RT_WAVE - 1u) / RT_WAVE;
+    const uint units = (count + RT_LANES - 1u) / RT_LANES, chunks = (units + RT_TEAM_SIZE - 1u) / RT_TEAM_SIZE;
     if (chunks == 0u && fresh == 0u) return;
     rt_tally tally = {0, 0, 0, 0};
     if (level == 0u && get_global_id(0) == 0)
         for (uint i = 0; i < RT_CONTROLS; ++i) idle_control[i] = 0u;
     RT_FOR_CHUNKS(chunk, chunks, control + level * RT_CONTROL + 1u, scratch)
     {
-        const uint unit = chunk * RT_WAVE + rt_wave_item();
+        const uint unit = chunk * RT_TEAM_SIZE + rt_team_item();
         rt_rays ray;
         rt_vec weight = rt_splat(1.0f, 1.0f, 1.0f), sum = rt_splat(0.0f, 0.0f, 0.0f);
         vint pixel = rt_vint(0), generation = rt_vint(0);
@@ -75,15 +75,15 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 pixel = (y + rt_vint((int)(layer * frame->height))) * rt_vint((int)frame->width) + x;
                 rt_camera_rays(frame + layer, x, y, &ray);
             } else {
-                active = rt_fetch_wave_rays(rays, unit * RT_LANES, count, &ray, &weight, &pixel, &generation);
+                active = rt_load_wavefront_rays(rays, unit * RT_LANES, count, &ray, &weight, &pixel, &generation);
             }
         }
         const uint mine = rt_bits(active);
 
         for (uint step = 0; step < frame->depth; ++step) {
             const uint bits = rt_bits(active);
-            RT_WAVE_BREAK_UNLESS(bits != 0u)
-            rt_aside aside;
+            RT_TEAM_BREAK_UNLESS(bits != 0u)
+            rt_deferred aside;
             uint parted = 0u;
             if (bits != 0u) {
                 rt_hits hit;
@@ -111,15 +111,15 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
             }
 
             uint wanted;
-            const uint before = rt_wave_before(popcount(parted), &wanted, scratch);
-            const uint first = rt_wave_claim(control + (level + 1u) * RT_CONTROL, wanted, scratch);
-            if (rt_wave_item() == 0u) {
+            const uint before = rt_team_exclusive_sum(popcount(parted), &wanted, scratch);
+            const uint first = rt_team_claim(control + (level + 1u) * RT_CONTROL, wanted, scratch);
+            if (rt_team_item() == 0u) {
                 const uint taken = min(wanted, room - min(first, room));
                 tally.secondary += taken;
                 tally.dropped += wanted - taken;
             }
             if (parted != 0u)
-                rt_put_wave_rays(next, room, first + before, parted, aside.origin, aside.direction, aside.weight, pixel, generation);
+                rt_store_wavefront_rays(next, room, first + before, parted, aside.origin, aside.direction, aside.weight, pixel, generation);
         }
 
         if (mine != 0u) {

@@ -39,11 +39,11 @@ class AlignedBytes {
 
 // For vectors that are filled before they are read, by many threads: their elements are not cleared first, on one.
 template <class T>
-struct Uncleared {
+struct DefaultInitAllocator {
     using value_type = T;
-    Uncleared() = default;
+    DefaultInitAllocator() = default;
     template <class U>
-    Uncleared(const Uncleared<U>&) {}
+    DefaultInitAllocator(const DefaultInitAllocator<U>&) {}
     T* allocate(size_t n) {
         AlignedBytes bytes(n * sizeof(T), false);
         return static_cast<T*>(bytes.release());
@@ -57,10 +57,10 @@ struct Uncleared {
     void construct(U* p, Args&&... args) {
         ::new (static_cast<void*>(p)) U(std::forward<Args>(args)...);
     }
-    bool operator==(const Uncleared&) const { return true; }
-    bool operator!=(const Uncleared&) const { return false; }
+    bool operator==(const DefaultInitAllocator&) const { return true; }
+    bool operator!=(const DefaultInitAllocator&) const { return false; }
 };
 template <class T>
-using UnclearedVector = std::vector<T, Uncleared<T>>;
+using UninitializedVector = std::vector<T, DefaultInitAllocator<T>>;
 
 }  // namespace clarity

@@ -1,5 +1,5 @@
 // clarity bench: measures suites or scenes, and writes what was measured as table, JSON, CSV and a page.
-#include "bench/bench.hpp"
+#include "bench/run/bench.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -11,9 +11,9 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/output_file.hpp"
-#include "bench/output.hpp"
-#include "bench/report.hpp"
-#include "bench/rows_file.hpp"
+#include "bench/output/output.hpp"
+#include "bench/output/rows_file.hpp"
+#include "bench/report/report.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -51,7 +51,7 @@ BenchRequest make_request(const BenchCommand& command) {
     request.breakdown = command.breakdown;
     request.max_triangles = command.max_triangles;
     request.time_limit_s = command.time_limit_s;
-    request.peers = !command.no_peers;
+    request.baselines = !command.no_baselines;
     return request;
 }
 
@@ -59,7 +59,7 @@ void print_list(const Suite& suite) {
     for (const BenchCase& c : suite.cases) {
         std::string members;
         for (const Variant& variant : c.variants) members += (members.empty() ? "" : " | ") + variant.label;
-        for (const std::string& quality : c.peer_qualities) members += " | peers " + quality;
+        for (const std::string& quality : c.baseline_qualities) members += " | peers " + quality;
         std::printf("%-8s %-40s %s%s\n", c.suite.c_str(), c.name.c_str(), members.c_str(),
                     c.timing == Timing::counted_only ? "  (counted)" : "");
     }

@@ -156,7 +156,7 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_flag("--breakdown", bench.breakdown,
                  "Where the time of a frame goes: of the scenes named, or of the shared models as half mirrors");
     app.add_flag("--list", bench.list, "Only list what would be measured");
-    app.add_flag("--no-peers", bench.no_peers, "Leave other people's ray tracers out");
+    app.add_flag("--no-peers", bench.no_baselines, "Leave other people's ray tracers out");
     single(app.add_option("--time-limit", bench.time_limit_s, "For everything; without it what the suites are made for"))
         ->type_name("SECONDS")
         ->check(CLI::Range(1.0, 1e6));

@@ -7,8 +7,8 @@
 
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
-#include "render/edit.hpp"
-#include "render/settings.hpp"
+#include "render/settings/edit.hpp"
+#include "render/settings/settings.hpp"
 
 namespace clarity {
 
@@ -20,7 +20,7 @@ struct SceneOptions {
 // What render and view share.
 struct TraceOptions {
     std::string device;                                         // "": CLARITY_DEVICE, else the best
-    std::string accel;                                          // ID[,key=value...]; "": the preset's, else usual_accel()
+    std::string accel;                                          // ID[,key=value...]; "": the preset's, else default_accel()
     std::vector<std::string> sets;                              // key=value, in the order given
     std::vector<std::pair<std::string, std::string>> settings;  // from options of their own; they win over `sets`
     std::string camera, light;                                  // as make_view reads them
@@ -62,7 +62,7 @@ struct BenchCommand {
     std::vector<std::pair<std::string, std::string>> settings;
     std::string json_file, csv_file, report_folder;
     std::vector<std::string> join_files;  // that --json wrote in earlier runs
-    bool list = false, no_peers = false, quiet = false;
+    bool list = false, no_baselines = false, quiet = false;
     double time_limit_s = 0, max_spread = 0.1;
     std::vector<std::string> only;
     bool breakdown = false;

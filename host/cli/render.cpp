@@ -22,7 +22,7 @@
 #include "cli/progress_bar.hpp"
 #include "cli/render_stats.hpp"
 #include "device/kernel_watch.hpp"
-#include "render/multi_frames.hpp"
+#include "render/multi/multi_frame_renderer.hpp"
 
 namespace clarity {
 namespace {
@@ -113,7 +113,7 @@ class RenderJob {
     Exit round(Progress& progress) {
         if (!scene_) import(progress);
         prepare(progress);
-        MultiFrames frames(devices_);
+        MultiFrameRenderer frames(devices_);
         for (int number = range_.first;; number += range_.step) {
             const bool whole = render(frames, number, progress);
             if (!whole) return Exit::interrupted;
@@ -166,7 +166,7 @@ class RenderJob {
             return code;
         };
         try {
-            if (preparer_ && preparer_->worn()) reopen_devices();
+            if (preparer_ && preparer_->needs_reopen()) reopen_devices();
             stats_.frame_ms.clear();
             stats_.wall_ms.clear();
             return round(progress);
@@ -220,7 +220,7 @@ class RenderJob {
     }
 
     // One picture; with --repeat the same one again and again. False if interrupted: then what was accumulated is written.
-    bool render(MultiFrames& frames, int number, Progress& progress) {
+    bool render(MultiFrameRenderer& frames, int number, Progress& progress) {
         bar_.stage("rendering " + std::filesystem::path(frame_path(options_.output, number)).filename().string());
         // Counting rays costs a little, and the first frame warms caches: timed frames come after it.
         const bool warm_up = options_.repeat > 1;
@@ -244,7 +244,7 @@ class RenderJob {
     }
 
     // All samples of one frame. Returns how many are complete.
-    unsigned trace_pass(MultiFrames& frames, bool count, bool timed, double from, double share, Progress& progress) {
+    unsigned trace_pass(MultiFrameRenderer& frames, bool count, bool timed, double from, double share, Progress& progress) {
         if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
         double device_ms = 0, wall_ms = 0;
         const auto all = unsigned(settings_.spp);
@@ -300,7 +300,7 @@ class RenderJob {
         }
     }
 
-    void write(MultiFrames& frames, int number) {
+    void write(MultiFrameRenderer& frames, int number) {
         const std::string path = frame_path(options_.output, number);
         const bool png = writes_display(path);
         const FloatImage values = png ? FloatImage{} : frames.read_values();

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/multi_preparer.hpp"
+#include "render/multi/multi_preparer.hpp"
 
 namespace clarity {
 

@@ -7,8 +7,8 @@
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
-#include "render/accel_choice.hpp"
-#include "render/preset.hpp"
+#include "render/accel/accel_choice.hpp"
+#include "render/settings/preset.hpp"
 
 namespace clarity {
 
@@ -31,7 +31,7 @@ TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions&
     }
     for (const auto& [key, value] : options.settings) set_setting(words.settings, key, value);
     if (!options.accel.empty() || options.preset.empty())
-        choose_accel(plugins, options.accel.empty() ? usual_accel(plugins, words.device) : options.accel, words.settings);
+        choose_accel(plugins, options.accel.empty() ? default_accel(plugins, words.device) : options.accel, words.settings);
     return words;
 }
 

@@ -4,7 +4,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #ifdef CLARITY_HAVE_UI
-#include "ui/window_main.hpp"
+#include "ui/app/window_main.hpp"
 #endif
 
 namespace clarity {

@@ -14,7 +14,8 @@ struct BuildResult {
     std::string log;  // warnings, if any
 };
 
-// Throws Error(kernel_build_failed). The message begins with the place of the first error, "/home/me/clarity/cl/camera.h:12:5:
+// Throws Error(kernel_build_failed). The message begins with the place of the first error,
+// "/home/me/clarity/cl/tracers/camera.h:12:5:
 // ...", which location() holds in parts; details() is the whole log. Files read from disk are named by their path.
 // what: for the message, "tracer iterative with accel bvh2".
 BuildResult build_program(Device& device, const std::string& source, const std::string& options, const std::string& what);

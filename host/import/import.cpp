@@ -3,8 +3,8 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "import/file_access.hpp"
+#include "import/import_in_worker.hpp"
 #include "import/scene_builder.hpp"
-#include "import/worker.hpp"
 
 namespace clarity {
 namespace {

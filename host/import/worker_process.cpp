@@ -1,227 +1,139 @@
-// worker_process.cpp -- the worker's own side: loads the importers, locks itself in, imports, leaves the scene in shared
-// memory.
+#include "import/worker_process.hpp"
+
 #include <fcntl.h>
-#include <poll.h>
-#include <sys/prctl.h>
-#include <sys/syscall.h>
-#include <ucontext.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
-#include <chrono>
-#include <cmath>
+#include <algorithm>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
-#include <exception>
-#include <filesystem>
-#include <mutex>
-#include <new>
 
 #include "base/error.hpp"
-#include "base/log.hpp"
-#include "import/import.hpp"
-#include "import/sandbox.hpp"
-#include "import/scene_builder.hpp"
-#include "import/wire.hpp"
 #include "import/worker_channel.hpp"
+
+extern char** environ;
 
 namespace clarity {
 namespace {
 
-// ---- last words: what the parent cannot see from outside
-
-// Sanitizers handle crashes themselves, and say more.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kHasCrashReports = true;
-#else
-constexpr bool kHasCrashReports = false;
-#endif
-
-alignas(16) char signal_stack[64 << 10];
-
-void on_crash(int signal, siginfo_t* info, void* context) {
-    uintptr_t stack_pointer = 0;
-#if defined(__x86_64__)
-    stack_pointer = static_cast<uintptr_t>(static_cast<ucontext_t*>(context)->uc_mcontext.gregs[REG_RSP]);
-#elif defined(__aarch64__)
-    stack_pointer = static_cast<uintptr_t>(static_cast<ucontext_t*>(context)->uc_mcontext.sp);
-#else
-    (void)context;
-#endif
-    const auto address = reinterpret_cast<uintptr_t>(info->si_addr);
-    const uintptr_t distance = address > stack_pointer ? address - stack_pointer : stack_pointer - address;
-    if (stack_pointer != 0 && distance < (1u << 20)) send_short(kChannelFd, MessageKind::death, "stack overflow");
-    // Returning repeats the faulty access, now without a handler.
-    std::signal(signal, SIG_DFL);
+[[noreturn]] void fail(const std::string& what, int error) {
+    throw Error(Exit::import_failed, "cannot start the import worker: " + what + ": " + std::strerror(error) +
+                                         " (importing without one is possible, but a damaged file may then end this program)");
 }
 
-[[noreturn]] void on_terminate() {
-    try {
-        if (std::current_exception()) std::rethrow_exception(std::current_exception());
-    } catch (const std::bad_alloc&) {
-        send_short(kChannelFd, MessageKind::death, "out of memory");
-    } catch (const std::exception& e) {
-        send_short(kChannelFd, MessageKind::death, e.what());
-    } catch (...) {
-    }
-    std::abort();
+int checked(int fd, const char* what) {
+    if (fd < 0) fail(what, errno);
+    return fd;
 }
 
-// Sent once; who asked for memory may live with the refusal, but if the worker dies then this is why.
-void on_no_memory() {
-    static bool said = false;
-    if (!said) send_short(kChannelFd, MessageKind::death, "out of memory");
-    said = true;
-    throw std::bad_alloc();
+// Out of the way of the numbers that the worker's descriptors get.
+FileDescriptor moved_up(int fd) {
+    const int moved = fcntl(fd, F_DUPFD_CLOEXEC, 10);
+    const int error = errno;
+    close(fd);
+    if (moved < 0) fail("descriptor", error);
+    return FileDescriptor(moved);
 }
 
-void prepare_last_words() {
-    std::set_terminate(on_terminate);
-    std::set_new_handler(on_no_memory);
-    if (kHasCrashReports) return;
-    const stack_t stack = {signal_stack, 0, sizeof signal_stack};
-    sigaltstack(&stack, nullptr);
-    struct sigaction action {};
-    action.sa_sigaction = on_crash;
-    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
-    for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
-}
-
-// ---- talking to the parent
-
-class ChannelProgress : public Progress, public ImportObserver {
- public:
-    void stage(const std::string& text) override { send(MessageKind::stage, 0, text); }
-    // Importers report as often as they like; the parent hears of it forty times a second.
-    bool report(float fraction) override {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        const auto now = std::chrono::steady_clock::now();
-        if (now - last_look_ < std::chrono::milliseconds(25)) return !cancelled();
-        last_look_ = now;
-        Message message;
-        while (!cancelled()) {
-            const Received received = receive_message(kChannelFd, message);
-            if (received == Received::nothing) break;
-            if (received == Received::closed || message.kind == MessageKind::cancel) cancel();
-        }
-        send(MessageKind::progress, fraction, {});
-        return !cancelled();
-    }
-    void running(const std::string& file, const std::string& importer) override {
-        send(MessageKind::running, 0, file + '\n' + importer);
-        Message answer;
-        do {
-            pollfd ready = {kChannelFd, POLLIN, 0};
-            poll(&ready, 1, -1);
-            if (receive_message(kChannelFd, answer) == Received::closed) _exit(1);
-            if (answer.kind == MessageKind::cancel) throw Cancelled();
-        } while (answer.kind != MessageKind::proceed);
-    }
-
- private:
-    static void send(MessageKind kind, float fraction, const std::string& text) {
-        send_message(kChannelFd, {kind, 0, fraction, text});
-    }
-    std::mutex mutex_;
-    std::chrono::steady_clock::time_point last_look_{};
+struct FileActions {
+    posix_spawn_file_actions_t actions;
+    FileActions() { posix_spawn_file_actions_init(&actions); }
+    ~FileActions() { posix_spawn_file_actions_destroy(&actions); }
 };
-
-void send_log(LogLevel level, const std::string& text) {
-    send_message(kChannelFd, {MessageKind::log, static_cast<int32_t>(level), 0, text});
-}
-
-struct Arguments {
-    WorkerLimits limits;
-    std::vector<std::string> plugins, search_paths, files;
-    long parent = 0;
+struct Attributes {
+    posix_spawnattr_t attributes;
+    Attributes() { posix_spawnattr_init(&attributes); }
+    ~Attributes() { posix_spawnattr_destroy(&attributes); }
 };
-
-// import-worker [--memory BYTES] [--most-memory BYTES] [--cpu SECONDS] [--parent PID] [--plugin FILE]... [--search FOLDER]...
-// -- FILE...
-bool parse(int argc, char** argv, Arguments& arguments) {
-    int i = 1;
-    if (i < argc && std::strcmp(argv[i], "import-worker") == 0) ++i;
-    for (; i + 1 < argc && std::strcmp(argv[i], "--") != 0; i += 2) {
-        const std::string key = argv[i], value = argv[i + 1];
-        if (key == "--memory") {
-            arguments.limits.memory_bytes = std::strtoull(value.c_str(), nullptr, 10);
-        } else if (key == "--most-memory") {
-            arguments.limits.most_memory_bytes = std::strtoull(value.c_str(), nullptr, 10);
-        } else if (key == "--cpu") {
-            arguments.limits.cpu_s = std::strtoull(value.c_str(), nullptr, 10);
-        } else if (key == "--parent") {
-            arguments.parent = std::strtol(value.c_str(), nullptr, 10);
-        } else if (key == "--plugin") {
-            arguments.plugins.push_back(value);
-        } else if (key == "--search") {
-            arguments.search_paths.push_back(value);
-        } else {
-            return false;
-        }
-    }
-    if (i >= argc || std::strcmp(argv[i], "--") != 0) return false;
-    for (++i; i < argc; ++i) arguments.files.push_back(argv[i]);
-    return !arguments.files.empty();
-}
-
-std::string import_files(const Arguments& arguments, ChannelProgress& progress) {
-    const FileAccess access(arguments.files, arguments.search_paths);
-    const PluginRegistry plugins = PluginRegistry::of(arguments.plugins);
-    // A file that the user named may be a link to elsewhere; what lies beside its target stays closed.
-    std::vector<std::string> named;
-    for (const std::string& file : arguments.files) named.push_back(std::filesystem::canonical(file).string());
-    for (const std::string& note : enter_sandbox(access.folders(), named, arguments.limits)) {
-        log(LogLevel::debug, "import worker: " + note);
-    }
-    SceneBuilder builder(plugins, access, progress, &progress);
-    for (const std::string& file : arguments.files) builder.add_root(file);
-    const Scene scene = builder.take();
-    allow_writing_result();
-    const std::string why = write_scene(kResultFd, scene);
-    return why.empty() ? why : arguments.files.front() + ": " + why;
-}
-
-int run(const Arguments& arguments) {
-    ChannelProgress progress;
-    std::string why;
-    try {
-        why = import_files(arguments, progress);
-    } catch (const std::bad_alloc&) {
-        why = arguments.files.front() + ": out of memory";
-    } catch (const std::exception& e) {
-        why = e.what();
-    }
-    if (why.empty()) {
-        send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
-    } else {
-        send_message(kChannelFd, {MessageKind::failed, 0, 0, why});
-    }
-    return why.empty() ? 0 : static_cast<int>(Exit::import_failed);
-}
 
 }  // namespace
 
-int import_worker_main(int argc, char** argv) {
-    Arguments arguments;
-    if (!parse(argc, argv, arguments) || fcntl(kChannelFd, F_GETFD) < 0 || fcntl(kResultFd, F_GETFD) < 0) {
-        std::fprintf(stderr, "import-worker is started by clarity itself; to import a file, run `clarity info FILE`\n");
-        return static_cast<int>(Exit::usage);
+void FileDescriptor::reset() {
+    if (fd_ >= 0) close(fd_);
+    fd_ = -1;
+}
+
+WorkerProcess::WorkerProcess(const std::string& program, const std::vector<std::string>& arguments) {
+    int pair[2], pipe_ends[2];
+    checked(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair), "socket pair");
+    channel_ = moved_up(pair[0]);
+    const FileDescriptor their_channel = moved_up(pair[1]);
+    checked(pipe2(pipe_ends, O_CLOEXEC), "pipe");
+    output_ = moved_up(pipe_ends[0]);
+    const FileDescriptor their_output = moved_up(pipe_ends[1]);
+    fcntl(output_.get(), F_SETFL, O_NONBLOCK);
+    result_ = moved_up(checked(memfd_create("clarity-scene", MFD_CLOEXEC | MFD_ALLOW_SEALING), "shared memory"));
+
+    FileActions files;
+    posix_spawn_file_actions_addopen(&files.actions, 0, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 1);
+    posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 2);
+    posix_spawn_file_actions_adddup2(&files.actions, their_channel.get(), kChannelFd);
+    posix_spawn_file_actions_adddup2(&files.actions, result_.get(), kResultFd);
+    // A process group of its own: Ctrl-C is for us to turn into a cancel. Signals as they are by default.
+    Attributes spawn;
+    sigset_t none, all;
+    sigemptyset(&none);
+    sigfillset(&all);
+    posix_spawnattr_setsigmask(&spawn.attributes, &none);
+    posix_spawnattr_setsigdefault(&spawn.attributes, &all);
+    posix_spawnattr_setpgroup(&spawn.attributes, 0);
+    posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
+
+    std::vector<std::string> words = {program, "import-worker"};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words) argv.push_back(word.data());
+    argv.push_back(nullptr);
+    const std::string variable = std::string(kWorkerVariable) + "=1";
+    std::vector<char*> environment;
+    for (char** entry = environ; *entry; ++entry) environment.push_back(*entry);
+    environment.push_back(const_cast<char*>(variable.c_str()));
+    environment.push_back(nullptr);
+    const int error = posix_spawn(&pid_, program.c_str(), &files.actions, &spawn.attributes, argv.data(), environment.data());
+    if (error != 0) {
+        pid_ = -1;
+        fail(program, error);
     }
-    // Whoever asked is gone: nobody wants the result. The check after the call covers a parent that died before it.
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (arguments.parent != 0 && getppid() != arguments.parent) _exit(1);
-#ifdef SYS_close_range
-    syscall(SYS_close_range, kResultFd + 1, ~0u, 0);
-#endif
-    std::signal(SIGPIPE, SIG_IGN);
-    set_log_level(LogLevel::error);
-    set_log_listener(send_log);
-    prepare_last_words();
-    send_message(kChannelFd, {MessageKind::greeting, 0, 0, kWorkerGreeting});
-    const int status = run(arguments);
-    // Without destructors: the kernel frees faster, and a library's own clean-up could still crash.
-    _exit(status);
+}
+
+WorkerProcess::~WorkerProcess() {
+    kill_now();
+    wait();
+}
+
+void WorkerProcess::kill_now() {
+    if (pid_ > 0) ::kill(pid_, SIGKILL);
+}
+
+int WorkerProcess::wait() {
+    while (pid_ > 0) {
+        if (waitpid(pid_, &status_, 0) == pid_ || errno != EINTR) pid_ = -1;
+    }
+    return status_;
+}
+
+void WorkerProcess::raise_memory_limit(uint64_t more_bytes) const {
+    rlimit now{};
+    if (pid_ <= 0 || prlimit(pid_, RLIMIT_AS, nullptr, &now) != 0 || now.rlim_cur == RLIM_INFINITY) return;
+    now.rlim_cur = std::min<rlim_t>(now.rlim_cur + more_bytes, now.rlim_max);
+    prlimit(pid_, RLIMIT_AS, &now, nullptr);
+}
+
+uint64_t WorkerProcess::resident_bytes() const {
+    if (pid_ <= 0) return 0;
+    std::FILE* file = std::fopen(("/proc/" + std::to_string(pid_) + "/statm").c_str(), "re");
+    if (!file) return 0;
+    unsigned long long total = 0, resident = 0;
+    const bool read = std::fscanf(file, "%llu %llu", &total, &resident) == 2;
+    std::fclose(file);
+    return read ? resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
 }
 
 }  // namespace clarity

@@ -4,10 +4,10 @@
 #include <exception>
 #include <new>
 
-#include "base/default_floats.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/parallel_for.hpp"
+#include "base/scoped_fp_mode.hpp"
 
 namespace clarity {
 namespace {
@@ -55,7 +55,7 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
     host_.parallel_for = [](void*, uint32_t count, void (*body)(void*, rt_u32), void* user) {
         if (!body) return;
         clarity::parallel_for(count, [body, user](uint32_t i) {
-            const DefaultFloats floats;
+            const ScopedFpMode floats;
             body(user, i);
         });
     };

@@ -62,7 +62,7 @@ typedef struct rt_group {
  * group. */
 typedef struct rt_geometry {
     rt_u32 struct_bytes;
-    const rt_leaf *triangles;
+    const rt_packed_prim *triangles;
     uint64_t triangle_count;
 } rt_geometry;
 

@@ -8,7 +8,7 @@
 #include "base/progress.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
-#include "render/accel_build.hpp"
+#include "render/accel/accel_build.hpp"
 
 namespace {
 

@@ -1,13 +1,13 @@
 // breakdown_test.cpp -- parts of a frame: that they add up to it, that programs of parts trace the same rays, and that leaf
 // tests done twice change nothing.
-#include "bench/breakdown.hpp"
+#include "bench/run/breakdown.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "bench/bench.hpp"
-#include "bench/output.hpp"
+#include "bench/output/output.hpp"
+#include "bench/run/bench.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 
@@ -29,7 +29,7 @@ double part(const Parts& parts, const std::string& wanted) {
 }
 
 TEST(Breakdown, AddsUpToTheFrameWhateverWasMeasured) {
-    //                  film rays closest twice one no_shadows whole closest_twice any_twice
+    //                  film rays closest twice one no_shadows whole closest_double_leaf any_twice
     const double ms[kProbes] = {1, 2, 9, 11, 12, 27, 38, 43, 39.5};
     const Breakdown b = break_down(ms);
     EXPECT_DOUBLE_EQ(sum_of(b.parts), 38);
@@ -49,7 +49,7 @@ TEST(Breakdown, AddsUpToTheFrameWhateverWasMeasured) {
 TEST(FrameParts, LeafTestsDoneTwiceChangeNothing) {
     Workbench& bench = Workbench::get();
     FrameParts programs(bench.shared_device());
-    Frames frames(bench.shared_device());
+    FrameRenderer frames(bench.shared_device());
     Progress progress;
     // A mesh with normals, a ray at a time; every primitive, instances and materials, in packets and where they part.
     const struct {
@@ -65,7 +65,7 @@ TEST(FrameParts, LeafTestsDoneTwiceChangeNothing) {
             return frames.read_values().pixels;
         };
         const std::vector<float> once = picture(FramePart::whole);
-        for (const FramePart twice : {FramePart::whole_closest_twice, FramePart::whole_any_twice})
+        for (const FramePart twice : {FramePart::whole_closest_double_leaf, FramePart::whole_any_double_leaf})
             EXPECT_EQ(picture(twice), once) << c.scene;
     }
 }
@@ -73,7 +73,7 @@ TEST(FrameParts, LeafTestsDoneTwiceChangeNothing) {
 TEST(FrameParts, BeginAsAFrameBegins) {
     Workbench& bench = Workbench::get();
     FrameParts programs(bench.shared_device());
-    Frames frames(bench.shared_device());
+    FrameRenderer frames(bench.shared_device());
     Progress progress;
     const ScenePtr scene = shared_scene(scene_of(torus(2, 0.7, 48, 24)));
     View view = view_from({0.5f, 4, 5}, {0, 0, 0}, 45);
@@ -91,7 +91,7 @@ TEST(FrameParts, BeginAsAFrameBegins) {
         EXPECT_NE(frames.read_values().pixels, film.pixels);
         trace(FramePart::whole);
         const FloatImage distances = frames.read_distance();
-        for (const FramePart part : {FramePart::closest, FramePart::closest_twice}) {
+        for (const FramePart part : {FramePart::closest, FramePart::closest_double_leaf}) {
             trace(part);
             EXPECT_EQ(frames.read_distance().pixels, distances.pixels) << lanes << " lanes";
         }

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "base/error.hpp"
-#include "bench/bench.hpp"
-#include "bench/gunzip.hpp"
+#include "bench/run/bench.hpp"
+#include "bench/suites/gunzip.hpp"
 #include "support/scenes.hpp"
 
 namespace {
@@ -171,7 +171,7 @@ TEST(Suites, TheCpuHasFramesOfPeersFromNearAndFar) {
     std::map<std::string, std::set<std::string>> measures;
     for (const BenchCase& c : suite.cases) {
         ASSERT_EQ(c.variants.size(), 2u);
-        EXPECT_FALSE(c.peer_qualities.empty()) << c.name;
+        EXPECT_FALSE(c.baseline_qualities.empty()) << c.name;
         measures[suite.scenes[c.scene].source.name].insert(c.measure);
         if (c.measure != "whitted") continue;
         EXPECT_EQ(variant_settings(Workbench::get().plugins(), {}, c.variants[1]).depth, 5);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "bench/peer.hpp"
+#include "bench/baselines/baseline.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 
@@ -40,7 +40,7 @@ Settings settings_of(int width, int height, int depth) {
 struct Both {
     FloatImage ours, theirs;
     FrameStats stats;
-    PeerRayCounts counts;
+    BaselineRayCounts counts;
 };
 
 Both render(const ScenePtr& scene, const View& view, const Settings& settings, const std::string& mode) {
@@ -51,9 +51,9 @@ Both render(const ScenePtr& scene, const View& view, const Settings& settings, c
     const auto prepared = bench.prepare(scene, settings);
     both.stats = bench.frames().trace(*prepared, settings, whitted, 0, true, progress);
     both.ours = bench.frames().read_values();
-    const PeerMesh mesh = make_peer_mesh(*scene);
-    const PeerKind kind = peer_kinds(nullptr).at(1);
-    PeerArray<float> film;
+    const BaselineMesh mesh = make_baseline_mesh(*scene);
+    const BaselineKind kind = baseline_kinds(nullptr).at(1);
+    BaselineArray<float> film;
     EXPECT_GT(kind.build(mesh, kind.quality, 2)->frame_ms(mode, whitted_scene(whitted, settings), film, both.counts), 0);
     both.theirs = {unsigned(settings.width), unsigned(settings.height), 3, {}};
     for (size_t i = 0; i < film.size(); ++i)
@@ -76,10 +76,10 @@ void expect_same(const Both& both, const std::string& what) {
     EXPECT_NEAR(double(both.counts.secondary), double(both.stats.secondary), 0.002 * double(both.stats.secondary) + 1) << what;
 }
 
-#define PEERS_OR_SKIP()                                                   \
-    {                                                                     \
-        std::string why;                                                  \
-        if (peer_kinds(&why).empty()) GTEST_SKIP() << "SKIPPED: " << why; \
+#define PEERS_OR_SKIP()                                                       \
+    {                                                                         \
+        std::string why;                                                      \
+        if (baseline_kinds(&why).empty()) GTEST_SKIP() << "SKIPPED: " << why; \
     }
 
 TEST(PeerFrame, IsOurPicture) {

@@ -1,5 +1,5 @@
 // measure_test.cpp -- quartiles, turns, and what is refused.
-#include "bench/measure.hpp"
+#include "bench/run/measure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "render/faster_way.hpp"
+#include "render/queries/autotuner.hpp"
 
 namespace {
 
@@ -19,7 +19,7 @@ Contender fake(const std::string& name, std::vector<double> ms, std::string* ord
     return {name, [=] {
                 if (order) *order += name;
                 const double value = ms[(*at)++ % ms.size()];
-                return Take{value, value + 1};
+                return Sample{value, value + 1};
             }};
 }
 
@@ -64,7 +64,7 @@ TEST(Measure, TakesTurns) {
     MeasureRules rules;
     rules.min_rounds = rules.max_rounds = 5;
     Progress progress;
-    measure_in_turns({fake("A", {1}, &order), fake("B", {2}, &order), fake("C", {3}, &order)}, rules, progress);
+    measure_interleaved({fake("A", {1}, &order), fake("B", {2}, &order), fake("C", {3}, &order)}, rules, progress);
     EXPECT_EQ(order,
               "AABBCC"
               "ABCABCABCABCABC");  // warm-up, then rounds
@@ -73,7 +73,7 @@ TEST(Measure, TakesTurns) {
 TEST(Measure, SteadyContendersEndEarly) {
     MeasureRules rules;
     Progress progress;
-    const auto measured = measure_in_turns({fake("A", {4}), fake("B", {8})}, rules, progress);
+    const auto measured = measure_interleaved({fake("A", {4}), fake("B", {8})}, rules, progress);
     ASSERT_EQ(measured.size(), 2u);
     EXPECT_EQ(measured[0].status, RowStatus::ok);
     EXPECT_EQ(measured[0].time_ms.n, rules.min_rounds);
@@ -86,7 +86,7 @@ TEST(Measure, TheUnsteadyIsRefusedAndTheSteadyIsNot) {
     MeasureRules rules;
     rules.max_rounds = 20;
     Progress progress;
-    const auto measured = measure_in_turns({fake("steady", {100}), fake("wild", {1, 2, 3, 4})}, rules, progress);
+    const auto measured = measure_interleaved({fake("steady", {100}), fake("wild", {1, 2, 3, 4})}, rules, progress);
     EXPECT_EQ(measured[0].status, RowStatus::ok);
     EXPECT_EQ(measured[1].status, RowStatus::refused);
     EXPECT_NE(measured[1].why.find("--max-spread"), std::string::npos) << measured[1].why;
@@ -100,19 +100,19 @@ TEST(Measure, ADisturbedFirstAttemptIsForgotten) {
     int taken = 0;
     const Contender disturbed{"A", [&] {
                                   const double ms = ++taken <= 22 ? 1 + taken % 5 : 10;
-                                  return Take{ms, ms};
+                                  return Sample{ms, ms};
                               }};
     Progress progress;
-    const auto measured = measure_in_turns({disturbed}, rules, progress);
+    const auto measured = measure_interleaved({disturbed}, rules, progress);
     EXPECT_EQ(measured[0].status, RowStatus::ok);
     EXPECT_DOUBLE_EQ(measured[0].time_ms.median, 10);
     EXPECT_DOUBLE_EQ(measured[0].time_ms.min, 10);
 }
 
 TEST(Measure, AFailureIsThatRowsAlone) {
-    const Contender broken{"broken", []() -> Take { throw Error(Exit::failed, "no memory on the device"); }};
+    const Contender broken{"broken", []() -> Sample { throw Error(Exit::failed, "no memory on the device"); }};
     Progress progress;
-    const auto measured = measure_in_turns({broken, fake("A", {1})}, MeasureRules{}, progress);
+    const auto measured = measure_interleaved({broken, fake("A", {1})}, MeasureRules{}, progress);
     EXPECT_EQ(measured[0].status, RowStatus::failed);
     EXPECT_EQ(measured[0].why, "no memory on the device");
     EXPECT_EQ(measured[1].status, RowStatus::ok);
@@ -121,12 +121,12 @@ TEST(Measure, AFailureIsThatRowsAlone) {
 TEST(Measure, WhatDoesNotFitTheBudgetIsSkipped) {
     const Contender slow{"slow", [] {
                              std::this_thread::sleep_for(std::chrono::milliseconds(60));
-                             return Take{60, 60};
+                             return Sample{60, 60};
                          }};
     MeasureRules rules;
     rules.budget_s = 0.05;
     Progress progress;
-    const auto measured = measure_in_turns({slow, fake("quick", {1})}, rules, progress);
+    const auto measured = measure_interleaved({slow, fake("quick", {1})}, rules, progress);
     EXPECT_EQ(measured[0].status, RowStatus::skipped);
     EXPECT_NE(measured[0].why.find("--time-limit"), std::string::npos) << measured[0].why;
     EXPECT_EQ(measured[1].status, RowStatus::ok);
@@ -137,16 +137,16 @@ TEST(Measure, ACancelEndsIt) {
     int taken = 0;
     const Contender contender{"A", [&] {
                                   if (++taken == 4) progress.cancel();
-                                  return Take{1, 1};
+                                  return Sample{1, 1};
                               }};
-    EXPECT_THROW(measure_in_turns({contender}, MeasureRules{}, progress), Cancelled);
+    EXPECT_THROW(measure_interleaved({contender}, MeasureRules{}, progress), Cancelled);
     EXPECT_EQ(taken, 4);
 }
 
 TEST(Measure, ARowThatRunsOutOfMemoryFailsAlone) {
-    const Contender greedy{"greedy", []() -> Take { throw std::bad_alloc(); }};
+    const Contender greedy{"greedy", []() -> Sample { throw std::bad_alloc(); }};
     Progress progress;
-    const auto measured = measure_in_turns({greedy, fake("A", {1})}, MeasureRules{}, progress);
+    const auto measured = measure_interleaved({greedy, fake("A", {1})}, MeasureRules{}, progress);
     EXPECT_EQ(measured[0].status, RowStatus::failed);
     EXPECT_NE(measured[0].why.find("not enough memory"), std::string::npos) << measured[0].why;
     EXPECT_EQ(measured[1].status, RowStatus::ok);
@@ -156,10 +156,10 @@ TEST(Measure, ARowThatRunsOutOfMemoryFailsAlone) {
 // as long the n-th run takes before.
 Contender tuned(
     std::vector<double> ms, std::function<double(unsigned)> slowdown = [](unsigned) { return 1.0; }) {
-    const auto way = std::make_shared<FasterWay>(static_cast<unsigned>(ms.size()));
+    const auto way = std::make_shared<Autotuner>(static_cast<unsigned>(ms.size()));
     const auto runs = std::make_shared<unsigned>(0);
     return {"tuned", [=] {
-                Take take;
+                Sample take;
                 take.way = way->way();
                 take.trial = way->trying();
                 take.time_ms = take.wall_ms = ms[take.way] * slowdown((*runs)++);
@@ -173,7 +173,7 @@ TEST(Measure, TriesOfSlowWaysAreNoSamples) {
     MeasureRules rules;
     rules.few_rounds = rules.min_rounds = rules.max_rounds = 3;
     Progress progress;
-    const auto measured = measure_in_turns({tuned({2.5, 1.8, 1, 1.4, 2}), fake("other", {3})}, rules, progress);
+    const auto measured = measure_interleaved({tuned({2.5, 1.8, 1, 1.4, 2}), fake("other", {3})}, rules, progress);
     EXPECT_EQ(measured[0].time_ms.n, 3u);
     EXPECT_DOUBLE_EQ(measured[0].time_ms.min, 1);
     EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);
@@ -186,7 +186,7 @@ TEST(Measure, AChoiceMadeWhileTheClockRoseIsMadeAgain) {
     Progress progress;
     // The clock rises so fast that the way tried last looks best; it is the slowest.
     const auto rising = [](unsigned run) { return run < 12 ? 10.0 - 0.75 * run : 1.0; };
-    const auto measured = measure_in_turns({tuned({1, 1.1, 1.2}, rising)}, rules, progress);
+    const auto measured = measure_interleaved({tuned({1, 1.1, 1.2}, rising)}, rules, progress);
     EXPECT_EQ(measured[0].time_ms.n, 3u);
     EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);
 }
@@ -201,11 +201,11 @@ TEST(Measure, SamplesOfAWayThatWasGivenUpAreDropped) {
     const Contender base = tuned({1, 1.5}, late);
     unsigned runs = 0;
     const Contender contender{"A", [&] {
-                                  Take take = base.once();
+                                  Sample take = base.once();
                                   take.way = ++runs > 12 ? 7 : 3;  // what the second tuning chooses
                                   return take;
                               }};
-    const auto measured = measure_in_turns({contender}, rules, progress);
+    const auto measured = measure_interleaved({contender}, rules, progress);
     EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);
     EXPECT_EQ(measured[0].time_ms.n, 4u);
 }

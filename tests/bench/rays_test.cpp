@@ -4,10 +4,10 @@
 #include <cmath>
 #include <set>
 
-#include "bench/analysis.hpp"
-#include "bench/peer.hpp"
-#include "bench/ray_sets.hpp"
-#include "render/accel_choice.hpp"
+#include "bench/baselines/baseline.hpp"
+#include "bench/run/analysis.hpp"
+#include "bench/suites/ray_sets.hpp"
+#include "render/accel/accel_choice.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 
@@ -257,10 +257,10 @@ TEST(Analysis, OneLaneHasWarpsAndSharesNothing) {
 // Peers say what we say, in every mode: else a comparison of times means nothing.
 TEST(Peers, HitWhatWeHit) {
     std::string why;
-    const std::vector<PeerKind> kinds = peer_kinds(&why);
+    const std::vector<BaselineKind> kinds = baseline_kinds(&why);
     if (kinds.empty()) GTEST_SKIP() << "SKIPPED: " << why;
     const ScenePtr scene = shared_scene(scene_of(torus(2, 0.7, 48, 24)));
-    ASSERT_EQ(peers_cannot(*scene), "");
+    ASSERT_EQ(baselines_cannot(*scene), "");
     const View view = view_from({0.5f, 4, 5}, {0, 0, 0}, 45);
     const RaySet primary = camera_rays(view.camera, 96, 96);
     const auto hits = Workbench::get().rays(scene, Settings(), primary.rays, false);
@@ -269,17 +269,17 @@ TEST(Peers, HitWhatWeHit) {
                        primary, hits, 96, 96);
     std::vector<const RaySet*> all = {&primary};
     for (const RaySet& set : sets) all.push_back(&set);
-    const PeerMesh mesh = make_peer_mesh(*scene);
+    const BaselineMesh mesh = make_baseline_mesh(*scene);
     EXPECT_EQ(mesh.triangle_count(), scene->triangle_count());
-    for (const PeerKind& kind : kinds) {
-        const auto peer = kind.build(mesh, kind.quality, 2);
-        EXPECT_GT(peer->bytes(), 0u);
+    for (const BaselineKind& kind : kinds) {
+        const auto baseline = kind.build(mesh, kind.quality, 2);
+        EXPECT_GT(baseline->bytes(), 0u);
         for (const RaySet* set : all) {
             const auto ours = Workbench::get().rays(scene, Settings(), set->rays, set->any_hit);
-            peer->take_rays(*set);
-            for (const std::string& mode : peer->modes()) {
-                PeerArray<PeerHit> theirs;
-                EXPECT_GE(peer->trace_ms(mode, theirs), 0);
+            baseline->take_rays(*set);
+            for (const std::string& mode : baseline->modes()) {
+                BaselineArray<BaselineHit> theirs;
+                EXPECT_GE(baseline->trace_ms(mode, theirs), 0);
                 ASSERT_GE(theirs.size(), set->rays.size());
                 size_t differ = 0, hit = 0;
                 for (size_t i = 0; i < set->rays.size(); ++i) {

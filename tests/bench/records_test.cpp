@@ -9,10 +9,10 @@
 #include <sstream>
 
 #include "base/error.hpp"
-#include "bench/bench.hpp"
-#include "bench/output.hpp"
-#include "bench/rows_file.hpp"
-#include "unit/scratch.hpp"
+#include "bench/output/output.hpp"
+#include "bench/output/rows_file.hpp"
+#include "bench/run/bench.hpp"
+#include "support/scratch.hpp"
 
 namespace {
 
@@ -84,11 +84,11 @@ BenchReport sample() {
     report.run.load_after = 0.25;
     report.run.max_spread = 0.1;
     report.records = {frame_record("one", "now", 10), frame_record("one", "then", 100), ray_record()};
-    BenchRecord peer = ray_record();
-    peer.peer = peer.variant = "embree packet16 high";
-    peer.accel.clear();
-    peer.analysis = {};
-    report.records.push_back(peer);
+    BenchRecord baseline = ray_record();
+    baseline.baseline = baseline.variant = "embree packet16 high";
+    baseline.accel.clear();
+    baseline.analysis = {};
+    report.records.push_back(baseline);
     BenchRecord refused = ray_record();
     refused.status = RowStatus::refused;
     refused.why = "spreads over 40 %";
@@ -296,7 +296,7 @@ TEST(Json, RecordsOfEarlierVersionsLoad) {
     EXPECT_EQ(report.records[1].measure, "primary");
     EXPECT_GT(report.records[1].time_ms.median, 0);
     EXPECT_TRUE(report.records[1].analysis.present);
-    EXPECT_GT(report.records[5].versus.ratio, 1);
+    EXPECT_GT(report.records[5].speedup.ratio, 1);
     EXPECT_GT(report.records[6].time_ms.spread(), 0);
     const std::string now = bench_json(report);
     expect_kept(Json::parse(text), Json::parse(now), "");

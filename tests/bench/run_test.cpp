@@ -4,7 +4,7 @@
 #include <new>
 
 #include "base/error.hpp"
-#include "bench/bench.hpp"
+#include "bench/run/bench.hpp"
 #include "support/scenes.hpp"
 #include "support/workbench.hpp"
 

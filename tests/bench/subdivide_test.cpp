@@ -1,5 +1,5 @@
 // subdivide_test.cpp -- large models made of small ones.
-#include "bench/subdivide.hpp"
+#include "bench/suites/subdivide.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
-#include "unit/scratch.hpp"
+#include "support/scratch.hpp"
 
 namespace {
 

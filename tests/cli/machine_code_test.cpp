@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "cli/run_program.hpp"
-#include "unit/scratch.hpp"
+#include "support/scratch.hpp"
 
 namespace fs = std::filesystem;
 

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
-#include "unit/scratch.hpp"
+#include "support/scratch.hpp"
 
 namespace fs = std::filesystem;
 
@@ -203,7 +203,7 @@ TEST_F(Render, TheBarIsForTerminalsAndColourOnlyWithoutNoColor) {
 TEST_F(Render, ABrokenKernelExits5WithTheCompilersWords) {
     // A developer's copy of the kernels, with a mistake in it.
     fs::copy(fs::path(CLARITY_SOURCE_DIR) / "cl", scratch_.path("cl"), fs::copy_options::recursive);
-    scratch_.write("cl/surface.h", "this is no OpenCL C;\n");
+    scratch_.write("cl/shading/surface.h", "this is no OpenCL C;\n");
     RunOptions options;
     options.environment = {{"CLARITY_KERNEL_PATH", scratch_.path("cl")}};
     const ProgramResult result = run_program(words({"-o", out("a.png")}), options);

@@ -11,7 +11,7 @@
 #include <thread>
 
 #include "cli/run_program.hpp"
-#include "unit/scratch.hpp"
+#include "support/scratch.hpp"
 
 namespace fs = std::filesystem;
 
@@ -136,7 +136,7 @@ TEST_F(Watch, WrongFromTheStartAndEndedSo) {
     scratch_.write("a.scene", scene_text("1 0 0"));
     ASSERT_TRUE(watcher.says(kWaiting, 2)) << watcher.said();
     EXPECT_EQ(corner(), (std::array<float, 3>{1, 0, 0})) << watcher.said();
-    scratch_.write("cl/camera.h", "mistake\n");
+    scratch_.write("cl/tracers/camera.h", "mistake\n");
     ASSERT_TRUE(watcher.says(kWaiting, 3)) << watcher.said();
     EXPECT_EQ(watcher.interrupt(), 5) << "the last try failed: " << watcher.said();
 }

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/progress.hpp"
-#include "render/accel_build.hpp"
+#include "render/accel/accel_build.hpp"
 #include "support/generated.hpp"
 
 using namespace clarity;
@@ -70,7 +70,7 @@ TEST(Bounds, HoldInstancesWhoseLargeCoordinatesCancel) {
         Progress progress;
         const BuildScene built = make_build_scene(scene, progress);
         ASSERT_EQ(built.instances.size(), 2u);
-        const rt_leaf& leaf = built.instance_leaves[0];
+        const rt_packed_prim& leaf = built.instance_leaves[0];
         const rt_prim& prim = built.prims[0];
         ASSERT_EQ(prim.ref, leaf.ref);
         const float* m = built.instances[0].object_from_world;
@@ -105,7 +105,7 @@ TEST(Bounds, HoldTheTracedCornersOfFlattenedMeshes) {
         ASSERT_EQ(built.instances.size(), 0u);
         ASSERT_EQ(built.triangles.size(), 12u);
         for (size_t i = 0; i < built.triangles.size(); ++i) {
-            const rt_leaf& leaf = built.triangles[i];
+            const rt_packed_prim& leaf = built.triangles[i];
             ASSERT_EQ(built.prims[i].ref, leaf.ref);
             for (const float* corner : {leaf.a, leaf.b, leaf.c}) {
                 const Vec p = {corner[0], corner[1], corner[2]};

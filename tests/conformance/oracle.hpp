@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render/renderer.hpp"
+#include "render/frame/renderer.hpp"
 
 namespace clarity::test {
 

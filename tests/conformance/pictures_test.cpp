@@ -7,7 +7,7 @@
 #include "conformance/compare.hpp"
 #include "conformance/degenerate.hpp"
 #include "support/scenes.hpp"
-#include "unit/scratch.hpp"
+#include "support/scratch.hpp"
 
 using namespace clarity;
 using namespace clarity::test;

@@ -120,7 +120,7 @@ TEST(Rays, NoPrimitiveIsLostWhereDenormalsAreFlushed) {
         _mm_setcsr(before | 0x8040);
         const auto prepared = bench().prepare(fresh, settings_of(accel, 1));
         _mm_setcsr(before);
-        const auto* leaves = static_cast<const rt_leaf*>(prepared->accel->leaves.data());
+        const auto* leaves = static_cast<const rt_packed_prim*>(prepared->accel->leaves.data());
         std::set<rt_u32> refs;
         for (uint64_t i = 0; i < prepared->accel->leaf_count; ++i) refs.insert(leaves[i].ref);
         EXPECT_EQ(refs.size(), prepared->accel->scene.attribute_triangle.size()) << accel;

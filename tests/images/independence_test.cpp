@@ -146,7 +146,7 @@ TEST(Independence, SamplesDependOnTheirNumberAlone) {
     const auto picture = [&](const Configuration& configuration, unsigned samples) {
         Settings settings = make_settings({{"size", "80x60"}});
         configuration.apply(settings);
-        Frames frames(device);
+        FrameRenderer frames(device);
         const auto prepared = preparer.prepare(scene, settings, progress);
         for (unsigned sample = 0; sample < samples; ++sample) frames.trace(*prepared, settings, view, sample, false, progress);
         return frames.read_display(settings);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "render/image_io.hpp"
+#include "render/film/image_io.hpp"
 
 namespace clarity::reference {
 

@@ -4,8 +4,8 @@
 // Whitted 1980, An Improved Illumination Model for Shaded Display; Glassner (ed.) 1989, An Introduction to Ray Tracing.
 // Textures are not in it: scenes that have some are refused.
 #pragma once
-#include "render/image_io.hpp"
-#include "render/renderer.hpp"
+#include "render/film/image_io.hpp"
+#include "render/frame/renderer.hpp"
 
 namespace clarity::reference {
 

@@ -6,7 +6,7 @@
 
 #include "device/device.hpp"
 #include "plugin/registry.hpp"
-#include "render/renderer.hpp"
+#include "render/frame/renderer.hpp"
 
 namespace clarity::test {
 
@@ -20,7 +20,7 @@ class Workbench {
     const Device& device() const { return *device_; }
     // For tests of what becomes of a picture after tracing, and of what works beside the frames.
     const std::shared_ptr<Device>& shared_device() const { return device_; }
-    Frames& frames() { return frames_; }
+    FrameRenderer& frames() { return frames_; }
     // Ids of every structure found, so that a new one is tested without a change here.
     std::vector<std::string> accels() const;
     // The same without those that try everything, for scenes that would take them minutes.
@@ -41,7 +41,7 @@ class Workbench {
     std::shared_ptr<Device> device_;
     Progress progress_;
     Preparer preparer_;
-    Frames frames_;
+    FrameRenderer frames_;
 };
 
 // Settings by their keys: make_settings({{"accel", "bvh2"}, {"lanes", "16"}, {"packet", "4x4"}, {"size", "256x192"}}).

@@ -10,13 +10,13 @@
 #include <limits>
 
 #include "base/error.hpp"
-#include "ui/file_listing.hpp"
-#include "ui/frame_graph.hpp"
-#include "ui/keys_card.hpp"
-#include "ui/log_rows.hpp"
-#include "ui/preferences_json.hpp"
-#include "ui/preset_folder.hpp"
-#include "ui/scene_rows.hpp"
+#include "ui/app/preferences_json.hpp"
+#include "ui/app/preset_folder.hpp"
+#include "ui/browser/file_listing.hpp"
+#include "ui/hud/keys_hud.hpp"
+#include "ui/widgets/frame_graph.hpp"
+#include "ui/widgets/log_rows.hpp"
+#include "ui/widgets/scene_rows.hpp"
 
 namespace clarity {
 namespace {

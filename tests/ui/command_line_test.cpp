@@ -3,7 +3,7 @@
 
 #include <iterator>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {

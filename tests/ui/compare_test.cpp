@@ -1,7 +1,7 @@
 // Two settings of one view, side by side.
 #include <gtest/gtest.h>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {
@@ -74,21 +74,21 @@ TEST_F(Compare, DifferenceIsDarkWhereNothingDiffers) {
     EXPECT_LT(dark(window->screenshot(), area), 0.5);
     ASSERT_EQ(window->command("mode difference"), "");
     window->settle();
-    const auto places = window->query("layout")["places"];
-    ASSERT_EQ(places.size(), 1u);
-    EXPECT_GT(dark(window->screenshot(), places[0]["area"]), 0.97);
+    const auto widget_rects = window->query("layout")["places"];
+    ASSERT_EQ(widget_rects.size(), 1u);
+    EXPECT_GT(dark(window->screenshot(), widget_rects[0]["area"]), 0.97);
     ASSERT_EQ(window->command("set depth 1"), "");
     window->settle();
-    EXPECT_LT(dark(window->screenshot(), places[0]["area"]), 0.97);
+    EXPECT_LT(dark(window->screenshot(), widget_rects[0]["area"]), 0.97);
 }
 
 TEST_F(Compare, SideBySideBothAreClicked) {
     const auto window = compared();
     ASSERT_EQ(window->command("mode side"), "");
     window->settle();
-    const auto places = window->query("layout")["places"];
-    ASSERT_EQ(places.size(), 2u);
-    EXPECT_LE(double(places[0]["area"][0]) + double(places[0]["area"][2]), double(places[1]["area"][0]));
+    const auto widget_rects = window->query("layout")["places"];
+    ASSERT_EQ(widget_rects.size(), 2u);
+    EXPECT_LE(double(widget_rects[0]["area"][0]) + double(widget_rects[0]["area"][2]), double(widget_rects[1]["area"][0]));
     nlohmann::json selected[2];
     for (const auto& [x, y] : {std::pair(20, 225), std::pair(210, 150)}) {  // the floor, the ball of glass
         for (size_t side : {0u, 1u}) {

@@ -1,7 +1,7 @@
 // Devices switched live. PoCL shows one processor as several where it is asked to; elsewhere there may be one only.
 #include <gtest/gtest.h>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {

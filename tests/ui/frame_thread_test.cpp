@@ -1,7 +1,7 @@
 // frame_thread_test.cpp -- the thread that traces, without a window: every picture is of the job that it says, they come in
 // order, the last one comes, and none changes while somebody has it. With a device that copies beside its tracing, as GPUs do
 // (a CPU that says it is one), and with one that does not.
-#include "ui/frame_thread.hpp"
+#include "ui/session/frame_thread.hpp"
 
 #include <gtest/gtest.h>
 
@@ -32,9 +32,9 @@ struct Table {
         cpu = std::make_shared<Device>(choose_device(""));
     }
     std::shared_ptr<const Ready> ready(const std::shared_ptr<Device>& device, bool two) {
-        const auto prepared = [&](const Settings& wished) {
+        const auto prepared = [&](const Settings& desired_now) {
             return std::make_shared<MultiPreparer>(Workbench::get().plugins(), Devices{device})
-                ->prepare(scene, wished, progress);
+                ->prepare(scene, desired_now, progress);
         };
         auto ready = std::make_shared<Ready>();
         ready->main = ReadySide({device}, prepared(settings));
@@ -108,7 +108,7 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
         });
     }
     Bytes truth(const Picture& picture, const PictureSide& side, const ReadySide& ready) {
-        if (!frames_) frames_ = std::make_unique<Frames>(device_);
+        if (!frames_) frames_ = std::make_unique<FrameRenderer>(device_);
         for (unsigned sample = 0; sample < side.stats.samples; ++sample)
             frames_->trace(*ready.loan->get()->prepared->first(), side.settings, picture.job.view, sample, false,
                            table().progress);
@@ -145,7 +145,7 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
     FrameJob job_;
     std::mutex mutex_;
     std::vector<Seen> seen_;
-    std::unique_ptr<Frames> frames_;
+    std::unique_ptr<FrameRenderer> frames_;
     FrameThread thread_;
 };
 

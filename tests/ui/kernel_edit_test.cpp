@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <iterator>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {
@@ -115,8 +115,8 @@ TEST_F(KernelEdit, ABurstEndsInTheLastText) {
 // opened anew: memory is compared over whole turns of that.
 TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
     constexpr int kTurn = 16;
-    const char* wished = std::getenv("CLARITY_RELOADS");
-    const int reloads = std::max(wished ? std::atoi(wished) : 0, 2 * kTurn);
+    const char* desired_now = std::getenv("CLARITY_RELOADS");
+    const int reloads = std::max(desired_now ? std::atoi(desired_now) : 0, 2 * kTurn);
     // The smallest program there is: what a compiler leaves behind is what is looked for.
     const auto window = open_scene(source_path("scenes/cornell.scene"), "64x48", environment());
     for (const char* change : {"accel linear", "set lanes 1", "set packet 1x1", "set aov t"})

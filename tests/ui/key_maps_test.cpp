@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "ui/key_map.hpp"
-#include "window_fixture.hpp"
+#include "ui/app/key_map.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
-#include "models.hpp"
-#include "window_fixture.hpp"
+#include "ui/driver/models.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {
@@ -89,7 +89,7 @@ TEST_F(Loading, ARunningBuildGivesWay) {
     auto now = window->state();
     EXPECT_EQ(now["accel"], "bvh2");
     EXPECT_GT(int(now["triangles"]), 800000);
-    EXPECT_NE(wish(*window).find("max_leaf=2"), std::string::npos);
+    EXPECT_NE(desired(*window).find("max_leaf=2"), std::string::npos);
     EXPECT_EQ(now["message"], "");
     EXPECT_FALSE(now["behind"]);
     const Pixels large = window->picture();

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {

@@ -1,7 +1,7 @@
 // While the camera moves, pace counts more than pixels; at rest every pixel is there.
 #include <gtest/gtest.h>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {

@@ -1,7 +1,7 @@
 // Settings changed live, by clicks in the panel and by the script: new pictures, the right ones.
 #include <gtest/gtest.h>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {

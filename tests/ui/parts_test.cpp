@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "ui/camera_control.hpp"
-#include "ui/frame_thread.hpp"
-#include "ui/key_map.hpp"
-#include "ui/preferences_json.hpp"
-#include "ui/viewport.hpp"
+#include "ui/app/key_map.hpp"
+#include "ui/app/preferences_json.hpp"
+#include "ui/session/frame_thread.hpp"
+#include "ui/viewport/camera_control.hpp"
+#include "ui/viewport/viewport.hpp"
 
 namespace clarity {
 namespace {
@@ -134,14 +134,14 @@ TEST(Viewport, LetterBoxKeepsTheAspectInside) {
 }
 
 TEST(FrameSettings, TakesFromTheWishOnlyWhatNeedsNoPreparation) {
-    Settings prepared, wished;
+    Settings prepared, desired_now;
     prepared.lanes = 16;
     prepared.aov = "color";
-    wished.lanes = 4;
-    wished.aov = "normal";
-    wished.depth = 9;
-    wished.width = 77;
-    const Settings settings = frame_settings(prepared, wished);
+    desired_now.lanes = 4;
+    desired_now.aov = "normal";
+    desired_now.depth = 9;
+    desired_now.width = 77;
+    const Settings settings = frame_settings(prepared, desired_now);
     EXPECT_EQ(settings.depth, 9);
     EXPECT_EQ(settings.width, 77);
     EXPECT_EQ(settings.lanes, 16);

@@ -5,14 +5,14 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "ui/card_stack.hpp"
-#include "ui/light_handles.hpp"
-#include "ui/line_quads.hpp"
-#include "ui/picture_difference.hpp"
-#include "ui/picture_layout.hpp"
-#include "ui/ray_lines.hpp"
-#include "ui/selection_box.hpp"
-#include "ui/speed_verdict.hpp"
+#include "ui/hud/hud_stack.hpp"
+#include "ui/overlay/light_handles.hpp"
+#include "ui/overlay/line_quads.hpp"
+#include "ui/overlay/ray_lines.hpp"
+#include "ui/overlay/selection_box.hpp"
+#include "ui/session/picture_difference.hpp"
+#include "ui/viewport/picture_layout.hpp"
+#include "ui/viewport/speed_verdict.hpp"
 
 namespace clarity {
 namespace {
@@ -187,7 +187,7 @@ TEST(Layout, PixelsUnderTheMouse) {
 
 TEST(Cards, NeverOverlap) {
     for (const float width : {150.0f, 400.0f, 900.0f}) {
-        CardStack stack({20, 30, width, 300}, 10, 120);
+        HudStack stack({20, 30, width, 300}, 10, 120);
         std::vector<Rect> taken;
         for (int i = 0; i < 24; ++i) {
             const auto corner = static_cast<Corner>(i % 4);
@@ -208,8 +208,8 @@ TEST(Cards, NeverOverlap) {
     }
 }
 
-WishedLight light_at(const glm::vec3& position, rt_u32 kind) {
-    WishedLight light;
+DesiredLight light_at(const glm::vec3& position, rt_u32 kind) {
+    DesiredLight light;
     light.values.kind = kind;
     for (int i = 0; i < 3; ++i) light.values.position[i] = position[i];
     return light;
@@ -217,7 +217,7 @@ WishedLight light_at(const glm::vec3& position, rt_u32 kind) {
 
 TEST(LightHandles, APointLightFollowsTheMouseAcrossTheView) {
     const Projection projection(kArea, some_camera());
-    WishedLight light = light_at({0.5f, 1.5f, 0}, RT_LIGHT_POINT);
+    DesiredLight light = light_at({0.5f, 1.5f, 0}, RT_LIGHT_POINT);
     const float depth = projection.to_camera({0.5f, 1.5f, 0}).z;
     drag_point_light(light.values, projection, {630, 210});
     const auto handles = light_handles(projection, {light});
@@ -242,7 +242,7 @@ TEST(LightHandles, WhatThePictureDoesNotShowIsMarkedAtItsBorder) {
         EXPECT_TRUE(kArea.holds(handle.place.x, handle.place.y));
     }
     EXPECT_GT(handles[0].place.x, 700);
-    WishedLight behind = light_at({3, 2, 20}, RT_LIGHT_POINT);
+    DesiredLight behind = light_at({3, 2, 20}, RT_LIGHT_POINT);
     drag_point_light(behind.values, projection, {200, 200});
     EXPECT_EQ(behind.values.position[2], 20);
 }
@@ -257,7 +257,7 @@ TEST(LightHandles, EveryDirectionHasAPlaceOnTheDisc) {
         EXPECT_TRUE(kArea.holds(place.x, place.y));
         EXPECT_LT(glm::length(sun_direction(projection, place) - direction), 2e-3f);
     }
-    WishedLight sun = light_at({0, 1, 0}, RT_LIGHT_DIRECTIONAL);
+    DesiredLight sun = light_at({0, 1, 0}, RT_LIGHT_DIRECTIONAL);
     drag_sun(sun.values, projection, {5000, -300});  // far outside: straight behind the eye at most
     float squared = 0;
     for (const float x : sun.values.position) squared += x * x;

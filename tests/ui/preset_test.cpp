@@ -1,7 +1,7 @@
 // Presets: all that makes a picture, written and read again; a wrong one changes nothing.
 #include <gtest/gtest.h>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {
@@ -18,7 +18,7 @@ TEST_F(Presets, BringThePictureBackBitByBit) {
     window->key("Left");
     window->key("i");
     window->settle();
-    const std::string saved = wish(*window);
+    const std::string saved = desired(*window);
     const Pixels picture = window->picture();
     ASSERT_EQ(window->command("save_preset " + path), "");
 
@@ -29,12 +29,12 @@ TEST_F(Presets, BringThePictureBackBitByBit) {
         ASSERT_EQ(window->command(change), "") << change;
     window->key("Up");
     window->settle();
-    EXPECT_NE(wish(*window), saved);
+    EXPECT_NE(desired(*window), saved);
     EXPECT_GT(difference(picture, window->picture()), 0.1);
 
     ASSERT_EQ(window->command("load_preset " + path), "");
     window->settle();
-    EXPECT_EQ(wish(*window), saved);
+    EXPECT_EQ(desired(*window), saved);
     EXPECT_EQ(difference(picture, window->picture(), 0), 0);
     // It is one step.
     window->key("ctrl+z");
@@ -54,7 +54,7 @@ TEST_F(Presets, AWrongOneChangesNothing) {
     ASSERT_EQ(window->command("edit light.1 off"), "");
     ASSERT_EQ(window->command("set exposure 1.5"), "");
     window->settle();
-    const std::string before = wish(*window);
+    const std::string before = desired(*window);
     const std::string start = R"({"clarity_preset": 1, "settings": {"depth": "2", "tone": "aces"})";
     const std::vector<std::pair<std::string, std::string>> wrong = {
         {"", "preset"},
@@ -76,12 +76,12 @@ TEST_F(Presets, AWrongOneChangesNothing) {
         const std::string error = window->command("load_preset " + path);
         EXPECT_NE(error.find(path), std::string::npos) << error;
         EXPECT_NE(error.find(wrong[i].second), std::string::npos) << error;
-        EXPECT_EQ(wish(*window), before);
+        EXPECT_EQ(desired(*window), before);
     }
     EXPECT_NE(window->command("load_preset " + folder.path() + "/missing.json").find("missing.json"), std::string::npos);
     EXPECT_NE(window->command("save_preset " + folder.path() + "/no/such/folder.json"), "");
     window->settle();
-    EXPECT_EQ(wish(*window), before);
+    EXPECT_EQ(desired(*window), before);
     EXPECT_FALSE(window->state()["behind"]);
 }
 

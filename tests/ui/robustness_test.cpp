@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {

@@ -1,7 +1,7 @@
 // Changes taken back and made again, by keys.
 #include <gtest/gtest.h>
 
-#include "window_fixture.hpp"
+#include "ui/driver/window_fixture.hpp"
 
 namespace clarity {
 namespace {
@@ -21,7 +21,7 @@ class Undo : public WindowTest {
 
 TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
     const auto window = open();
-    std::vector<std::string> wishes = {wish(*window)};
+    std::vector<std::string> desired_states = {desired(*window)};
     std::vector<Pixels> pictures = {window->picture()};
     const char* const changes[] = {"set depth 2",
                                    "edit light.0 point,3,6,5,1,.2,.2",
@@ -34,29 +34,29 @@ TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
     for (const char* change : changes) {
         ASSERT_EQ(window->command(change), "");
         window->settle();
-        wishes.push_back(wish(*window));
+        desired_states.push_back(desired(*window));
         pictures.push_back(window->picture());
-        EXPECT_NE(wishes.back(), wishes[wishes.size() - 2]) << change;
+        EXPECT_NE(desired_states.back(), desired_states[desired_states.size() - 2]) << change;
     }
     // The camera is no part of it: it stays where the keys bring it.
     const auto eye = window->state()["eye"];
-    for (size_t i = wishes.size() - 1; i-- > 0;) {
+    for (size_t i = desired_states.size() - 1; i-- > 0;) {
         SCOPED_TRACE(changes[i]);
         EXPECT_NE(window->state()["undo"], "");
         window->key("ctrl+z");
         window->settle();
-        EXPECT_EQ(wish(*window), wishes[i]);
+        EXPECT_EQ(desired(*window), desired_states[i]);
         EXPECT_EQ(difference(window->picture(), pictures[i], 0), 0);
     }
     EXPECT_EQ(window->state()["undo"], "");
     window->key("ctrl+z");  // nothing left: nothing happens
     window->settle();
-    EXPECT_EQ(wish(*window), wishes.front());
-    for (size_t i = 1; i < wishes.size(); ++i) {
+    EXPECT_EQ(desired(*window), desired_states.front());
+    for (size_t i = 1; i < desired_states.size(); ++i) {
         SCOPED_TRACE(changes[i - 1]);
         window->key("ctrl+y");
         window->settle();
-        EXPECT_EQ(wish(*window), wishes[i]);
+        EXPECT_EQ(desired(*window), desired_states[i]);
     }
     EXPECT_EQ(difference(window->picture(), pictures.back(), 0), 0);
     EXPECT_EQ(window->state()["redo"], "");
@@ -71,18 +71,18 @@ TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
 
 TEST_F(Undo, ADraggedSliderIsOneStep) {
     const auto window = open();
-    const std::string before = wish(*window);
+    const std::string before = desired(*window);
     window->drag(window->place_of("Depth", 0.9), window->place_of("Depth", 0.1));
     window->settle();
     EXPECT_LT(int(window->state()["depth"]), 4);
     EXPECT_EQ(window->state()["undo"], "Depth");
     EXPECT_EQ(steps(*window), 1);
-    EXPECT_EQ(wish(*window), before);
+    EXPECT_EQ(desired(*window), before);
 }
 
 TEST_F(Undo, AHeldKeyIsOneStep) {
     const auto window = open();
-    const std::string before = wish(*window);
+    const std::string before = desired(*window);
     const auto light = window->state()["light"];
     window->key_down("d");
     int moves = 0;  // seen to be more than one
@@ -94,7 +94,7 @@ TEST_F(Undo, AHeldKeyIsOneStep) {
     window->key_up("d");
     window->settle();
     EXPECT_EQ(steps(*window), 1);
-    EXPECT_EQ(wish(*window), before);
+    EXPECT_EQ(desired(*window), before);
 }
 
 TEST_F(Undo, AnotherSceneHasItsOwnHistory) {

@@ -16,7 +16,7 @@ typedef struct bvh2_node {
 } bvh2_node;
 
 /* A child is the index of a node, or, with bit 31 set, a leaf: bits 28..30 count its primitives (0..7), bits 0..27 are the
- * position of the first in leaf order. 28 bits are what an rt_leaf.ref can name, so no scene is too large for a child.
+ * position of the first in leaf order. 28 bits are what an rt_packed_prim.ref can name, so no scene is too large for a child.
  *
  * The root of a group is always a node. Where a group has fewer than two leaves, the child that is left over is a leaf of no
  * primitives in a box of no extent at (FLT_MAX, FLT_MAX, FLT_MAX): out of reach for slab tests that order the two distances of a

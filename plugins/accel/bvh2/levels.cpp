@@ -13,16 +13,16 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
     if (group >= built->group_count) throw rt::fail(host, "was asked for the levels of a group that the scene does not have");
     const auto* nodes = static_cast<const bvh2_node*>(built->slots[0]);
     const auto show = [&](const float box[6]) { sink->box(sink->ctx, box, box + 3); };
-    const auto is_nothing = [](rt_u32 child) { return (child & BVH2_LEAF) && BVH2_LEAF_COUNT(child) == 0; };
+    const auto is_empty_child = [](rt_u32 child) { return (child & BVH2_LEAF) && BVH2_LEAF_COUNT(child) == 0; };
 
     const bvh2_node& root = nodes[built->roots[group]];
     if (level == 0) {
         float box[6];
         for (int i = 0; i < 3; ++i) {
-            box[i] = is_nothing(root.child1) ? root.box0[i] : std::min(root.box0[i], root.box1[i]);
-            box[3 + i] = is_nothing(root.child1) ? root.box0[3 + i] : std::max(root.box0[3 + i], root.box1[3 + i]);
+            box[i] = is_empty_child(root.child1) ? root.box0[i] : std::min(root.box0[i], root.box1[i]);
+            box[3 + i] = is_empty_child(root.child1) ? root.box0[3 + i] : std::max(root.box0[3 + i], root.box1[3 + i]);
         }
-        if (!is_nothing(root.child0)) show(box);
+        if (!is_empty_child(root.child0)) show(box);
         return RT_OK;
     }
     struct Visit {
@@ -34,7 +34,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
         stack.pop_back();
         const bvh2_node& node = nodes[at.node];
         const auto visit = [&](const float box[6], rt_u32 child) {
-            if (is_nothing(child)) return;
+            if (is_empty_child(child)) return;
             const bool leaf = (child & BVH2_LEAF) != 0;
             if (level == RT_LEVEL_BOTTOM ? leaf : at.level == level)
                 show(box);

@@ -113,7 +113,7 @@ class Cutter {
             left_count_ -= 1;
             return right.take(r, whole);
         }
-        const rt_leaf& triangle = geometry_.triangles[RT_REF_INDEX(r.ref())];
+        const rt_packed_prim& triangle = geometry_.triangles[RT_REF_INDEX(r.ref())];
         const float plane = planes_.plane(split_.axis, split_.bin);
         left.take(r, clip(triangle, whole, split_.axis, -FLT_MAX, plane));
         right.take(r, clip(triangle, whole, split_.axis, plane, FLT_MAX));

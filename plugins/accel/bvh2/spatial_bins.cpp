@@ -41,7 +41,7 @@ Extent extent(const Planes& planes, int axis, const Record& record) {
     return {planes.slice(axis, record.lo[axis]), planes.slice(axis, -record.neg_hi[axis])};
 }
 
-Bounds clip(const rt_leaf& triangle, const Bounds& part, int axis, float from, float to) {
+Bounds clip(const rt_packed_prim& triangle, const Bounds& part, int axis, float from, float to) {
     const float* const corner[3] = {triangle.a, triangle.b, triangle.c};
     float lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
     const auto grow = [&](int a, float least, float most) {
@@ -88,7 +88,7 @@ void SpatialBins::add(const Record* first, const Record* end, const Planes& plan
                 box[in.first][axis].add(whole);
                 continue;
             }
-            const rt_leaf& triangle = geometry.triangles[RT_REF_INDEX(r->ref())];
+            const rt_packed_prim& triangle = geometry.triangles[RT_REF_INDEX(r->ref())];
             for (uint32_t b = in.first; b <= in.last; ++b)
                 box[b][axis].add(clip(triangle, whole, axis, b == in.first ? -FLT_MAX : planes.plane(axis, b),
                                       b == in.last ? FLT_MAX : planes.plane(axis, b + 1)));

@@ -25,7 +25,7 @@ struct Extent {
 Extent extent(const Planes& planes, int axis, const Record& record);
 
 // Bounds of what lies between two planes of a triangle, which `part` is a part of. They hold all of it: rounding is outwards.
-Bounds clip(const rt_leaf& triangle, const Bounds& part, int axis, float from, float to);
+Bounds clip(const rt_packed_prim& triangle, const Bounds& part, int axis, float from, float to);
 
 struct SpatialBins {
     Bounds box[kSpatialBins][3];

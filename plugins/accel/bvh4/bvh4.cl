@@ -29,7 +29,7 @@
     }
 #endif
 /* A turn: the node or the leaf `at`. Returns what comes next. */
-RT_INLINE uint RT_CAT(RT_TRAVERSE, _turn)(const rt_ctx *ctx, uint at, const rt_rays *ray, const bvh4_ray *own, rt_hits *hit,
+RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint at, const rt_rays *ray, const bvh4_ray *own, rt_hits *hit,
                                           BVH4_PUSHED *stack, uint *top)
 {
     const uint is_leaf = at >> 31, first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
@@ -41,9 +41,9 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _turn)(const rt_ctx *ctx, uint at, const rt_r
         a = BVH4_ROW(node, own->near_x);
         b = BVH4_ROW(node, own->near_y);
         c = BVH4_ROW(node, own->near_z);
-        d = BVH4_ROW(node, own->near_x ^ BVH4_ACROSS_X);
-        e = BVH4_ROW(node, own->near_y ^ BVH4_ACROSS_Y);
-        f = BVH4_ROW(node, own->near_z ^ BVH4_ACROSS_Z);
+        d = BVH4_ROW(node, own->near_x ^ BVH4_RAY_SPACE_X);
+        e = BVH4_ROW(node, own->near_y ^ BVH4_RAY_SPACE_Y);
+        f = BVH4_ROW(node, own->near_z ^ BVH4_RAY_SPACE_Z);
         child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
     }
 #if RT_TRIANGLES_ONLY
@@ -61,11 +61,11 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _turn)(const rt_ctx *ctx, uint at, const rt_r
 #endif
     if (bvh4_hidden(is_leaf)) {
 #if RT_TRIANGLES_ONLY
-        const rt_loaded_leaf one = {a, b, c};
-        RT_LOADED_LEAF(ctx, &one, first, ray, hit);
+        const rt_loaded_prim one = {a, b, c};
+        RT_LOADED_PRIM(ctx, &one, first, ray, hit);
         if (count > 1u) {
-            const rt_loaded_leaf two = {d, e, f};
-            RT_LOADED_LEAF(ctx, &two, first + 1u, ray, hit);
+            const rt_loaded_prim two = {d, e, f};
+            RT_LOADED_PRIM(ctx, &two, first + 1u, ray, hit);
         }
         const uint done = 2u;
 #else
@@ -82,10 +82,10 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _turn)(const rt_ctx *ctx, uint at, const rt_r
     const float4 entry = bvh4_enter(ray, own, hit->t, a, b, c, d, e, f);
 #if RT_ANY_HIT
     /* Order is worth nothing here: the last child that is met goes first. */
-    uint next = BVH4_NOTHING;
+    uint next = BVH4_EMPTY;
 #define BVH4_TAKE(k)                                                                                                             \
     if (entry.s##k < INFINITY) {                                                                                                 \
-        if (next != BVH4_NOTHING) {                                                                                              \
+        if (next != BVH4_EMPTY) {                                                                                              \
             stack[*top] = next;                                                                                                  \
             if (RT_STACK_OK(*top, BVH4_STACK, hit)) ++*top;                                                                      \
         }                                                                                                                        \
@@ -96,7 +96,7 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _turn)(const rt_ctx *ctx, uint at, const rt_r
     BVH4_TAKE(2)
     BVH4_TAKE(3)
 #undef BVH4_TAKE
-    if (next != BVH4_NOTHING) return next;
+    if (next != BVH4_EMPTY) return next;
     BVH4_RETURN_TOP();
 #else
     float t0 = entry.s0, t1 = entry.s1, t2 = entry.s2, t3 = entry.s3;
@@ -127,11 +127,11 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #if RT_LANES == 1
     BVH4_PUSHED stack[BVH4_STACK + 1];
     stack[0] = (BVH4_PUSHED)BVH4_LOWEST;
-    uint top = 1u, at = BVH4_PLACE(root);
+    uint top = 1u, at = BVH4_NODE_REF(root);
     const bvh4_ray own = bvh4_prepare(ray);
-    while (at != BVH4_DONE && RT_MAY_GO_ON(hit)) at = RT_CAT(RT_TRAVERSE, _turn)(ctx, at, ray, &own, hit, stack, &top);
+    while (at != BVH4_DONE && RT_MAY_GO_ON(hit)) at = RT_CAT(RT_TRAVERSE, _step)(ctx, at, ray, &own, hit, stack, &top);
 #else
-    uint top = 0, at = BVH4_PLACE(root);
+    uint top = 0, at = BVH4_NODE_REF(root);
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u);
     vfloat stack_t[BVH4_STACK];
@@ -149,7 +149,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #define BVH4_NUMBER(k) ((const global float *)((ulong)ctx->bvh4_nodes + ((ulong)(at ^ (k)) << 4)))[slot]
             for (uint i = 0; i < 4u; ++i) {
                 const uint slot = i ^ far_first, child = as_uint(BVH4_NUMBER(6u));
-                if (child == BVH4_NOTHING) continue;
+                if (child == BVH4_EMPTY) continue;
                 vfloat entry;
                 const vmask in = rt_enter_bounds(rt_vfloat(BVH4_NUMBER(0u)), rt_vfloat(BVH4_NUMBER(1u)), rt_vfloat(BVH4_NUMBER(2u)),
                                                  rt_vfloat(BVH4_NUMBER(3u)), rt_vfloat(BVH4_NUMBER(4u)), rt_vfloat(BVH4_NUMBER(5u)),
@@ -171,22 +171,22 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #endif
 }
 
-#ifdef RT_TRAVERSE_LONG
+#ifdef RT_TRAVERSE_REQUEUED
 /* Each work-item takes an entry of the stack that all share, the topmost being the nearest, tests the node's children or the leaf,
  * and puts back what is met. While room is short only one is taken: then BVH4_STACK more are enough. */
-void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit, local rt_long_scratch *shared)
+void RT_TRAVERSE_REQUEUED(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit, local rt_requeue_scratch *shared)
 {
     const uint item = (uint)get_local_id(0);
     const bvh4_ray own = bvh4_prepare(ray);
     if (item == 0u) {
-        shared->stack[0] = BVH4_ENTRY(0.0f, BVH4_PLACE(root));
+        shared->stack[0] = BVH4_ENTRY(0.0f, BVH4_NODE_REF(root));
         shared->put[0] = 0u;
         shared->nearest = as_uint(hit->t);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
     for (uint top = 1u, turn = 0u; top != 0u; turn ^= 1u) {
         const uint room = (uint)max(1, ((int)BVH4_LONG_STACK - (int)(BVH4_STACK + top)) / 3);
-        const uint taken = min(min(top, RT_LONG_ITEMS), room);
+        const uint taken = min(min(top, RT_REQUEUE_ITEMS), room);
         const ulong entry = shared->stack[top - 1u - min(item, taken - 1u)];
         const float nearest = as_float(shared->nearest);
         barrier(CLK_LOCAL_MEM_FENCE);
@@ -215,8 +215,8 @@ void RT_TRAVERSE_LONG(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits 
             const ulong node = BVH4_NODE(ctx, at);
             const float4 entries =
                 bvh4_enter(ray, &own, hit->t, BVH4_ROW(node, own.near_x), BVH4_ROW(node, own.near_y), BVH4_ROW(node, own.near_z),
-                           BVH4_ROW(node, own.near_x ^ BVH4_ACROSS_X), BVH4_ROW(node, own.near_y ^ BVH4_ACROSS_Y),
-                           BVH4_ROW(node, own.near_z ^ BVH4_ACROSS_Z));
+                           BVH4_ROW(node, own.near_x ^ BVH4_RAY_SPACE_X), BVH4_ROW(node, own.near_y ^ BVH4_RAY_SPACE_Y),
+                           BVH4_ROW(node, own.near_z ^ BVH4_RAY_SPACE_Z));
             const uint4 child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
             float t0 = entries.s0, t1 = entries.s1, t2 = entries.s2, t3 = entries.s3;
             uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
@@ -249,37 +249,37 @@ void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *
 {
     BVH4_PUSHED stack[BVH4_STACK + 1];
     stack[0] = (BVH4_PUSHED)BVH4_LOWEST;
-    bvh4_ray own[RT_EACH];
-    RT_FOR_EACH_OWN(i) own[i] = bvh4_prepare(rays + i);
+    bvh4_ray own[RT_RAYS_PER_ITEM];
+    RT_FOR_EACH_RAY_OF_ITEM(i) own[i] = bvh4_prepare(rays + i);
     const uint near_x = BVH4_NEAR_X(octant & 1u), near_y = BVH4_NEAR_Y(octant & 2u), near_z = BVH4_NEAR_Z(octant & 4u);
-    uint top = 1u, at = BVH4_PLACE(root);
+    uint top = 1u, at = BVH4_NODE_REF(root);
     for (;;) {
         bool found = false;
         uint next = BVH4_DONE;
-        if (rt_vote(at >= BVH4_LEAF)) {
-            if (rt_vote(at == BVH4_DONE)) return;
+        if (rt_subgroup_any(at >= BVH4_LEAF)) {
+            if (rt_subgroup_any(at == BVH4_DONE)) return;
             const uint end = BVH4_LEAF_FIRST(at) + BVH4_LEAF_COUNT(at);
-            for (uint k = BVH4_LEAF_FIRST(at); rt_vote(k < end); ++k) {
+            for (uint k = BVH4_LEAF_FIRST(at); rt_subgroup_any(k < end); ++k) {
 #if RT_TRIANGLES_ONLY
-                const rt_loaded_leaf leaf = rt_load_leaf(ctx->leaves + k);
-                RT_FOR_EACH_OWN(i) RT_LOADED_LEAF(ctx, &leaf, k, rays + i, hits + i);
+                const rt_loaded_prim leaf = rt_load_leaf(ctx->leaves + k);
+                RT_FOR_EACH_RAY_OF_ITEM(i) RT_LOADED_PRIM(ctx, &leaf, k, rays + i, hits + i);
 #else
-                RT_FOR_EACH_OWN(i) RT_LEAF(ctx, k, rays + i, hits + i);
+                RT_FOR_EACH_RAY_OF_ITEM(i) RT_LEAF(ctx, k, rays + i, hits + i);
 #endif
             }
 #if RT_ANY_HIT
             bool seeks = false;
-            RT_FOR_EACH_OWN(i) seeks |= hits[i].t >= 0.0f;
-            if (!rt_vote(seeks)) return;
+            RT_FOR_EACH_RAY_OF_ITEM(i) seeks |= hits[i].t >= 0.0f;
+            if (!rt_subgroup_any(seeks)) return;
 #endif
         } else {
             const ulong node = BVH4_NODE(ctx, at);
             const float4 a = BVH4_ROW(node, near_x), b = BVH4_ROW(node, near_y), c = BVH4_ROW(node, near_z),
-                         d = BVH4_ROW(node, near_x ^ BVH4_ACROSS_X), e = BVH4_ROW(node, near_y ^ BVH4_ACROSS_Y),
-                         f = BVH4_ROW(node, near_z ^ BVH4_ACROSS_Z);
+                         d = BVH4_ROW(node, near_x ^ BVH4_RAY_SPACE_X), e = BVH4_ROW(node, near_y ^ BVH4_RAY_SPACE_Y),
+                         f = BVH4_ROW(node, near_z ^ BVH4_RAY_SPACE_Z);
             const uint4 child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
-            float4 in[RT_EACH], out[RT_EACH];
-            RT_FOR_EACH_OWN(i) bvh4_slabs(rays + i, own + i, hits[i].t, a, b, c, d, e, f, in + i, out + i);
+            float4 in[RT_RAYS_PER_ITEM], out[RT_RAYS_PER_ITEM];
+            RT_FOR_EACH_RAY_OF_ITEM(i) bvh4_slabs(rays + i, own + i, hits[i].t, a, b, c, d, e, f, in + i, out + i);
 #if RT_ANY_HIT
 #define BVH4_KEEP(k)                                                                                                             \
     if (found) {                                                                                                                 \
@@ -291,8 +291,8 @@ void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *
             float nearest = INFINITY;
 #define BVH4_KEEP(k)                                                                                                             \
     float entry = INFINITY;                                                                                                      \
-    RT_FOR_EACH_OWN(i) entry = in[i].s##k <= out[i].s##k ? fmin(entry, in[i].s##k) : entry;                                      \
-    const bool nearer = !found || rt_vote(entry < nearest);                                                                      \
+    RT_FOR_EACH_RAY_OF_ITEM(i) entry = in[i].s##k <= out[i].s##k ? fmin(entry, in[i].s##k) : entry;                                      \
+    const bool nearer = !found || rt_subgroup_any(entry < nearest);                                                                      \
     if (found) {                                                                                                                 \
         stack[top] = nearer ? BVH4_ENTRY(nearest, next) : BVH4_ENTRY(entry, child.s##k);                                         \
         if (RT_STACK_OK(top, BVH4_STACK, hits)) ++top;                                                                           \
@@ -303,8 +303,8 @@ void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *
 #define BVH4_TAKE(k)                                                                                                             \
     {                                                                                                                            \
         bool met = false;                                                                                                        \
-        RT_FOR_EACH_OWN(i) met |= in[i].s##k <= out[i].s##k;                                                                     \
-        if (rt_vote(met)) {                                                                                                      \
+        RT_FOR_EACH_RAY_OF_ITEM(i) met |= in[i].s##k <= out[i].s##k;                                                                     \
+        if (rt_subgroup_any(met)) {                                                                                                      \
             BVH4_KEEP(k)                                                                                                         \
             found = true;                                                                                                        \
         }                                                                                                                        \
@@ -321,10 +321,10 @@ void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *
             next = stack[--top];
 #else
             float reach = hits[0].t;
-            RT_FOR_EACH_OWN(i) reach = fmax(reach, hits[i].t);
+            RT_FOR_EACH_RAY_OF_ITEM(i) reach = fmax(reach, hits[i].t);
             ulong pushed;
             do pushed = stack[--top];
-            while (!rt_vote(as_float((uint)(pushed >> 32)) <= reach));
+            while (!rt_subgroup_any(as_float((uint)(pushed >> 32)) <= reach));
             next = (uint)pushed;
 #endif
         }

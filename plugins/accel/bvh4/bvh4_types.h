@@ -19,26 +19,26 @@ typedef struct bvh4_node {
  * position of the first in leaf order.
  *
  * A place is where row 0 of a node stands, in rows from where the first node begins; row k stands at place ^ k. The root of a group
- * is always a node, reported by its index. A slot without child is BVH4_NOTHING in a box from +inf to -inf, which no ray enters. */
+ * is always a node, reported by its index. A slot without child is BVH4_EMPTY in a box from +inf to -inf, which no ray enters. */
 #define BVH4_LEAF 0x80000000u
 #define BVH4_LEAF_COUNT(child) (((child) >> 28) & 7u)
 #define BVH4_LEAF_FIRST(child) ((child)&0x0FFFFFFFu)
 #define BVH4_MAKE_LEAF(first, count) (BVH4_LEAF | ((count) << 28) | (first))
-#define BVH4_NOTHING BVH4_MAKE_LEAF(0u, 0u)
-#define BVH4_PLACE(index) ((index) << 3 | ((index)&7u))
+#define BVH4_EMPTY BVH4_MAKE_LEAF(0u, 0u)
+#define BVH4_NODE_REF(index) ((index) << 3 | ((index)&7u))
 #define BVH4_INDEX(place) ((place) >> 3)
 
 #ifdef __OPENCL_VERSION__
 #if RT_LANES == 1
 
-#define RT_TRAVERSES_LONG_RAYS
-#ifdef RT_PATIENCE
+#define RT_REQUEUES_LONG_RAYS
+#ifdef RT_STEP_BUDGET
 #define BVH4_LONG_STACK (BVH4_STACK + 512u)
-typedef struct rt_long_scratch {
+typedef struct rt_requeue_scratch {
     ulong stack[BVH4_LONG_STACK];
     uint put[2];  /* entries put back in this turn and in the next */
     uint nearest; /* bits of the distance; any hit: 0 once there is one */
-} rt_long_scratch;
+} rt_requeue_scratch;
 #endif
 
 #define RT_TRAVERSES_BY_WARPS
@@ -58,9 +58,9 @@ typedef struct rt_long_scratch {
 #define BVH4_NEAR_X(negative) ((negative) ? 48u : 0u)
 #define BVH4_NEAR_Y(negative) ((negative) ? 64u : 16u)
 #define BVH4_NEAR_Z(negative) ((negative) ? 80u : 32u)
-#define BVH4_ACROSS_X 48u
-#define BVH4_ACROSS_Y 80u
-#define BVH4_ACROSS_Z 112u
+#define BVH4_RAY_SPACE_X 48u
+#define BVH4_RAY_SPACE_Y 80u
+#define BVH4_RAY_SPACE_Z 112u
 #define BVH4_CHILDREN 96u
 
 /* What of a ray every node needs. The far side is widened here instead of in each node: that rounds twice more, each time by half
@@ -139,18 +139,18 @@ RT_INLINE void bvh4_order(float *t0, uint *child0, float *t1, uint *child1)
 #define BVH4_ENTRY(t, child) ((ulong)as_uint(t) << 32 | (child))
 #define BVH4_LOWEST BVH4_ENTRY(-INFINITY, BVH4_DONE)
 
-#define RT_TRAVERSES_BY_TURNS
-typedef ulong rt_turn_entry;
-typedef bvh4_ray rt_turn_ray;
-#define RT_TURN_PLACES (BVH4_STACK + 1u)
-#define RT_TURN_DONE BVH4_DONE
-#define RT_TURN_IS_LEAF(at) ((at) >= BVH4_LEAF)
-RT_INLINE uint rt_begin_turns(uint root, const rt_rays *ray, rt_turn_ray *turns, rt_turn_entry *stack, uint *top)
+#define RT_TRAVERSES_BY_STEPS
+typedef ulong rt_step_entry;
+typedef bvh4_ray rt_step_ray;
+#define RT_STEP_STACK_SIZE (BVH4_STACK + 1u)
+#define RT_STEP_DONE BVH4_DONE
+#define RT_STEP_IS_LEAF(at) ((at) >= BVH4_LEAF)
+RT_INLINE uint rt_begin_steps(uint root, const rt_rays *ray, rt_step_ray *turns, rt_step_entry *stack, uint *top)
 {
     *turns = bvh4_prepare(ray);
     stack[0] = BVH4_LOWEST;
     *top = 1u;
-    return BVH4_PLACE(root);
+    return BVH4_NODE_REF(root);
 }
 
 #endif

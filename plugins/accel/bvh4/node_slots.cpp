@@ -39,7 +39,7 @@ void write_node(bvh8_node& node, const Slot children[], const rt_u32 code[], uin
     uint32_t slot_of[BVH8_WIDTH];
     assign_slots(children, count, slot_of);
     for (int k = 0; k < 6; ++k) std::fill_n(node.plane[k], BVH8_WIDTH, k < 3 ? INFINITY : -INFINITY);
-    std::fill_n(node.child, BVH8_WIDTH, BVH8_NOTHING);
+    std::fill_n(node.child, BVH8_WIDTH, BVH8_EMPTY);
     std::fill_n(node.pad, 4, 0u);
     for (uint32_t i = 0; i < count; ++i) {
         for (int k = 0; k < 6; ++k) node.plane[k][slot_of[i]] = children[i].box[k];

@@ -4,7 +4,7 @@
  * directions give one slab test that no ray of the packet can beat (Reshetov, Soupikov, Hurley 2005, "Multi-Level Ray Tracing
  * Algorithm"; Boulos, Wald, Shirley 2006, "Geometric and Arithmetic Culling Methods for Entire Ray Packets"). Before a leaf the
  * rays themselves are tested, and before a node too where the bounds are wide. A packet alone tests all eight children at once,
- * BVH8_BOUNDED. The packets of a bundle go together, BVH8_TOGETHER: one box at a time, the bounds of a packet in each lane, so
+ * BVH8_INTERVAL_PACKET. The packets of a stream go together, BVH8_INTERVAL_STREAM: one box at a time, the bounds of a packet in each lane, so
  * that a node is fetched and decided on once for all who come to it, a fifth to a tenth as often. A packet whose rays are of two
  * octants goes twice, each time with the rays of one.
  *
@@ -43,7 +43,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
             const uint first = BVH8_LEAF_FIRST(at), count = BVH8_LEAF_COUNT(at);
 #if RT_CPU
             RT_COUNT_LEAVES(hit, count);
-            RT_LONE_TEST(ctx, first, RT_LONE_CANDIDATES(ctx, first, count, ray, 0u), ray, 0u, hit, ray, hit);
+            RT_SINGLE_RAY_TEST(ctx, first, RT_SINGLE_RAY_CANDIDATES(ctx, first, count, ray, 0u), ray, 0u, hit, ray, hit);
 #else
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
 #endif
@@ -128,10 +128,10 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 #else
 
 #define BVH8_ENTER RT_CAT(RT_TRAVERSE, _enter)
-#define BVH8_BOUNDED RT_CAT(RT_TRAVERSE, _bounded)
-#define BVH8_TURNS RT_CAT(RT_TRAVERSE, _turns)
-#define BVH8_APART RT_CAT(RT_TRAVERSE, _apart)
-#define BVH8_TOGETHER RT_CAT(RT_TRAVERSE, _together)
+#define BVH8_INTERVAL_PACKET RT_CAT(RT_TRAVERSE, _interval_packet)
+#define BVH8_INTERLEAVED RT_CAT(RT_TRAVERSE, _interleaved)
+#define BVH8_INCOHERENT_PACKET RT_CAT(RT_TRAVERSE, _incoherent_packet)
+#define BVH8_INTERVAL_STREAM RT_CAT(RT_TRAVERSE, _interval_stream)
 
 /* Rays against the box of one child, whose rows are near_x .. far_z bytes from `box`. */
 RT_INLINE uint BVH8_ENTER(const global char *box, ulong near_x, ulong near_y, ulong near_z, const rt_rays *ray, const rt_hits *hit)
@@ -144,7 +144,7 @@ RT_INLINE uint BVH8_ENTER(const global char *box, ulong near_x, ulong near_y, ul
 }
 
 /* A packet whose active directions are of one octant. */
-RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_rays *ray, rt_hits *hit)
+RT_INLINE void BVH8_INTERVAL_PACKET(const rt_ctx *ctx, uint at, uint octant, const rt_rays *ray, rt_hits *hit)
 {
     const vmask alive = RT_MASK(hit->t >= rt_vfloat(0.0f));
     float t_far = rt_greatest(hit->t);
@@ -205,13 +205,13 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
                 }
                 float entry[BVH8_WIDTH];
                 vstore8(in, 0, entry);
-#define BVH8_PLACE(i) ((ulong)as_uint(entry[i]) << 32 | (at * 8u + (i)))
+#define BVH8_NODE_REF(i) ((ulong)as_uint(entry[i]) << 32 | (at * 8u + (i)))
                 bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[slot]);
-                ulong nearest = BVH8_PLACE(slot);
+                ulong nearest = BVH8_NODE_REF(slot);
                 for (; bits != 0u; bits &= bits - 1u) {
                     const uint i = rt_lowest(bits);
                     bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, child[i]);
-                    const ulong place = BVH8_PLACE(i);
+                    const ulong place = BVH8_NODE_REF(i);
                     stack[top] = max(place, nearest);
                     nearest = min(place, nearest);
                     if (RT_STACK_OK(top + 1u, BVH8_STACK, hit)) ++top;
@@ -231,10 +231,10 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
         at = ((const global uint *)(node + 192))[slot];
     }
 }
-#undef BVH8_PLACE
+#undef BVH8_NODE_REF
 
 /* The world of a scene with instances is left together: a ray alone would hold up the others while it is in a mesh. */
-#if BVH8_SINGLE && !(RT_LONE_MIXED && RT_HAS_INSTANCES)
+#if BVH8_SINGLE && !(RT_SINGLE_RAY_MIXED && RT_HAS_INSTANCES)
 
 /* The rays of `lanes` from `at` down, each on its own way but all by turns: while one waits, for memory as much as for arithmetic,
  * the others' work goes on, and what a turn does with a node is free of branches that depend on the ray. A turn looks for
@@ -244,10 +244,10 @@ RT_INLINE void BVH8_BOUNDED(const rt_ctx *ctx, uint at, uint octant, const rt_ra
  * distances would save a node in thirty and cost more. Of a node's turn 80 instructions are left, each a hundredth of frames'
  * time by turns: so nodes and leaves are found alike, without a choice, and lists grow by their ends.
  *
- * Puts what was hit into `hit`, all of it as bvh8_lone_begin() found it or better. */
-RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint root, uint lanes, const rt_rays *ray, rt_hits *hit)
+ * Puts what was hit into `hit`, all of it as bvh8_single_ray_begin() found it or better. */
+RT_INLINE void BVH8_INTERLEAVED(const rt_ctx *ctx, bvh8_single_ray *s, uint root, uint lanes, const rt_rays *ray, rt_hits *hit)
 {
-    const rt_lone_rays *rays = &s->rays;
+    const rt_single_rays *rays = &s->rays;
     float *const entry = s->entry;
     uint *const child = s->child, *const top = s->top;
     /* Lanes: at nodes and at leaves, now and next; in leaves with candidates; to be sent on. One more is written than counts. */
@@ -255,7 +255,7 @@ RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint root, uint lanes
     uint code[RT_LANES];
     const global char *at[RT_LANES];
     const global char *const begin[2] = {(const global char *)ctx->bvh8_nodes, (const global char *)ctx->leaves};
-    const ulong size[2] = {sizeof(bvh8_node), sizeof(rt_leaf)};
+    const ulong size[2] = {sizeof(bvh8_node), sizeof(rt_packed_prim)};
 #define BVH8_GO_ON(l, to, alive)                                                                                                 \
     {                                                                                                                            \
         const uint is_leaf = (to) >> 31;                                                                                         \
@@ -282,7 +282,7 @@ RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint root, uint lanes
         for (; now_leaf != now_leaves_end; ++now_leaf) {
             const uint l = *now_leaf, first = BVH8_LEAF_FIRST(code[l]), count = BVH8_LEAF_COUNT(code[l]);
             RT_COUNT_LEAVES(hit, count);
-            const uint bits = RT_LONE_CANDIDATES(ctx, first, count, rays, l);
+            const uint bits = RT_SINGLE_RAY_CANDIDATES(ctx, first, count, rays, l);
             *pop_end++ = l;
             tests[test_count] = l;
             candidates[test_count] = bits;
@@ -303,9 +303,9 @@ RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint root, uint lanes
             const float8 out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, (float8)(s->hits.t[l]));
             const uint base = top[l];
 #if RT_ANY_HIT
-            uint count = bvh8_put_off_any(in, out, node, child + base);
+            uint count = bvh8_push_any(in, out, node, child + base);
 #else
-            uint count = bvh8_put_off(in, out, node, s->slots + l, entry + base, child + base);
+            uint count = bvh8_push(in, out, node, s->slots + l, entry + base, child + base);
 #endif
             if (!RT_STACK_OK(base + count - l * BVH8_ROOM, BVH8_BELOW + BVH8_STACK + 2u, hit)) count = 0;
             const uint last = base + count - 1u;
@@ -321,7 +321,7 @@ RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint root, uint lanes
         }
         for (uint i = 0; i < test_count; ++i) {
             const uint l = tests[i];
-            RT_LONE_TEST(ctx, BVH8_LEAF_FIRST(code[l]), candidates[i], rays, l, &s->hits, ray, hit);
+            RT_SINGLE_RAY_TEST(ctx, BVH8_LEAF_FIRST(code[l]), candidates[i], rays, l, &s->hits, ray, hit);
         }
         for (const uint *pop = pops; pop != pop_end; ++pop) {
             const uint l = *pop;
@@ -343,16 +343,16 @@ RT_INLINE void BVH8_TURNS(const rt_ctx *ctx, bvh8_lone *s, uint root, uint lanes
     rt_gather_hits(&s->hits, hit);
 }
 
-RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+RT_INLINE void BVH8_INCOHERENT_PACKET(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
-    bvh8_lone lone;
-    bvh8_lone_begin(&lone, ray, hit);
-    BVH8_TURNS(ctx, &lone, root, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))), ray, hit);
+    bvh8_single_ray lone;
+    bvh8_single_ray_begin(&lone, ray, hit);
+    BVH8_INTERLEAVED(ctx, &lone, root, rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))), ray, hit);
 }
 
 #else
 
-RT_INLINE void BVH8_APART(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+RT_INLINE void BVH8_INCOHERENT_PACKET(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
     uint top = 0;
     /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
@@ -421,7 +421,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
     const vfloat t = hit->t;
     uint rest = bvh8_which_octants(ray, octants, t);
     if (popcount(rest) > BVH8_SPLIT) {
-        BVH8_APART(ctx, root, ray, hit);
+        BVH8_INCOHERENT_PACKET(ctx, root, ray, hit);
         return;
     }
     for (; rest != 0u; rest &= rest - 1u) {
@@ -429,16 +429,16 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         const vmask mine = RT_MASK(octants == rt_vint((int)octant));
         const vfloat others = hit->t;
         hit->t = rt_select(mine, hit->t, rt_vfloat(-1.0f));
-        BVH8_BOUNDED(ctx, root, octant, ray, hit);
+        BVH8_INTERVAL_PACKET(ctx, root, octant, ray, hit);
         hit->t = rt_select(mine, hit->t, others);
     }
 }
 
-#if RT_BUNDLE > 1
-/* The packets `members` of a bundle, two or more, whose active directions are all of one octant: the bounds of one packet in each lane. What
- * BVH8_BOUNDED does with eight children at once is done here with as many packets, child by child, so that a node is fetched and
+#if RT_STREAM > 1
+/* The packets `members` of a stream, two or more, whose active directions are all of one octant: the bounds of one packet in each lane. What
+ * BVH8_INTERVAL_PACKET does with eight children at once is done here with as many packets, child by child, so that a node is fetched and
  * decided on once for all that come to it. */
-RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_rays *rays, rt_hits *hits, uint members)
+RT_INLINE void BVH8_INTERVAL_STREAM(const rt_ctx *ctx, uint at, uint octant, const rt_rays *rays, rt_hits *hits, uint members)
 {
     const ulong near_x = BVH8_NEAR(octant, 0), near_y = BVH8_NEAR(octant, 1), near_z = BVH8_NEAR(octant, 2);
     vmask alive[RT_LANES]; /* none in the place of a packet that is no member: a member's rays stand in for its own */
@@ -492,7 +492,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
 
     /* What is asked for when its parent is read is on its way for as long as a node takes, or several: a tree larger than the
      * caches kept waiting a third of the time that it was traced. */
-    bvh8_waiting waiting;
+    bvh8_stream_stack waiting;
     uint place = 0, inside = members;
     bool is_root = true;
 #if RT_ANY_HIT
@@ -515,7 +515,7 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                 const uint p = rt_lowest(inside);
                 entering |= (BVH8_ENTER(node + 4u * slot, near_x, near_y, near_z, rays + p, hits + p) != 0u ? 1u : 0u) << p;
             }
-            uint candidates[RT_BUNDLE * BVH8_LEAF_MAX + 1u];
+            uint candidates[RT_STREAM * BVH8_LEAF_MAX + 1u];
             for (; entering != 0u; entering &= entering - 1u) {
                 const uint p = rt_lowest(entering);
                 for (uint i = 0; i < count; ++i) {
@@ -584,18 +584,18 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
                 bvh8_prefetch(ctx->bvh8_nodes, ctx->leaves, ctx->bvh8_nodes[at].child[i]);
                 waiting.place[top] = at * BVH8_WIDTH + i;
                 waiting.packets[top] = enters[i];
-                if (RT_STACK_OK(top + 1u, BVH8_PLACES + 1u, hits)) ++top;
+                if (RT_STACK_OK(top + 1u, BVH8_STREAM_STACK + 1u, hits)) ++top;
             }
 #else
-#define BVH8_PUT_BY(to, some) bvh8_put_by(&waiting, to, ctx->bvh8_nodes, ctx->leaves, at, some, entry, enters, rt_lowest(inside))
+#define BVH8_PUSH_DEFERRED(to, some) bvh8_push_deferred(&waiting, to, ctx->bvh8_nodes, ctx->leaves, at, some, entry, enters, rt_lowest(inside))
             const uint leaves = found & BVH8_BITS(*(const global int8 *)(node + 192) < (int8)(0)); /* BVH8_LEAF */
             const uint stacked = found ^ leaves;
-            if (leaves != 0u) fresh_end = BVH8_PUT_BY(fresh, leaves);
+            if (leaves != 0u) fresh_end = BVH8_PUSH_DEFERRED(fresh, leaves);
             if (stacked != 0u) {
-                const uint end = BVH8_PUT_BY(top, stacked);
-                if (RT_STACK_OK(end, BVH8_PLACES + 1u, hits)) top = end;
+                const uint end = BVH8_PUSH_DEFERRED(top, stacked);
+                if (RT_STACK_OK(end, BVH8_STREAM_STACK + 1u, hits)) top = end;
             }
-#undef BVH8_PUT_BY
+#undef BVH8_PUSH_DEFERRED
 #endif
         }
 
@@ -629,32 +629,32 @@ RT_INLINE void BVH8_TOGETHER(const rt_ctx *ctx, uint at, uint octant, const rt_r
     }
 }
 
-void RT_TRAVERSE_BUNDLE(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count)
+void RT_TRAVERSE_STREAM(const rt_ctx *ctx, uint root, const rt_rays *rays, rt_hits *hits, uint count)
 {
     uint with[8] = {0, 0, 0, 0, 0, 0, 0, 0}, apart = 0, mixed = 0;
     for (uint p = 0; p < count; ++p) {
         uint rest = bvh8_which_octants(rays + p, bvh8_octants(rays + p), hits[p].t);
-        if (popcount(rest) > BVH8_SPLIT || BVH8_SCATTERED(rays + p, rest)) {
+        if (popcount(rest) > BVH8_SPLIT || BVH8_INCOHERENT(rays + p, rest)) {
             apart |= 1u << p;
             continue;
         }
         mixed |= (popcount(rest) > 1u ? 1u : 0u) << p;
         for (; rest != 0u; rest &= rest - 1u) with[rt_lowest(rest)] |= 1u << p;
     }
-    for (; apart != 0u; apart &= apart - 1u) BVH8_APART(ctx, root, rays + rt_lowest(apart), hits + rt_lowest(apart));
+    for (; apart != 0u; apart &= apart - 1u) BVH8_INCOHERENT_PACKET(ctx, root, rays + rt_lowest(apart), hits + rt_lowest(apart));
     for (uint octant = 0; octant < 8u; ++octant) {
         const uint members = with[octant];
         if (members == 0u) continue;
-        vfloat others[RT_BUNDLE];
+        vfloat others[RT_STREAM];
         for (uint some = members & mixed; some != 0u; some &= some - 1u) {
             const uint p = rt_lowest(some);
             others[p] = hits[p].t;
             hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, rt_vfloat(-1.0f));
         }
         if (popcount(members) > 1u)
-            BVH8_TOGETHER(ctx, root, octant, rays, hits, members);
+            BVH8_INTERVAL_STREAM(ctx, root, octant, rays, hits, members);
         else
-            BVH8_BOUNDED(ctx, root, octant, rays + rt_lowest(members), hits + rt_lowest(members));
+            BVH8_INTERVAL_PACKET(ctx, root, octant, rays + rt_lowest(members), hits + rt_lowest(members));
         for (uint some = members & mixed; some != 0u; some &= some - 1u) {
             const uint p = rt_lowest(some);
             hits[p].t = rt_select(RT_MASK(bvh8_octants(rays + p) == rt_vint((int)octant)), hits[p].t, others[p]);

@@ -31,10 +31,10 @@ typedef struct bvh8_node {
 #define BVH8_LEAF_COUNT(child) (((child) >> 28) & 7u)
 #define BVH8_LEAF_FIRST(child) ((child)&0x0FFFFFFFu)
 #define BVH8_MAKE_LEAF(first, count) (BVH8_LEAF | ((count) << 28) | (first))
-#define BVH8_NOTHING BVH8_MAKE_LEAF(0u, 0u)
+#define BVH8_EMPTY BVH8_MAKE_LEAF(0u, 0u)
 
 #ifdef __OPENCL_VERSION__
-#define RT_TRAVERSES_BUNDLES
+#define RT_TRAVERSES_STREAMS
 /* Mask to bits, lane 0 in bit 0: as rt_bits of lanes.h, for eight children instead of RT_LANES rays. */
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX__)
 #define BVH8_BITS(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
@@ -74,17 +74,17 @@ RT_INLINE void bvh8_prefetch_at(ulong lines)
     for (uint i = 0; i < 256u; i += 64u) __builtin_prefetch((const void *)(lines + i));
 #endif
 }
-RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_leaf *leaves, uint at)
+RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_packed_prim *leaves, uint at)
 {
     bvh8_prefetch_at(at & BVH8_LEAF ? (ulong)(leaves + BVH8_LEAF_FIRST(at)) : (ulong)(nodes + at));
 }
 #if RT_LANES > 1
 /* Whether a packet whose rays start far apart is parted. Where rays that part go together it gains nothing. */
 #if BVH8_SINGLE
-#define RT_PARTS_SCATTERED
-#define BVH8_SCATTERED(ray, rest) ((rest) != 0u && (ray)->scattered)
+#define RT_SPLITS_INCOHERENT
+#define BVH8_INCOHERENT(ray, rest) ((rest) != 0u && (ray)->incoherent)
 #else
-#define BVH8_SCATTERED(ray, rest) 0
+#define BVH8_INCOHERENT(ray, rest) 0
 #endif
 /* Octants of directions that a packet may be split into: where it has more, its rays have too little in common. */
 #define BVH8_SPLIT 2
@@ -105,24 +105,24 @@ RT_INLINE uint bvh8_which_octants(const rt_rays *ray, vint octants, vfloat t)
 }
 /* Row of near planes of an axis, in bytes from the node's begin. */
 #define BVH8_NEAR(octant, axis) ((octant) >> (axis) & 1u ? 96ul + 32ul * (axis) : 32ul * (axis))
-/* What the packets of a bundle have put off: node * 8 + slot, from which a child and its box are found again; the packets that
+/* What the packets of a stream have put off: node * 8 + slot, from which a child and its box are found again; the packets that
  * enter it; and where they do. Nearest hits: two lists of leaves, each of one node, then a stack of nodes. Any hits: a stack of
  * both. Below BVH8_STACK entries BVH8_AHEAD ways are gone at once, each of which may put off eight more, then one way only; and
  * eight are written before room is looked for. BVH8_STACK is a multiple of 16, so that the arrays are no multiple of a page,
  * which is slow. */
 #define BVH8_LISTS (2u * BVH8_WIDTH)
 #define BVH8_AHEAD 4u
-#define BVH8_PLACES (2u * BVH8_STACK + BVH8_AHEAD * BVH8_WIDTH)
-typedef struct bvh8_waiting {
-    vfloat entry[BVH8_PLACES + BVH8_WIDTH];
-    uint place[BVH8_PLACES + BVH8_WIDTH], packets[BVH8_PLACES + BVH8_WIDTH];
-} bvh8_waiting;
+#define BVH8_STREAM_STACK (2u * BVH8_STACK + BVH8_AHEAD * BVH8_WIDTH)
+typedef struct bvh8_stream_stack {
+    vfloat entry[BVH8_STREAM_STACK + BVH8_WIDTH];
+    uint place[BVH8_STREAM_STACK + BVH8_WIDTH], packets[BVH8_STREAM_STACK + BVH8_WIDTH];
+} bvh8_stream_stack;
 /* Of the packets that entry `i` was put off with, those that have hit nothing nearer since. */
 #define BVH8_STILL(i) (waiting.packets[i] & rt_bits(RT_MASK(waiting.entry[i] <= t_far)))
 
 /* Children `some` of the node `at`, one or more, are put off from entry `top` on, the nearest to packet `guide` last, so that it
  * is the first to be taken, and are asked for. Returns where they end. */
-RT_INLINE uint bvh8_put_by(bvh8_waiting *waiting, uint top, const global bvh8_node *nodes, const global rt_leaf *leaves, uint at,
+RT_INLINE uint bvh8_push_deferred(bvh8_stream_stack *waiting, uint top, const global bvh8_node *nodes, const global rt_packed_prim *leaves, uint at,
                            uint some, const vfloat *entry, const uint *enters, uint guide)
 {
     const global uint *child = nodes[at].child;
@@ -159,18 +159,18 @@ RT_INLINE uint bvh8_put_by(bvh8_waiting *waiting, uint top, const global bvh8_no
  * that is taken untested. 60 KB at most. */
 #define BVH8_BELOW 9u
 #define BVH8_ROOM (BVH8_BELOW + BVH8_STACK + 15u) /* eight more are written than count; no multiple of a page's size apart */
-typedef struct bvh8_lone {
-    rt_lone_rays rays;
-    rt_lone_hits hits;
+typedef struct bvh8_single_ray {
+    rt_single_rays rays;
+    rt_single_hits hits;
     int near_x[RT_LANES], near_y[RT_LANES], near_z[RT_LANES]; /* rows of a node in bytes, as the ray meets them */
     int far_x[RT_LANES], far_y[RT_LANES], far_z[RT_LANES];
     int8 slots[RT_LANES];                                     /* of a node's children, as the ray meets them: the first last */
     uint top[RT_LANES];                                       /* in the arrays below */
     float entry[RT_LANES * BVH8_ROOM];
     uint child[RT_LANES * BVH8_ROOM];
-} bvh8_lone;
+} bvh8_single_ray;
 
-RT_INLINE void bvh8_lone_begin(bvh8_lone *s, const rt_rays *ray, const rt_hits *hit)
+RT_INLINE void bvh8_single_ray_begin(bvh8_single_ray *s, const rt_rays *ray, const rt_hits *hit)
 {
     rt_spread_rays(ray, &s->rays);
     rt_spread_hits(hit, &s->hits);
@@ -184,7 +184,7 @@ RT_INLINE void bvh8_lone_begin(bvh8_lone *s, const rt_rays *ray, const rt_hits *
     rt_store(~bvh8_octants(ray) & rt_vint(7), order);
     for (uint l = 0; l < RT_LANES; ++l) {
         vstore8((float8)(-INFINITY), 0, s->entry + l * BVH8_ROOM + 1u);
-        vstore8((uint8)(BVH8_NOTHING), 0, s->child + l * BVH8_ROOM + 1u);
+        vstore8((uint8)(BVH8_EMPTY), 0, s->child + l * BVH8_ROOM + 1u);
         s->top[l] = l * BVH8_ROOM + BVH8_BELOW;
         s->slots[l] = (int8)(0, 1, 2, 3, 4, 5, 6, 7) ^ (int8)(order[l]);
     }
@@ -192,7 +192,7 @@ RT_INLINE void bvh8_lone_begin(bvh8_lone *s, const rt_rays *ray, const rt_hits *
 #endif
 
 /* The children of a node that a ray enters and where, in the order of the slots; returns how many. Eight are written. */
-RT_INLINE uint bvh8_put_off(float8 in, float8 out, const global char *node, const int8 *slots, float *entry, uint *child)
+RT_INLINE uint bvh8_push(float8 in, float8 out, const global char *node, const int8 *slots, float *entry, uint *child)
 {
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX512VL__)
     const int8 slot = *slots;
@@ -219,7 +219,7 @@ RT_INLINE uint bvh8_put_off(float8 in, float8 out, const global char *node, cons
 }
 
 /* The same where any hit will do: neither where nor in which order matters. */
-RT_INLINE uint bvh8_put_off_any(float8 in, float8 out, const global char *node, uint *child)
+RT_INLINE uint bvh8_push_any(float8 in, float8 out, const global char *node, uint *child)
 {
     const uint bits = BVH8_BITS(in <= out);
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX512VL__)

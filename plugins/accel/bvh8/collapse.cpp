@@ -112,7 +112,7 @@ void Collapse::gather(const float* box, rt_u32 code, uint32_t roots, Slot*& next
     while (roots > 1 && Decision::left_of(node.pad1, roots) == 0) --roots;
     if (roots == 1) {
         const bool leaf = node.pad1 & Decision::kIsLeaf;
-        *next++ = {box, leaf ? BVH8_MAKE_LEAF(node.pad0, Decision::count(node.pad1)) : BVH8_NOTHING, code};
+        *next++ = {box, leaf ? BVH8_MAKE_LEAF(node.pad0, Decision::count(node.pad1)) : BVH8_EMPTY, code};
         return;
     }
     const uint32_t left = Decision::left_of(node.pad1, roots);

@@ -18,7 +18,7 @@ struct Costs {
 // What stands in a slot of a wide node.
 struct Slot {
     const float* box;  // lo, hi; a seventh number may be read
-    rt_u32 leaf;       // BVH8_NOTHING: it is a node, that of:
+    rt_u32 leaf;       // BVH8_EMPTY: it is a node, that of:
     rt_u32 binary;     // node of the binary tree
 };
 

@@ -99,7 +99,7 @@ class MortonTree::RunBuilder {
         rt_u32 below[BVH8_WIDTH];
         for (uint32_t i = 0; i < count; ++i) {
             below[i] = slots[i].leaf;
-            if (slots[i].leaf != BVH8_NOTHING) continue;
+            if (slots[i].leaf != BVH8_EMPTY) continue;
             below[i] = static_cast<rt_u32>(result_.nodes.size()) - first;
             extent.add(write(slots[i].binary, first, sums), count - 1);
         }
@@ -115,7 +115,7 @@ class MortonTree::RunBuilder {
         for (rt_u32* child : {&node.child0, &node.child1}) {
             if (*child & BVH2_LEAF) continue;
             const bool becomes_node = std::any_of(slots_, slots_ + slot_count_, [&](const Slot& slot) {
-                return slot.leaf == BVH8_NOTHING && slot.binary == *child;
+                return slot.leaf == BVH8_EMPTY && slot.binary == *child;
             });
             *child = becomes_node ? finish(*child) : keep(*child);
         }

@@ -12,7 +12,7 @@ namespace bvh8 {
 template <class Body>
 void each_child(const bvh8_node& node, Body&& do_one) {
     for (int slot = 0; slot < BVH8_WIDTH; ++slot) {
-        if (node.child[slot] == BVH8_NOTHING) continue;
+        if (node.child[slot] == BVH8_EMPTY) continue;
         float box[6];
         for (int k = 0; k < 6; ++k) box[k] = node.plane[k][slot];
         do_one(box, node.child[slot]);

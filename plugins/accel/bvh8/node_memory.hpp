@@ -27,7 +27,7 @@ inline void turn_rows(bvh8_node& node, rt_u32 at) {
 
 inline void settle(bvh8_node nodes[], rt_u32 at) {
     for (rt_u32& child : nodes[at].child)
-        if (!(child & BVH8_LEAF)) child = BVH4_PLACE(child);
+        if (!(child & BVH8_LEAF)) child = BVH4_NODE_REF(child);
     turn_rows(nodes[at], at);
 }
 

@@ -73,9 +73,9 @@ void report(const rt_build_output* out, const WideBuild& build, uint64_t node_by
     rt::stat(out, "sah_cost", build.statistics.sah_cost);
     rt::stat(out, "node_bytes", bytes);
     rt::stat(out, "bytes_per_primitive",
-             build.primitives > 0
-                 ? (bytes + static_cast<double>(build.references * sizeof(rt_leaf))) / static_cast<double>(build.primitives)
-                 : 0);
+             build.primitives > 0 ? (bytes + static_cast<double>(build.references * sizeof(rt_packed_prim))) /
+                                        static_cast<double>(build.primitives)
+                                  : 0);
     rt::stat(out, "build_bytes", static_cast<double>(build.build_bytes));
 }
 

@@ -19,7 +19,7 @@ double area(const float box[6]) {
 void Sums::add(const Slot* slots, uint32_t count) {
     children += count;
     for (uint32_t i = 0; i < count; ++i) {
-        if (slots[i].leaf == BVH8_NOTHING) {
+        if (slots[i].leaf == BVH8_EMPTY) {
             node_area += area(slots[i].box);
         } else {
             ++leaves;
@@ -69,7 +69,7 @@ void WideTree::write(const rt_build_output* out) {
     for (const Top& top : tops_) {
         rt_u32 below[BVH8_WIDTH];
         for (uint32_t i = 0; i < top.count; ++i)
-            below[i] = top.slots[i].leaf != BVH8_NOTHING ? top.slots[i].leaf : place_of(top.below[i]);
+            below[i] = top.slots[i].leaf != BVH8_EMPTY ? top.slots[i].leaf : place_of(top.below[i]);
         write_node(nodes_[top.place], top.slots, below, top.count);
         settle(nodes_, top.place);
     }
@@ -105,7 +105,7 @@ rt_u32 WideTree::expand(rt_u32 binary, rt_u32 group) {
     top.group = group;
     top.count = collapse_.children(binary, top.slots);
     for (uint32_t i = 0; i < top.count; ++i)
-        if (top.slots[i].leaf == BVH8_NOTHING) top.below[i] = expand(top.slots[i].binary, group);
+        if (top.slots[i].leaf == BVH8_EMPTY) top.below[i] = expand(top.slots[i].binary, group);
     tops_[index] = top;
     return index;
 }
@@ -116,7 +116,7 @@ Extent CollapsedSubtrees::measure(rt_u32 binary) const {
     Extent extent;
     extent.stack = count;
     for (uint32_t i = 0; i < count; ++i)
-        if (slots[i].leaf == BVH8_NOTHING) extent.add(measure(slots[i].binary), count - 1);
+        if (slots[i].leaf == BVH8_EMPTY) extent.add(measure(slots[i].binary), count - 1);
     return extent;
 }
 
@@ -126,7 +126,7 @@ Extent WideTree::measure_top(rt_u32 code, const std::vector<Extent>& jobs) const
     Extent extent;
     extent.stack = top.count;
     for (uint32_t i = 0; i < top.count; ++i)
-        if (top.slots[i].leaf == BVH8_NOTHING) extent.add(measure_top(top.below[i], jobs), top.count - 1);
+        if (top.slots[i].leaf == BVH8_EMPTY) extent.add(measure_top(top.below[i], jobs), top.count - 1);
     return extent;
 }
 
@@ -139,7 +139,7 @@ rt_u32 WideTree::place(rt_u32 code, rt_u32 next) {
     }
     tops_[code].place = next++;
     for (uint32_t i = 0; i < tops_[code].count; ++i)
-        if (tops_[code].slots[i].leaf == BVH8_NOTHING) next = place(tops_[code].below[i], next);
+        if (tops_[code].slots[i].leaf == BVH8_EMPTY) next = place(tops_[code].below[i], next);
     return next;
 }
 
@@ -150,8 +150,8 @@ rt_u32 CollapsedSubtrees::write_subtree(rt_u32 binary, bvh8_node* nodes, rt_u32 
     sums.add(slots, count);
     rt_u32 below[BVH8_WIDTH], next = at + 1;
     for (uint32_t i = 0; i < count; ++i) {
-        below[i] = slots[i].leaf != BVH8_NOTHING ? slots[i].leaf : next;
-        if (slots[i].leaf == BVH8_NOTHING) next = write_subtree(slots[i].binary, nodes, next, sums);
+        below[i] = slots[i].leaf != BVH8_EMPTY ? slots[i].leaf : next;
+        if (slots[i].leaf == BVH8_EMPTY) next = write_subtree(slots[i].binary, nodes, next, sums);
     }
     write_node(nodes[at], slots, below, count);
     settle(nodes, at);

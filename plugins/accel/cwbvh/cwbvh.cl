@@ -79,11 +79,11 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         }
         if (is_leaf) {
 #if RT_TRIANGLES_ONLY
-            const rt_loaded_leaf one = {a, b, c};
-            RT_LOADED_LEAF(ctx, &one, item, ray, hit);
+            const rt_loaded_prim one = {a, b, c};
+            RT_LOADED_PRIM(ctx, &one, item, ray, hit);
             if (two) {
-                const rt_loaded_leaf other = {d, e, f};
-                RT_LOADED_LEAF(ctx, &other, second, ray, hit);
+                const rt_loaded_prim other = {d, e, f};
+                RT_LOADED_PRIM(ctx, &other, second, ray, hit);
             }
 #else
             RT_LEAF(ctx, item, ray, hit);

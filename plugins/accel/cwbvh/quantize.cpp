@@ -57,7 +57,7 @@ void quantize(const bvh8_node& from, cwbvh_node& to) {
         float lo = 0, hi = 0;
         bool any = false;
         for (int slot = 0; slot < BVH8_WIDTH; ++slot) {
-            if (from.child[slot] == BVH8_NOTHING) continue;
+            if (from.child[slot] == BVH8_EMPTY) continue;
             lo = any ? std::min(lo, from.plane[a][slot]) : from.plane[a][slot];
             hi = any ? std::max(hi, from.plane[3 + a][slot]) : from.plane[3 + a][slot];
             any = true;
@@ -68,7 +68,7 @@ void quantize(const bvh8_node& from, cwbvh_node& to) {
         to.cells |= static_cast<rt_u32>(grid.exponent + kExponentBias) << 8 * a;
         std::fill_n(to.planes[a], 4, 0u);
         for (uint32_t slot = 0; slot < BVH8_WIDTH; ++slot) {
-            const bool empty = from.child[slot] == BVH8_NOTHING || unbounded;
+            const bool empty = from.child[slot] == BVH8_EMPTY || unbounded;
             const int low = empty ? kPlanes : grid.lower(from.plane[a][slot]),
                       high = empty ? 0 : grid.upper(from.plane[3 + a][slot]);
             to.planes[a][slot / 4] |= static_cast<rt_u32>(low) << 8 * (slot % 4);

@@ -1,0 +1,219 @@
+/* rays.h -- rays and hits of all lanes, and the box test that every traversal shares. */
+#ifndef RT_RAYS_H
+#define RT_RAYS_H
+
+typedef struct rt_rays {
+    vfloat ox, oy, oz;             /* origin */
+    vfloat dx, dy, dz;             /* direction; unit in world space, not inside instances, so t stays comparable */
+    vfloat t_min;
+    vfloat ix, iy, iz;             /* 1 / direction, finite: components are clamped away from zero */
+    vfloat near_x, near_y, near_z; /* -origin / direction, rounded down */
+    vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up */
+    int coherent;                  /* all active lanes have the same signs: then */
+    uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
+    int incoherent;                 /* they start far apart, as rt_incoherent() has it: few nodes will be shared */
+    int same_axis;                 /* all active lanes have the same dominant axis: then */
+    uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
+    vint axis_x, axis_y, axis_z;   /* they differ by lane, and only then are these filled in */
+    vfloat px, py, pz;             /* origin: pz along the dominant axis, px and py on the other two */
+    vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
+} rt_rays;
+
+/* The nearest hit so far. A lane that is inactive, or occluded in an any-hit query, has t = -1: every test then fails for it. */
+typedef struct rt_hits {
+    vfloat t;
+    vfloat u, v;       /* weights of corners b and c of a triangle */
+    vfloat nx, ny, nz; /* geometric normal in the space of the hit's group, not unit, either side */
+    vint leaf;         /* position in leaf order; -1: none; -2 - i: plane i */
+    vint prim;         /* its number; of two primitives at the same t the lower one wins, whatever the order of visits */
+    vint instance;     /* -1: none */
+#ifdef RT_COUNT_STEPS
+    uint steps, leaf_tests, lane_steps; /* of all lanes together, see rt_hit */
+#endif
+#ifdef RT_DEBUG
+    uint overflow;
+#endif
+#ifdef RT_STEP_BUDGET
+    int step_budget; /* turns of the traversal that are left; negative: it was stopped */
+#endif
+} rt_hits;
+
+/* Counting programs; see CONTRACT.md. The plain ones are not slowed by it: what only feeds these macros is dead code there. */
+#ifdef RT_COUNT_STEPS
+#define RT_COUNT_VISIT(hit, inside) ((hit)->steps++, (hit)->lane_steps += popcount(inside))
+#define RT_COUNT_LEAVES(hit, n) ((hit)->leaf_tests += (n))
+#else
+#define RT_COUNT_VISIT(hit, inside) ((void)(inside))
+#define RT_COUNT_LEAVES(hit, n) ((void)(n))
+#endif
+#define RT_COUNT_LEAF(hit) RT_COUNT_LEAVES(hit, 1u)
+/* For traversals that do not know who is in a node: all who are still looking. */
+#define RT_COUNT_STEP(hit) RT_COUNT_VISIT(hit, rt_bits(RT_MASK((hit)->t >= rt_vfloat(0.0f))))
+
+/* Kernels that have no rt_tally count full stacks into one number, in debug programs: an argument before the context's. */
+#ifdef RT_DEBUG
+#define RT_OVERFLOWS_PARAM volatile global uint *overflows,
+#define RT_CLEAR_OVERFLOW(hit) (hit)->overflow = 0u; /* where rt_clear_hits() is not called for every hit */
+#define RT_COUNT_OVERFLOW(hit) if ((hit)->overflow != 0u) atomic_add(overflows, (hit)->overflow);
+#else
+#define RT_OVERFLOWS_PARAM
+#define RT_CLEAR_OVERFLOW(hit)
+#define RT_COUNT_OVERFLOW(hit)
+#endif
+
+/* Before each turn of a traversal's loop; see CONTRACT.md. */
+#ifdef RT_STEP_BUDGET
+#define RT_MAY_GO_ON(hit) ((hit)->step_budget-- > 0)
+#else
+#define RT_MAY_GO_ON(hit) 1
+#endif
+
+#define RT_EPS 5.9604645e-8f /* 2^-24, half an ulp of 1 */
+#define RT_WIDE (1.0f + 16.0f * RT_EPS)
+
+/* Where a component of the direction, or its reciprocal, is negative. */
+#define rt_negative(v) RT_MASK((v) < rt_vfloat(0.0f))
+
+RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
+{
+    const vfloat tiny = rt_vfloat(1e-18f);
+    const vfloat magnitude = rt_max(fabs(d), tiny);
+    return rt_vfloat(1.0f) / copysign(magnitude, d);
+}
+
+/* Fills in what boxes need of origin and direction. */
+RT_INLINE void rt_prepare_for_boxes(rt_rays *r)
+{
+    /* The planes of a box are crossed at (plane - origin) * (1 / d). Computed as fma(1 / d, plane, -origin / d) that has an
+     * absolute error of about half an ulp of origin / d and a relative one of a few ulp. Widening every interval by that much
+     * keeps traversal watertight (Ize 2013, Robust BVH Ray Traversal) at no cost per node. */
+    r->ix = rt_safe_reciprocal(r->dx);
+    r->iy = rt_safe_reciprocal(r->dy);
+    r->iz = rt_safe_reciprocal(r->dz);
+    const vfloat slack = rt_vfloat(8.0f * RT_EPS);
+    const vfloat nx = -r->ox * r->ix, ny = -r->oy * r->iy, nz = -r->oz * r->iz;
+    r->near_x = fma(fabs(nx), -slack, nx);
+    r->near_y = fma(fabs(ny), -slack, ny);
+    r->near_z = fma(fabs(nz), -slack, nz);
+    r->far_x = fma(fabs(nx), slack, nx);
+    r->far_y = fma(fabs(ny), slack, ny);
+    r->far_z = fma(fabs(nz), slack, nz);
+}
+
+/* The rest. `bits`: the active lanes, by whose signs and axes the packet is judged. */
+RT_INLINE void rt_prepare_for_triangles(rt_rays *r, uint bits)
+{
+    r->incoherent = 0;
+    /* Triangles are tested in a plane across the ray: the two axes other than the dominant one, sheared along the direction
+     * (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection). x: y, z;  y: z, x;  z: x, y. */
+    const vfloat ax = fabs(r->dx), ay = fabs(r->dy), az = fabs(r->dz);
+    const vmask is_z = RT_MASK(az >= ax) & RT_MASK(az >= ay), is_y = ~is_z & RT_MASK(ay >= ax), is_x = ~is_z & ~is_y;
+    const vfloat along = rt_select(is_z, r->iz, rt_select(is_y, r->iy, r->ix));
+    const vfloat shear_p = -along * rt_select(is_z, r->dx, rt_select(is_y, r->dz, r->dy));
+    const vfloat shear_q = -along * rt_select(is_z, r->dy, rt_select(is_y, r->dx, r->dz));
+#if RT_LANES == 1
+    r->coherent = 1;
+#else
+    const uint neg_x = rt_bits(rt_negative(r->ix)) & bits, neg_y = rt_bits(rt_negative(r->iy)) & bits,
+               neg_z = rt_bits(rt_negative(r->iz)) & bits;
+    r->coherent = (neg_x == 0u || neg_x == bits) && (neg_y == 0u || neg_y == bits) && (neg_z == 0u || neg_z == bits);
+    r->lo_x = neg_x ? 3u : 0u;
+    r->lo_y = neg_y ? 4u : 1u;
+    r->lo_z = neg_z ? 5u : 2u;
+#endif
+    const uint any_x = rt_bits(is_x) & bits, any_y = rt_bits(is_y) & bits, any_z = rt_bits(is_z) & bits;
+    r->same_axis = (any_x == bits) || (any_y == bits) || (any_z == bits);
+    r->kz = any_x ? 0u : any_y ? 1u : 2u;
+    r->kx = r->kz == 2u ? 0u : r->kz + 1u;
+    r->ky = r->kz == 0u ? 2u : r->kz - 1u;
+#if RT_LANES > 1
+    if (!r->same_axis)
+#endif
+    {
+        const vint zero = rt_vint(0), one = rt_vint(1), two = rt_vint(2);
+        r->axis_x = rt_select(is_z, zero, rt_select(is_y, two, one));
+        r->axis_y = rt_select(is_z, one, rt_select(is_y, zero, two));
+        r->axis_z = rt_select(is_z, two, rt_select(is_y, one, zero));
+    }
+    r->px = rt_select(is_z, r->ox, rt_select(is_y, r->oz, r->oy));
+    r->py = rt_select(is_z, r->oy, rt_select(is_y, r->ox, r->oz));
+    r->pz = rt_select(is_z, r->oz, rt_select(is_y, r->oy, r->ox));
+    r->sx = shear_p;
+    r->sy = shear_q;
+    r->sz = along;
+}
+
+RT_INLINE void rt_prepare(rt_rays *r, uint bits)
+{
+    rt_prepare_for_boxes(r);
+    rt_prepare_for_triangles(r, bits);
+}
+
+/* Whether half of the rays of a packet start more than two triangles away from the first, by the size of those that they start on.
+ * area: twice that of each ray's. */
+#define RT_INCOHERENT 4.0f
+RT_INLINE int rt_incoherent(const rt_rays *r, vfloat area, uint bits)
+{
+#if RT_LANES == 1
+    return 0;
+#else
+    const uint first = rt_lowest(bits);
+    const vfloat x = r->ox - rt_vfloat(((const float *)&r->ox)[first]), y = r->oy - rt_vfloat(((const float *)&r->oy)[first]),
+                 z = r->oz - rt_vfloat(((const float *)&r->oz)[first]);
+    const vmask away = RT_MASK(fma(x, x, fma(y, y, z * z)) > rt_vfloat(RT_INCOHERENT) * area);
+    return 2u * popcount(rt_bits(away) & bits) >= popcount(bits);
+#endif
+}
+
+/* Lanes in which a primitive at t beats what was hit so far. */
+RT_INLINE vmask rt_closer(const rt_rays *r, const rt_hits *h, vfloat t, uint prim)
+{
+    return RT_MASK(t >= r->t_min) & (RT_MASK(t < h->t) | (RT_MASK(t == h->t) & RT_MASK(rt_vint((int)prim) < h->prim)));
+}
+
+/* Which lanes enter the box lo..hi before their nearest hit; *entry is where. Rounding never loses a lane. */
+RT_INLINE vmask rt_enter_bounds(vfloat lo_x, vfloat lo_y, vfloat lo_z, vfloat hi_x, vfloat hi_y, vfloat hi_z, const rt_rays *r,
+                                const rt_hits *h, vfloat *entry)
+{
+    const vmask neg_x = rt_negative(r->ix), neg_y = rt_negative(r->iy), neg_z = rt_negative(r->iz);
+    const vfloat ax = fma(r->ix, rt_select(neg_x, hi_x, lo_x), r->near_x), bx = fma(r->ix, rt_select(neg_x, lo_x, hi_x), r->far_x);
+    const vfloat ay = fma(r->iy, rt_select(neg_y, hi_y, lo_y), r->near_y), by = fma(r->iy, rt_select(neg_y, lo_y, hi_y), r->far_y);
+    const vfloat az = fma(r->iz, rt_select(neg_z, hi_z, lo_z), r->near_z), bz = fma(r->iz, rt_select(neg_z, lo_z, hi_z), r->far_z);
+    const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
+    const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, h->t);
+    *entry = in;
+    return RT_MASK(in <= out);
+}
+
+/* The same for a box {lo.xyz, hi.xyz} in memory. Packets whose lanes agree in sign pick near and far planes by address. */
+RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry)
+{
+#if RT_LANES > 1
+    if (r->coherent) {
+        const vfloat ax = fma(r->ix, rt_vfloat(box[r->lo_x]), r->near_x);
+        const vfloat ay = fma(r->iy, rt_vfloat(box[r->lo_y]), r->near_y);
+        const vfloat az = fma(r->iz, rt_vfloat(box[r->lo_z]), r->near_z);
+        const vfloat bx = fma(r->ix, rt_vfloat(box[3u - r->lo_x]), r->far_x);
+        const vfloat by = fma(r->iy, rt_vfloat(box[5u - r->lo_y]), r->far_y);
+        const vfloat bz = fma(r->iz, rt_vfloat(box[7u - r->lo_z]), r->far_z);
+        const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
+        const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, h->t);
+        *entry = in;
+        return RT_MASK(in <= out);
+    }
+#endif
+    return rt_enter_bounds(rt_vfloat(box[0]), rt_vfloat(box[1]), rt_vfloat(box[2]), rt_vfloat(box[3]), rt_vfloat(box[4]),
+                           rt_vfloat(box[5]), r, h, entry);
+}
+
+/* Which rays come to the bounds of all but planes before t_max. */
+RT_INLINE vmask rt_enter_scene(const constant rt_frame *frame, const rt_rays *r, vfloat t_max)
+{
+    vfloat entry;
+    rt_hits reach;
+    reach.t = t_max;
+    return rt_enter_bounds(rt_vfloat(frame->bounds[0]), rt_vfloat(frame->bounds[1]), rt_vfloat(frame->bounds[2]),
+                           rt_vfloat(frame->bounds[3]), rt_vfloat(frame->bounds[4]), rt_vfloat(frame->bounds[5]), r, &reach, &entry);
+}
+
+#endif

@@ -1,0 +1,91 @@
+/* leaf_scene.h -- RT_LEAF in world space, whole and in two halves: any kind of primitive, and instances, which start a traversal of
+ * their mesh's tree with the ray in object space. Kinds that the scene does not hold are compiled out. A template, see CONTRACT.md. */
+#if RT_HAS_INSTANCES
+/* Only lanes that come to the instance's bounds go into its mesh's tree; the others are done there. Where packets go by streams, the
+ * tree of the scene has leaf tests in several places, and a mesh's tree would be compiled as often. */
+#if RT_STREAM > 1
+RT_NOINLINE
+#else
+RT_INLINE
+#endif
+void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hits *h)
+{
+    const global rt_packed_prim *leaf = ctx->leaves + at;
+    vfloat entry;
+    const vmask enters = rt_enter_bounds(rt_vfloat(leaf->a[0]), rt_vfloat(leaf->a[1]), rt_vfloat(leaf->a[2]), rt_vfloat(leaf->b[0]),
+                                         rt_vfloat(leaf->b[1]), rt_vfloat(leaf->b[2]), r, h, &entry);
+    const uint active = rt_bits(enters);
+    if (active == 0u) return;
+    const uint index = RT_REF_INDEX(leaf->ref);
+    const global rt_instance *instance = ctx->instances + index;
+    const global float *m = instance->object_from_world;
+    rt_rays inner;
+    inner.ox = fma(rt_vfloat(m[0]), r->ox, fma(rt_vfloat(m[1]), r->oy, fma(rt_vfloat(m[2]), r->oz, rt_vfloat(m[3]))));
+    inner.oy = fma(rt_vfloat(m[4]), r->ox, fma(rt_vfloat(m[5]), r->oy, fma(rt_vfloat(m[6]), r->oz, rt_vfloat(m[7]))));
+    inner.oz = fma(rt_vfloat(m[8]), r->ox, fma(rt_vfloat(m[9]), r->oy, fma(rt_vfloat(m[10]), r->oz, rt_vfloat(m[11]))));
+    inner.dx = fma(rt_vfloat(m[0]), r->dx, fma(rt_vfloat(m[1]), r->dy, rt_vfloat(m[2]) * r->dz));
+    inner.dy = fma(rt_vfloat(m[4]), r->dx, fma(rt_vfloat(m[5]), r->dy, rt_vfloat(m[6]) * r->dz));
+    inner.dz = fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz));
+    inner.t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
+    rt_prepare(&inner, active);
+    /* Leaves of a mesh count their primitives from 0: the number to beat is turned into theirs, and back. */
+    const vfloat t = h->t;
+    const vint before = h->prim, first = rt_vint((int)instance->first_prim);
+    h->t = rt_select(enters, t, rt_vfloat(-1.0f));
+    h->prim = before - first;
+    RT_FN(rt_mesh)(ctx, instance->root, &inner, h);
+    h->t = rt_select(enters, h->t, t);
+    h->prim += first;
+    h->instance = rt_select(RT_MASK(h->prim != before), rt_vint((int)index), h->instance);
+}
+#endif
+
+RT_INLINE void RT_FN(rt_leaf_scene_test)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    const global rt_packed_prim *leaf = ctx->leaves + at;
+#if RT_HAS_INSTANCES
+    if (RT_REF_KIND(leaf->ref) == RT_REF_INSTANCE) {
+        RT_FN(rt_hit_instance)(ctx, at, ray, hit);
+        return;
+    }
+#endif
+#if RT_HAS_SPHERES
+    if (RT_REF_KIND(leaf->ref) == RT_REF_SPHERE) {
+        RT_FN(rt_hit_sphere)(leaf, at, ray, hit);
+        return;
+    }
+#endif
+#if RT_HAS_POLYGONS
+    if (RT_REF_KIND(leaf->ref) == RT_REF_POLYGON) {
+        RT_FN(rt_hit_polygon)(ctx, leaf, at, ray, hit);
+        return;
+    }
+#endif
+    RT_FN(rt_hit_triangle)(leaf, at, ray, hit);
+}
+
+/* An instance is no primitive: what is in it counts. */
+RT_INLINE void RT_FN(rt_count_leaf_scene)(const rt_ctx *ctx, uint at, rt_hits *hit)
+{
+#if RT_HAS_INSTANCES
+    if (RT_REF_KIND(ctx->leaves[at].ref) == RT_REF_INSTANCE) return;
+#endif
+    RT_COUNT_LEAF(hit);
+}
+
+RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+    RT_FN(rt_leaf_scene_test)(ctx, at, ray, hit);
+}
+
+#if RT_CPU
+RT_INLINE uint RT_FN(rt_leaf_scene_candidate)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
+{
+    RT_FN(rt_count_leaf_scene)(ctx, at, hit);
+#if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_INSTANCES
+    if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) return 1u;
+#endif
+    return RT_FN(rt_maybe_triangle)(ctx->leaves + at, ray, hit);
+}
+#endif

@@ -1,0 +1,43 @@
+/* leaf_single_ray.h -- one ray of a packet against the primitives of a leaf, eight at most, in two steps: RT_SINGLE_RAY_CANDIDATES says which
+ * it may hit, without a branch where leaves are small, and RT_SINGLE_RAY_TEST tests those. Whoever has several rays under way does the
+ * first step for all of them: the branches of the second are then decided before they are met. A template, see CONTRACT.md;
+ * RT_SINGLE_RAY_MIXED says whether there may be more than triangles. */
+RT_INLINE uint RT_SINGLE_RAY_CANDIDATES(const rt_ctx *ctx, uint first, uint count, const rt_single_rays *lone, uint l)
+{
+    const global rt_packed_prim *leaf = ctx->leaves + first;
+    uint bits = rt_row_candidates(lone, l, leaf);
+    if (count > RT_ROW) bits |= rt_row_candidates(lone, l, leaf + RT_ROW) << RT_ROW;
+#if RT_SINGLE_RAY_MIXED
+    for (uint i = 0; i < count; ++i)
+        if (RT_REF_KIND(leaf[i].ref) != RT_REF_TRIANGLE) bits |= 1u << i;
+#endif
+    return bits & ((1u << count) - 1u);
+}
+
+/* `ray` and `hit` are the packet, for primitives that are tested on lanes: then all others wait. */
+RT_INLINE void RT_SINGLE_RAY_TEST(const rt_ctx *ctx, uint first, uint bits, const rt_single_rays *lone, uint l, rt_single_hits *lone_hit,
+                            const rt_rays *ray, rt_hits *hit)
+{
+    for (; bits != 0u; bits &= bits - 1u) {
+        const uint at = first + rt_lowest(bits);
+#if RT_SINGLE_RAY_MIXED
+        if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) {
+#if RT_LANES == 1
+            RT_LEAF(ctx, at, ray, hit);
+#else
+            const vmask is_this = RT_MASK(rt_lane_index() == rt_vint((int)l));
+            rt_gather_hits(lone_hit, hit);
+            const vfloat others = hit->t;
+            hit->t = rt_select(is_this, others, rt_vfloat(-1.0f));
+            RT_LEAF(ctx, at, ray, hit);
+            hit->t = rt_select(is_this, hit->t, others);
+            rt_spread_hits(hit, lone_hit);
+#endif
+        } else
+#endif
+            RT_FN(rt_hit_triangle_single_ray)(ctx->leaves + at, at, lone, l, lone_hit);
+#if RT_ANY_HIT
+        if (RT_AT(lone_hit->t, l) < 0.0f) return;
+#endif
+    }
+}

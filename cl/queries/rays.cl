@@ -1,0 +1,63 @@
+/* rays.cl -- rays that the host brings, a block of RT_LANES at a time: for tests and benches. Memory: ray_blocks.h. */
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit, const uint fields,
+           const global float *rays, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    const uint group = first_group + (uint)get_group_id(0), packet_blocks = RT_BLOCKS(frame);
+    RT_FOR_PACKETS(frame, packet)
+    {
+        const uint first = (group * RT_GROUP_PACKETS(frame) + packet) * packet_blocks, end = min(first + packet_blocks, blocks);
+        RT_FOR_STREAMS(base, first, end) {
+            const uint count = RT_STREAM_OF(end - base);
+            rt_rays ray[RT_STREAM];
+            rt_hits hit[RT_STREAM];
+            vmask active[RT_STREAM];
+            RT_FOR_EACH_PACKET(b, count) {
+                rt_fetch_ahead(rays, base + b, blocks - 1u);
+                vfloat t_max;
+#if RT_LANES == 1 /* one fetch has it all */
+                rt_load_ray_block(rays, base + b, ray + b, &t_max);
+#else
+                t_max = rt_load_reach(rays, base + b);
+#endif
+                active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
+                if (RT_STREAM == 1) rt_clear_hits(hit + b, active[b]); /* else there is an answer for blocks without rays */
+                hit[b].t = rt_vfloat(-1.0f);
+                RT_CLEAR_OVERFLOW(hit + b)
+                if (!rt_any(active[b])) continue;
+#if RT_LANES > 1
+                rt_load_ray_block(rays, base + b, ray + b, &t_max);
+#endif
+                rt_prepare_for_boxes(ray + b);
+                /* Where few rays meet anything, most of what a stream takes is to prepare it. Counts are of the tree, from its root on. */
+#if RT_STREAM > 1 && !RT_HAS_PLANES && !defined(RT_COUNT_STEPS)
+                active[b] &= rt_enter_scene(frame, ray + b, t_max);
+                if (!rt_any(active[b])) continue;
+#endif
+                rt_prepare_for_triangles(ray + b, rt_bits(active[b]));
+                if (RT_STREAM > 1) rt_clear_hits(hit + b, active[b]);
+                hit[b].t = rt_select(active[b], t_max, rt_vfloat(-1.0f));
+            }
+            if (any_hit)
+                rt_trace_stream_any(&ctx, frame, ray, hit, count);
+            else
+                rt_trace_stream_closest(&ctx, frame, ray, hit, count);
+            RT_FOR_EACH_PACKET(b, count) {
+                RT_COUNT_OVERFLOW(hit + b)
+                if (RT_STREAM > 1 && !rt_any(active[b])) { /* mostly so where little of a picture is hit */
+                    rt_hits none;
+                    rt_clear_hits(&none, active[b]);
+                    none.t = RT_INFINITY;
+                    rt_store_hit_block(answers, base + b, fields, &none);
+                    continue;
+                }
+                if (any_hit)
+                    hit[b].t = rt_select(active[b] & RT_MASK(hit[b].t < rt_vfloat(0.0f)), rt_vfloat(0.0f), RT_INFINITY);
+                else
+                    hit[b].t = rt_select(RT_MASK(hit[b].prim >= rt_vint(0)), hit[b].t, RT_INFINITY);
+                rt_store_hit_block(answers, base + b, fields, hit + b);
+            }
+        }
+    }
+}

@@ -1,0 +1,96 @@
+/* requeued_rays.cl -- rays that the host brings, in two launches, for single rays on a GPU: where they do not fill the device a launch
+ * lasts as long as its slowest warps, and those wait for the few rays that graze hundreds of triangles.
+ *
+ * trace_short gives each ray RT_STEP_BUDGET turns of its traversal and puts those down that need more. trace_long_* begin these anew
+ * from the root, as near as their hit has come: RT_REQUEUE_ITEMS work-items take one ray and make side by side the turns that
+ * had to follow each other. Hits do not depend on the order of visits, so answers are those of rays.cl bit for bit.
+ *
+ * list: how many long rays there are, of this launch and of the next, for which it is cleared, in turn; then their numbers. */
+kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
+trace_short(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit, const uint fields,
+            const global float *rays, global float *answers, volatile global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    const uint at = (first_group + (uint)get_group_id(0)) * RT_LOCAL_SIZE + (uint)get_local_id(0);
+    if (get_global_id(0) == 0) list[turn ^ 1u] = 0u;
+    if (at >= count) return;
+    rt_rays ray;
+    rt_hits hit;
+    float t_max;
+    rt_load_ray_block(rays, at, &ray, &t_max);
+    rt_clear_hits(&hit, -1);
+    if (t_max >= 0.0f) {
+        hit.t = t_max;
+        hit.step_budget = RT_STEP_BUDGET;
+        rt_prepare(&ray, 1u);
+        if (any_hit) {
+            rt_trace_any(&ctx, frame, &ray, &hit);
+            hit.t = hit.t < 0.0f ? 0.0f : INFINITY;
+        } else {
+            rt_trace_closest(&ctx, frame, &ray, &hit);
+            hit.t = hit.prim >= 0 ? hit.t : INFINITY;
+        }
+        if (hit.step_budget < 0 && !(any_hit && hit.t == 0.0f)) list[2u + atomic_inc(list + turn)] = at;
+    }
+    RT_COUNT_OVERFLOW(&hit)
+    rt_store_hit_block(answers, at, fields, &hit);
+}
+
+#define RT_LONG_KERNEL kernel __attribute__((reqd_work_group_size(RT_REQUEUE_ITEMS, 1, 1))) void
+
+RT_LONG_KERNEL
+trace_long_closest(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
+                   const global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    local rt_requeue_scratch scratch;
+    local uint nearest, lowest;
+    const uint count = list[turn];
+    for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
+        const uint at = list[2u + i];
+        rt_rays ray;
+        rt_hits hit;
+        float t_max;
+        rt_load_ray_block(rays, at, &ray, &t_max);
+        rt_prepare(&ray, 1u);
+        rt_clear_hits(&hit, -1);
+        hit.step_budget = INT_MAX;
+        const float before = answers[at * (size_t)fields];
+        hit.t = fmin(t_max, before);
+        if (before < INFINITY) hit.prim = as_int(answers[at * (size_t)fields + (fields == RT_ANSWER_NEAREST ? 1u : 3u)]);
+        if (get_local_id(0) == 0) nearest = lowest = 0x7FFFFFFFu;
+        rt_scene_long_closest(&ctx, frame->root, &ray, &hit, &scratch);
+        RT_COUNT_OVERFLOW(&hit)
+        /* Several may have met something, of which one is the nearest. */
+        const bool found = hit.leaf != -1;
+        if (found) atomic_min(&nearest, as_uint(hit.t));
+        barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
+        if (found && as_uint(hit.t) == nearest) atomic_min(&lowest, (uint)hit.prim);
+        barrier(CLK_LOCAL_MEM_FENCE);
+        if (found && as_uint(hit.t) == nearest && (uint)hit.prim == lowest) rt_store_hit_block(answers, at, fields, &hit);
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+}
+
+/* Apart from the other, for PoCL 3.1 loses work-items where there are barriers under a condition. */
+RT_LONG_KERNEL
+trace_long_any(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
+               const global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+{
+    RT_CTX_INIT(ctx);
+    local rt_requeue_scratch scratch;
+    const uint count = list[turn];
+    for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
+        const uint at = list[2u + i];
+        rt_rays ray;
+        rt_hits hit;
+        rt_load_ray_block(rays, at, &ray, &hit.t);
+        rt_prepare(&ray, 1u);
+        hit.step_budget = INT_MAX;
+        RT_CLEAR_OVERFLOW(&hit)
+        rt_scene_long_any(&ctx, frame->root, &ray, &hit, &scratch);
+        RT_COUNT_OVERFLOW(&hit)
+        if (get_local_id(0) == 0 && scratch.nearest == 0u) answers[at * (size_t)fields] = 0.0f;
+        barrier(CLK_LOCAL_MEM_FENCE);
+    }
+}

@@ -1,0 +1,193 @@
+/* shading.h -- Whitted's model at the points that a packet hit: direct light with shadows, and where rays go on.
+ * Whitted 1980, An Improved Illumination Model for Shaded Display; highlight by Blinn 1977. */
+#ifndef RT_SHADING_H
+#define RT_SHADING_H
+
+typedef struct rt_tally {
+    uint shadow, secondary, dropped, overflow;
+#ifdef RT_INSPECT
+    rt_recorder recorder;
+#endif
+} rt_tally;
+
+/* Where a ray met a surface, seen from its side. */
+typedef struct rt_point {
+    vmask hits;
+    vmask leaving;    /* the ray comes from inside: the normals were turned */
+    rt_vec at;
+    rt_vec incoming;  /* unit direction of the ray */
+    rt_vec geometric; /* unit normals, towards where the ray comes from */
+    rt_vec normal;
+    vfloat cos_in;    /* of incoming and normal, positive */
+#ifdef RT_SPLITS_INCOHERENT
+    vfloat area;      /* rt_surface.area */
+#endif
+    vfloat outward;   /* rays that stay on this side start at: at + outward geometric */
+    vfloat inward;    /* rays that go through the surface start at: at + inward geometric */
+} rt_point;
+
+RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hits)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_point p;
+    p.hits = hits;
+#ifdef RT_SPLITS_INCOHERENT
+    p.area = s->area;
+#endif
+    p.incoming = rt_vec_of(ray->dx, ray->dy, ray->dz);
+    p.at = s->at;
+    p.leaving = RT_MASK(rt_dot(s->geometric, p.incoming) > zero);
+    const vfloat side = rt_select(p.leaving, -one, one);
+    p.geometric = rt_scale(side, s->geometric);
+    p.normal = rt_scale(side, s->normal);
+    /* An interpolated normal may point away from the viewer at silhouettes: there the geometric one serves. */
+    p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
+    p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
+    const vfloat height = side * s->height;
+    p.outward = rt_max(s->error - height, zero);
+    p.inward = -s->error - height;
+    return p;
+}
+
+/* Emission, ambient light, and every light that is not in shadow: what the points of `count` blocks send back along the rays. rays
+ * and hits: room for the shadow rays. sent: written where something was hit. */
+RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame, const rt_point *points, const rt_shade *materials,
+                               uint count, rt_rays *rays, rt_hits *hits, rt_vec *sent, rt_tally *tally)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_vec diffuse[RT_STREAM], shine[RT_STREAM];
+    RT_FOR_EACH_PACKET(b, count) {
+        diffuse[b] = rt_splat(frame->ambient[0], frame->ambient[1], frame->ambient[2]);
+        shine[b] = rt_splat(0.0f, 0.0f, 0.0f);
+    }
+    for (uint i = 0; i < frame->light_count; ++i) {
+        const global rt_light *light = ctx->lights + i;
+        vfloat cosines[RT_STREAM];
+        uint asked[RT_STREAM], any_asked = 0;
+#ifdef RT_INSPECT
+        vfloat distances[RT_STREAM];
+#endif
+        RT_FOR_EACH_PACKET(b, count) {
+            const rt_point *p = points + b;
+            rt_rays *shadow = rays + b;
+            asked[b] = 0u;
+            if (!rt_any(p->hits)) {
+                rt_clear_hits(hits + b, p->hits);
+                continue;
+            }
+            const rt_vec above = rt_along(p->outward, p->geometric, p->at);
+            rt_vec towards = rt_spread(light->position);
+            vfloat distance = RT_INFINITY;
+            if (light->kind == RT_LIGHT_POINT) {
+                towards = rt_sub(towards, above);
+                const vfloat scale = rt_inverse_length(towards);
+                distance = one / scale;
+                towards = rt_scale(scale, towards);
+            }
+            cosines[b] = rt_dot(p->normal, towards);
+            const vmask lit = p->hits & RT_MASK(cosines[b] > zero) & RT_MASK(rt_dot(p->geometric, towards) > zero);
+            asked[b] = rt_bits(lit);
+            any_asked |= asked[b];
+            shadow->ox = above.x;
+            shadow->oy = above.y;
+            shadow->oz = above.z;
+            shadow->dx = towards.x;
+            shadow->dy = towards.y;
+            shadow->dz = towards.z;
+            shadow->t_min = zero;
+            rt_clear_hits(hits + b, lit);
+            hits[b].t = rt_select(lit, distance, rt_vfloat(-1.0f));
+            if (frame->shadows != 0u && asked[b] != 0u) {
+                rt_prepare(shadow, asked[b]);
+#ifdef RT_SPLITS_INCOHERENT
+                shadow->incoherent = rt_incoherent(shadow, p->area, asked[b]);
+#endif
+            }
+#ifdef RT_INSPECT
+            distances[b] = distance;
+#endif
+        }
+        if (any_asked == 0u) continue;
+        if (frame->shadows != 0u) {
+            rt_trace_stream_any(ctx, frame, rays, hits, count);
+            RT_FOR_EACH_PACKET(b, count) {
+                tally->shadow += popcount(asked[b]);
+#ifdef RT_DEBUG
+                tally->overflow += hits[b].overflow;
+#endif
+            }
+        }
+        RT_FOR_EACH_PACKET(b, count) {
+            if (asked[b] == 0u) continue;
+            const rt_point *p = points + b;
+            const rt_shade *m = materials + b;
+            const vmask lit = RT_MASK(hits[b].t >= zero);
+            const rt_vec towards = rt_vec_of(rays[b].dx, rays[b].dy, rays[b].dz);
+            vfloat highlight = zero;
+            if (rt_any(p->hits & RT_MASK(rt_largest(m->specular) > zero))) {
+                const rt_vec half_way = rt_normalize(rt_sub(towards, p->incoming));
+                highlight = rt_power(clamp(rt_dot(p->normal, half_way), zero, one), m->shininess);
+            }
+            const rt_vec color = rt_spread(light->color);
+            diffuse[b] = rt_along(rt_select(lit, cosines[b], zero), color, diffuse[b]);
+            shine[b] = rt_along(rt_select(lit, highlight, zero), color, shine[b]);
+#ifdef RT_INSPECT
+            tally->recorder.steps = frame->shadows != 0u ? hits[b].steps : tally->recorder.steps;
+            tally->recorder.leaf_tests = frame->shadows != 0u ? hits[b].leaf_tests : tally->recorder.leaf_tests;
+            rt_record_shadow(&tally->recorder, i, frame->shadows != 0u, asked[b], rt_bits(lit), rt_vec_of(rays[b].ox, rays[b].oy, rays[b].oz),
+                             towards, distances[b], rt_reflected_light(m, rt_scale(cosines[b], color), rt_scale(highlight, color)));
+#endif
+        }
+    }
+    RT_FOR_EACH_PACKET(b, count)
+        if (rt_any(points[b].hits)) sent[b] = rt_add(materials[b].emission, rt_reflected_light(materials + b, diffuse[b], shine[b]));
+}
+
+/* Shares of light that go on as mirrored and as refracted rays. */
+typedef struct rt_split {
+    vfloat mirrored, refracted;
+    vfloat eta, cos_out; /* Snell: sin out = eta sin in */
+} rt_split;
+
+/* Fresnel's equations for unpolarised light; a refracted sine above 1 is total internal reflection. */
+RT_INLINE rt_split rt_fresnel(const rt_point *p, const rt_shade *m)
+{
+    const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
+    rt_split s;
+    s.eta = rt_select(p->leaving, m->ior, one / m->ior);
+    const vfloat sin2_out = s.eta * s.eta * rt_max(one - p->cos_in * p->cos_in, zero);
+    s.cos_out = sqrt(rt_max(one - sin2_out, zero));
+    const vfloat across = (s.eta * p->cos_in - s.cos_out) / (s.eta * p->cos_in + s.cos_out);
+    const vfloat along = (p->cos_in - s.eta * s.cos_out) / (p->cos_in + s.eta * s.cos_out);
+    const vfloat fresnel = rt_select(RT_MASK(sin2_out >= one), one, 0.5f * (across * across + along * along));
+    const vmask glass = RT_MASK(m->refract > zero);
+    s.mirrored = m->reflect + rt_select(glass, m->refract * fresnel, zero);
+    s.refracted = rt_select(glass, m->refract * (one - fresnel), zero);
+    return s;
+}
+
+/* The same, and in which lanes rays go on that weigh enough to be followed. */
+RT_INLINE rt_split rt_follow(const constant rt_frame *frame, const rt_point *p, const rt_shade *m, rt_vec weight, vmask *mirrored,
+                             vmask *refracted)
+{
+    const rt_split split = rt_fresnel(p, m);
+    const vfloat least = rt_vfloat(frame->min_weight), heaviest = rt_largest(weight);
+    *mirrored = p->hits & RT_MASK(split.mirrored * heaviest > least);
+    *refracted = p->hits & RT_MASK(split.refracted * heaviest > least);
+    return split;
+}
+
+RT_INLINE rt_vec rt_mirror_direction(const rt_point *p)
+{
+    const rt_vec d = rt_along(p->cos_in * 2.0f, p->normal, p->incoming);
+    /* An interpolated normal may send it into the surface: then it is mirrored out again. */
+    const vfloat below = rt_min(rt_dot(d, p->geometric), rt_vfloat(0.0f));
+    return rt_normalize(rt_along(below * -2.0f, p->geometric, d));
+}
+
+RT_INLINE rt_vec rt_refracted_direction(const rt_point *p, const rt_split *s)
+{
+    return rt_normalize(rt_along(s->eta, p->incoming, rt_scale(s->eta * p->cos_in - s->cos_out, p->normal)));
+}
+
+#endif

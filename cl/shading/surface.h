@@ -1,0 +1,252 @@
+/* surface.h -- from a hit to what shading needs: the point, normals, texture coordinates, material, primitive number.
+ *
+ * The point is the ray's origin + t times its direction, so rounding puts it beside the surface. Both the distance from the surface
+ * and a bound on all errors of rays that start there are computed from numbers near the point: they do not grow with the length of
+ * the ray. After Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section 3.9, Managing Rounding Error. */
+#ifndef RT_SURFACE_H
+#define RT_SURFACE_H
+
+/* Scatter: lane l of value goes to buffer[index lane l], for the lanes in bits. */
+#define RT_FOR_LANES_STORE(buffer, index, value, bits)                                                                           \
+    {                                                                                                                            \
+        float store_values[RT_LANES];                                                                                            \
+        int store_index[RT_LANES];                                                                                               \
+        rt_store(value, store_values);                                                                                           \
+        rt_store(index, store_index);                                                                                            \
+        for (uint store_l = 0; store_l < RT_LANES; ++store_l)                                                                    \
+            if ((bits) >> store_l & 1u) buffer[store_index[store_l]] = store_values[store_l];                                    \
+    }
+
+/* Arcs of spheres that nobody looks at were a twelfth of a frame. */
+#ifdef RT_AOV
+#define RT_USES_UV(ctx, number) 1
+#else
+#define RT_USES_UV(ctx, number) ((ctx)->materials[number].texture != RT_NONE)
+#endif
+
+/* The relative error of a sum of products after n roundings is at most RT_GAMMA(n) of the sum of the absolute terms. */
+#define RT_GAMMA(n) ((n)*RT_EPS / (1.0f - (n)*RT_EPS))
+/* Roundings in the height of a point above a plane or sphere: one in each difference to the anchor, three in the dot product, one
+ * more in a sphere's radius. The height is computed here, and again by the primitive's own test of a ray that starts here. */
+#define RT_HEIGHT_ERROR RT_GAMMA(10.0f)
+/* Each coordinate of a ray's origin is rounded once: half an ulp, times the square root of 3 along a slanted normal. */
+#define RT_ORIGIN_ERROR RT_GAMMA(2.0f)
+/* A point in an instance's object space is a sum of four terms: three roundings, here and in the test again. */
+#define RT_PLACED_ERROR RT_GAMMA(7.0f)
+
+typedef struct rt_surface {
+    vmask hit;
+    rt_vec at;           /* the point, world */
+    vfloat height;       /* of `at` above the surface, along `geometric` */
+    vfloat error;        /* a ray that starts farther than this from the surface does not meet it again by rounding */
+    rt_vec geometric;    /* unit normal, world, on the side that the primitive has it */
+    rt_vec normal;       /* for shading: interpolated where there are vertex normals; unit, on the geometric one's side */
+    vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
+#ifdef RT_SPLITS_INCOHERENT
+    vfloat area;         /* twice the triangle's; infinite for other kinds */
+#endif
+    vint prim;           /* -1: nothing hit */
+    vint material;
+} rt_surface;
+
+#if RT_HAS_INSTANCES
+/* Normals go with the transpose of the inverse. */
+RT_INLINE rt_vec rt_world_normal(const global float *m, rt_vec n)
+{
+    return rt_vec_of(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z);
+}
+
+/* A row of object_from_world at the point p; *magnitude: the sum of the absolute terms. */
+RT_INLINE vfloat rt_place_row(const global float *row, rt_vec p, vfloat *magnitude)
+{
+    *magnitude = fma(rt_vfloat(fabs(row[0])), fabs(p.x), fma(rt_vfloat(fabs(row[1])), fabs(p.y),
+                     fma(rt_vfloat(fabs(row[2])), fabs(p.z), rt_vfloat(fabs(row[3])))));
+    return fma(rt_vfloat(row[0]), p.x, fma(rt_vfloat(row[1]), p.y, fma(rt_vfloat(row[2]), p.z, rt_vfloat(row[3]))));
+}
+#endif
+
+/* sum |a_k| |b_k| */
+RT_INLINE vfloat rt_absolute_dot(rt_vec a, rt_vec b) { return fma(fabs(a.x), fabs(b.x), fma(fabs(a.y), fabs(b.y), fabs(a.z * b.z))); }
+
+/* Lanes that share a leaf are served together: neighbours mostly do where triangles are large. */
+RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, uint bits)
+{
+    const vfloat zero = rt_vfloat(0.0f);
+    rt_surface s;
+    s.prim = hit->prim;
+    s.hit = RT_MASK(s.prim >= rt_vint(0));
+    s.material = rt_vint(0);
+    s.tex_u = s.tex_v = zero;
+    s.geometric = rt_vec_of(hit->nx, hit->ny, hit->nz);
+    /* Nearer than the hit by the errors of t and of each coordinate, but not beyond the ray's origin: then the point is in front of
+     * other surfaces, too, that meet this one here. Beside a wall, rays from the floor would else start behind it. */
+    const vfloat reach = rt_select(s.hit, hit->t, zero) * (1.0f - RT_GAMMA(4.0f));
+    s.at = rt_along(reach, rt_vec_of(ray->dx, ray->dy, ray->dz), rt_vec_of(ray->ox, ray->oy, ray->oz));
+    const vfloat rounding = RT_ORIGIN_ERROR * rt_largest(rt_vec_of(fabs(s.at.x), fabs(s.at.y), fabs(s.at.z)));
+    s.at = rt_sub(s.at, rt_vec_of(rt_max(rt_min(reach * ray->dx, rounding), -rounding), rt_max(rt_min(reach * ray->dy, rounding), -rounding),
+                                  rt_max(rt_min(reach * ray->dz, rounding), -rounding)));
+    rt_vec anchor = rt_vec_of(zero, zero, zero); /* a point of the plane; the centre of a sphere */
+#if RT_HAS_PLANES
+    vfloat plane_offset = zero;
+#endif
+#if RT_HAS_SPHERES
+    vfloat radius = zero;
+#endif
+#if RT_HAS_NORMALS
+    rt_vec normal[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}}; /* of each corner */
+#endif
+#if RT_HAS_UVS
+    vfloat corner_u[3] = {zero, zero, zero}, corner_v[3] = {zero, zero, zero};
+#endif
+#if RT_HAS_TEXTURES
+    vmask planar = rt_vint(0);
+    uint round = 0;
+#endif
+
+#ifdef RT_SPLITS_INCOHERENT
+    s.area = sqrt(rt_dot(s.geometric, s.geometric));
+#endif
+
+    int leaf_at[RT_LANES];
+    rt_store(hit->leaf, leaf_at);
+    for (uint left = bits & rt_bits(RT_MASK(hit->leaf != rt_vint(-1))); left != 0u;) {
+        const int at = leaf_at[rt_lowest(left)];
+        const vmask mine = RT_MASK(hit->leaf == rt_vint(at));
+        left &= ~rt_bits(mine);
+#if RT_HAS_PLANES
+        if (at < -1) {
+            s.material = rt_select(mine, rt_vint((int)ctx->planes[-2 - at].material), s.material);
+            plane_offset = rt_select(mine, rt_vfloat(ctx->planes[-2 - at].offset), plane_offset);
+#ifdef RT_SPLITS_INCOHERENT
+            s.area = rt_select(mine, RT_INFINITY, s.area);
+#endif
+#if RT_HAS_TEXTURES
+            planar |= mine;
+#endif
+            continue;
+        }
+#endif
+        const global rt_packed_prim *leaf = ctx->leaves + at;
+        const uint kind = RT_REF_KIND(leaf->ref);
+        s.material = rt_select(mine, rt_vint((int)leaf->material), s.material);
+#if RT_HAS_POLYGONS
+        anchor = rt_choose(mine, rt_spread(kind == RT_REF_POLYGON ? leaf->b : leaf->a), anchor);
+#else
+        anchor = rt_choose(mine, rt_spread(leaf->a), anchor);
+#endif
+#if RT_HAS_SPHERES
+        if (kind == RT_REF_SPHERE) radius = rt_select(mine, rt_vfloat(leaf->b[0]), radius);
+#endif
+#ifdef RT_SPLITS_INCOHERENT
+        if (kind != RT_REF_TRIANGLE) s.area = rt_select(mine, RT_INFINITY, s.area);
+#endif
+#if RT_HAS_TEXTURES
+        if (kind == RT_REF_POLYGON) planar |= mine;
+        if (kind == RT_REF_SPHERE && RT_USES_UV(ctx, leaf->material)) round |= rt_bits(mine) & bits;
+#endif
+#if RT_HAS_ATTRIBUTES
+        if (kind == RT_REF_TRIANGLE) {
+            const global rt_triangle *tri = ctx->triangles + RT_REF_INDEX(leaf->ref);
+            __attribute__((opencl_unroll_hint(3))) /* in registers: cleared in halves and read whole, arrays were waited for */
+            for (uint i = 0; i < 3u; ++i) {
+#if RT_HAS_NORMALS
+                normal[i] = rt_choose(mine, rt_spread(ctx->normals + 3u * tri->v[i]), normal[i]);
+#endif
+#if RT_HAS_UVS
+                corner_u[i] = rt_select(mine, rt_vfloat(ctx->uvs[2u * tri->v[i]]), corner_u[i]);
+                corner_v[i] = rt_select(mine, rt_vfloat(ctx->uvs[2u * tri->v[i] + 1u]), corner_v[i]);
+#endif
+            }
+        }
+#endif
+    }
+
+#if RT_HAS_ATTRIBUTES
+    const vfloat v = hit->u, w = hit->v, u = rt_vfloat(1.0f) - v - w;
+    s.normal = s.geometric;
+#endif
+#if RT_HAS_NORMALS
+    const rt_vec smooth = rt_along(u, normal[0], rt_along(v, normal[1], rt_scale(w, normal[2])));
+    s.normal = rt_choose(RT_MASK(rt_dot(smooth, smooth) > rt_vfloat(1e-12f)), smooth, s.normal); /* a mesh without has zeros */
+#endif
+#if RT_HAS_UVS
+    s.tex_u = fma(u, corner_u[0], fma(v, corner_u[1], w * corner_u[2]));
+    s.tex_v = fma(u, corner_v[0], fma(v, corner_v[1], w * corner_v[2]));
+#endif
+#if RT_HAS_SPHERES && RT_HAS_TEXTURES
+    if (round != 0u) { /* longitude and latitude, poles on Y; one by one, so that a library's vectors need not agree with its scalars */
+        float nx[RT_LANES], ny[RT_LANES], nz[RT_LANES], tex_u[RT_LANES], tex_v[RT_LANES];
+        rt_store(s.geometric.x, nx);
+        rt_store(s.geometric.y, ny);
+        rt_store(s.geometric.z, nz);
+        rt_store(s.tex_u, tex_u);
+        rt_store(s.tex_v, tex_v);
+        for (; round != 0u; round &= round - 1u) {
+            const uint l = rt_lowest(round);
+            const float length = rsqrt(max(nx[l] * nx[l] + ny[l] * ny[l] + nz[l] * nz[l], 1e-36f));
+            tex_u[l] = 0.5f + atan2(nx[l], nz[l]) * 0.15915494f;
+            tex_v[l] = 0.5f + asin(clamp(ny[l] * length, -1.0f, 1.0f)) * 0.31830989f;
+        }
+        s.tex_u = rt_load(tex_u);
+        s.tex_v = rt_load(tex_v);
+    }
+#endif
+#if RT_HAS_TEXTURES
+    if (rt_any(planar)) { /* one texture a unit, over the two axes that the plane faces least */
+        const vfloat x = fabs(s.geometric.x), y = fabs(s.geometric.y), z = fabs(s.geometric.z);
+        s.tex_u = rt_select(planar, rt_select(RT_MASK(x > y) & RT_MASK(x > z), s.at.z, s.at.x), s.tex_u);
+        s.tex_v = rt_select(planar, rt_select(RT_MASK(y >= x) & RT_MASK(y >= z), -s.at.z, s.at.y), s.tex_v);
+    }
+#endif
+
+    rt_vec from_anchor = rt_sub(s.at, anchor);
+    s.height = rt_dot(s.geometric, from_anchor);
+    s.error = RT_HEIGHT_ERROR * rt_absolute_dot(s.geometric, from_anchor);
+#if RT_HAS_PLANES
+    s.height -= plane_offset;
+#endif
+
+#if RT_HAS_INSTANCES
+    int instance_at[RT_LANES];
+    rt_store(hit->instance, instance_at);
+    for (uint left = bits & rt_bits(s.hit & RT_MASK(hit->instance >= rt_vint(0))); left != 0u;) {
+        const int at = instance_at[rt_lowest(left)];
+        const vmask mine = RT_MASK(hit->instance == rt_vint(at));
+        left &= ~rt_bits(mine);
+        const global rt_instance *instance = ctx->instances + at;
+        if (instance->material != RT_NONE) s.material = rt_select(mine, rt_vint((int)instance->material), s.material);
+        /* In object space, where the ray is traced: there `anchor` and the hit's normal are exact. */
+        rt_vec placed, magnitude;
+        placed.x = rt_place_row(instance->object_from_world, s.at, &magnitude.x);
+        placed.y = rt_place_row(instance->object_from_world + 4, s.at, &magnitude.y);
+        placed.z = rt_place_row(instance->object_from_world + 8, s.at, &magnitude.z);
+        placed = rt_sub(placed, anchor);
+        s.height = rt_select(mine, rt_dot(s.geometric, placed), s.height);
+        s.error = rt_select(mine, RT_HEIGHT_ERROR * rt_absolute_dot(s.geometric, placed) + RT_PLACED_ERROR * rt_absolute_dot(s.geometric, magnitude), s.error);
+        s.geometric = rt_choose(mine, rt_world_normal(instance->object_from_world, s.geometric), s.geometric);
+#if RT_HAS_ATTRIBUTES
+        s.normal = rt_choose(mine, rt_world_normal(instance->object_from_world, s.normal), s.normal);
+#endif
+    }
+#endif
+
+    /* The normal's length is the scale of height and error: world_from_object's, too. */
+    const vfloat scale = rt_inverse_length(s.geometric);
+    s.geometric = rt_scale(scale, s.geometric);
+    s.height *= scale;
+#if RT_HAS_SPHERES
+    s.height = rt_select(RT_MASK(radius > zero), sqrt(rt_dot(from_anchor, from_anchor)) - radius, s.height);
+#endif
+    s.error = fma(scale, s.error, rounding);
+#if RT_HAS_ATTRIBUTES
+    s.normal = rt_normalize(s.normal);
+    /* Files disagree on which side corners turn; the geometric normal decides. */
+    const vmask against = RT_MASK(rt_dot(s.normal, s.geometric) < zero);
+    s.normal = rt_scale(rt_select(against, rt_vfloat(-1.0f), rt_vfloat(1.0f)), s.normal);
+#else
+    s.normal = s.geometric;
+#endif
+    return s;
+}
+
+#endif

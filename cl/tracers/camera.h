@@ -1,0 +1,186 @@
+/* camera.h -- which pixels a work-item computes, and the camera rays through them.
+ *
+ * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels, of
+ * which RT_STREAM are traced together (packet_stream.h). A work-group is several packets, so that neighbours in the picture run close
+ * in time. On a CPU (RT_CPU) it is one work-item that does these packets in turn: PoCL would keep the private arrays of all
+ * work-items of a group side by side, and they would fall out of the cache. There a group is as many packets as 16 pixels hold
+ * either way, one at least and four at most, so that many cores have enough groups to share. The packet's size is no define but a number of the
+ * frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
+#ifndef RT_CAMERA_H
+#define RT_CAMERA_H
+
+#if RT_MAX_PIXELS == 1 /* GPUs: let the compiler see that there is one pixel */
+#define RT_PACKET_W(frame) 1u
+#define RT_PACKET_H(frame) 1u
+#define RT_BLOCKS(frame) 1u
+#else
+#define RT_PACKET_W(frame) ((frame)->packet_w)
+#define RT_PACKET_H(frame) ((frame)->packet_h)
+#define RT_BLOCKS(frame) ((frame)->blocks_x * (frame)->blocks_y)
+#endif
+
+/* Packets of a group side by side, RT_GROUP_SIDE at most: Layout::group_w and group_h of the host. */
+#if RT_CPU
+#define RT_IN_GROUP(packet_side) clamp(16u / (packet_side), 1u, (uint)RT_GROUP_SIDE)
+#define RT_GROUP_W(frame) RT_IN_GROUP(RT_PACKET_W(frame))
+#define RT_GROUP_H(frame) RT_IN_GROUP(RT_PACKET_H(frame))
+#define RT_LOCAL_SIZE 1
+#define RT_FOR_PACKETS(frame, packet) for (uint packet = 0; packet < RT_GROUP_PACKETS(frame); ++packet)
+#else
+#define RT_GROUP_W(frame) RT_GROUP_SIDE
+#define RT_GROUP_H(frame) RT_GROUP_SIDE
+#define RT_LOCAL_SIZE (RT_GROUP_SIDE * RT_GROUP_SIDE)
+#define RT_FOR_PACKETS(frame, packet) for (uint packet = (uint)get_local_id(0), once = 1; once; once = 0)
+#endif
+#define RT_GROUP_PACKETS(frame) (RT_GROUP_W(frame) * RT_GROUP_H(frame))
+
+/* First pixel of a packet. group: number of the work-group, row by row over the picture, or over those rows of it that a device
+ * has where several share it; packet: within the group. */
+RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uint packet)
+{
+    const uint w = RT_PACKET_W(frame), h = RT_PACKET_H(frame);
+    const uint group_w = RT_GROUP_W(frame), groups_x = (frame->width + w * group_w - 1) / (w * group_w);
+    uint row = group / groups_x;
+    const uint x = (group % groups_x) * group_w + packet % group_w;
+    if (frame->row_count != 0u) row = ((const constant uint *)(frame + frame->layers))[row];
+    const uint y = row * RT_GROUP_H(frame) + packet / group_w;
+    return (uint2)(x * w, y * h);
+}
+
+/* Which of a launch's samples a work-group is of; *group: its number in the launch, and then in the sample. A group's samples
+ * follow each other, so that what one has fetched is still near for the next. */
+RT_INLINE uint rt_layer_of(const constant rt_frame *frame, uint *group)
+{
+#if RT_MAX_PIXELS == 1 && RT_LANES == 1
+    const uint layer = *group % frame->layers;
+    *group /= frame->layers;
+    return layer;
+#else
+    return 0u;
+#endif
+}
+
+/* Pixel of each lane within the packet, and whether packet and picture hold it. */
+RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, uint block, vint *in_x, vint *in_y)
+{
+#if RT_MAX_PIXELS == 1 && RT_LANES == 1
+    *in_x = *in_y = 0;
+    return RT_MASK(origin.x < frame->width) & RT_MASK(origin.y < frame->height);
+#else
+    const uint block_x = (block % frame->blocks_x) << frame->block_w_log2;
+    const uint block_y = (block / frame->blocks_x) * (RT_LANES >> frame->block_w_log2);
+    const vint lane = rt_lane_index();
+    const vint x = rt_vint((int)block_x) + (lane & rt_vint((int)frame->block_w - 1));
+    const vint y = rt_vint((int)block_y) + (lane >> rt_vint((int)frame->block_w_log2));
+    *in_x = x;
+    *in_y = y;
+    return RT_MASK(x < rt_vint((int)RT_PACKET_W(frame))) & RT_MASK(y < rt_vint((int)RT_PACKET_H(frame))) &
+           RT_MASK(x + rt_vint((int)origin.x) < rt_vint((int)frame->width)) &
+           RT_MASK(y + rt_vint((int)origin.y) < rt_vint((int)frame->height));
+#endif
+}
+
+/* Camera rays through pixels (x, y) of the picture, at the place within a pixel that the frame says. It is the same for all
+ * pixels, so that pictures do not depend on who renders what when, and packets stay as coherent as they are. */
+RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
+{
+    const vfloat px = rt_to_float(x) + rt_vfloat(frame->within_x), py = rt_to_float(y) + rt_vfloat(frame->within_y);
+    const vfloat sx = fma(px, rt_vfloat(2.0f * frame->pixel_x), rt_vfloat(-1.0f));
+    const vfloat sy = fma(py, rt_vfloat(-2.0f * frame->pixel_y), rt_vfloat(1.0f));
+    const vfloat dx = fma(sx, rt_vfloat(frame->right[0]), fma(sy, rt_vfloat(frame->up[0]), rt_vfloat(frame->forward[0])));
+    const vfloat dy = fma(sx, rt_vfloat(frame->right[1]), fma(sy, rt_vfloat(frame->up[1]), rt_vfloat(frame->forward[1])));
+    const vfloat dz = fma(sx, rt_vfloat(frame->right[2]), fma(sy, rt_vfloat(frame->up[2]), rt_vfloat(frame->forward[2])));
+    const vfloat scale = rt_vfloat(1.0f) / sqrt(fma(dx, dx, fma(dy, dy, dz * dz)));
+    r->ox = rt_vfloat(frame->eye[0]);
+    r->oy = rt_vfloat(frame->eye[1]);
+    r->oz = rt_vfloat(frame->eye[2]);
+    r->dx = dx * scale;
+    r->dy = dy * scale;
+    r->dz = dz * scale;
+    r->t_min = rt_vfloat(0.0f);
+}
+
+#if RT_STREAM > 1 && !RT_HAS_PLANES
+/* Whether no camera ray of a packet comes to the bounds of all but planes: by intervals of the directions, not yet of unit length,
+ * which are affine in the pixels and so lie between those of the packet's corners. */
+RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
+{
+    /* Corners of the packet, in lanes; x and y are those of rt_camera_rays(). */
+    const float4 px = convert_float(origin.x) + (float4)(0.0f, 1.0f, 0.0f, 1.0f) * convert_float(RT_PACKET_W(frame) - 1u) + frame->within_x;
+    const float4 py = convert_float(origin.y) + (float4)(0.0f, 0.0f, 1.0f, 1.0f) * convert_float(RT_PACKET_H(frame) - 1u) + frame->within_y;
+    const float4 sx = px * (2.0f * frame->pixel_x) - 1.0f, sy = py * (-2.0f * frame->pixel_y) + 1.0f;
+    float enter = 0.0f, leave = MAXFLOAT;
+    for (uint k = 0; k < 3u; ++k) {
+        const float4 d = sx * frame->right[k] + sy * frame->up[k] + frame->forward[k];
+        /* A millionth of what is added up covers how it is rounded, there and here; forward has unit length. */
+        const float slack = 1e-6f * (1.0f + fabs(frame->right[k]) + fabs(frame->up[k]));
+        const float hi = rt_max(rt_max(d.x, d.y), rt_max(d.z, d.w)) + slack, lo = rt_min(rt_min(d.x, d.y), rt_min(d.z, d.w)) - slack;
+        const float to_lower = frame->bounds[k] - frame->eye[k], to_upper = frame->bounds[3u + k] - frame->eye[k];
+        /* Against the side that is ahead of the eye no ray comes earlier than the fastest; past both none stays longer than the slowest. */
+        if (to_lower > 0.0f) {
+            if (hi <= 0.0f) return true;
+            enter = rt_max(enter, to_lower / hi);
+            if (lo > 0.0f) leave = rt_min(leave, to_upper / lo);
+        } else if (to_upper < 0.0f) {
+            if (lo >= 0.0f) return true;
+            enter = rt_max(enter, to_upper / lo);
+            if (hi < 0.0f) leave = rt_min(leave, to_lower / hi);
+        } else {
+            if (lo > 0.0f) leave = rt_min(leave, to_upper / lo);
+            if (hi < 0.0f) leave = rt_min(leave, to_lower / hi);
+        }
+    }
+    return enter > leave * 1.00001f;
+}
+#endif
+
+/* What a packet's pixels, row by row, add to the film. */
+RT_INLINE void rt_put_pixels(const constant rt_frame *frame, uint2 origin, const float4 *sums, global float4 *film)
+{
+    const uint packet_w = RT_PACKET_W(frame);
+    if (origin.x >= frame->width || origin.y >= frame->height) return;
+    const uint columns = min(packet_w, frame->width - origin.x), rows = min(RT_PACKET_H(frame), frame->height - origin.y);
+    for (uint y = 0; y < rows; ++y) {
+        global float4 *const to = film + (size_t)(origin.y + y) * frame->width + origin.x;
+        const float4 *const from = sums + y * packet_w;
+        if (frame->adds == 0u)
+            for (uint x = 0; x < columns; ++x) to[x] = from[x];
+        else
+            for (uint x = 0; x < columns; ++x) to[x] += from[x];
+    }
+}
+
+RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
+{
+    h->t = rt_select(active, RT_INFINITY, rt_vfloat(-1.0f));
+    h->u = h->v = h->nx = h->ny = h->nz = rt_vfloat(0.0f);
+    h->leaf = h->instance = rt_vint(-1);
+    h->prim = rt_vint(-1); /* below all: t_max itself is out of the ray's reach */
+#ifdef RT_COUNT_STEPS
+    h->steps = h->leaf_tests = h->lane_steps = 0;
+#endif
+#ifdef RT_DEBUG
+    h->overflow = 0;
+#endif
+}
+
+RT_INLINE void rt_fill_with_background(const constant rt_frame *frame, float4 *sums)
+{
+    const float4 background = (float4)(frame->background[0], frame->background[1], frame->background[2], 1.0f);
+    for (uint i = 0; i < RT_PACKET_W(frame) * RT_PACKET_H(frame); ++i) sums[i] = background;
+}
+
+/* A packet that sees nothing but background, if it is one: its pixels, and the distances of its camera rays, block by block. */
+RT_INLINE bool rt_only_background(const constant rt_frame *frame, uint2 origin, float4 *sums, global float *distance)
+{
+#if RT_STREAM > 1 && !RT_HAS_PLANES
+    if (!rt_packet_misses(frame, origin)) return false;
+    rt_fill_with_background(frame, sums);
+    for (uint i = 0; frame->sample == 0u && i < RT_BLOCKS(frame); ++i) rt_store(RT_INFINITY, distance + i * RT_LANES);
+    return true;
+#else
+    return false;
+#endif
+}
+
+#endif

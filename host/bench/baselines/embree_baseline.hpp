@@ -1,0 +1,9 @@
+// embree_baseline.hpp -- Embree 3 as a peer.
+#pragma once
+#include "bench/baselines/baseline.hpp"
+
+namespace clarity {
+
+std::unique_ptr<BaselineScene> build_embree(const BaselineMesh& mesh, const std::string& quality, unsigned threads);
+
+}  // namespace clarity

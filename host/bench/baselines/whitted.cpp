@@ -1,0 +1,45 @@
+#include "bench/baselines/whitted.hpp"
+
+#include <cmath>
+
+#include "base/error.hpp"
+#include "render/frame/frame_constants.hpp"
+
+namespace clarity {
+
+View whitted_view(const Scene& scene, View view) {
+    if (view.lights.empty()) throw Error(Exit::failed, "no light: the frame of peers has one");
+    view.lights.resize(1);
+    rt_material mirror{};
+    for (float& c : mirror.color) c = 0.8f;
+    mirror.reflect = 0.5f;
+    mirror.shininess = mirror.ior = 1;
+    mirror.texture = RT_NONE;
+    view.materials.assign(scene.materials.size(), mirror);
+    return view;
+}
+
+WhittedScene whitted_scene(const View& view, const Settings& settings) {
+    WhittedScene whitted;
+    // Of the structure make_frame() takes the root and the number of planes, which peers do not have.
+    whitted.frame = make_frame(view, settings, Layout(), AccelData(), 0);
+    whitted.light = view.lights.at(0);
+    whitted.color = view.materials.at(0).color[0];
+    whitted.reflect = view.materials.at(0).reflect;
+    whitted.min_weight = static_cast<float>(settings.min_weight);
+    whitted.generations = static_cast<unsigned>(settings.depth);
+    return whitted;
+}
+
+double differing_pixels(const FloatImage& a, const FloatImage& b, float tolerance) {
+    if (a.width != b.width || a.height != b.height || a.channels != b.channels || a.pixels.empty()) return 1;
+    size_t differ = 0;
+    for (size_t i = 0; i < a.pixels.size(); i += a.channels) {
+        bool same = true;
+        for (unsigned c = 0; c < a.channels; ++c) same &= std::fabs(a.pixels[i + c] - b.pixels[i + c]) <= tolerance;
+        differ += !same;
+    }
+    return double(differ) * a.channels / double(a.pixels.size());
+}
+
+}  // namespace clarity

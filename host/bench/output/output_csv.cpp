@@ -1,0 +1,78 @@
+// output_csv.cpp -- records as CSV (RFC 4180): JSON's keys, nested ones joined by a dot.
+#include <algorithm>
+
+#include "bench/output/record_keys.hpp"
+
+namespace clarity {
+namespace {
+
+std::string kernels_text(const Json& kernels) {
+    std::string text;
+    if (kernels.is_object())
+        for (const auto& [name, ms] : kernels.items()) text += (text.empty() ? "" : "; ") + name + " " + ms.dump();
+    return text;
+}
+
+std::string parts_text(const Json& parts) {
+    std::string text;
+    if (parts.is_array())
+        for (const Json& part : parts)
+            text += (text.empty() ? "" : "; ") + part.at("part").get<std::string>() + " " + part.at("ms").dump();
+    return text;
+}
+
+// Values by their paths, "/run/clock_mhz/before".
+Json flat(const BenchReport& report, const BenchRecord& record) {
+    Json json = record_json(report, record);
+    json["kernels_ms"] = kernels_text(json["kernels_ms"]);
+    for (const char* key : {"parts_ms", "within_ms"}) json[key] = parts_text(json[key]);
+    return json.flatten();
+}
+
+// A record that has everything: its paths are the columns, whatever the first record lacks.
+std::vector<std::string> columns() {
+    BenchReport report;
+    BenchRecord full;
+    full.measure = "frame";
+    full.time_ms = full.wall_ms = {1, 1, 1, 1, 1, 1, 1, 1};
+    full.analysis.present = true;
+    full.speedup = {"embree", 1, 1, 1};
+    report.records.push_back(full);
+    std::vector<std::string> paths;
+    const Json json = flat(report, full);
+    for (auto at = json.begin(); at != json.end(); ++at) paths.push_back(at.key());
+    return paths;
+}
+
+std::string field(const Json& value) {
+    if (value.is_null() || value.is_object()) return {};
+    const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+    if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
+}  // namespace
+
+std::string bench_csv(const BenchReport& report) {
+    const std::vector<std::string> paths = columns();
+    std::string text;
+    for (const std::string& path : paths) {
+        std::string name = path.substr(1);
+        std::replace(name.begin(), name.end(), '/', '.');
+        text += (text.empty() ? "" : ",") + name;
+    }
+    text += "\r\n";
+    for (const BenchRecord& record : report.records) {
+        const Json json = flat(report, record);
+        for (size_t i = 0; i < paths.size(); ++i) {
+            if (i > 0) text += ",";
+            if (const auto at = json.find(paths[i]); at != json.end()) text += field(*at);
+        }
+        text += "\r\n";
+    }
+    return text;
+}
+
+}  // namespace clarity

@@ -1,0 +1,60 @@
+#include "bench/output/row.hpp"
+
+#include "bench/run/machine.hpp"
+#include "plugin/parameters.hpp"
+
+namespace clarity {
+
+void describe(BenchRecord& row, const Scene& scene) {
+    row.triangles = scene.placed_triangle_count();
+    row.primitives = row.triangles + scene.spheres.size() + scene.polygons.size() + scene.planes.size();
+}
+
+void describe(BenchRecord& row, const DeviceInfo& device) {
+    row.device = device.name;
+    row.device_id = device.id();
+    row.driver = device.platform + ", " + device.driver;
+    row.device_clock_mhz = device.clock_mhz;
+    row.threads = device.compute_units;
+}
+
+void describe_host(BenchRecord& row, unsigned threads) {
+    row.device = host_cpu_name();
+    row.device_id = "host";
+    row.threads = threads;
+}
+
+void describe(BenchRecord& row, const Settings& settings) {
+    row.tracer = settings.tracer;
+    row.depth = settings.depth;
+    row.ray_slots = settings.ray_slots;
+    row.width = settings.width;
+    row.height = settings.height;
+}
+
+void describe(BenchRecord& row, const AccelData& accel) {
+    row.build_ms = accel.build_ms;
+    row.pack_ms = accel.pack_ms;
+    row.accel_bytes = accel.bytes;
+    row.bytes_per_triangle = row.triangles > 0 ? double(accel.bytes) / double(row.triangles) : 0;
+    row.nodes = static_cast<uint64_t>(accel.stat("nodes"));
+    row.sah_cost = accel.stat("sah_cost");
+}
+
+void describe(BenchRecord& row, const Prepared& prepared) {
+    row.tracer = prepared.settings.tracer;
+    row.packet_w = prepared.settings.packet_w;
+    row.packet_h = prepared.settings.packet_h;
+    row.lanes = prepared.settings.lanes;
+    row.compile_ms = prepared.compile_ms;
+    describe(row, *prepared.accel);
+}
+
+std::string parameters_text(const rt_plugin& plugin, const ParameterValues& values) {
+    std::string text;
+    for (rt_u32 i = 0; i < plugin.param_count && i < values.size(); ++i)
+        text += (text.empty() ? "" : ",") + parameter_text(plugin, values, i);
+    return text;
+}
+
+}  // namespace clarity

@@ -1,0 +1,178 @@
+#include "bench/run/pictures.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <map>
+
+#include "base/error.hpp"
+#include "bench/baselines/speedup.hpp"
+#include "bench/baselines/whitted.hpp"
+#include "bench/output/row.hpp"
+#include "bench/run/bench.hpp"
+#include "bench/run/failure.hpp"
+#include "render/accel/accel_choice.hpp"
+#include "render/multi/multi_frame_renderer.hpp"
+
+namespace clarity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr float kMayDiffer = 0.02f;        // of a pixel, where devices are of different kinds
+constexpr double kPixelsMayDiffer = 0.01;  // so many of them
+
+// The first devices of a run, and what makes pictures on them.
+struct Team {
+    BenchRecord row;
+    std::shared_ptr<const MultiPrepared> prepared;
+    std::unique_ptr<MultiFrameRenderer> frames;
+    std::map<std::string, std::vector<double>> times;
+    bool alike = true;
+};
+
+std::vector<size_t> team_sizes(size_t all) {
+    std::vector<size_t> sizes;
+    for (size_t n = 1; n < all; n *= 2) sizes.push_back(n);
+    sizes.push_back(all);
+    return sizes;
+}
+
+std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size) {
+    auto team = std::make_unique<Team>();
+    auto prepared = std::make_shared<MultiPrepared>();
+    prepared->parts.assign(all.parts.begin(), all.parts.begin() + static_cast<std::ptrdiff_t>(size));
+    Devices devices;
+    for (const MultiPrepared::Part& part : prepared->parts) devices.push_back(part.device);
+    const std::vector<DeviceInfo> infos = infos_of(devices);
+    for (const DeviceInfo& info : infos) team->alike &= info.driver == infos[0].driver && info.cpu == infos[0].cpu;
+    describe(team->row, infos[0]);
+    team->row.device = devices_name(infos);
+    team->row.device_id = device_list_text(infos);
+    team->row.threads = 0;
+    for (const DeviceInfo& info : infos) team->row.threads += info.compute_units;
+    team->frames = std::make_unique<MultiFrameRenderer>(devices);
+    team->prepared = std::move(prepared);
+    return team;
+}
+
+void note_times(Team& team, const FrameStats& stats) {
+    for (const KernelTime& kernel : stats.kernels) team.times[kernel.name].push_back(kernel.ms);
+    for (const DeviceShare& share : stats.devices) {
+        team.times[share.id + " share"].push_back(share.share);
+        team.times[share.id + " trace"].push_back(share.device_ms);
+        team.times[share.id + " trace, waiting included"].push_back(share.wall_ms);
+        team.times[share.id + " launches"].push_back(share.launches);
+        team.times[share.id + " tone map"].push_back(share.tone_map_ms);
+        team.times[share.id + " read-back"].push_back(share.read_ms);
+    }
+}
+
+void check_picture(Team& team, const FloatImage& truth, const FloatImage& picture) {
+    const double differ = differing_pixels(picture, truth, team.alike ? 0.0f : kMayDiffer);
+    if (differ <= (team.alike ? 0.0 : kPixelsMayDiffer)) return;
+    char why[160];
+    std::snprintf(why, sizeof why, "%.3g %% of its pixels are not those of one device: one of the two is wrong", 100 * differ);
+    team.row.status = RowStatus::refused;
+    team.row.why = why;
+}
+
+// By the rows of one device.
+void compare_with_one(std::vector<BenchRecord>& rows) {
+    const BenchRecord* one = nullptr;  // the first
+    for (BenchRecord& row : rows) {
+        if (!one) one = &row;
+        if (&row == one || row.status != RowStatus::ok || one->status != RowStatus::ok || speed(*one) <= 0) continue;
+        row.speedup = speedup(row, *one);
+    }
+}
+
+}  // namespace
+
+std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
+                                          const BenchCase& c, const MeasureRules& rules, Progress& progress) {
+    std::vector<BenchRecord> rows;
+    std::vector<DeviceInfo> infos;
+    for (size_t i = 0; i < fixture.device_count(); ++i) infos.push_back(fixture.device(i));
+    for (const Variant& variant : c.variants) {
+        Settings settings = variant_settings(plugins, request, variant);
+        if (variant.accel.empty()) choose_accel(plugins, default_accel(plugins, device_list_text(infos)), settings);
+        BenchRecord row;
+        row.suite = c.suite;
+        row.case_name = c.name;
+        row.scene = c.name.substr(0, c.name.rfind('/'));
+        row.measure = c.measure;
+        row.accel = settings.accel;
+        describe(row, *fixture.scene());
+        describe(row, settings);
+        std::vector<std::unique_ptr<Team>> teams;
+        std::vector<Contender> contenders;
+        const auto samples = unsigned(settings.spp);
+        try {
+            const auto all = fixture.prepare_all(settings, progress);
+            for (const size_t size : team_sizes(all->parts.size())) {
+                teams.push_back(make_team(*all, size));
+                Team& team = *teams.back();
+                BenchRecord of = row;
+                of.device = team.row.device;
+                of.device_id = team.row.device_id;
+                of.driver = team.row.driver;
+                of.device_clock_mhz = team.row.device_clock_mhz;
+                of.threads = team.row.threads;
+                of.variant = (variant.label.empty() ? "" : variant.label + ", ") + std::to_string(size) +
+                             (size == 1 ? " device" : " devices");
+                describe(of, *team.prepared->first());
+                team.row = std::move(of);
+                contenders.push_back(
+                    {team.row.variant, [&team, &fixture, &progress, settings, samples] {
+                         const auto begin = Clock::now();
+                         FrameStats stats =
+                             team.frames->trace(team.prepared, settings, fixture.view(), 0, false, progress, samples);
+                         team.frames->read_display(settings, &stats);
+                         const auto took = Clock::now() - begin;
+                         note_times(team, stats);
+                         return Sample{stats.device_ms, std::chrono::duration<double, std::milli>(took).count()};
+                     }});
+            }
+            const std::vector<Measured> measured = measure_interleaved(contenders, rules, progress);
+            FloatImage truth;
+            for (size_t i = 0; i < teams.size(); ++i) {
+                Team& team = *teams[i];
+                team.row.status = measured[i].status;
+                team.row.why = measured[i].why;
+                team.row.time_ms = measured[i].time_ms;
+                team.row.wall_ms = measured[i].wall_ms;
+                if (team.row.status != RowStatus::ok) continue;
+                const FrameStats counted =
+                    team.frames->trace(team.prepared, settings, fixture.view(), 0, true, progress, samples);
+                team.row.rays_primary = counted.primary;
+                team.row.rays_shadow = counted.shadow;
+                team.row.rays_secondary = counted.secondary;
+                team.row.rays_dropped = counted.dropped;
+                team.row.fps = team.row.wall_ms.median > 0 ? 1000 / team.row.wall_ms.median : 0;
+                team.row.mrays_per_s =
+                    team.row.time_ms.median > 0 ? double(team.row.rays()) / team.row.time_ms.median / 1000 : 0;
+                for (const auto& [name, values] : team.times) team.row.kernels_ms.emplace_back(name, median(values));
+                FloatImage picture = team.frames->read_values();
+                if (truth.pixels.empty())
+                    truth = std::move(picture);
+                else
+                    check_picture(team, truth, picture);
+            }
+        } catch (const Cancelled&) {
+            throw;
+        } catch (const std::exception& error) {
+            row.status = RowStatus::failed;
+            row.why = failure_text(error);
+            rows.push_back(row);
+            continue;
+        }
+        std::vector<BenchRecord> own;
+        for (const auto& team : teams) own.push_back(std::move(team->row));
+        compare_with_one(own);
+        rows.insert(rows.end(), own.begin(), own.end());
+    }
+    return rows;
+}
+
+}  // namespace clarity

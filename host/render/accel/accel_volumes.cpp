@@ -1,0 +1,70 @@
+// accel_volumes.cpp -- bounding volumes of a level, brought to world space.
+#include <algorithm>
+#include <cmath>
+
+#include "plugin/host_services.hpp"
+#include "render/accel/accel_build.hpp"
+
+namespace clarity {
+namespace {
+
+struct Sink {
+    Volumes& volumes;
+    const Affine& world;
+    size_t limit;
+    bool full() const { return volumes.boxes.size() + volumes.spheres.size() >= limit; }
+};
+
+// How much a transform lengthens at most, bounded by its largest column: exact for rotations with uniform scale.
+float scale_of(const Affine& m) {
+    float largest = 0;
+    for (int column = 0; column < 3; ++column) largest = std::max(largest, std::hypot(m[column], m[4 + column], m[8 + column]));
+    return largest;
+}
+
+void add_box(void* ctx, const float lo[3], const float hi[3]) {
+    Sink& sink = *static_cast<Sink*>(ctx);
+    if (sink.full()) return;
+    std::array<std::array<float, 3>, 8> corners;
+    for (int i = 0; i < 8; ++i) {
+        const float p[3] = {i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2]};
+        corners[i] = transform_point(sink.world, p);
+    }
+    sink.volumes.boxes.push_back(corners);
+}
+
+void add_sphere(void* ctx, const float center[3], float radius) {
+    Sink& sink = *static_cast<Sink*>(ctx);
+    if (sink.full()) return;
+    const auto p = transform_point(sink.world, center);
+    sink.volumes.spheres.push_back({p[0], p[1], p[2], radius * scale_of(sink.world)});
+}
+
+}  // namespace
+
+Volumes accel_volumes(const AccelData& accel, rt_u32 level, size_t limit) {
+    Volumes volumes;
+    const rt_accel& table = *accel.plugin->accel;
+    if (!table.levels) return volumes;
+    std::vector<const void*> slots;
+    std::vector<uint64_t> counts;
+    for (const AccelData::Slot& slot : accel.slots) {
+        slots.push_back(slot.memory.data());
+        counts.push_back(slot.count);
+    }
+    const rt_built built{sizeof(rt_built), static_cast<rt_u32>(accel.roots.size()), slots.data(), counts.data(),
+                         accel.roots.data()};
+    Progress progress;
+    const auto add_group = [&](rt_u32 group, const Affine& world) {
+        Sink sink{volumes, world, limit};
+        const rt_volume_sink calls{sizeof(rt_volume_sink), &sink, add_box, add_sphere};
+        HostServices services(std::string("accel ") + accel.plugin->id, progress);
+        services.check(1, [&] { return table.levels(services.host(), &built, group, level, &calls); });
+    };
+    add_group(0, kIdentity);
+    for (size_t i = 0; i < accel.instances.size(); ++i)
+        add_group(accel.scene.group_of_instance[i], accel.scene.world_from_object[i]);
+    return volumes;
+}
+
+}  // namespace clarity

@@ -1,0 +1,361 @@
+// build_scene.cpp -- from a Scene to boxes in groups.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <mutex>
+
+#include "base/error.hpp"
+#include "base/parallel_for.hpp"
+#include "render/accel/accel_build.hpp"
+#include "render/accel/memory_plan.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr uint32_t kChunk = 1u << 10;  // triangles that one task copies
+constexpr uint32_t kAhead = 32;        // places that are fetched before they are written
+
+rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
+    rt_prim prim;
+    for (int k = 0; k < 3; ++k) {
+        prim.lo[k] = INFINITY;
+        prim.hi[k] = -INFINITY;
+    }
+    prim.ref = ref;
+    prim.mesh = mesh;
+    return prim;
+}
+
+void grow(Bounds& bounds, const rt_prim& prim) {
+    bounds.add(prim.lo);
+    bounds.add(prim.hi);
+}
+
+void grow(rt_prim& prim, const float* p) {
+    for (int k = 0; k < 3; ++k) {
+        prim.lo[k] = std::min(prim.lo[k], p[k]);
+        prim.hi[k] = std::max(prim.hi[k], p[k]);
+    }
+}
+
+// Room for the rounding of whoever computes with the box's contents in another order.
+void widen(rt_prim& prim, float relative) {
+    for (int k = 0; k < 3; ++k) {
+        const float room = relative * std::max(std::fabs(prim.lo[k]), std::fabs(prim.hi[k]));
+        prim.lo[k] -= room;
+        prim.hi[k] += room;
+    }
+}
+
+// Four numbers of a leaf or prim, in a register: three coordinates, and bits that name something.
+using Row = float __attribute__((vector_size(16)));
+using Bits = rt_u32 __attribute__((vector_size(16)));
+Row named(Row point, rt_u32 name) {
+    return reinterpret_cast<Row>(reinterpret_cast<Bits>(point) | Bits{0, 0, 0, name});
+}
+
+// Writes the triangles of one mesh as refs first.., transformed unless world is nullptr. Returns their bounds.
+Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim,
+                     rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
+    const uint32_t chunks = (mesh.triangle_count + kChunk - 1) / kChunk;
+    Bounds bounds;
+    std::mutex bounds_mutex;
+    parallel_for(chunks, [&](uint32_t chunk) {
+        const rt_u32 begin = chunk * kChunk, end = std::min(mesh.triangle_count, begin + kChunk);
+        const float* const positions = scene.positions.data();
+        const rt_u32* const vertices = scene.triangles.data() + 3 * (size_t(mesh.first_triangle) + begin);
+        const rt_u32* const materials = scene.triangle_materials.data() + mesh.first_triangle + begin;
+        rt_packed_prim* const leaves = out.triangles.data() + first_ref + begin;
+        rt_prim* const prims = out.prims.data() + prim_at + begin;
+        rt_u32* const sources = out.attribute_triangle.data() + first_ref + begin;
+        Row all_lo = {INFINITY, INFINITY, INFINITY, INFINITY}, all_hi = -all_lo;
+        for (rt_u32 i = 0; i < end - begin; ++i) {
+            __builtin_prefetch(leaves + i + kAhead, 1);
+            __builtin_prefetch(prims + i + kAhead, 1);
+            // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
+            const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i), material != RT_NONE ? material : materials[i],
+                                    first_prim + begin + i};
+            Row corner[3];
+            for (int c = 0; c < 3; ++c) {
+                const float* const position = positions + 3 * size_t(vertices[3 * size_t(i) + c]);
+                if (world) {
+                    const auto p = transform_point(*world, position);
+                    corner[c] = Row{p[0], p[1], p[2], 0};
+                } else {
+                    corner[c] = Row{position[0], position[1], position[2], 0};
+                }
+            }
+            static_assert(sizeof(rt_packed_prim) == 3 * sizeof(Row) && sizeof(rt_prim) == 2 * sizeof(Row),
+                          "rows of four numbers");
+            Row lo = corner[1] < corner[0] ? corner[1] : corner[0], hi = corner[0] < corner[1] ? corner[1] : corner[0];
+            lo = corner[2] < lo ? corner[2] : lo;
+            hi = hi < corner[2] ? corner[2] : hi;
+            all_lo = lo < all_lo ? lo : all_lo;
+            all_hi = all_hi < hi ? hi : all_hi;
+            const Row leaf[3] = {named(corner[0], meta[0]), named(corner[1], meta[1]), named(corner[2], meta[2])},
+                      prim[2] = {named(lo, meta[0]), named(hi, run)};
+            std::memcpy(&leaves[i], leaf, sizeof leaf);
+            std::memcpy(&prims[i], prim, sizeof prim);
+            sources[i] = mesh.first_triangle + begin + i;
+        }
+        const std::lock_guard<std::mutex> lock(bounds_mutex);
+        bounds.add(reinterpret_cast<const float*>(&all_lo));
+        bounds.add(reinterpret_cast<const float*>(&all_hi));
+    });
+    return bounds;
+}
+
+void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
+    for (size_t i = 0; i < scene.spheres.size(); ++i) {
+        const Sphere& sphere = scene.spheres[i];
+        rt_packed_prim leaf{};
+        leaf.ref = RT_REF_SPHERE | static_cast<rt_u32>(i);
+        std::memcpy(leaf.a, sphere.center.data(), sizeof leaf.a);
+        leaf.b[0] = sphere.radius;
+        leaf.material = sphere.material;
+        leaf.prim = next_prim++;
+        rt_prim prim = empty_prim(leaf.ref, run);
+        for (int k = 0; k < 3; ++k) {
+            prim.lo[k] = sphere.center[k] - sphere.radius;
+            prim.hi[k] = sphere.center[k] + sphere.radius;
+        }
+        widen(prim, 1e-6f);
+        grow(out.bounds, prim);
+        out.spheres.push_back(leaf);
+        out.prims[at++] = prim;
+    }
+}
+
+void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
+    for (size_t i = 0; i < scene.polygons.size(); ++i) {
+        const Polygon& polygon = scene.polygons[i];
+        const float* corners = &scene.polygon_corners[3 * size_t(polygon.first_corner)];
+        // Newell's normal and the centroid: the plane that suits slightly unflat corners best.
+        double normal[3] = {}, centroid[3] = {};
+        for (rt_u32 c = 0; c < polygon.corner_count; ++c) {
+            const float *p = corners + 3 * c, *q = corners + 3 * ((c + 1) % polygon.corner_count);
+            for (int k = 0; k < 3; ++k) {
+                const int a = (k + 1) % 3, b = (k + 2) % 3;
+                normal[k] += (double(p[a]) - q[a]) * (double(p[b]) + q[b]);
+                centroid[k] += p[k];
+            }
+        }
+        const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+        rt_packed_prim leaf{};
+        for (int k = 0; k < 3; ++k) {
+            leaf.a[k] = static_cast<float>(length > 0 ? normal[k] / length : (k == 1));
+            leaf.b[k] = static_cast<float>(centroid[k] / polygon.corner_count);
+        }
+        leaf.ref = RT_REF_POLYGON | static_cast<rt_u32>(i);
+        leaf.material = polygon.material;
+        leaf.prim = next_prim++;
+        out.polygon_table.push_back({static_cast<rt_u32>(out.polygon_corners.size() / 3), polygon.corner_count});
+        out.polygon_corners.insert(out.polygon_corners.end(), corners, corners + 3 * size_t(polygon.corner_count));
+        rt_prim prim = empty_prim(leaf.ref, run);
+        for (rt_u32 c = 0; c < polygon.corner_count; ++c) grow(prim, corners + 3 * c);
+        widen(prim, 1e-6f);
+        grow(out.bounds, prim);
+        out.polygons.push_back(leaf);
+        out.prims[at++] = prim;
+    }
+}
+
+bool mirrors(const Affine& m) {
+    const double x = double(m[5]) * m[10] - double(m[6]) * m[9], y = double(m[6]) * m[8] - double(m[4]) * m[10],
+                 z = double(m[4]) * m[9] - double(m[5]) * m[8];
+    return m[0] * x + m[1] * y + m[2] * z < 0;
+}
+
+// The float at or below a number, and at or above it.
+float round_down(double value) {
+    const auto nearest = static_cast<float>(value);
+    return nearest <= value ? nearest : std::nextafter(nearest, -INFINITY);
+}
+float round_up(double value) {
+    return -round_down(-value);
+}
+
+// The box of a mesh's group in the world. It holds the triangles where rays meet them. Kernels transform each ray with
+// object_from_world, in float: where large coordinates cancel, triangles seem to be moved by that rounding, so the box grows by
+// a bound on it (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section 3.9): gamma(n) = n u / (1 - n u) of the sum
+// of the absolute terms, u = 2^-24 and n = 8: one rounding in the inverse, three in the origin, three in the direction, one in
+// the difference between corner and origin. The terms are those of a ray that starts no farther from the world's origin than
+// the box reaches. A ray that starts at a greater distance d is off by a few u d, which is no more than the rounding of its
+// direction.
+rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, const Affine& object_from_world,
+                      rt_u32 index) {
+    constexpr double kRounding = 8 * 0x1p-24, kGamma = kRounding / (1 - kRounding);
+    rt_prim box = empty_prim(0, 0), prim = empty_prim(RT_REF_INSTANCE | index, index);
+    for (rt_u32 i = 0; i < scene.groups[group].count; ++i) {
+        grow(box, scene.prims[scene.groups[group].first + i].lo);
+        grow(box, scene.prims[scene.groups[group].first + i].hi);
+    }
+    double lo[3], hi[3], farthest[3];
+    for (int k = 0; k < 3; ++k) {
+        lo[k] = hi[k] = world[4 * k + 3];
+        for (int j = 0; j < 3; ++j) {
+            const double a = double(world[4 * k + j]) * box.lo[j], b = double(world[4 * k + j]) * box.hi[j];
+            lo[k] += std::min(a, b);
+            hi[k] += std::max(a, b);
+        }
+        farthest[k] = std::max(std::fabs(lo[k]), std::fabs(hi[k]));
+    }
+    double error[3];  // in object space
+    for (int j = 0; j < 3; ++j) {
+        const float* row = &object_from_world[4 * j];
+        double terms = std::fabs(row[3]);
+        for (int k = 0; k < 3; ++k) terms += std::fabs(row[k]) * farthest[k];
+        error[j] = kGamma * terms;
+    }
+    for (int k = 0; k < 3; ++k) {
+        double room = 0;
+        for (int j = 0; j < 3; ++j) room += std::fabs(world[4 * k + j]) * error[j];
+        prim.lo[k] = round_down(lo[k] - room);
+        prim.hi[k] = round_up(hi[k] + room);
+    }
+    widen(prim, 1e-6f);
+    return prim;
+}
+
+// Where each mesh will stand. One that is placed once is flattened into the world: a tree of its own would only lengthen the
+// way of each ray. One that is mirrored is not, since its triangles would turn their outsides in.
+struct Placement {
+    std::vector<Affine> inverse;  // of instances
+    std::vector<bool> flat;       // instances
+    std::vector<rt_u32> group_of_mesh;
+    rt_u32 group_count = 1;
+    uint64_t world_prims = 0, refs = 0;
+};
+
+Placement place(const Scene& scene) {
+    Placement out;
+    std::vector<rt_u32> uses(scene.meshes.size(), 0);
+    for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+    out.inverse.resize(scene.instances.size());
+    out.flat.resize(scene.instances.size());
+    out.group_of_mesh.assign(scene.meshes.size(), 0);
+    out.world_prims = scene.spheres.size() + scene.polygons.size();
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
+        if (!instance.visible) continue;
+        const bool singular = !invert(instance.world_from_object, out.inverse[i]);
+        out.flat[i] = (uses[instance.mesh] == 1 && !mirrors(instance.world_from_object)) || singular || count == 0;
+        if (out.flat[i]) {
+            out.world_prims += count;
+            out.refs += count;
+        } else {
+            ++out.world_prims;
+            if (out.group_of_mesh[instance.mesh] == 0) {
+                out.group_of_mesh[instance.mesh] = out.group_count++;
+                out.refs += count;
+            }
+        }
+    }
+    return out;
+}
+
+}  // namespace
+
+SceneCounts count_scene(const Scene& scene) {
+    const Placement placement = place(scene);
+    SceneCounts counts;
+    counts.triangles = placement.refs;
+    counts.references = placement.world_prims;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        if (placement.group_of_mesh[m]) counts.references += scene.meshes[m].triangle_count;
+    return counts;
+}
+
+BuildScene make_build_scene(const Scene& scene, Progress& progress) {
+    BuildScene out;
+    const Placement placement = place(scene);
+    const std::vector<Affine>& inverse = placement.inverse;
+    const std::vector<bool>& flat = placement.flat;
+    const std::vector<rt_u32>& group_of_mesh = placement.group_of_mesh;
+    const uint64_t refs = placement.refs, placed = scene.placed_triangle_count();
+    uint64_t prim_total = placement.world_prims;
+    out.groups.assign(placement.group_count, rt_group{0, 0});
+    out.groups[0] = {0, static_cast<rt_u32>(placement.world_prims)};
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        if (group_of_mesh[m]) {
+            out.groups[group_of_mesh[m]] = {static_cast<rt_u32>(prim_total), scene.meshes[m].triangle_count};
+            prim_total += scene.meshes[m].triangle_count;
+        }
+    if (refs > RT_REF_INDEX_MAX || prim_total > 0xFFFFFFF0u)
+        throw Error(Exit::failed, "the scene has " + std::to_string(refs) + " triangles; this build can hold " +
+                                      std::to_string(RT_REF_INDEX_MAX) +
+                                      ": take fewer, or place one mesh several times instead of copies of it");
+    if (placed > INT32_MAX)
+        throw Error(Exit::failed, "the scene's instances have " + std::to_string(placed) +
+                                      " triangles together; they are numbered up to " + std::to_string(INT32_MAX) +
+                                      ": place fewer");
+    out.prims.resize(prim_total);
+    out.triangles.resize(refs);
+    out.attribute_triangle.resize(refs);
+
+    // Meshes of their own first: instances need their boxes.
+    rt_u32 next_ref = 0;
+    for (size_t m = 0; m < scene.meshes.size(); ++m)
+        if (group_of_mesh[m]) {
+            add_triangles(scene, scene.meshes[m], nullptr, RT_NONE, 0, next_ref, static_cast<rt_u32>(m),
+                          out.groups[group_of_mesh[m]].first, out);
+            next_ref += scene.meshes[m].triangle_count;
+        }
+    uint64_t at = 0;
+    rt_u32 next_prim = 0;
+    std::vector<rt_prim> instance_prims;
+    for (size_t i = 0; i < scene.instances.size(); ++i) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        if (!instance.visible) {
+            // Only its numbers are kept free.
+        } else if (flat[i]) {
+            const bool identity = instance.world_from_object == kIdentity;
+            if (!identity) out.flattened.push_back(static_cast<rt_u32>(i));
+            const Bounds bounds = add_triangles(scene, mesh, identity ? nullptr : &instance.world_from_object,
+                                                instance.material, next_prim, next_ref, static_cast<rt_u32>(i), at, out);
+            if (!bounds.empty) {
+                out.bounds.add(bounds.min.data());
+                out.bounds.add(bounds.max.data());
+            }
+            next_ref += mesh.triangle_count;
+            at += mesh.triangle_count;
+        } else {
+            rt_instance placed{};
+            std::memcpy(placed.object_from_world, inverse[i].data(), sizeof placed.object_from_world);
+            placed.first_prim = next_prim;
+            placed.material = instance.material;
+            const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
+            rt_prim prim = instance_prim(out, group, instance.world_from_object, inverse[i], index);
+            prim.mesh = static_cast<rt_u32>(i);
+            grow(out.bounds, prim);
+            instance_prims.push_back(prim);
+            rt_packed_prim leaf{};
+            std::copy_n(prim.lo, 3, leaf.a);
+            std::copy_n(prim.hi, 3, leaf.b);
+            leaf.ref = prim.ref;
+            out.instance_leaves.push_back(leaf);
+            out.instances.push_back(placed);
+            out.group_of_instance.push_back(group);
+            out.world_from_object.push_back(instance.world_from_object);
+        }
+        next_prim += mesh.triangle_count;
+        if (!progress.report(-1)) throw Cancelled();
+    }
+    for (const rt_prim& prim : instance_prims) out.prims[at++] = prim;
+    const rt_u32 runs = static_cast<rt_u32>(scene.instances.size());
+    add_spheres(scene, runs, next_prim, at, out);
+    add_polygons(scene, runs + 1, next_prim, at, out);
+    for (const Plane& plane : scene.planes) {
+        rt_plane p{};
+        std::memcpy(p.normal, plane.normal.data(), sizeof p.normal);
+        p.offset = plane.offset;
+        p.material = plane.material;
+        p.prim = next_prim++;
+        out.planes.push_back(p);
+    }
+    return out;
+}
+
+}  // namespace clarity

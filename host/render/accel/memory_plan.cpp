@@ -1,0 +1,51 @@
+#include "render/accel/memory_plan.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr uint64_t kPrimitivesPerNode = 12;
+
+constexpr const char* kAdvice =
+    "; take fewer triangles, meshes placed several times instead of copies, or another device (`clarity devices`)";
+constexpr const char* kSmallerNodes = "; take a structure of smaller nodes (cwbvh has the smallest)";
+
+}  // namespace
+
+std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& scene, const rt_accel& accel) {
+    std::vector<MemoryPiece> pieces;
+    pieces.push_back({"leaves", (counts.references + kLeafPadding) * sizeof(rt_packed_prim)});
+    if (accel.slot_count > 0)
+        pieces.push_back({accel.slots[0].name, counts.references / kPrimitivesPerNode * accel.slots[0].elem_bytes});
+    if (!scene.normals.empty() || !scene.uvs.empty()) pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
+    pieces.push_back({"normals", scene.normals.size() * sizeof(float)});
+    pieces.push_back({"texture coordinates", scene.uvs.size() * sizeof(float)});
+    pieces.push_back({"textures", scene.texels.size() * sizeof(uint32_t)});
+    return pieces;
+}
+
+void check_fits(const std::vector<MemoryPiece>& pieces, const DeviceInfo& device, const std::string& scene) {
+    uint64_t total = 0;
+    for (const MemoryPiece& piece : pieces) {
+        total += piece.bytes;
+        if (device.max_allocation_bytes == 0 || piece.bytes <= device.max_allocation_bytes) continue;
+        throw Error(Exit::failed, "the scene does not fit: the " + piece.what + " of " + scene + " take " +
+                                      memory_text(piece.bytes) + ", and " + device.name + " allows " +
+                                      memory_text(device.max_allocation_bytes) + " in one piece" + kAdvice);
+    }
+    if (device.global_bytes == 0 || total <= device.global_bytes) return;
+    std::vector<MemoryPiece> largest = pieces;
+    std::stable_sort(largest.begin(), largest.end(),
+                     [](const MemoryPiece& a, const MemoryPiece& b) { return a.bytes > b.bytes; });
+    std::string parts;
+    for (size_t i = 0; i < std::min<size_t>(largest.size(), 3) && largest[i].bytes > 0; ++i)
+        parts += (parts.empty() ? "" : ", ") + largest[i].what + " " + memory_text(largest[i].bytes);
+    throw Error(Exit::failed, "the scene does not fit: " + scene + " take at least " + memory_text(total) + " (" + parts +
+                                  "), and " + device.name + " has " + memory_text(device.global_bytes) +
+                                  (pieces.size() > 1 && pieces[0].bytes < device.global_bytes ? kSmallerNodes : "") + kAdvice);
+}
+
+}  // namespace clarity

@@ -1,0 +1,46 @@
+#include "render/film/async_readback.hpp"
+
+#include <utility>
+
+#include "render/frame/cl_errors.hpp"
+#include "render/frame/renderer.hpp"
+
+namespace clarity {
+
+AsyncReadback& AsyncReadback::operator=(AsyncReadback&& other) noexcept {
+    settle();
+    device_ = std::move(other.device_);
+    memory_ = std::move(other.memory_);
+    in_place_ = std::move(other.in_place_);
+    width_ = other.width_;
+    height_ = other.height_;
+    mapped_ = std::move(other.mapped_);
+    copied_ = std::move(other.copied_);
+    return *this;
+}
+
+// Memory that a device may still write to is not given back. What became of the picture is of no interest.
+void AsyncReadback::settle() {
+    const cl::Event& last = copied_() ? copied_ : mapped_;
+    if (memory_ && last()) clWaitForEvents(1, &last());
+    memory_.reset();
+}
+
+ByteImage AsyncReadback::wait(std::vector<KernelTime>* times) {
+    wrap_cl_errors(*device_, "reading the picture", [&] {
+        if (in_place_()) {
+            cl::CommandQueue& queue = device_->queue();
+            void* const seen = queue.enqueueMapBuffer(in_place_, CL_TRUE, CL_MAP_READ, 0, bytes(), nullptr, &copied_);
+            queue.enqueueUnmapMemObject(in_place_, seen);
+        } else {
+            copied_.wait();
+        }
+    });
+    if (times) {
+        times->push_back({"tone map", event_ms(mapped_)});
+        times->push_back({"read-back", event_ms(copied_)});
+    }
+    return {width_, height_, SharedBytes(std::move(memory_), bytes())};
+}
+
+}  // namespace clarity

@@ -1,0 +1,216 @@
+// Codecs are the libraries' (stb, OpenEXR); PFM is a header and the floats themselves.
+#include "render/film/image_io.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+
+#include "base/error.hpp"
+#include "base/output_file.hpp"
+
+// Static: the window links the stb library too.
+#define STB_IMAGE_WRITE_STATIC
+#define STB_IMAGE_WRITE_IMPLEMENTATION
+#define STBI_WRITE_NO_STDIO
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#pragma GCC diagnostic ignored "-Wmissing-field-initializers"
+#include <stb_image_write.h>
+#pragma GCC diagnostic pop
+
+#ifdef CLARITY_HAVE_OPENEXR
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStdIO.h>
+#endif
+
+namespace clarity {
+namespace {
+
+enum class Format { png, exr, pfm, unknown };
+
+Format format_of(const std::string& path) {
+    const size_t dot = path.rfind('.'), slash = path.rfind('/');
+    if (dot == std::string::npos || (slash != std::string::npos && dot < slash)) return Format::unknown;
+    std::string ending = path.substr(dot + 1);
+    for (char& c : ending)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return ending == "png" ? Format::png : ending == "exr" ? Format::exr : ending == "pfm" ? Format::pfm : Format::unknown;
+}
+
+void check_ending(const std::string& path) {
+    const Format format = format_of(path);
+    if (format == Format::unknown)
+        throw Error(Exit::usage, "`" + path + "`: its ending names no picture format; use .png, .exr or .pfm");
+#ifndef CLARITY_HAVE_OPENEXR
+    if (format == Format::exr)
+        throw Error(Exit::usage, "`" + path +
+                                     "`: this build cannot write EXR: OpenEXR was not there when it was configured; "
+                                     "install libopenexr-dev and build again, or write .pfm");
+#endif
+}
+
+// The caller's mistake, found before it becomes a read beyond the end.
+void check_size(const std::string& path, unsigned width, unsigned height, unsigned channels, size_t found) {
+    const size_t expected = size_t(width) * height * channels;
+    if (expected == 0 || found != expected)
+        throw Error(Exit::failed, path + ": not written: a picture of " + std::to_string(width) + "x" + std::to_string(height) +
+                                      " pixels with " + std::to_string(channels) + " channels has " + std::to_string(expected) +
+                                      " values, and " + std::to_string(found) + " came");
+}
+
+void write_png(const std::string& path, const ByteImage& image) {
+    check_size(path, image.width, image.height, 4, image.pixels.size());
+    const size_t pixels = size_t(image.width) * image.height;
+    if (pixels > kPngMaxPixels)
+        throw Error(Exit::failed, path + ": a PNG of more than " + std::to_string(kPngMaxPixels) +
+                                      " pixels is beyond its encoder; write .exr or .pfm");
+    bool opaque = true;
+    for (size_t i = 0; i < pixels && opaque; ++i) opaque = image.pixels[4 * i + 3] == 255;
+    const int channels = opaque ? 3 : 4;
+    std::vector<uint8_t> packed;
+    if (opaque) {
+        packed.resize(3 * pixels);
+        for (size_t i = 0; i < pixels; ++i) std::memcpy(&packed[3 * i], &image.pixels[4 * i], 3);
+    }
+    OutputFile file(path);
+    struct Sink {
+        OutputFile& file;
+        std::exception_ptr failure;  // may not cross C
+    } sink{file, nullptr};
+    const auto append = [](void* context, void* data, int bytes) {
+        Sink& to = *static_cast<Sink*>(context);
+        try {
+            to.file.write(data, static_cast<size_t>(bytes));
+        } catch (...) {
+            to.failure = std::current_exception();
+        }
+    };
+    const int done =
+        stbi_write_png_to_func(append, &sink, static_cast<int>(image.width), static_cast<int>(image.height), channels,
+                               opaque ? packed.data() : image.pixels.data(), static_cast<int>(image.width) * channels);
+    if (sink.failure) std::rethrow_exception(sink.failure);
+    if (!done) throw Error(Exit::failed, path + ": not written: the PNG encoder ran out of memory");
+    file.commit();
+}
+
+void write_pfm(const std::string& path, const FloatImage& image) {
+    if (image.channels != 1 && image.channels != 3)
+        throw Error(Exit::failed,
+                    path + ": not written: PFM holds 1 or 3 channels, this picture has " + std::to_string(image.channels));
+    OutputFile file(path);
+    // A negative scale says little endian.
+    const std::string head = std::string(image.channels == 3 ? "PF" : "Pf") + "\n" + std::to_string(image.width) + " " +
+                             std::to_string(image.height) + "\n-1.0\n";
+    file.write(head.data(), head.size());
+    const size_t row = size_t(image.width) * image.channels;
+#if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+    std::vector<uint32_t> swapped(row);
+#endif
+    for (unsigned y = image.height; y-- > 0;) {
+        const float* values = &image.pixels[y * row];
+#if __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+        std::memcpy(swapped.data(), values, row * sizeof(float));
+        for (uint32_t& value : swapped) value = __builtin_bswap32(value);
+        file.write(swapped.data(), row * sizeof(float));
+#else
+        file.write(values, row * sizeof(float));
+#endif
+    }
+    file.commit();
+}
+
+#ifdef CLARITY_HAVE_OPENEXR
+// Into our file, so that a full disk is reported as for every other format.
+class ExrStream : public Imf::OStream {
+ public:
+    ExrStream(const std::string& name, std::string& bytes) : Imf::OStream(name.c_str()), bytes_(bytes) {}
+    void write(const char data[], int count) override {
+        const size_t end = at_ + static_cast<size_t>(count);
+        if (end > bytes_.size()) bytes_.resize(end);
+        std::memcpy(&bytes_[at_], data, static_cast<size_t>(count));
+        at_ = end;
+    }
+    uint64_t tellp() override { return at_; }
+    void seekp(uint64_t position) override { at_ = position; }
+
+ private:
+    std::string& bytes_;
+    uint64_t at_ = 0;
+};
+
+std::string encode_exr(const std::string& path, const FloatImage& image) {
+    std::vector<const char*> names = {"Y"};
+    if (image.channels == 3) names = {"R", "G", "B"};
+    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+    header.compression() = Imf::ZIP_COMPRESSION;
+    Imf::FrameBuffer frame;
+    // The library's slices are not const, but an output file only reads them.
+    char* base = reinterpret_cast<char*>(const_cast<float*>(image.pixels.data()));
+    const size_t pixel_bytes = image.channels * sizeof(float);
+    for (size_t c = 0; c < names.size(); ++c) {
+        header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
+        frame.insert(names[c], Imf::Slice(Imf::FLOAT, base + c * sizeof(float), pixel_bytes, pixel_bytes * image.width));
+    }
+    std::string bytes;
+    ExrStream stream(path, bytes);
+    {
+        Imf::OutputFile file(stream, header);  // writes its table of lines when it is destroyed
+        file.setFrameBuffer(frame);
+        file.writePixels(static_cast<int>(image.height));
+    }
+    return bytes;
+}
+
+void write_exr(const std::string& path, const FloatImage& image) {
+    if (image.channels != 1 && image.channels != 3)
+        throw Error(Exit::failed,
+                    path + ": not written: 1 or 3 channels are supported, this picture has " + std::to_string(image.channels));
+    std::string bytes;
+    try {
+        bytes = encode_exr(path, image);
+    } catch (const std::exception& e) {
+        throw Error(Exit::failed, path + ": not written: OpenEXR says: " + e.what());
+    }
+    write_text_file(path, bytes);
+}
+#else
+void write_exr(const std::string& path, const FloatImage&) {
+    check_ending(path);
+}
+#endif
+
+}  // namespace
+
+void write_image(const std::string& path, const FloatImage& values, const ByteImage& display) {
+    check_ending(path);
+    const Format format = format_of(path);
+    if (format == Format::png) return write_png(path, display);
+    check_size(path, values.width, values.height, values.channels, values.pixels.size());
+    return format == Format::exr ? write_exr(path, values) : write_pfm(path, values);
+}
+
+bool writes_display(const std::string& path) {
+    return format_of(path) == Format::png;
+}
+
+void check_output_path(const std::string& path) {
+    check_ending(path);
+    check_writable(path);
+}
+
+std::string frame_path(const std::string& pattern, int frame) {
+    const size_t last = pattern.rfind('#');
+    const size_t slash = pattern.rfind('/');
+    if (last == std::string::npos || (slash != std::string::npos && last < slash)) return pattern;
+    size_t first = last;
+    while (first > 0 && pattern[first - 1] == '#') --first;
+    std::string number = std::to_string(frame);
+    const size_t width = last - first + 1;
+    if (number.size() < width) number.insert(frame < 0 ? 1 : 0, width - number.size(), '0');
+    return pattern.substr(0, first) + number + pattern.substr(last + 1);
+}
+
+}  // namespace clarity

@@ -1,0 +1,30 @@
+#include "render/film/overflow_counter.hpp"
+
+#include "base/log.hpp"
+
+namespace clarity {
+
+cl_uint OverflowCounter::bind(cl::Kernel& kernel, cl_uint at, bool debug) {
+    if (!debug) return at;
+    kernel.setArg(at, count_.get());
+    return at + 1;
+}
+
+void OverflowCounter::clear(cl::CommandQueue& queue) {
+    const cl::Buffer& count = count_.fit(queue.getInfo<CL_QUEUE_CONTEXT>(), sizeof(cl_uint));
+    queue.enqueueFillBuffer(count, cl_uint(0), 0, sizeof(cl_uint));
+}
+
+uint64_t OverflowCounter::read(cl::CommandQueue& queue) const {
+    cl_uint count = 0;
+    queue.enqueueReadBuffer(count_.get(), CL_TRUE, 0, sizeof count, &count);
+    return count;
+}
+
+void report_overflows(uint64_t count, const std::string& accel) {
+    if (count > 0)
+        log(LogLevel::error,
+            std::to_string(count) + " times a traversal stack was full: a fault of accel " + accel + "; hits may be missing");
+}
+
+}  // namespace clarity

@@ -1,0 +1,79 @@
+#include "render/film/pinned_memory_pool.hpp"
+
+#include <mutex>
+#include <utility>
+#include <vector>
+
+#include "base/aligned_bytes.hpp"
+
+namespace clarity {
+namespace {
+
+// Pictures come back one by one as newer ones are shown; more at a time are left over from something else.
+constexpr size_t kShelved = 2;
+
+}  // namespace
+
+struct PinnedMemoryPool::Block {
+    AlignedBytes plain;
+    cl::Buffer pinned;  // or this
+    cl::CommandQueue queue;
+    uint8_t* bytes = nullptr;
+    size_t room = 0;
+    Block() = default;
+    Block(const Block&) = delete;
+    Block& operator=(const Block&) = delete;
+    ~Block() {
+        if (!pinned() || !bytes) return;
+        try {
+            queue.enqueueUnmapMemObject(pinned, bytes);
+        } catch (const cl::Error&) {  // the device is lost, and the memory with it
+        }
+    }
+};
+
+struct PinnedMemoryPool::Shelf {
+    std::mutex mutex;
+    std::vector<std::unique_ptr<Block>> blocks;
+};
+
+PinnedMemoryPool::PinnedMemoryPool(std::shared_ptr<Device> device)
+    : device_(std::move(device)), shelf_(std::make_shared<Shelf>()) {}
+
+std::unique_ptr<PinnedMemoryPool::Block> PinnedMemoryPool::make(size_t bytes) {
+    auto block = std::make_unique<Block>();
+    block->room = bytes;
+    if (!device_ || device_->info().cpu) {
+        block->plain = AlignedBytes(bytes, false);
+        block->bytes = static_cast<uint8_t*>(block->plain.data());
+    } else {
+        block->queue = device_->queue();
+        block->pinned = cl::Buffer(device_->context(), CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR, bytes);
+        block->bytes =
+            static_cast<uint8_t*>(block->queue.enqueueMapBuffer(block->pinned, CL_TRUE, CL_MAP_READ | CL_MAP_WRITE, 0, bytes));
+    }
+    return block;
+}
+
+std::shared_ptr<uint8_t> PinnedMemoryPool::lend(size_t bytes) {
+    std::unique_ptr<Block> block;
+    {
+        const std::lock_guard<std::mutex> lock(shelf_->mutex);
+        auto& blocks = shelf_->blocks;
+        if (blocks.size() > kShelved) blocks.resize(kShelved);
+        if (!blocks.empty() && blocks.back()->room < bytes) blocks.clear();  // all are too small by and by
+        if (!blocks.empty()) {
+            block = std::move(blocks.back());
+            blocks.pop_back();
+        }
+    }
+    if (!block) block = make(bytes);
+    Block* const lent = block.release();
+    return {lent->bytes, [lent, shelf = shelf_](uint8_t*) {
+                std::unique_ptr<Block> back(lent);
+                const std::lock_guard<std::mutex> lock(shelf->mutex);
+                shelf->blocks.push_back(std::move(back));
+            }};
+}
+
+}  // namespace clarity

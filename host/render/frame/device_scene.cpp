@@ -1,0 +1,150 @@
+#include "render/frame/device_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "render/accel/memory_plan.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two looks at progress
+
+// One buffer to be made, and what it is to hold.
+struct Content {
+    MemoryPiece piece;
+    const void* data;
+};
+
+template <class T>
+Content content(const char* what, const std::vector<T>& data) {
+    return {{what, data.size() * sizeof(T)}, data.data()};
+}
+
+// Read-only buffers of a device. On a CPU they are the host's own memory; elsewhere they are filled piece by piece from it, for
+// a driver that is given all at once may copy all of it on the host first.
+class Uploader {
+ public:
+    Uploader(Device& device, const std::vector<Content>& contents, Progress& progress)
+        : device_(device), progress_(progress), queue_(device.context(), device.info().cl_device) {
+        for (const Content& content : contents) total_ += content.piece.bytes;
+    }
+
+    cl::Buffer upload(const Content& content) {
+        static const char nothing[256] = {};  // no device takes empty buffers
+        const uint64_t bytes = content.piece.bytes;
+        try {
+            if (bytes == 0)
+                return cl::Buffer(device_.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof nothing,
+                                  const_cast<char*>(nothing));
+            if (device_.info().cpu)
+                return cl::Buffer(device_.context(), CL_MEM_READ_ONLY | CL_MEM_USE_HOST_PTR, bytes,
+                                  const_cast<void*>(content.data));
+            cl::Buffer buffer(device_.context(), CL_MEM_READ_ONLY, bytes);
+            for (uint64_t at = 0; at < bytes; at += kPiece) {
+                const uint64_t count = std::min(kPiece, bytes - at);
+                queue_.enqueueWriteBuffer(buffer, CL_TRUE, at, count, static_cast<const char*>(content.data) + at);
+                done_ += count;
+                if (!progress_.report(static_cast<float>(double(done_) / double(total_)))) throw Cancelled();
+            }
+            return buffer;
+        } catch (const cl::Error& e) {
+            throw Error(Exit::failed, "no room on " + device_.info().name + " for the " + content.piece.what + " (" +
+                                          memory_text(bytes) + " of " + memory_text(total_) +
+                                          " that the scene takes; the device has " + memory_text(device_.info().global_bytes) +
+                                          ", for everyone who uses it): OpenCL error " + std::to_string(e.err()) +
+                                          "; close what else uses it, or take fewer triangles");
+        }
+    }
+
+    uint64_t total() const { return total_; }
+
+ private:
+    Device& device_;
+    Progress& progress_;
+    cl::CommandQueue queue_;  // its own: frames may go on in the device's
+    uint64_t total_ = 0, done_ = 0;
+};
+
+// Normals of vertices in the space where their triangles stand: those of flattened meshes go by the inverse transpose, as those
+// of instances do in the kernels, but for a factor that keeps their lengths near what they were, however large the scale.
+std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build) {
+    std::vector<float> normals = scene.normals;
+    for (const uint32_t i : build.flattened) {
+        const Instance& instance = scene.instances[i];
+        const Mesh& mesh = scene.meshes[instance.mesh];
+        Affine inverse;
+        if (!invert(instance.world_from_object, inverse)) continue;
+        const Affine& m = inverse;
+        const double volume = m[0] * (double(m[5]) * m[10] - double(m[6]) * m[9]) +
+                              m[1] * (double(m[6]) * m[8] - double(m[4]) * m[10]) +
+                              m[2] * (double(m[4]) * m[9] - double(m[5]) * m[8]);
+        const double factor = 1 / std::cbrt(std::fabs(volume));
+        for (size_t v = mesh.first_vertex; v < size_t(mesh.first_vertex) + mesh.vertex_count; ++v) {
+            float* const n = &normals[3 * v];
+            double turned[3];
+            for (int k = 0; k < 3; ++k) turned[k] = double(m[k]) * n[0] + double(m[4 + k]) * n[1] + double(m[8 + k]) * n[2];
+            for (int k = 0; k < 3; ++k) n[k] = static_cast<float>(factor * turned[k]);
+        }
+    }
+    return normals;
+}
+
+}  // namespace
+
+DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel,
+                         Progress& progress)
+    : scene_(std::move(scene)), accel_(std::move(accel)) {
+    for (const Material& material : scene_->materials) materials_.push_back(material.values);
+    const BuildScene& build = accel_->scene;
+    if (!scene_->normals.empty() || !scene_->uvs.empty()) {
+        attributes_.resize(build.attribute_triangle.size());
+        for (size_t i = 0; i < attributes_.size(); ++i)
+            for (int c = 0; c < 3; ++c) attributes_[i].v[c] = scene_->triangles[3 * size_t(build.attribute_triangle[i]) + c];
+    }
+    const bool moved = !scene_->normals.empty() && !build.flattened.empty();
+    if (moved) normals_ = normals_as_placed(*scene_, build);
+    // In the order of the context's arguments: see kernel_source.cpp.
+    const size_t leaf_bytes = (accel_->leaf_count + kLeafPadding) * sizeof(rt_packed_prim);
+    std::vector<Content> contents = {
+        {{"leaves", leaf_bytes}, accel_->leaves.data()},
+        content("instances", accel_->instances),
+        content("polygons", build.polygon_table),
+        content("polygon corners", build.polygon_corners),
+        content("planes", build.planes),
+        content("materials", materials_),
+        content("triangles", attributes_),
+        content("normals", moved ? normals_ : scene_->normals),
+        content("texture coordinates", scene_->uvs),
+        content("texture table", scene_->textures),
+        content("textures", scene_->texels),
+    };
+    materials_at_ = 5;
+    const size_t before_lights = contents.size();
+    const rt_accel& table = *accel_->plugin->accel;
+    for (rt_u32 s = 0; s < table.slot_count; ++s)
+        contents.push_back(
+            {{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes}, accel_->slots[s].memory.data()});
+    std::vector<MemoryPiece> pieces;
+    for (const Content& content : contents) pieces.push_back(content.piece);
+    check_fits(pieces, device.info(), std::to_string(accel_->leaf_count) + " primitives in " + accel_->plugin->id);
+
+    Uploader uploader(device, contents, progress);
+    for (size_t i = 0; i < contents.size(); ++i)
+        (i < before_lights ? before_lights_ : slots_).push_back(uploader.upload(contents[i]));
+    bytes_ = uploader.total();
+    if (device.info().cpu) return;
+    // Copies that only the upload needed.
+    attributes_ = {};
+    normals_ = {};
+}
+
+void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {
+    for (size_t i = 0; i < before_lights_.size(); ++i)
+        kernel.setArg(first++, materials && i == materials_at_ ? *materials : before_lights_[i]);
+    kernel.setArg(first++, lights);
+    for (const cl::Buffer& buffer : slots_) kernel.setArg(first++, buffer);
+}
+
+}  // namespace clarity

@@ -1,0 +1,393 @@
+// frame_renderer.cpp -- the film, and tracing into it.
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <utility>
+
+#include "render/film/bands.hpp"
+#include "render/film/display_readback.hpp"
+#include "render/film/film.hpp"
+#include "render/film/overflow_counter.hpp"
+#include "render/frame/cl_errors.hpp"
+#include "render/frame/frame_constants.hpp"
+#include "render/frame/frame_stats.hpp"
+#include "render/frame/launch.hpp"
+#include "render/frame/renderer.hpp"
+#include "render/frame/view_buffers.hpp"
+#include "render/frame/wavefront.hpp"
+#include "render/kernels/program_cache.hpp"
+#include "render/queries/ray_queries.hpp"
+#include "render/settings/aov.hpp"
+
+namespace clarity {
+namespace {
+
+// A packet's distances, block by block, to where its first pixel is.
+void put_packet(const Layout& layout, const float* block, unsigned left, unsigned top, FloatImage& image) {
+    const unsigned right = std::min(left + layout.packet_w, image.width),
+                   bottom = std::min(top + layout.packet_h, image.height);
+    for (unsigned y0 = top; y0 < top + layout.packet_h; y0 += layout.block_h)
+        for (unsigned x0 = left; x0 < left + layout.packet_w; x0 += layout.block_w, block += layout.lanes) {
+            if (x0 >= right) continue;
+            const unsigned width = std::min(layout.block_w, right - x0),
+                           height = y0 < bottom ? std::min(layout.block_h, bottom - y0) : 0;
+            float* to = &image.pixels[size_t(y0) * image.width + x0];
+            for (unsigned row = 0; row < height; ++row, to += image.width) {
+                const float* from = block + row * layout.block_w;
+                if (width == 4)
+                    std::memcpy(to, from, 4 * sizeof(float));  // of a size that the compiler knows
+                else
+                    std::copy_n(from, width, to);
+            }
+        }
+}
+
+// Rays are stored by groups, packets, blocks and lanes, as rt_packet_origin() and rt_block_pixels() number them.
+void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const float* stored, FloatImage& image) {
+    const unsigned groups_x = layout.groups_x(image.width);
+    for (const rt_u32 y : rows)
+        for (unsigned x = 0; x < groups_x; ++x)
+            for (unsigned in_y = 0; in_y < layout.group_h; ++in_y)
+                for (unsigned in_x = 0; in_x < layout.group_w; ++in_x, stored += layout.rays())
+                    put_packet(layout, stored, (x * layout.group_w + in_x) * layout.packet_w,
+                               (y * layout.group_h + in_y) * layout.packet_h, image);
+}
+
+// Samples that one launch traces: a launch ends as slowly as its slowest rays, of one sample or of many; but it may be
+// cancelled only between launches, and layers take memory.
+constexpr unsigned kMostAtOnce = 16, kShareOfMemory = 32;
+constexpr double kAtOnceMs = 50;
+
+}  // namespace
+
+struct FrameRenderer::Impl {
+    explicit Impl(const std::shared_ptr<Device>& d)
+        : device(d), film_kernels(d), relay(d, film_kernels), queries(d), wavefront(d) {}
+
+    std::shared_ptr<Device> device;
+    FilmKernels film_kernels;
+    DisplayReadback relay;
+    RayQueries queries;
+    Wavefront wavefront;
+    ViewBuffers view;
+    GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, counters{CL_MEM_READ_WRITE},
+        distances{CL_MEM_READ_WRITE};
+    unsigned width = 0, height = 0;
+    const Aov* aov = &aov_table().front();        // what is in the film
+    Layout layout;                                // of the picture in the film
+    std::vector<rt_u32> rows;                     // of work-groups, that are traced; counters and distances are in this order
+    unsigned begun = 0;                           // work-groups of these rows that were traced before
+    std::shared_ptr<const TraceProgram> program;  // whose pace and kernel these are:
+    std::shared_ptr<const DeviceScene> bound;
+    cl::Kernel kernel;
+    bool debug = false;
+    OverflowCounter overflows;  // where counts_overflows()
+    Launcher launcher;
+    enum class Shown { no, read, begun };
+    Shown shown = Shown::no;     // the picture before: then this one will be
+    std::vector<float> scratch;  // kept: fresh pages cost more than what is done with them
+
+    // Waits for all that is queued.
+    void read(const cl::Buffer& buffer, void* out, size_t bytes) {
+        device->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, out);
+    }
+
+    // What trace() is asked for.
+    struct Picture {
+        const Prepared& prepared;
+        const Settings& settings;
+        const View& view;
+        const SharedRows* shared;
+        Progress& progress;
+    };
+    void begin(const Picture& picture) {
+        const Prepared& prepared = picture.prepared;
+        const auto new_width = static_cast<unsigned>(picture.settings.width),
+                   new_height = static_cast<unsigned>(picture.settings.height);
+        if (program != prepared.program || bound != prepared.on_device || width != new_width || height != new_height)
+            launcher.forget();
+        if (program != prepared.program) kernel = prepared.program->kernel();
+        program = prepared.program;
+        bound = prepared.on_device;
+        debug = prepared.settings.debug;
+        aov = &find_aov(prepared.settings.aov);
+        width = new_width;
+        height = new_height;
+        layout = prepared.layout;
+        if (picture.shared) {
+            rows = picture.shared->rows;
+        } else {
+            rows.resize(layout.groups_y(height));
+            std::iota(rows.begin(), rows.end(), 0u);
+        }
+        begun = picture.shared ? layout.groups_x(width) * static_cast<unsigned>(picture.shared->begin) : 0;
+        film.fit(device->context(), film_bytes(FilmKernels::room(size_t(width) * height)));
+        if (program->has_generations())
+            distances.fit(device->context(), layout.packets(width, height) * layout.rays() * sizeof(float));
+    }
+
+    // Of `left` samples, how many one launch traces.
+    unsigned samples_at_once(const Picture& picture, unsigned left) const {
+        const bool parting = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
+        if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || !program->has_generations() ||
+            parting || begun > 0)
+            return 1;
+        const DeviceInfo& info = device->info();
+        uint64_t room = info.global_bytes / kShareOfMemory;
+        if (info.max_allocation_bytes) room = std::min(room, info.max_allocation_bytes);
+        const auto fitting = double(room / film_bytes(size_t(width) * height)),
+                   most = std::min({double(kMostAtOnce), fitting, kAtOnceMs / launcher.expected_ms(groups())});
+        if (most < 2) return 1;
+        const auto launches = static_cast<unsigned>(std::ceil(left / std::floor(most)));
+        return (left + launches - 1) / launches;
+    }
+
+    // Samples [sample, sample + at_once) into the film, or each into a layer.
+    LaunchTimes launch(const Picture& picture, unsigned sample, unsigned at_once, const cl::Buffer& into,
+                       const Beside& beside) {
+        const auto& [prepared, settings, view_of, shared, progress] = picture;
+        cl::CommandQueue& queue = device->queue();
+        std::vector<rt_frame> frames;
+        for (unsigned layer = 0; layer < at_once; ++layer) {
+            frames.push_back(make_frame(view_of, settings, layout, *prepared.accel, sample + layer));
+            frames.back().layers = at_once - layer;
+            if (at_once > 1) frames.back().adds = 0;
+            if (shared) frames.back().row_count = static_cast<rt_u32>(rows.size());
+        }
+        std::vector<rt_u32> table;
+        if (shared) {
+            table = rows;
+            table.resize(layout.groups_y(height));  // so that the buffer does not grow row by row
+        }
+        view.write(queue, *prepared.scene, frames, view_of, table);
+
+        const auto go_on = [&progress = picture.progress] {
+            if (progress.cancelled()) throw Cancelled();
+        };
+        const unsigned launched = at_once * groups() - begun;
+        if (program->is_wavefront()) {
+            const auto depth = static_cast<unsigned>(settings.depth);
+            return wavefront.trace(
+                queue, launcher,
+                {prepared, view_of, view, layout, width, height, begun, launched, depth, sample, into, distances.get()}, go_on,
+                beside);
+        }
+        cl_uint at = 0;
+        kernel.setArg(at++, view.frame());
+        const cl_uint first_group = at++;
+        kernel.setArg(at++, into);
+        if (program->has_generations()) {
+            kernel.setArg(at++, counters.fit(device->context(), layout.packets(width, height) * at_once * 16));
+            kernel.setArg(at++, distances.get());
+        }
+        if (counts_overflows()) {
+            if (begun == 0) overflows.clear(queue);
+            at = overflows.bind(kernel, at, true);
+        }
+        view.bind(*prepared.on_device, kernel, at);
+        return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, beside);
+    }
+
+    size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
+    GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
+    // That are traced.
+    uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
+    cl::Event begin_sum(unsigned samples = 1) {
+        using Width = FilmKernels::CounterWidth;
+        if (program->is_wavefront())
+            return film_kernels.begin_sum(wavefront.counters(), wavefront.counter_count(), Width::bits64);
+        return film_kernels.begin_sum(counters.get(), samples * groups() * layout.group_packets(), Width::bits32);
+    }
+    void end_sum(FrameStats& stats) {
+        stats.kernels.emplace_back();
+        const RayCounts counts = film_kernels.end_sum(stats.kernels.back());
+        stats.shadow = counts.shadow;
+        stats.secondary = counts.secondary;
+        stats.dropped = counts.dropped;
+        stats.overflowed = counts.overflowed;
+    }
+    // Debug programs that trace camera rays alone count nothing else, and that apart from the counters.
+    bool counts_overflows() const { return debug && !program->has_generations(); }
+    cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
+        return film_kernels.begin_rows(film.get(), group_rows(), settings, rgba);
+    }
+    ColorFilm film_of_colors() const { return {film.get(), width, height}; }
+    unsigned groups() const { return layout.groups_x(width) * static_cast<unsigned>(rows.size()); }
+    FloatImage image(unsigned channels) const {
+        FloatImage image{width, height, channels, {}};
+        image.pixels.resize(size_t(width) * height * channels);
+        return image;
+    }
+};
+
+FrameRenderer::FrameRenderer(std::shared_ptr<Device> device) : impl_(std::make_unique<Impl>(device)) {}
+FrameRenderer::~FrameRenderer() = default;
+
+FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settings, const View& view, const Samples& samples,
+                                bool count_rays, Progress& progress, const SharedRows* shared,
+                                const std::function<void()>& meanwhile) {
+    Impl& im = *impl_;
+    return wrap_cl_errors(*im.device, "tracing", [&] {
+        const Impl::Picture picture{prepared, settings, view, shared, progress};
+        im.begin(picture);
+        // Who was shown the last picture gets this one by a single wait, not by one for the trace and one for the copy.
+        im.relay.forget_begun();
+        const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
+        const bool show = im.aov->is_color() && !shared && !im.device->info().cpu && before != Impl::Shown::no;
+        const bool sum = count_rays && prepared.program->has_generations() && im.groups() > im.begun;
+        FrameStats stats;
+        for (unsigned sample = samples.first, end = sample + samples.count; sample < end;) {
+            const unsigned at_once = im.samples_at_once(picture, end - sample);
+            const cl::Buffer& film = im.film.get();
+            const cl::Buffer& into =
+                at_once == 1 ? film
+                             : im.layers.fit(im.device->context(), im.film_bytes(size_t(im.width) * im.height * at_once));
+            const bool first = sample == samples.first, last = sample + at_once == end;
+            uint8_t* const display = shared && last ? shared->display : nullptr;
+            cl::Event added;
+            Beside beside;
+            if (first) beside.while_it_works = meanwhile;
+            if (at_once > 1 || sum || display || (show && last))
+                beside.behind = [&] {
+                    cl::Event behind;
+                    if (at_once > 1)
+                        behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
+                    if (sum) behind = im.begin_sum(at_once);
+                    if (display) behind = im.begin_rows(settings, display);
+                    if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
+                    return behind;
+                };
+            const LaunchTimes times = im.launch(picture, sample, at_once, into, beside);
+            FrameStats one;
+            one.kernels.push_back({"trace", times.device_ms});
+            if (added()) one.kernels.push_back({"add samples", event_ms(added)});
+            for (const KernelTime& kernel : one.kernels) one.device_ms += kernel.ms;
+            one.wall_ms = times.wall_ms + one.device_ms - times.device_ms;
+            one.launches = times.launches;
+            one.primary = at_once * im.pixels();
+            if (sum) im.end_sum(one);
+            if (count_rays && im.counts_overflows()) one.overflowed = im.overflows.read(im.device->queue());
+            sample += at_once;
+            one.samples = sample;
+            add_stats(stats, one);
+            if (samples.complete && !samples.complete(sample) && sample < end) throw Cancelled();
+        }
+        return stats;
+    });
+}
+
+void FrameRenderer::count(FrameStats& stats) {
+    Impl& im = *impl_;
+    if (!im.program || im.rows.empty()) return;
+    wrap_cl_errors(*im.device, "counting rays", [&] {
+        if (im.counts_overflows()) stats.overflowed = im.overflows.read(im.device->queue());
+        if (!im.program->has_generations()) return;
+        im.begin_sum();
+        im.end_sum(stats);
+    });
+}
+
+FloatImage FrameRenderer::read_values() {
+    FloatImage image = impl_->image(impl_->aov->value_channels());
+    read_values(image);
+    return image;
+}
+
+void FrameRenderer::read_values(FloatImage& image) {
+    Impl& im = *impl_;
+    wrap_cl_errors(*im.device, "reading the film", [&] {
+        const bool color = im.aov->is_color();
+        const size_t stored = size_t(im.width) * im.aov->film_channels();  // floats of a row of pixels
+        if (color) im.scratch.resize(stored * im.height);
+        float* const film = color ? im.scratch.data() : image.pixels.data();
+        const std::vector<Band> bands = im.group_rows().bands();
+        read_bands(im.device->queue(), im.film.get(), bands, stored * sizeof(float), film);
+        im.device->queue().finish();
+        for (const Band& band : bands) {
+            const size_t begin = band.first * size_t(im.width), end = begin + band.count * size_t(im.width);
+            if (color) {
+                for (size_t i = begin; i < end; ++i)
+                    for (int k = 0; k < 3; ++k) image.pixels[3 * i + k] = film[4 * i + k] / std::max(film[4 * i + 3], 1.0f);
+            } else if (im.aov->film == Aov::Film::numbers) {
+                for (size_t i = begin; i < end; ++i) {
+                    rt_i32 number;
+                    std::memcpy(&number, &film[i], sizeof number);
+                    film[i] = static_cast<float>(number);
+                }
+            }
+        }
+    });
+}
+
+FloatImage FrameRenderer::read_distance() {
+    FloatImage image = impl_->image(1);
+    return read_distance(image) ? image : FloatImage{};
+}
+
+bool FrameRenderer::read_distance(FloatImage& image) {
+    Impl& im = *impl_;
+    if (im.aov->film == Aov::Film::distances) {
+        read_values(image);
+        return true;
+    }
+    if (!im.program || !im.program->has_generations()) return false;
+    wrap_cl_errors(*im.device, "reading distances", [&] {
+        im.scratch.resize(size_t(im.groups()) * im.layout.group_packets() * im.layout.rays());
+        if (!im.scratch.empty()) im.read(im.distances.get(), im.scratch.data(), im.scratch.size() * sizeof(float));
+        put_in_order(im.layout, im.rows, im.scratch.data(), image);
+    });
+    return true;
+}
+
+void FrameRenderer::read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>& times) {
+    Impl& im = *impl_;
+    if (im.rows.empty()) return;
+    wrap_cl_errors(*im.device, "reading the picture", [&] {
+        im.begin_rows(settings, rgba);
+        im.film_kernels.end_rows(times);
+    });
+}
+
+void FrameRenderer::add_display_times(std::vector<KernelTime>& times) {
+    wrap_cl_errors(*impl_->device, "reading the picture", [&] { impl_->film_kernels.end_rows(times); });
+}
+
+ByteImage FrameRenderer::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
+    Impl& im = *impl_;
+    if (scale) *scale = {};
+    if (!im.aov->is_color()) return show_values([this] { return read_values(); }, im.aov->name, settings, stats, scale);
+    im.shown = Impl::Shown::read;
+    return wrap_cl_errors(*im.device, "reading the picture",
+                          [&] { return im.relay.take(im.film_of_colors(), settings, false); })
+        .wait(stats ? &stats->kernels : nullptr);
+}
+
+AsyncReadback FrameRenderer::begin_display(const Settings& settings) {
+    Impl& im = *impl_;
+    im.shown = Impl::Shown::begun;
+    return wrap_cl_errors(*im.device, "reading the picture",
+                          [&] { return im.relay.take(im.film_of_colors(), settings, true); });
+}
+
+bool FrameRenderer::copies_aside() const {
+    return impl_->program && impl_->aov->is_color() && !impl_->device->info().cpu;
+}
+
+std::vector<rt_hit> FrameRenderer::trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,
+                                              double* device_ms) {
+    std::vector<rt_hit> hits;
+    const double ms = trace_rays(prepared, RayBlocks(rays, unsigned(prepared.settings.lanes)), query, &hits);
+    if (device_ms) *device_ms = ms;
+    return hits;
+}
+
+double FrameRenderer::trace_rays(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
+    return impl_->queries.trace(prepared, rays, query, hits);
+}
+
+RayTuning FrameRenderer::ray_tuning() const {
+    return impl_->queries.tuning();
+}
+
+}  // namespace clarity

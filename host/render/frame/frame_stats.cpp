@@ -1,0 +1,41 @@
+#include "render/frame/frame_stats.hpp"
+
+#include <algorithm>
+
+namespace clarity {
+namespace {
+
+KernelTime& time_of(std::vector<KernelTime>& times, const std::string& name) {
+    for (KernelTime& time : times)
+        if (time.name == name) return time;
+    times.push_back({name, 0});
+    return times.back();
+}
+
+}  // namespace
+
+void add_rays(FrameStats& sum, const FrameStats& more) {
+    sum.primary += more.primary;
+    sum.shadow += more.shadow;
+    sum.secondary += more.secondary;
+    sum.dropped += more.dropped;
+    sum.overflowed += more.overflowed;
+    sum.launches += more.launches;
+}
+
+void add_stats(FrameStats& sum, const FrameStats& more) {
+    add_rays(sum, more);
+    sum.device_ms += more.device_ms;
+    sum.wall_ms += more.wall_ms;
+    sum.samples = std::max(sum.samples, more.samples);
+    for (const KernelTime& time : more.kernels) time_of(sum.kernels, time.name).ms += time.ms;
+}
+
+void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& one) {
+    for (const KernelTime& time : one) {
+        double& ms = time_of(all, time.name).ms;
+        ms = std::max(ms, time.ms);
+    }
+}
+
+}  // namespace clarity

@@ -1,0 +1,112 @@
+#include "render/frame/inspect.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "render/film/overflow_counter.hpp"
+#include "render/frame/cl_errors.hpp"
+#include "render/frame/frame_constants.hpp"
+#include "render/frame/view_buffers.hpp"
+#include "render/kernels/program_cache.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr cl_uint kMostRays = 4096;    // 400 kB; a pixel of a usual picture has fewer than 100
+constexpr unsigned kSummaryWords = 5;  // as inspect.cl writes them
+
+std::array<float, 3> three(const rt_f32* v) {
+    return {v[0], v[1], v[2]};
+}
+
+RayRecord record_of(const rt_ray_record& r) {
+    RayRecord record;
+    record.kind = static_cast<RayRecord::Kind>(r.kind);
+    record.fate = static_cast<RayRecord::Fate>(r.fate);
+    record.parent = r.parent;
+    record.generation = r.generation;
+    record.origin = three(r.origin);
+    record.direction = three(r.direction);
+    record.t = r.t;
+    record.weight = three(r.weight);
+    record.light = three(r.light);
+    record.prim = r.prim;
+    record.instance = r.instance;
+    record.material = r.material;
+    record.light_index = r.light_index;
+    record.occluded = r.occluded != 0;
+    record.steps = r.steps;
+    record.leaf_tests = r.leaf_tests;
+    return record;
+}
+
+}  // namespace
+
+static_assert(sizeof(rt_ray_record) == 96);
+static_assert(RT_RAY_SHADOW == static_cast<rt_u32>(RayRecord::Kind::shadow) &&
+              RT_FATE_UNASKED == static_cast<rt_u32>(RayRecord::Fate::unasked));
+
+struct Inspector::Impl {
+    explicit Impl(std::shared_ptr<Device> d)
+        : device(std::move(d)), programs(device), queue(device->context(), device->info().cl_device) {}
+
+    std::shared_ptr<Device> device;
+    ProgramCache programs;
+    cl::CommandQueue queue;  // of its own: frames go on in the device's
+    ViewBuffers view;
+    GrowingBuffer records{CL_MEM_READ_WRITE}, summary{CL_MEM_WRITE_ONLY}, distances{CL_MEM_READ_WRITE};
+};
+
+Inspector::Inspector(std::shared_ptr<Device> device) {
+    wrap_cl_errors(*device, "preparing the inspector", [&] { impl_ = std::make_unique<Impl>(device); });
+}
+Inspector::~Inspector() = default;
+
+RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, const View& view, unsigned x, unsigned y) {
+    Impl& im = *impl_;
+    const unsigned width = static_cast<unsigned>(settings.width), height = static_cast<unsigned>(settings.height);
+    if (x >= width || y >= height)
+        throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
+                                     std::to_string(width) + "x" + std::to_string(height));
+    const Layout& layout = prepared.layout;
+    bool fresh = false;
+    const KernelSource source =
+        assemble_kernel(prepared.settings, layout, KernelKind::inspect, features_of(*prepared.scene, prepared.accel->scene),
+                        *prepared.accel->plugin, prepared.accel->defines);
+    const auto program =
+        im.programs.get(source, KernelKind::inspect, std::string("inspector with accel ") + prepared.accel->plugin->id, &fresh);
+    return wrap_cl_errors(*im.device, "inspecting a pixel", [&] {
+        const cl::Context& context = im.device->context();
+        im.view.write(im.queue, *prepared.scene, {make_frame(view, settings, layout, *prepared.accel, 0)}, view);
+        const cl::Buffer& records = im.records.fit(context, kMostRays * sizeof(rt_ray_record));
+        const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
+        const PixelPlace place = layout.place_of(x, y, width);
+        cl::Kernel kernel = program->kernel();
+        cl_uint at = 0;
+        kernel.setArg(at++, im.view.frame());
+        kernel.setArg(at++, cl_uint(place.group));
+        kernel.setArg(at++, cl_uint(place.packet));
+        kernel.setArg(at++, cl_uint(place.pixel));
+        kernel.setArg(at++, records);
+        kernel.setArg(at++, kMostRays);
+        kernel.setArg(at++, summary);
+        kernel.setArg(at++, im.distances.fit(context, layout.rays() * sizeof(float)));
+        im.view.bind(*prepared.on_device, kernel, at);
+        const size_t items = layout.local_size();
+        im.queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(items), cl::NDRange(items));
+
+        rt_u32 found[kSummaryWords] = {};
+        im.queue.enqueueReadBuffer(summary, CL_TRUE, 0, sizeof found, found);
+        std::vector<rt_ray_record> read(std::min<size_t>(found[0], kMostRays));
+        if (!read.empty()) im.queue.enqueueReadBuffer(records, CL_TRUE, 0, read.size() * sizeof(rt_ray_record), read.data());
+        RayTree tree;
+        tree.truncated = found[0] > kMostRays;
+        std::memcpy(tree.color.data(), found + 1, sizeof tree.color);
+        tree.overflowed = found[4];
+        report_overflows(tree.overflowed, prepared.accel->plugin->id);
+        for (const rt_ray_record& record : read) tree.rays.push_back(record_of(record));
+        return tree;
+    });
+}
+
+}  // namespace clarity

@@ -1,0 +1,53 @@
+#include "render/frame/launch.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/elapsed.hpp"
+#include "render/frame/cl_errors.hpp"
+
+namespace clarity {
+
+LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
+                          const std::function<Piece(unsigned first, unsigned count)>& enqueue,
+                          const std::function<void()>& go_on, const Beside& beside) {
+    LaunchTimes times;
+    pace_.begin_picture();
+    for (unsigned first = 0; first < group_count;) {
+        go_on();
+        const unsigned count = pace_.next(group_count - first, most);
+        const auto start = std::chrono::steady_clock::now();
+        const Piece piece = enqueue(first, count);
+        first += count;
+        cl::Event last;
+        if (beside.behind && first == group_count) last = beside.behind();
+        if (beside.while_it_works && times.launches == 0) {
+            queue.flush();
+            beside.while_it_works();
+        }
+        queue.finish();
+        double wall = ms_since(start);
+        const double device = span_ms(piece.first, piece.last, wall);
+        if (last()) wall = std::max(device, wall - std::max(0.0, span_ms(piece.first, last, device) - device));
+        times.wall_ms += wall;
+        times.device_ms += device;
+        ++times.launches;
+        pace_.took(count, wall);
+    }
+    pace_.end_picture();
+    return times;
+}
+
+LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
+                          unsigned group_size, const std::function<void()>& go_on, unsigned begin, const Beside& beside) {
+    const auto enqueue = [&](unsigned first, unsigned count) {
+        cl::Event event;
+        kernel.setArg(first_argument, begin + first);
+        queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size_t(count) * group_size), cl::NDRange(group_size),
+                                   nullptr, &event);
+        return Piece{event, event};
+    };
+    return run(queue, group_count, group_count, enqueue, go_on, beside);
+}
+
+}  // namespace clarity

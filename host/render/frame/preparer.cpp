@@ -1,0 +1,198 @@
+// preparer.cpp -- what is slow between settings and frames, and what of it can be kept.
+#include "base/elapsed.hpp"
+#include "base/error.hpp"
+#include "render/accel/memory_plan.hpp"
+#include "render/film/overflow_counter.hpp"
+#include "render/frame/device_scene.hpp"
+#include "render/frame/frame_constants.hpp"
+#include "render/frame/renderer.hpp"
+#include "render/frame/wavefront.hpp"
+#include "render/kernels/program_cache.hpp"
+#include "render/settings/aov.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
+namespace clarity {
+namespace {
+
+// Where nothing refracts, no ray parts, and `wavefront` is one launch whose warps fetch pixels as they get free: 1.03 to 1.10
+// times as fast on a GPU. With glass either wins on some scenes: docs/performance.md.
+std::string tracer_for(const Device& device, const Scene& scene) {
+    return device.info().cpu || refracts(scene, {}) ? "iterative" : "wavefront";
+}
+
+Settings resolve(const Settings& asked, const Device& device, const Scene& scene) {
+    Settings s = asked;
+    if (s.tracer == "auto") s.tracer = tracer_for(device, scene);
+    if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
+    if (s.packet_w == 0)
+        s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a bundle: cl/lanes/packet_stream.h
+    return s;
+}
+
+KernelKind kind_for(const Aov& aov) {
+    switch (aov.program) {
+        case Aov::Program::color:
+            return KernelKind::color;
+        case Aov::Program::generations:
+            return KernelKind::generations;
+        case Aov::Program::camera_rays:
+            break;
+    }
+    return KernelKind::aov;
+}
+
+// PoCL compiles when a kernel first runs with a work-group size, so the first frame would wait for it: one pixel is traced
+// here, with a queue of its own, while frames go on elsewhere.
+void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program, const Prepared& prepared) {
+    Device& device = *opened;
+    Settings tiny = prepared.settings;
+    tiny.width = tiny.height = 1;
+    tiny.depth = 1;
+    View view;
+    view.camera.eye = {0, 0, 1e6f};
+    const Layout& layout = prepared.layout;
+    const rt_frame frame = make_frame(view, tiny, layout, *prepared.accel, 0);
+    cl::CommandQueue queue(device.context(), device.info().cl_device, CL_QUEUE_PROFILING_ENABLE);
+    cl::Buffer frame_buffer(device.context(), CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, sizeof frame,
+                            const_cast<rt_frame*>(&frame));
+    const unsigned size = layout.local_size();
+    cl::Buffer out(device.context(), CL_MEM_READ_WRITE, 4096),
+        counters(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * 16),
+        distances(device.context(), CL_MEM_READ_WRITE, size_t(layout.group_packets()) * layout.rays() * sizeof(float)),
+        lights(device.context(), CL_MEM_READ_ONLY, 256);
+    if (program.is_wavefront()) {
+        ViewBuffers view_buffers;
+        view_buffers.write(queue, *prepared.scene, {frame}, view);
+        Launcher launcher;
+        const WavefrontFrame pixel{prepared, view, view_buffers, layout, 1, 1, 0, 1, 1, 0, out, distances};
+        Wavefront(opened).trace(queue, launcher, pixel, [] {});
+        return;
+    }
+    cl::Kernel kernel = program.kernel();
+    OverflowCounter overflows;
+    cl_uint at = 0;
+    kernel.setArg(at++, frame_buffer);
+    kernel.setArg(at++, cl_uint(0));
+    kernel.setArg(at++, out);
+    if (program.has_generations()) {
+        kernel.setArg(at++, counters);
+        kernel.setArg(at++, distances);
+    } else if (prepared.settings.debug) {
+        overflows.clear(queue);
+        at = overflows.bind(kernel, at, true);
+    }
+    prepared.on_device->bind(kernel, at, lights);
+    queue.enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(size), cl::NDRange(size));
+    queue.finish();
+}
+
+}  // namespace
+
+Preparer::Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device)
+    : plugins_(plugins), info_(device->info()), device_(device), programs_(std::make_unique<ProgramCache>(device)) {}
+Preparer::~Preparer() = default;
+
+bool Preparer::needs_reopen() const {
+    constexpr unsigned kPrograms = 16;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return info_.pocl && programs_ && programs_->compiled() >= kPrograms;
+}
+
+DeviceInfo Preparer::close_device() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (last_) {
+        auto structure = std::make_shared<Prepared>(*last_);
+        structure->on_device.reset();
+        structure->program.reset();
+        last_ = std::move(structure);
+    }
+    programs_.reset();
+    device_.reset();
+#ifdef __GLIBC__
+    malloc_trim(0);  // a compiler leaves tens of megabytes of holes
+#endif
+    return info_;
+}
+
+void Preparer::open_device(std::shared_ptr<Device> device) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    device_ = std::move(device);
+    programs_ = std::make_unique<ProgramCache>(device_);
+}
+
+const rt_plugin& Preparer::plugin_of(const Settings& settings) const {
+    if (const rt_plugin* plugin = plugins_.accel(settings.accel)) return *plugin;
+    std::string known;
+    for (const rt_plugin* p : plugins_.accels()) known += (known.empty() ? "" : ", ") + std::string(p->id);
+    throw Error(Exit::usage, "no acceleration structure `" + settings.accel + "`; there " +
+                                 (known.empty() ? "are none: `clarity plugins` says why" : "are " + known));
+}
+
+std::shared_ptr<const AccelData> Preparer::build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                                 Progress& progress) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return build_or_last(scene, settings, progress);
+}
+
+std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                                         Progress& progress) {
+    const rt_plugin& plugin = plugin_of(settings);
+    const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
+    if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->params == params)
+        return last_->accel;
+    const SceneCounts counts = count_scene(*scene);
+    check_fits(plan_memory(counts, *scene, *plugin.accel), info_,
+               std::to_string(counts.references) + " primitives in " + plugin.id);
+    // A scene that nobody shows any more makes room for the next one.
+    if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
+    progress.stage(std::string("building ") + plugin.id);
+    return std::make_shared<AccelData>(build_accel(*scene, plugin, params, progress));
+}
+
+std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
+                                                  Progress& progress, std::shared_ptr<const AccelData> built) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose it anew");
+    const rt_plugin* plugin = &plugin_of(settings);
+    auto next = std::make_shared<Prepared>();
+    next->scene = scene;
+    next->settings = resolve(settings, *device_, *scene);
+    try {
+        next->accel = built ? std::move(built) : build_or_last(scene, settings, progress);
+        if (last_ && last_->scene == scene && last_->accel == next->accel) next->on_device = last_->on_device;
+        if (!next->on_device) {
+            progress.stage("uploading the scene");
+            const auto start = std::chrono::steady_clock::now();
+            next->on_device = std::make_shared<DeviceScene>(*device_, scene, next->accel, progress);
+            next->upload_ms = ms_since(start);
+        }
+        if (progress.cancelled()) throw Cancelled();
+        progress.stage("compiling kernels");
+        progress.report(-1);
+        const KernelKind kind = kind_for(find_aov(next->settings.aov));
+        const auto start = std::chrono::steady_clock::now();
+        next->layout = make_layout(next->settings, device_->info().cpu);
+        const KernelSource source = assemble_kernel(next->settings, next->layout, kind, features_of(*scene, next->accel->scene),
+                                                    *plugin, next->accel->defines);
+        bool fresh = false;
+        const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
+        auto program = programs_->get(source, kind, what, &fresh);
+        next->program = program;
+        if (fresh) warm_up(device_, *program, *next);
+        next->compile_ms = fresh ? ms_since(start) : 0;
+        next->compile_cached = !fresh;
+    } catch (const cl::Error& e) {
+        throw Error(Exit::failed, std::string("preparing ") + plugin->id + " on " + device_->info().name + ": " + e.what() +
+                                      " failed with OpenCL error " + std::to_string(e.err()));
+    }
+    last_ = next;
+    return next;
+}
+
+}  // namespace clarity

@@ -1,0 +1,89 @@
+// view.cpp -- where a picture is taken from, and what lights it.
+#include <charconv>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "render/frame/renderer.hpp"
+
+namespace clarity {
+namespace {
+
+// "1,2,3" -> numbers; empty if it is not a list of finite numbers.
+std::vector<float> numbers(const std::string& text) {
+    std::vector<float> out;
+    const char *at = text.data(), *end = at + text.size();
+    for (;;) {
+        float value = 0;
+        const auto [next, error] = std::from_chars(at, end, value);
+        if (error != std::errc() || !std::isfinite(value)) return {};
+        out.push_back(value);
+        if (next == end) return out;
+        if (*next != ',') return {};
+        at = next + 1;
+    }
+}
+
+Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
+    if (text.empty()) return scene.cameras.empty() ? framing_camera(scene, aspect) : scene.cameras.front();
+    for (const Camera& camera : scene.cameras)
+        if (camera.name == text) return camera;
+    const std::vector<float> n = numbers(text);
+    if (n.size() == 6 || n.size() == 7) {
+        Camera camera;
+        camera.name = "command line";
+        camera.eye = {n[0], n[1], n[2]};
+        camera.target = {n[3], n[4], n[5]};
+        const float fov = n.size() == 7 ? n[6] : 45.0f;
+        if (fov <= 0 || fov >= 180)
+            throw Error(Exit::usage, "--camera: a field of view of " + text.substr(text.rfind(',') + 1) +
+                                         " degrees is not between 0 and 180");
+        if (camera.eye == camera.target) throw Error(Exit::usage, "--camera: eye and target are the same point");
+        camera.fov_y_rad = fov * 3.14159265f / 180.0f;
+        return camera;
+    }
+    std::string known;
+    for (const Camera& camera : scene.cameras) known += (known.empty() ? "" : ", ") + camera.name;
+    throw Error(Exit::usage, "--camera: `" + text + "` is neither ex,ey,ez,tx,ty,tz[,fov_degrees] nor a camera of the scene (" +
+                                 (known.empty() ? "it has none" : known) + ")");
+}
+
+// A key light from the upper left behind the camera, and a weaker one from the right: for scenes that bring none.
+std::vector<rt_light> default_lights(const Scene& scene, const Camera& camera) {
+    const Bounds bounds = scene.bounds();
+    const float size = std::max(bounds.empty ? 1.0f : bounds.diagonal(), 1e-6f);
+    std::array<float, 3> forward, right, up = camera.up;
+    for (int k = 0; k < 3; ++k) forward[k] = camera.target[k] - camera.eye[k];
+    right = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
+             forward[0] * up[1] - forward[1] * up[0]};
+    const float length = std::sqrt(right[0] * right[0] + right[1] * right[1] + right[2] * right[2]);
+    std::vector<rt_light> lights(2);
+    for (int k = 0; k < 3; ++k) {
+        const float side = length > 0 ? right[k] / length : 0;
+        const float center = bounds.empty ? 0 : 0.5f * (bounds.min[k] + bounds.max[k]);
+        lights[0].position[k] = camera.eye[k] + size * (0.6f * up[k] - 0.5f * side);
+        lights[1].position[k] = center + size * (0.8f * up[k] + 1.2f * side);
+        lights[0].color[k] = 0.75f;
+        lights[1].color[k] = 0.35f;
+    }
+    return lights;
+}
+
+}  // namespace
+
+View make_view(const Scene& scene, float aspect, const std::string& camera, const std::string& light) {
+    View view;
+    view.camera = camera_named(scene, camera, aspect);
+    for (const Light& l : scene.lights) view.lights.push_back(l.values);
+    if (view.lights.empty()) view.lights = default_lights(scene, view.camera);
+    view.background = scene.background;
+    view.ambient = scene.ambient;
+    if (!light.empty()) {
+        const std::vector<float> n = numbers(light);
+        if (n.size() != 3) throw Error(Exit::usage, "--light: `" + light + "` is not x,y,z");
+        view.lights[0].kind = RT_LIGHT_POINT;
+        for (int k = 0; k < 3; ++k) view.lights[0].position[k] = n[k];
+    }
+    return view;
+}
+
+}  // namespace clarity

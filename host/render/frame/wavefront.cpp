@@ -1,0 +1,111 @@
+#include "render/frame/wavefront.hpp"
+
+#include <algorithm>
+
+#include "render/kernels/program_cache.hpp"
+
+namespace clarity {
+namespace {
+
+// As wavefront.cl has them.
+constexpr size_t kRayBytes = 48, kShareBytes = 24;
+constexpr size_t kControlBytes = 17 * 2 * sizeof(cl_uint);
+// Work-groups that run side by side on a compute unit, or are ready to: 32 warps of 32 on a GPU.
+constexpr unsigned kGroupsPerUnit = 16;
+// Of a device's memory, what queues may take; on a CPU they should stay in its caches.
+constexpr unsigned kShareOfMemory = 8;
+constexpr uint64_t kCpuBytes = 64 << 20;
+constexpr uint64_t kMostRays = 1u << 30;  // as a uint counts, with room for those that find none
+
+// Arguments one after the other.
+class Arguments {
+ public:
+    explicit Arguments(cl::Kernel& kernel) : kernel_(kernel) {}
+    template <class T>
+    Arguments& operator<<(const T& value) {
+        kernel_.setArg(at_++, value);
+        return *this;
+    }
+    cl_uint count() const { return at_; }
+
+ private:
+    cl::Kernel& kernel_;
+    cl_uint at_ = 0;
+};
+
+}  // namespace
+
+bool refracts(const Scene& scene, const std::vector<rt_material>& materials) {
+    const auto clear = [](const rt_material& material) { return material.refract > 0; };
+    if (!materials.empty()) return std::any_of(materials.begin(), materials.end(), clear);
+    return std::any_of(scene.materials.begin(), scene.materials.end(),
+                       [&](const Material& material) { return clear(material.values); });
+}
+
+// A level holds as many rays as `ray_slots` says for each pixel, in the mean of all; pieces of the picture are so small that
+// there is room for them.
+Wavefront::Room Wavefront::room_for(const WavefrontFrame& frame) const {
+    const Layout& layout = frame.layout;
+    if (!refracts(*frame.prepared.scene, frame.view.materials)) return {0, frame.groups, false};
+    const uint64_t group_rays = uint64_t(layout.group_packets()) * layout.packet_w * layout.packet_h *
+                                static_cast<unsigned>(frame.prepared.settings.ray_slots);
+    const DeviceInfo& info = device_->info();
+    uint64_t most = (info.cpu ? kCpuBytes : info.global_bytes / kShareOfMemory) / (2 * kRayBytes);
+    if (info.max_allocation_bytes) most = std::min(most, info.max_allocation_bytes / kRayBytes);
+    most = std::min(most, kMostRays);
+    const auto fitting = static_cast<unsigned>(std::clamp<uint64_t>(most / group_rays, 1, frame.groups));
+    return {static_cast<unsigned>(fitting * group_rays), fitting, true};
+}
+
+void Wavefront::bind(const WavefrontFrame& frame, const Room& room) {
+    const cl::Context& context = device_->context();
+    const size_t pixels = size_t(frame.width) * frame.height;
+    if (program_ != frame.prepared.program) {
+        trace_ = frame.prepared.program->kernel();
+        add_ = cl::Kernel(frame.prepared.program->program, "add_sample");
+        program_ = frame.prepared.program;
+    }
+    for (cl::Buffer& control : control_)
+        if (!control()) control = cl::Buffer(context, CL_MEM_READ_WRITE, kControlBytes);
+    work_groups_ = std::max(1u, device_->info().compute_units) * kGroupsPerUnit;
+    counters_.fit(context, size_t(work_groups_) * sizeof(cl_ulong4));
+    for (GrowingBuffer& rays : rays_) rays.fit(context, room.rays * kRayBytes);
+    shares_.fit(context, room.parting ? pixels * kShareBytes : 0);
+    sums_.fit(context, room.parting && frame.sample > 0 ? pixels * sizeof(cl_float4) : 0);
+}
+
+Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame& frame, const Room& room, unsigned first,
+                                   unsigned count) {
+    const size_t local = frame.layout.local_size(), global = work_groups_ * local;
+    const cl::Buffer& sums = room.parting && frame.sample > 0 ? sums_.get() : frame.film;
+    first += frame.begin;
+    Launcher::Piece piece;
+    const auto enqueue_levels = [&](cl_uint turn) {
+        const unsigned levels = room.parting ? frame.depth : 1;
+        for (cl_uint level = 0; level < levels; ++level) {
+            Arguments arguments(trace_);
+            arguments << frame.view_buffers.frame() << cl_uint(first) << cl_uint(count) << level
+                      << cl_uint(first == 0 && level == 0) << cl_uint(room.rays) << cl_uint(room.parting) << sums
+                      << shares_.get() << counters_.get() << frame.distances << rays_[level & 1].get()
+                      << rays_[~level & 1].get() << control_[turn] << control_[turn ^ 1];
+            frame.view_buffers.bind(*frame.prepared.on_device, trace_, arguments.count());
+            queue.enqueueNDRangeKernel(trace_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr, &piece.last);
+            if (level == 0) piece.first = piece.last;
+        }
+        if (!room.parting) return;
+        Arguments(add_) << frame.view_buffers.frame() << cl_uint(first) << frame.film << sums << shares_.get();
+        queue.enqueueNDRangeKernel(add_, cl::NullRange, cl::NDRange(count * local), cl::NDRange(local), nullptr, &piece.last);
+    };
+    turns_.take([&](cl_uint turn) { queue.enqueueFillBuffer(control_[turn], cl_uint(0), 0, kControlBytes); }, enqueue_levels);
+    return piece;
+}
+
+LaunchTimes Wavefront::trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
+                             const std::function<void()>& go_on, const Beside& beside) {
+    const Room room = room_for(frame);
+    bind(frame, room);
+    const auto piece = [&](unsigned first, unsigned count) { return enqueue(queue, frame, room, first, count); };
+    return launcher.run(queue, frame.groups, room.groups, piece, go_on, beside);
+}
+
+}  // namespace clarity

@@ -1,0 +1,53 @@
+#include "render/kernels/layout.hpp"
+
+#include <algorithm>
+
+#include "base/error.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr unsigned kMostRays = 32768;  // of one generation of a packet: 2.6 MB of private memory
+constexpr unsigned kDefaultRays = 8192;
+
+}  // namespace
+
+Layout make_layout(const Settings& settings, bool cpu) {
+    Layout layout;
+    layout.lanes = static_cast<unsigned>(settings.lanes);
+    layout.packet_w = static_cast<unsigned>(settings.packet_w);
+    layout.packet_h = static_cast<unsigned>(settings.packet_h);
+    // As square as can be, but no wider or higher than twice the packet while the other side still has use for the lanes.
+    layout.block_w = layout.lanes >= 8 ? 4 : layout.lanes == 4 ? 2 : 1;
+    layout.block_h = layout.lanes / layout.block_w;
+    while (layout.block_w >= 2 * layout.packet_w && layout.block_h < layout.packet_h) layout.block_w /= 2, layout.block_h *= 2;
+    while (layout.block_h >= 2 * layout.packet_h && layout.block_w < layout.packet_w) layout.block_h /= 2, layout.block_w *= 2;
+
+    const unsigned pixels = layout.packet_w * layout.packet_h, slots = static_cast<unsigned>(settings.ray_slots);
+    if (pixels * slots > kMostRays)
+        throw Error(Exit::usage, "packet " + std::to_string(layout.packet_w) + "x" + std::to_string(layout.packet_h) +
+                                     " with ray_slots " + std::to_string(slots) + " needs room for " +
+                                     std::to_string(pixels * slots) + " rays a work-item, of " + std::to_string(kMostRays) +
+                                     " at most: take a smaller packet or fewer ray slots");
+    layout.max_pixels = 1;
+    while (layout.max_pixels < pixels) layout.max_pixels *= 2;
+    layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // so that tests without a GPU see what GPUs run
+    if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
+    // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
+    layout.group_side = 4;
+    const auto in_group = [&](unsigned packet_side) {
+        return std::clamp(16 / packet_side, 1u, layout.group_side);
+    };  // camera.h
+    layout.group_w = in_group(layout.packet_w);
+    layout.group_h = in_group(layout.packet_h);
+    layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kDefaultRays / slots));
+    return layout;
+}
+
+PixelPlace Layout::place_of(unsigned x, unsigned y, unsigned width) const {
+    const unsigned packet_x = x / packet_w, packet_y = y / packet_h;
+    return {packet_y / group_h * groups_x(width) + packet_x / group_w, packet_y % group_h * group_w + packet_x % group_w,
+            y % packet_h * packet_w + x % packet_w};
+}
+
+}  // namespace clarity

@@ -1,0 +1,293 @@
+#include "render/multi/multi_device_film.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <numeric>
+
+#include "base/elapsed.hpp"
+#include "base/log.hpp"
+#include "render/frame/cl_errors.hpp"
+#include "render/frame/frame_stats.hpp"
+
+namespace clarity {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr unsigned kMaxTiles = 256;  // about so many: enough to balance devices, and few to keep account of
+
+unsigned divided_up(unsigned a, unsigned b) {
+    return (a + b - 1) / b;
+}
+
+}  // namespace
+
+MultiDeviceFilm::MultiDeviceFilm(const Devices& devices) {
+    std::vector<Error> failures;
+    for (const std::shared_ptr<Device>& device : devices) {
+        try {
+            Member member;
+            member.device = device;
+            member.frames = std::make_unique<FrameRenderer>(device);
+            members_.push_back(std::move(member));
+        } catch (const Error& error) {
+            if (error.code() == Exit::kernel_build_failed) throw;
+            failures.push_back(error);
+        }
+    }
+    if (members_.empty()) throw failures.front();
+    for (const Error& error : failures)
+        log(LogLevel::warning, std::string(error.what()) + "; the other devices go on without it");
+    scheduler_ = std::make_unique<TileScheduler>(members_.size());
+    threads_ = std::make_unique<DeviceThreads>(members_.size());
+}
+
+size_t MultiDeviceFilm::working() const {
+    return size_t(std::count_if(members_.begin(), members_.end(), [](const Member& m) { return m.works(); }));
+}
+
+bool MultiDeviceFilm::displayed(std::vector<std::vector<KernelTime>>& times) const {
+    for (const Member& member : members_)
+        if (!member.displayed && !member.tiles.empty()) return false;
+    try {
+        for (size_t i = 0; i < members_.size(); ++i)
+            if (!members_[i].tiles.empty()) members_[i].frames->add_display_times(times[i]);
+    } catch (const Error&) {  // a device is lost, which reading finds out
+        return false;
+    }
+    return true;
+}
+
+unsigned MultiDeviceFilm::samples() const {
+    unsigned least = ~0u;
+    for (const Member& member : members_)
+        if (member.works()) least = std::min(least, member.samples);
+    return least == ~0u ? 0 : least;
+}
+
+void MultiDeviceFilm::fail(Member& member, const Error& error) {
+    last_failure_ = error;
+    member.frames.reset();
+    member.tiles.clear();
+    member.rows = {};
+    if (working() > 0)
+        log(LogLevel::warning, "device " + member.device->info().id() + " takes no further part: " + error.what() +
+                                   "; the other devices go on without it");
+}
+
+// work(i) on each device that takes part; one that fails is out. Throws Cancelled, and what is no device's failure.
+void MultiDeviceFilm::on_all(const std::function<void(size_t)>& work) {
+    const auto thrown = threads_->run([&](size_t i) {
+        if (members_[i].works()) work(i);
+    });
+    bool cancelled = false;
+    for (size_t i = 0; i < thrown.size(); ++i) {
+        if (!thrown[i]) continue;
+        try {
+            std::rethrow_exception(thrown[i]);
+        } catch (const Cancelled&) {
+            cancelled = true;
+        } catch (const Error& error) {
+            if (error.code() != Exit::failed && error.code() != Exit::no_device) throw;
+            fail(members_[i], error);
+        } catch (const cl::Error& error) {
+            fail(members_[i], Error(Exit::failed, members_[i].device->info().name + ": " + error.what() +
+                                                      " failed with OpenCL error " + std::to_string(error.err())));
+        }
+    }
+    if (cancelled) throw Cancelled();
+    if (working() == 0) throw last_failure_;
+}
+
+void MultiDeviceFilm::read(const std::function<void(size_t, FrameRenderer&)>& work) {
+    for (;;) {
+        Progress nobody_cancels;
+        recover(nobody_cancels);
+        const size_t before = working();
+        on_all([&](size_t i) {
+            if (!members_[i].tiles.empty()) work(i, *members_[i].frames);
+        });
+        if (working() == before) return;
+    }
+}
+
+// A new picture's strips. They begin where every device's rows of work-groups do.
+void MultiDeviceFilm::cut() {
+    unsigned unit = 1;
+    bool alike = true;
+    const DeviceInfo* first = nullptr;
+    std::vector<bool> takes_part;
+    for (Member& member : members_) {
+        const auto* own = prepared_->of(member.device);
+        member.prepared = own ? *own : nullptr;
+        member.tiles.clear();
+        member.rows = {};
+        member.samples = 0;
+        takes_part.push_back(member.works());
+        if (!member.works()) continue;
+        const DeviceInfo& info = member.device->info();
+        if (!first) first = &info;
+        alike &= info.compute_units == first->compute_units && info.driver == first->driver && info.parts == first->parts &&
+                 (info.parts > 0 || info.name == first->name);
+        unit = std::lcm(unit, member.prepared->layout.row_height());
+    }
+    if (!first) throw last_failure_;
+    const auto height = unsigned(settings_.height);
+    const unsigned tile_height = unit * std::max(1u, height / unit / kMaxTiles);
+    tile_count_ = divided_up(height, tile_height);
+    for (Member& member : members_) {
+        if (!member.works()) continue;
+        const unsigned row = member.prepared->layout.row_height();
+        member.rows_in_tile = tile_height / row;
+        member.rows_in_picture = divided_up(height, row);
+    }
+    scheduler_->begin(tile_count_, takes_part, alike);
+}
+
+// Whether what is in the films is of such a picture. A device that takes no part any more loses its strips.
+bool MultiDeviceFilm::goes_on(const MultiPrepared& prepared, const Settings& settings) {
+    if (settings.width != settings_.width || settings.height != settings_.height) return false;
+    for (Member& member : members_) {
+        if (!member.works()) continue;
+        const auto* own = prepared.of(member.device);
+        if (own && (*own)->layout.row_height() != member.prepared->layout.row_height()) return false;
+        member.prepared = own ? *own : nullptr;
+        if (!own) member.tiles.clear();
+    }
+    return true;
+}
+
+void MultiDeviceFilm::give(Member& member, const std::vector<unsigned>& tiles) {
+    member.rows.begin = member.rows.rows.size();
+    for (const unsigned tile : tiles) {
+        member.tiles.push_back(tile);
+        const unsigned first = tile * member.rows_in_tile;
+        for (unsigned row = first; row < std::min(first + member.rows_in_tile, member.rows_in_picture); ++row)
+            member.rows.rows.push_back(row);
+    }
+}
+
+// Returns how long it took, ms.
+double MultiDeviceFilm::trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress,
+                                   uint8_t* display) {
+    const auto begin = Clock::now();
+    member.rows.display = display;
+    if (!member.rows.rows.empty())
+        add_stats(member.stats,
+                  member.frames->trace(*member.prepared, settings_, view_, samples, count_rays, progress, &member.rows));
+    return ms_since(begin);
+}
+
+void MultiDeviceFilm::trace_part(size_t index, const Batch& batch, bool count_rays, Progress& progress) {
+    const unsigned sample = batch.sample, end = batch.end;
+    Member& member = members_[index];
+    const auto woken = Clock::now();
+    const auto complete = [&](unsigned done) {
+        member.samples = done;
+        // Progress is told by one thread, the caller's.
+        return done == end ||
+               (index == 0 ? progress.report(float(done - sample) / float(end - sample)) : !progress.cancelled());
+    };
+    unsigned first = sample;
+    auto since = batch.begin;  // of all devices: who gets to work late has to have less
+    if (batch.fresh && scheduler_->dynamic()) {
+        for (auto tiles = scheduler_->next(index); !tiles.empty(); tiles = scheduler_->next(index)) {
+            give(member, tiles);
+            scheduler_->took(index, tiles.size(), trace_rows(member, sample, false, progress));
+        }
+        if (count_rays && !member.tiles.empty()) {
+            FrameStats counted;
+            member.frames->count(counted);
+            add_stats(member.stats, counted);
+        }
+        if (!complete(++first)) throw Cancelled();
+        since = Clock::now();
+    } else if (batch.fresh) {
+        give(member, scheduler_->next(index));
+    }
+    member.rows.begin = 0;
+    if (first < end) {
+        trace_rows(member, {first, end - first, complete}, count_rays, progress, batch.display);
+        member.displayed = batch.display != nullptr;
+        scheduler_->took(index, member.tiles.size() * (end - first), ms_since(since));
+    }
+    member.samples = end;
+    member.wall_ms = ms_since(woken);
+}
+
+FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
+                                  const View& view, unsigned sample, unsigned end, bool count_rays, Progress& progress,
+                                  uint8_t* display) {
+    const auto begin = Clock::now();
+    for (Member& member : members_) member.displayed = false;
+    const bool fresh = sample == 0 || !goes_on(*prepared, settings);
+    prepared_ = prepared;
+    settings_ = settings;
+    view_ = view;
+    if (fresh)
+        cut();
+    else
+        recover(progress);
+    for (Member& member : members_) {
+        member.stats = {};
+        member.wall_ms = 0;
+    }
+    on_all([&](size_t i) { trace_part(i, {begin, sample, end, fresh, display}, count_rays, progress); });
+    recover(progress);
+    return gathered(ms_since(begin));
+}
+
+// Strips whose owner failed, shared out; all lists are empty if there are none.
+std::vector<std::vector<unsigned>> MultiDeviceFilm::orphans() const {
+    std::vector<bool> owned(tile_count_);
+    for (const Member& member : members_)
+        for (const unsigned tile : member.tiles) owned[tile] = true;
+    std::vector<std::vector<unsigned>> more(members_.size());
+    std::vector<double> owed(members_.size(), 0.0);
+    for (unsigned tile = 0; tile < tile_count_; ++tile) {
+        if (owned[tile]) continue;
+        for (size_t i = 0; i < members_.size(); ++i)
+            owed[i] += members_[i].works() ? std::max(scheduler_->share(i), 1e-6) : -1.0;
+        const size_t to = size_t(std::max_element(owed.begin(), owed.end()) - owed.begin());
+        owed[to] -= 1;
+        more[to].push_back(tile);
+    }
+    return more;
+}
+
+// Traces what failed devices had once more, all samples of it.
+void MultiDeviceFilm::recover(Progress& progress) {
+    for (unsigned complete = samples(); complete > 0;) {
+        const std::vector<std::vector<unsigned>> more = orphans();
+        if (std::all_of(more.begin(), more.end(), [](const auto& tiles) { return tiles.empty(); })) return;
+        on_all([&](size_t i) {
+            if (more[i].empty()) return;
+            members_[i].displayed = false;
+            give(members_[i], more[i]);
+            trace_rows(members_[i], {0, complete}, false, progress);
+        });
+    }
+}
+
+FrameStats MultiDeviceFilm::gathered(double wall_ms) const {
+    FrameStats sum;
+    for (const Member& member : members_) {
+        if (!member.works()) continue;
+        const FrameStats& one = member.stats;
+        add_rays(sum, one);
+        sum.device_ms = std::max(sum.device_ms, one.device_ms);
+        merge_times(sum.kernels, one.kernels);
+        const DeviceInfo& info = member.device->info();
+        sum.devices.push_back({info.id(), info.name});
+        DeviceShare& share = sum.devices.back();
+        share.share = double(member.rows.rows.size()) / member.rows_in_picture;
+        share.device_ms = one.device_ms;
+        share.wall_ms = member.wall_ms;
+        share.launches = one.launches;
+    }
+    sum.samples = samples();
+    sum.wall_ms = wall_ms;
+    return sum;
+}
+
+}  // namespace clarity

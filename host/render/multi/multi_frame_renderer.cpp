@@ -1,0 +1,143 @@
+#include "render/multi/multi_frame_renderer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "render/film/film.hpp"
+#include "render/film/pinned_memory_pool.hpp"
+#include "render/frame/cl_errors.hpp"
+#include "render/frame/frame_stats.hpp"
+#include "render/multi/multi_device_film.hpp"
+#include "render/settings/aov.hpp"
+
+namespace clarity {
+
+struct MultiFrameRenderer::Impl {
+    std::unique_ptr<FrameRenderer> alone;  // of the only device, which needs nothing of the rest
+    std::unique_ptr<MultiDeviceFilm> shared;
+    // The picture traced last.
+    std::shared_ptr<const MultiPrepared> prepared;
+    unsigned width = 0, height = 0;
+    unsigned samples = 0;  // of `alone`
+    std::unique_ptr<PinnedMemoryPool> memory;
+    std::shared_ptr<Device> memory_of;
+    // Of several: who was shown the last picture will be shown this one, so each device brings what is its own as soon as it
+    // has it: to where, and with which tones.
+    bool shown = false;
+    std::shared_ptr<uint8_t> display;
+    Tones display_tones;
+
+    const Aov& aov() const { return find_aov(prepared->first()->settings.aov); }
+    FloatImage image(unsigned channels) const {
+        FloatImage image{width, height, channels, {}};
+        image.pixels.resize(size_t(width) * height * channels);
+        return image;
+    }
+
+    // Room that all devices write to; pinned by the first GPU.
+    std::shared_ptr<uint8_t> room(size_t bytes) {
+        std::shared_ptr<Device> gpu;
+        for (size_t i = 0; i < shared->size() && !gpu; ++i)
+            if (shared->works(i) && !shared->device(i)->info().cpu) gpu = shared->device(i);
+        if (!memory || memory_of != gpu) memory = std::make_unique<PinnedMemoryPool>(gpu);
+        memory_of = gpu;
+        return gpu ? wrap_cl_errors(*gpu, "reading the picture", [&] { return memory->lend(bytes); }) : memory->lend(bytes);
+    }
+
+    uint8_t* place_for_display(const Settings& settings) {
+        display = nullptr;
+        display_tones = Tones(settings);
+        if (!std::exchange(shown, false) || !aov().is_color()) return nullptr;
+        try {
+            display = room(size_t(width) * height * 4);
+        } catch (const Error&) {  // the device that was to lend it is lost, which tracing finds out
+        }
+        return display.get();
+    }
+};
+
+MultiFrameRenderer::MultiFrameRenderer(const Devices& devices) : impl_(std::make_unique<Impl>()) {
+    if (devices.size() == 1)
+        impl_->alone = std::make_unique<FrameRenderer>(devices[0]);
+    else
+        impl_->shared = std::make_unique<MultiDeviceFilm>(devices);
+}
+MultiFrameRenderer::~MultiFrameRenderer() = default;
+
+unsigned MultiFrameRenderer::samples() const {
+    return impl_->alone ? impl_->samples : impl_->shared->samples();
+}
+
+FrameStats MultiFrameRenderer::trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
+                                     const View& view, unsigned sample, bool count_rays, Progress& progress, unsigned samples,
+                                     const std::function<void()>& meanwhile) {
+    Impl& im = *impl_;
+    im.prepared = prepared;
+    im.width = unsigned(settings.width);
+    im.height = unsigned(settings.height);
+    const unsigned end = sample + samples;
+    if (im.shared) {
+        if (meanwhile) meanwhile();
+        return im.shared->trace(prepared, settings, view, sample, end, count_rays, progress, im.place_for_display(settings));
+    }
+    im.samples = sample;
+    const auto complete = [&](unsigned done) {
+        im.samples = done;
+        return done == end || progress.report(float(done - sample) / float(samples));
+    };
+    return im.alone->trace(*prepared->first(), settings, view, {sample, samples, complete}, count_rays, progress, nullptr,
+                           meanwhile);
+}
+
+FloatImage MultiFrameRenderer::read_values() {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->read_values();
+    FloatImage image = im.image(im.aov().value_channels());
+    im.shared->read([&](size_t, FrameRenderer& frames) { frames.read_values(image); });
+    return image;
+}
+
+FloatImage MultiFrameRenderer::read_distance() {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->read_distance();
+    if (!im.prepared) return {};
+    FloatImage image = im.image(1);
+    std::vector<char> known(im.shared->size(), true);
+    im.shared->read([&](size_t i, FrameRenderer& frames) { known[i] = frames.read_distance(image); });
+    return std::find(known.begin(), known.end(), false) == known.end() ? image : FloatImage{};
+}
+
+ByteImage MultiFrameRenderer::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
+    Impl& im = *impl_;
+    if (im.alone) return im.alone->read_display(settings, stats, scale);
+    if (scale) *scale = {};
+    if (!im.aov().is_color()) return show_values([this] { return read_values(); }, im.aov().name, settings, stats, scale);
+    im.shown = true;
+    const size_t bytes = size_t(im.width) * im.height * 4;
+    std::vector<std::vector<KernelTime>> times(im.shared->size());
+    std::shared_ptr<uint8_t> rgba = std::exchange(im.display, nullptr);
+    if (!rgba || !(im.display_tones == Tones(settings)) || !im.shared->displayed(times)) {
+        rgba = im.room(bytes);
+        im.shared->read([&](size_t i, FrameRenderer& frames) {
+            times[i].clear();
+            frames.read_display(settings, rgba.get(), times[i]);
+        });
+    }
+    for (size_t i = 0; stats && i < times.size(); ++i) {
+        merge_times(stats->kernels, times[i]);
+        for (DeviceShare& share : stats->devices)
+            if (share.id == im.shared->device(i)->info().id())
+                for (const KernelTime& time : times[i]) (time.name == "tone map" ? share.tone_map_ms : share.read_ms) = time.ms;
+    }
+    return {im.width, im.height, SharedBytes(rgba, bytes)};
+}
+
+AsyncReadback MultiFrameRenderer::begin_display(const Settings& settings) {
+    return impl_->alone->begin_display(settings);
+}
+
+bool MultiFrameRenderer::copies_aside() const {
+    return impl_->alone && impl_->alone->copies_aside();
+}
+
+}  // namespace clarity

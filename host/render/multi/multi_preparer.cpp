@@ -1,0 +1,107 @@
+#include "render/multi/multi_preparer.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+
+namespace clarity {
+
+Devices open_devices(const std::vector<DeviceInfo>& infos, const Devices& open) {
+    Devices devices;
+    std::vector<Error> failures;
+    for (const DeviceInfo& info : infos) {
+        const auto same = [&](const auto& device) { return device->info().id() == info.id(); };
+        const auto found = std::find_if(open.begin(), open.end(), same);
+        try {
+            devices.push_back(found == open.end() ? std::make_shared<Device>(info) : *found);
+        } catch (const Error& e) {
+            failures.push_back(e);
+        }
+    }
+    if (devices.empty()) throw failures.front();
+    for (const Error& e : failures) log(LogLevel::warning, std::string(e.what()) + "; the others go on without it");
+    return devices;
+}
+
+std::vector<DeviceInfo> infos_of(const Devices& devices) {
+    std::vector<DeviceInfo> infos;
+    for (const auto& device : devices) infos.push_back(device->info());
+    return infos;
+}
+
+std::string devices_name(const std::vector<DeviceInfo>& infos) {
+    std::vector<std::pair<std::string, unsigned>> counted;
+    for (const DeviceInfo& info : infos) {
+        const std::string name = info.name.substr(0, info.name.find(", part "));
+        const auto same = [&](const auto& other) { return other.first == name; };
+        const auto found = std::find_if(counted.begin(), counted.end(), same);
+        if (found == counted.end())
+            counted.emplace_back(infos.size() == 1 ? info.name : name, 1);
+        else
+            ++found->second;
+    }
+    std::string text;
+    for (const auto& [name, count] : counted)
+        text += (text.empty() ? "" : " + ") + (count > 1 ? std::to_string(count) + " x " : std::string()) + name;
+    return text;
+}
+
+const std::shared_ptr<const Prepared>* MultiPrepared::of(const std::shared_ptr<Device>& device) const {
+    for (const Part& part : parts)
+        if (part.device == device) return &part.prepared;
+    return nullptr;
+}
+
+MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devices)
+    : infos_(infos_of(devices)), devices_(devices) {
+    for (const auto& device : devices) preparers_.push_back(std::make_unique<Preparer>(plugins, device));
+}
+
+std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
+                                                            Progress& progress) {
+    auto prepared = std::make_shared<MultiPrepared>();
+    if (preparers_.size() == 1) {
+        prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress)}};
+        return prepared;
+    }
+    // The roomiest decides whether the scene is built at all: one that it is too large for says so when its turn comes.
+    const auto roomiest = std::max_element(
+        infos_.begin(), infos_.end(), [](const DeviceInfo& a, const DeviceInfo& b) { return a.global_bytes < b.global_bytes; });
+    const std::shared_ptr<const AccelData> built =
+        preparers_[size_t(roomiest - infos_.begin())]->build(scene, settings, progress);
+    std::vector<Error> failures;
+    for (size_t i = 0; i < preparers_.size(); ++i) {
+        try {
+            prepared->parts.push_back({devices_[i], preparers_[i]->prepare(scene, settings, progress, built)});
+        } catch (const Error& e) {
+            if (e.code() != Exit::failed && e.code() != Exit::no_device) throw;
+            failures.push_back(e);
+        }
+    }
+    if (prepared->parts.empty()) throw failures.front();
+    for (const Error& e : failures) log(LogLevel::warning, std::string(e.what()) + "; the other devices go on without it");
+    return prepared;
+}
+
+bool MultiPreparer::needs_reopen() const {
+    return std::any_of(preparers_.begin(), preparers_.end(), [](const auto& preparer) { return preparer->needs_reopen(); });
+}
+
+std::vector<DeviceInfo> MultiPreparer::close_devices() {
+    for (auto& device : devices_) device.reset();
+    for (const auto& preparer : preparers_) preparer->close_device();
+    return infos_;
+}
+
+void MultiPreparer::open_devices(const Devices& devices) {
+    for (size_t i = 0; i < preparers_.size(); ++i)
+        for (const auto& device : devices)
+            if (device->info().id() == infos_[i].id()) {
+                devices_[i] = device;
+                preparers_[i]->open_device(device);
+            }
+}
+
+}  // namespace clarity

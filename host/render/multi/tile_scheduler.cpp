@@ -1,0 +1,108 @@
+#include "render/multi/tile_scheduler.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace clarity {
+namespace {
+
+constexpr double kNewest = 0.5;  // weight of the last picture in what is known of speeds
+
+}  // namespace
+
+void TileScheduler::begin(unsigned tile_count, const std::vector<bool>& takes_part, bool alike) {
+    learn();
+    if (takes_part != takes_part_) shares_.clear();
+    takes_part_ = takes_part;
+    measured_.assign(measured_.size(), {});
+    set_aside_.assign(measured_.size(), {});
+    left_.clear();
+    const auto taking = static_cast<unsigned>(std::count(takes_part.begin(), takes_part.end(), true));
+    // What is dealt by turns costs a launch each, what is set aside the wait for who had too much.
+    const bool known = !shares_.empty();
+    unsigned few = known ? taking : std::max(taking, alike ? tile_count / 16 : tile_count);
+    if (taking < 2 || (known && alike)) few = 0;
+    set_aside(tile_count, std::min(tile_count, few));
+    dynamic_ = !left_.empty();
+}
+
+// The speeds that the picture showed, as shares.
+void TileScheduler::learn() {
+    double sum = 0;
+    for (size_t i = 0; i < takes_part_.size(); ++i) {
+        if (takes_part_[i] && measured_[i].speed() <= 0) return;  // too few strips for all, or one failed
+        sum += takes_part_[i] ? measured_[i].speed() : 0;
+    }
+    if (sum <= 0) return;
+    const bool first = shares_.empty();
+    shares_.resize(measured_.size());
+    for (size_t i = 0; i < shares_.size(); ++i) {
+        const double now = takes_part_[i] ? measured_[i].speed() / sum : 0;
+        shares_[i] = first ? now : (1 - kNewest) * shares_[i] + kNewest * now;
+    }
+}
+
+// Strips go by turns to whoever is furthest behind its share, so that each has some of every part of the picture.
+void TileScheduler::set_aside(unsigned tile_count, unsigned left_over) {
+    const size_t nobody = measured_.size();
+    std::vector<double> share(nobody + 1), owed(nobody + 1, 0.0);
+    share[nobody] = tile_count > 0 ? double(left_over) / tile_count : 0;
+    for (size_t i = 0; i < nobody; ++i) share[i] = share_locked(i) * (1 - share[nobody]);
+    for (unsigned tile = 0; tile < tile_count; ++tile) {
+        for (size_t i = 0; i <= nobody; ++i) owed[i] += share[i];
+        const size_t to = size_t(std::max_element(owed.begin(), owed.end()) - owed.begin());
+        owed[to] -= 1;
+        (to == nobody ? left_ : set_aside_[to]).push_back(tile);
+    }
+    std::reverse(left_.begin(), left_.end());
+}
+
+double TileScheduler::share_locked(size_t device) const {
+    if (!takes_part_[device]) return 0;
+    double sum = 0;
+    size_t taking = 0, known = 0;
+    for (size_t i = 0; i < measured_.size(); ++i) {
+        if (!takes_part_[i]) continue;
+        ++taking;
+        known += measured_[i].speed() > 0;
+        sum += measured_[i].speed();
+    }
+    if (known == taking) return measured_[device].speed() / sum;
+    return shares_.empty() ? 1.0 / double(taking) : shares_[device];
+}
+
+double TileScheduler::share(size_t device) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return share_locked(device);
+}
+
+std::vector<unsigned> TileScheduler::next(size_t device) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!set_aside_[device].empty()) return std::exchange(set_aside_[device], {});
+    if (left_.empty() || !takes_part_[device]) return {};
+    size_t count = 1;
+    if (const double speed = measured_[device].speed(); speed > 0) {
+        double fastest = 0;
+        for (size_t i = 0; i < measured_.size(); ++i)
+            if (takes_part_[i]) fastest = std::max(fastest, measured_[i].speed());
+        // A slow device would hold up the picture with a strip, when the fastest is done with all of them before.
+        if (1 / speed > double(left_.size() + 1) / fastest) return {};
+        // Large pieces while there is much, so that launches are few; small ones at the end, where devices must end together.
+        count = std::max<size_t>(1, size_t(0.5 * share_locked(device) * double(left_.size())));
+    }
+    std::vector<unsigned> tiles;
+    for (; count > 0; --count) {
+        tiles.push_back(left_.back());
+        left_.pop_back();
+    }
+    return tiles;
+}
+
+void TileScheduler::took(size_t device, size_t tiles, double ms) {
+    if (tiles == 0 || !(ms > 0)) return;
+    const std::lock_guard<std::mutex> lock(mutex_);
+    measured_[device].tiles += double(tiles);
+    measured_[device].ms += ms;
+}
+
+}  // namespace clarity

@@ -1,0 +1,93 @@
+// autotuner.hpp -- an autotuner: tries several ways to do the same work, then uses the fastest.
+#pragma once
+#include <algorithm>
+#include <array>
+
+namespace clarity {
+
+// The caller asks way(), does the work that way, and reports its time to took().
+//
+// How the choice is made: all ways run in turns, three rounds. The first round is a warm-up (it may include a compilation, and
+// the launcher may cut it into small pieces). The lesser time of the other two rounds counts. A way that is 1.5 times slower
+// than the fastest after its second run is not tried a third time.
+//
+// When the choice is looked at again: the clock of a GPU rises for some tenths of a second once it has work. A choice that was
+// made meanwhile favours the ways that were tried last. So all ways are tried anew (two rounds, without the warm-up)
+// - when three runs one after the other took clearly more or less time (10 %) than the run that the choice was made by. Each
+//   time this happens, twice as many such runs are needed, so that a machine which is never steady does not tune for ever;
+// - after 16 uses, then after 64, 256 and so on: this finds a smaller drift, and costs less and less.
+// The present choice stays unless another way takes 3 % less time: smaller differences are noise.
+class Autotuner {
+ public:
+    // ways: 1 to kMost.
+    explicit Autotuner(unsigned ways = 1) : ways_(ways) {
+        if (ways_ > 1) try_all(0);
+    }
+    unsigned way() const { return trying() ? at_ : best_; }
+    // True if the next run is a try, which may be of a slow way: a benchmark must not count its time.
+    bool trying() const { return round_ < kRounds; }
+    // True if a run of the chosen way has confirmed the time that it was chosen by.
+    bool settled() const { return ways_ == 1 || confirmed_; }
+    // ms: of the run that was done by way().
+    void took(double ms) {
+        if (ways_ == 1) return;
+        if (trying())
+            note_try(ms);
+        else
+            note_use(ms);
+    }
+
+    static constexpr unsigned kMost = 5;
+
+ private:
+    static constexpr unsigned kRounds = 3;
+    static constexpr double kFarBehind = 1.5;
+    static constexpr double kWorthIt = 0.97;
+    static constexpr double kClearly = 1.1;
+
+    void try_all(unsigned first_round) {
+        ms_.fill(1e30);
+        round_ = first_round;
+        at_ = uses_ = unlike_ = 0;
+        confirmed_ = false;
+    }
+
+    void note_try(double ms) {
+        if (round_ > 0) ms_[at_] = std::min(ms_[at_], ms);
+        do {
+            if (++at_ < ways_) continue;
+            at_ = 0;
+            if (++round_ == kRounds - 1) worth_a_third_ = kFarBehind * ms_[fastest()];
+        } while (round_ == kRounds - 1 && ms_[at_] > worth_a_third_);
+        if (!trying() && ms_[fastest()] < kWorthIt * ms_[best_]) best_ = fastest();
+    }
+
+    void note_use(double ms) {
+        const double expected = ms_[best_];
+        if (ms > kClearly * expected || kClearly * ms < expected) {
+            ++unlike_;
+        } else {
+            unlike_ = 0;
+            confirmed_ = true;
+        }
+        ++uses_;
+        if (unlike_ == most_unlike_) {
+            most_unlike_ *= 2;
+            try_all(1);
+        } else if (uses_ == look_again_) {
+            look_again_ *= 4;
+            try_all(1);
+        }
+    }
+
+    unsigned fastest() const { return static_cast<unsigned>(std::min_element(ms_.begin(), ms_.begin() + ways_) - ms_.begin()); }
+
+    unsigned ways_, round_ = kRounds, at_ = 0, best_ = 0;
+    unsigned uses_ = 0, look_again_ = 16;    // since the choice; and after how many it is looked at again
+    unsigned unlike_ = 0, most_unlike_ = 3;  // runs in a row that took another time than expected
+    bool confirmed_ = false;
+    double worth_a_third_ = 0;  // ms; slower ways are not tried a third time
+    std::array<double, kMost> ms_{};
+};
+
+}  // namespace clarity

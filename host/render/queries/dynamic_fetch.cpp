@@ -1,0 +1,49 @@
+#include "render/queries/dynamic_fetch.hpp"
+
+#include <algorithm>
+
+namespace clarity {
+namespace {
+
+constexpr unsigned kGroupSize = 64;
+constexpr unsigned kGroupsPerUnit = 14;  // that run side by side on a compute unit; an H200's take 14
+// Rays that a work-item draws at a time: two where there are so many that drawing, one atomic a warp, takes longer than the
+// last to be done makes the others wait.
+constexpr unsigned kManyEach = 1024 / 32;
+
+}  // namespace
+
+LaunchTimes DynamicFetch::trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
+                                cl_uint fields, const cl::Buffer& in, const cl::Buffer& out, OverflowCounter& overflows) {
+    cl::CommandQueue& queue = device_->queue();
+    const cl::Buffer before = queue_.get();
+    const cl::Buffer& drawn = queue_.fit(device_->context(), 2 * sizeof(cl_uint));
+    if (drawn() != before()) turns_.forget();
+
+    const unsigned most = std::max(1u, device_->info().compute_units) * kGroupsPerUnit;
+    cl::Kernel kernel = program.kernel();
+    kernel.setArg(0, view.frame());
+    kernel.setArg(3, cl_uint(rays / (most * kGroupSize) >= kManyEach ? 2 : 1));
+    kernel.setArg(4, fields);
+    kernel.setArg(5, in);
+    kernel.setArg(6, out);
+    kernel.setArg(7, drawn);
+    view.bind(*prepared.on_device, kernel, overflows.bind(kernel, 9, prepared.settings.debug));
+    const auto enqueue = [&](unsigned begin, unsigned count) {
+        kernel.setArg(1, cl_uint(begin * kGroupSize));
+        kernel.setArg(2, cl_uint(std::min(size_t(rays), (size_t(begin) + count) * kGroupSize)));
+        cl::Event event;
+        turns_.take([&](cl_uint) { queue.enqueueFillBuffer(drawn, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
+                    [&](cl_uint turn) {
+                        kernel.setArg(8, turn);
+                        queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+                                                   cl::NDRange(size_t(std::min(count, most)) * kGroupSize),
+                                                   cl::NDRange(kGroupSize), nullptr, &event);
+                    });
+        return Launcher::Piece{event, event};
+    };
+    const unsigned groups = (rays + kGroupSize - 1) / kGroupSize;
+    return launcher_.run(queue, groups, groups, enqueue, [] {});
+}
+
+}  // namespace clarity

@@ -1,0 +1,111 @@
+#include "render/queries/ray_queries.hpp"
+
+#include "base/error.hpp"
+#include "render/frame/cl_errors.hpp"
+#include "render/frame/frame_constants.hpp"
+
+namespace clarity {
+namespace {
+
+// Whether a warp agrees by votes (cl/lanes/subgroup.h); tests without a GPU see what it would do.
+bool votes(const DeviceInfo& info, const Settings& settings) {
+    return (info.nvidia && !info.pocl) || settings.portable;
+}
+
+// Of a query, the plain one first.
+std::vector<KernelKind> ways_for(const rt_plugin& accel, const Layout& layout, bool votes, RayQuery query) {
+    if (query.count) return {KernelKind::counted_rays};
+    std::vector<KernelKind> ways{KernelKind::rays};
+    if (layout.lanes > 1 || layout.cpu) return ways;
+    if (requeues_long_rays(accel)) ways.push_back(KernelKind::requeued_rays);
+    if (traverses_by_steps(accel) && !query.any_hit) ways.push_back(KernelKind::dynamic_fetch);
+    if (traverses_by_warps(accel) && votes) ways.insert(ways.end(), {KernelKind::warp_rays, KernelKind::warp_pairs});
+    return ways;
+}
+
+}  // namespace
+
+LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout,
+                                      size_t blocks, bool any_hit, cl_uint fields, const cl::Buffer& in,
+                                      const cl::Buffer& out) {
+    cl::Kernel kernel = program.kernel();
+    cl_uint at = 0;
+    kernel.setArg(at++, view_.frame());
+    const cl_uint first_group = at++;
+    kernel.setArg(at++, static_cast<cl_uint>(blocks));
+    kernel.setArg(at++, static_cast<cl_uint>(any_hit));
+    kernel.setArg(at++, fields);
+    kernel.setArg(at++, in);
+    kernel.setArg(at++, out);
+    view_.bind(*prepared.on_device, kernel, overflows_.bind(kernel, at, prepared.settings.debug));
+    const unsigned each = warp_rays_each(program.kind);
+    const size_t in_group = each ? layout.local_size() * each : size_t(layout.group_packets()) * layout.blocks();
+    const size_t groups = (blocks + in_group - 1) / in_group;
+    return launchers_[program.kind].run(device_->queue(), kernel, first_group, static_cast<unsigned>(groups),
+                                        layout.local_size(), [] {});
+}
+
+double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
+    return wrap_cl_errors(*device_, "tracing rays", [&] {
+        if (hits) hits->clear();
+        tuning_ = {};
+        if (rays.ray_count() == 0) return 0.0;
+        const Layout& layout = prepared.layout;
+        bool fresh = false;
+        if (rays.lanes() != layout.lanes)
+            throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
+                                          " lanes and the program has " + std::to_string(layout.lanes) + ": pack them anew");
+        const bool unplaced = layout.lanes == 1 && prepared.accel->scene.instances.empty();
+        const cl_uint fields = query.count     ? RT_ANSWER_ALL
+                               : query.any_hit ? RT_ANSWER_OCCLUSION
+                               : query.brief   ? RT_ANSWER_NEAREST
+                               : unplaced      ? RT_ANSWER_HIT
+                                               : RT_ANSWER_ALL;
+        const size_t slots = rays.block_count() * layout.lanes;
+        const Asked asked{prepared.on_device, prepared.program, rays.block_count(), query.any_hit, query.count, query.brief};
+        if (!(asked == last_)) {
+            last_ = asked;
+            packing_ = 0;
+            launchers_.clear();
+            requeued_rays_.forget();
+            dynamic_fetch_.forget();
+        }
+        if (packing_ != rays.packing()) {
+            packing_ = rays.packing();
+            ways_ = ways_for(*prepared.accel->plugin, layout, votes(device_->info(), prepared.settings), query);
+            way_ = Autotuner(static_cast<unsigned>(ways_.size()));
+        }
+        const KernelKind kind = ways_[way_.way()];
+        tuning_ = {way_.way(), way_.trying(), false};
+        const KernelSource source =
+            assemble_kernel(prepared.settings, layout, kind, features_of(*prepared.scene, prepared.accel->scene),
+                            *prepared.accel->plugin, prepared.accel->defines);
+        const auto program =
+            programs_.get(source, kind, std::string("ray queries with accel ") + prepared.accel->plugin->id, &fresh);
+        cl::CommandQueue& queue = device_->queue();
+        view_.write(queue, *prepared.scene, {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
+        const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));
+        const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
+        // Before every run, though it be the same again: then a CPU's caches are as warm each time.
+        queue.enqueueWriteBuffer(in, CL_TRUE, 0, rays.floats().size() * sizeof(float), rays.floats().data());
+        const bool debug = prepared.settings.debug;
+        if (debug) overflows_.clear(queue);
+        const LaunchTimes times =
+            kind == KernelKind::requeued_rays ? requeued_rays_.trace(prepared, *program, view_, static_cast<unsigned>(slots),
+                                                                     query.any_hit, fields, in, out, overflows_)
+            : kind == KernelKind::dynamic_fetch
+                ? dynamic_fetch_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out, overflows_)
+                : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
+        if (debug) report_overflows(overflows_.read(queue), prepared.accel->plugin->id);
+        way_.took(times.device_ms);
+        tuning_.settled = way_.settled();
+        if (hits) {
+            std::vector<float> answers(slots * fields);
+            queue.enqueueReadBuffer(out, CL_TRUE, 0, answers.size() * sizeof(float), answers.data());
+            *hits = unpack_hits(answers, rays.ray_count(), layout.lanes, fields, query.count);
+        }
+        return times.device_ms;
+    });
+}
+
+}  // namespace clarity

@@ -1,0 +1,99 @@
+#include "render/settings/aov.hpp"
+
+#include <stdexcept>
+
+namespace clarity {
+
+const std::vector<Aov>& aov_table() {
+    using About = Aov::About;
+    using Program = Aov::Program;
+    using Film = Aov::Film;
+    using Paint = Aov::Paint;
+    using Range = Aov::Range;
+    using Map = FalseColorScale::Map;
+    static const std::vector<Aov> table = {
+        {"color", "colour", About::color, Program::color, Film::colors, Paint::tones},
+        {"t",
+         "distance",
+         About::first_hit,
+         Program::camera_rays,
+         Film::distances,
+         Paint::scale,
+         false,
+         Range::measured,
+         {Map::gray, 0, 1, false, "Distance", "scene units"}},
+        {"prim", "primitive", About::first_hit, Program::camera_rays, Film::numbers, Paint::hash},
+        {"instance", "instance", About::first_hit, Program::camera_rays, Film::numbers, Paint::hash},
+        {"normal", "normal", About::first_hit, Program::camera_rays, Film::vectors, Paint::direction},
+        {"uv", "texture coordinates", About::first_hit, Program::camera_rays, Film::vectors, Paint::texture},
+        {"steps",
+         "nodes visited",
+         About::cost,
+         Program::camera_rays,
+         Film::amounts,
+         Paint::scale,
+         true,
+         Range::counts,
+         {Map::heat, 0, 1, true, "Nodes visited", "per packet of rays"}},
+        {"leaf_tests",
+         "primitives tested",
+         About::cost,
+         Program::camera_rays,
+         Film::amounts,
+         Paint::scale,
+         true,
+         Range::counts,
+         {Map::heat, 0, 1, true, "Primitives tested", "per packet of rays"}},
+        {"lanes",
+         "share of lanes alive per visit",
+         About::cost,
+         Program::camera_rays,
+         Film::amounts,
+         Paint::scale,
+         true,
+         Range::share,
+         {Map::heat, 0, 1, false, "Lanes alive", "share per node visit"}},
+        {"generations",
+         "generations of rays",
+         About::cost,
+         Program::generations,
+         Film::amounts,
+         Paint::scale,
+         false,
+         Range::counts,
+         {Map::heat, 1, 2, true, "Generations", "of rays"}},
+    };
+    return table;
+}
+
+const Aov& find_aov(const std::string& name) {
+    for (const Aov& aov : aov_table())
+        if (name == aov.name) return aov;
+    throw std::out_of_range("no AOV `" + name + "`");
+}
+
+std::string kernel_macro(const Aov& aov) {
+    std::string macro = std::string("RT_AOV_") + aov.name;
+    for (char& c : macro)
+        if (c >= 'a' && c <= 'z') c = static_cast<char>(c - 'a' + 'A');
+    return macro;
+}
+
+std::vector<std::string> aov_names() {
+    std::vector<std::string> names;
+    for (const Aov& aov : aov_table()) names.emplace_back(aov.name);
+    return names;
+}
+
+std::string aov_help() {
+    const auto all_about = [](Aov::About about) {
+        std::string list;
+        for (const Aov& aov : aov_table())
+            if (aov.about == about) list += (list.empty() ? "" : ", ") + std::string(aov.help);
+        return list;
+    };
+    return all_about(Aov::About::color) + ", or of the first hit: " + all_about(Aov::About::first_hit) +
+           "; or what it cost: " + all_about(Aov::About::cost);
+}
+
+}  // namespace clarity

@@ -1,0 +1,256 @@
+#include "render/settings/edit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "base/numbers.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
+
+[[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& expected) {
+    throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
+}
+
+std::string text_of(const float* values, size_t count) {
+    std::string text;
+    for (size_t i = 0; i < count; ++i) text += (i ? "," : "") + exact_text(values[i]);
+    return text;
+}
+
+std::vector<std::string> split(const std::string& text, char at) {
+    std::vector<std::string> parts(1);
+    for (const char c : text)
+        if (c == at)
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    return parts;
+}
+
+// `count` numbers, commas between them.
+void read_floats(const std::string& key, const std::string& text, float* values, size_t count, const char* expected) {
+    const std::vector<std::string> parts = split(text, ',');
+    bool good = parts.size() == count;
+    for (size_t i = 0; good && i < count; ++i) good = read_number(parts[i], values[i]);
+    if (!good) refuse(key, text, expected);
+}
+
+void read_camera(Camera& camera, const std::string& text) {
+    constexpr const char* expected = "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz";
+    float n[10];
+    read_floats("camera", text, n, 10, expected);
+    // A field of view that came from radians must come back bit by bit: floats of degrees are too coarse for that.
+    double fov = 0;
+    if (!read_number(split(text, ',')[6], fov) || fov <= 0 || fov >= 180)
+        refuse("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
+    camera.eye = {n[0], n[1], n[2]};
+    camera.target = {n[3], n[4], n[5]};
+    camera.fov_y_rad = static_cast<float>(fov * kRadPerDegree);
+    camera.up = {n[7], n[8], n[9]};
+}
+
+std::string camera_text(const Camera& camera) {
+    return text_of(camera.eye.data(), 3) + "," + text_of(camera.target.data(), 3) + "," +
+           exact_text(camera.fov_y_rad / kRadPerDegree) + "," + text_of(camera.up.data(), 3);
+}
+
+void read_light(EditedView& edited, const std::string& key, const std::string& value) {
+    rt_u32 at = 0;
+    if (!read_number(key.substr(6), at)) refuse(key, value, "for a light: light.N counts from 0");
+    auto& lights = edited.view.lights;
+    if (at > lights.size())
+        throw Error(Exit::usage, key + ": the view has " + std::to_string(lights.size()) +
+                                     " lights, counted from 0; the next new one is light." + std::to_string(lights.size()));
+    edited.lights_on.resize(std::max<size_t>(lights.size(), at + 1), true);
+    if (value == "off") {
+        if (at == lights.size()) throw Error(Exit::usage, key + ": there is no such light to switch off");
+        edited.lights_on[at] = false;
+        return;
+    }
+    const char* expected = "off, point,x,y,z,r,g,b or directional,x,y,z,r,g,b";
+    const size_t comma = value.find(',');
+    const std::string kind = value.substr(0, comma);
+    if (comma == std::string::npos || (kind != "point" && kind != "directional")) refuse(key, value, expected);
+    float n[6];
+    read_floats(key, value.substr(comma + 1), n, 6, "six numbers after its kind: x,y,z,r,g,b");
+    rt_light light{};
+    light.kind = kind == "point" ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL;
+    if (light.kind == RT_LIGHT_DIRECTIONAL) {
+        const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+        if (!(length > 0)) refuse(key, value, "a direction: it has no length");
+        // A unit vector stays as it is, bit by bit.
+        if (std::fabs(length - 1) > 1e-6f)
+            for (int k = 0; k < 3; ++k) n[k] /= length;
+    }
+    for (int k = 0; k < 3; ++k) {
+        if (n[3 + k] < 0) refuse(key, value, "a light: its colour is negative");
+        light.position[k] = n[k];
+        light.color[k] = n[3 + k];
+    }
+    if (at == lights.size())
+        lights.push_back(light);
+    else
+        lights[at] = light;
+}
+
+// Parts of a material by name.
+struct MaterialPart {
+    const char* name;
+    size_t offset, count;
+    float most;
+};
+constexpr MaterialPart kMaterialParts[] = {
+    {"color", offsetof(rt_material, color), 3, 1e6f},         {"emission", offsetof(rt_material, emission), 3, 1e6f},
+    {"specular", offsetof(rt_material, specular), 3, 1e6f},   {"reflect", offsetof(rt_material, reflect), 1, 1},
+    {"refract", offsetof(rt_material, refract), 1, 1},        {"ior", offsetof(rt_material, ior), 1, 100},
+    {"shininess", offsetof(rt_material, shininess), 1, 1e6f},
+};
+
+float* part_of(rt_material& material, const MaterialPart& part) {
+    return reinterpret_cast<float*>(reinterpret_cast<char*>(&material) + part.offset);
+}
+
+std::vector<rt_material> scene_materials(const Scene& scene) {
+    std::vector<rt_material> all;
+    for (const Material& material : scene.materials) all.push_back(material.values);
+    return all;
+}
+
+void read_material(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
+    const std::vector<std::string> path = split(key, '.');
+    rt_u32 at = 0;
+    const MaterialPart* part = nullptr;
+    std::string known;
+    for (const MaterialPart& p : kMaterialParts) {
+        known += (known.empty() ? "" : ", ") + std::string(p.name);
+        if (path.size() == 3 && path[2] == p.name) part = &p;
+    }
+    if (!part || !read_number(path[1], at))
+        throw Error(Exit::usage, key + ": expected material.N.PART with N from 0 and PART one of " + known);
+    if (at >= scene.materials.size())
+        throw Error(Exit::usage, key + ": the scene has materials 0 to " + std::to_string(scene.materials.size() - 1));
+    float n[3];
+    read_floats(key, value, n, part->count, part->count == 3 ? "r,g,b" : "a number");
+    const float least = std::strcmp(part->name, "ior") == 0 ? 1e-3f : 0.0f;
+    for (size_t k = 0; k < part->count; ++k)
+        if (n[k] < least || n[k] > part->most)
+            refuse(key, value, "from " + exact_text(least) + " to " + exact_text(part->most));
+    if (edited.view.materials.empty()) edited.view.materials = scene_materials(scene);
+    std::copy(n, n + part->count, part_of(edited.view.materials[at], *part));
+}
+
+void read_hidden(const Scene& scene, EditedView& edited, const std::string& value) {
+    std::vector<rt_u32> hidden;
+    for (const std::string& range : split(value, ',')) {
+        if (value.empty()) break;
+        const size_t dash = range.find('-');
+        rt_u32 first = 0, last = 0;
+        if (!read_number(range.substr(0, dash), first) ||
+            !read_number(dash == std::string::npos ? range : range.substr(dash + 1), last) || last < first)
+            refuse("hide", value, "a list of instances such as 3,5-9");
+        if (last >= scene.instances.size())
+            throw Error(Exit::usage, "hide: the scene has " + std::to_string(scene.instances.size()) +
+                                         " instances, counted from 0; there is no " + std::to_string(last));
+        for (rt_u32 i = first; i <= last; ++i) hidden.push_back(i);
+    }
+    std::sort(hidden.begin(), hidden.end());
+    hidden.erase(std::unique(hidden.begin(), hidden.end()), hidden.end());
+    edited.hidden = std::move(hidden);
+}
+
+std::string hidden_text(const std::vector<rt_u32>& hidden) {
+    std::string text;
+    for (size_t i = 0; i < hidden.size();) {
+        size_t end = i + 1;
+        while (end < hidden.size() && hidden[end] == hidden[end - 1] + 1) ++end;
+        text += (text.empty() ? "" : ",") + std::to_string(hidden[i]);
+        if (end - i > 1) text += "-" + std::to_string(hidden[end - 1]);
+        i = end;
+    }
+    return text;
+}
+
+bool begins(const std::string& text, const char* with) {
+    return text.compare(0, std::strlen(with), with) == 0;
+}
+
+std::string light_text(const rt_light& light) {
+    return std::string(light.kind == RT_LIGHT_POINT ? "point," : "directional,") + text_of(light.position, 3) + "," +
+           text_of(light.color, 3);
+}
+
+}  // namespace
+
+bool is_edit(const std::string& key) {
+    return key == "camera" || key == "background" || key == "ambient" || key == "hide" || begins(key, "light.") ||
+           begins(key, "material.");
+}
+
+void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
+    View& view = edited.view;
+    if (key == "camera") {
+        Camera camera = view.camera;
+        read_camera(camera, value);
+        camera.name.clear();
+        view.camera = camera;
+    } else if (key == "background" || key == "ambient") {
+        float n[3];
+        read_floats(key, value, n, 3, "r,g,b");
+        for (int k = 0; k < 3; ++k)
+            if (n[k] < 0) refuse(key, value, "a colour: it is negative");
+        std::copy(n, n + 3, (key == "ambient" ? view.ambient : view.background).begin());
+    } else if (key == "hide") {
+        read_hidden(scene, edited, value);
+    } else if (begins(key, "light.")) {
+        read_light(edited, key, value);
+    } else if (begins(key, "material.")) {
+        read_material(scene, edited, key, value);
+    } else {
+        throw Error(Exit::usage,
+                    "no edit `" + key + "`; there are camera, background, ambient, light.N, material.N.PART, hide");
+    }
+}
+
+std::vector<Word> edits_between(const Scene& scene, const View& base, const EditedView& edited) {
+    std::vector<Word> words;
+    const View& view = edited.view;
+    words.push_back({"camera", camera_text(view.camera)});
+    if (view.background != base.background) words.push_back({"background", text_of(view.background.data(), 3)});
+    if (view.ambient != base.ambient) words.push_back({"ambient", text_of(view.ambient.data(), 3)});
+    for (size_t i = 0; i < view.lights.size(); ++i) {
+        const bool known = i < base.lights.size() && std::memcmp(&view.lights[i], &base.lights[i], sizeof(rt_light)) == 0;
+        if (!known) words.push_back({"light." + std::to_string(i), light_text(view.lights[i])});
+        if (i < edited.lights_on.size() && !edited.lights_on[i]) words.push_back({"light." + std::to_string(i), "off"});
+    }
+    for (size_t i = view.lights.size(); i < base.lights.size(); ++i) words.push_back({"light." + std::to_string(i), "off"});
+    for (size_t i = 0; i < view.materials.size() && i < scene.materials.size(); ++i) {
+        rt_material was = scene.materials[i].values, is = view.materials[i];
+        for (const MaterialPart& part : kMaterialParts)
+            if (!std::equal(part_of(is, part), part_of(is, part) + part.count, part_of(was, part)))
+                words.push_back({"material." + std::to_string(i) + "." + part.name, text_of(part_of(is, part), part.count)});
+    }
+    if (!edited.hidden.empty()) words.push_back({"hide", hidden_text(edited.hidden)});
+    return words;
+}
+
+View visible_view(const EditedView& edited) {
+    View view = edited.view;
+    view.lights.clear();
+    for (size_t i = 0; i < edited.view.lights.size(); ++i)
+        if (i >= edited.lights_on.size() || edited.lights_on[i]) view.lights.push_back(edited.view.lights[i]);
+    return view;
+}
+
+Scene without_instances(const Scene& scene, const std::vector<rt_u32>& hidden) {
+    Scene copy = scene;
+    for (const rt_u32 i : hidden)
+        if (i < copy.instances.size()) copy.instances[i].visible = false;
+    return copy;
+}
+
+}  // namespace clarity

@@ -1,0 +1,164 @@
+#include "render/settings/settings.hpp"
+
+#include "base/error.hpp"
+#include "base/numbers.hpp"
+#include "render/settings/aov.hpp"
+
+namespace clarity {
+namespace {
+
+[[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& expected) {
+    throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
+}
+
+Setting integer(std::string key, std::string label, std::string help, double min, double max, Effect effect,
+                int Settings::*member) {
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}};
+    s.get = [member](const Settings& settings) { return std::to_string(settings.*member); };
+    s.set = [=](Settings& settings, const std::string& text) {
+        int value = 0;
+        if (!read_number(text, value) || value < min || value > max)
+            refuse(key, text, "a whole number from " + exact_text(min) + " to " + exact_text(max));
+        settings.*member = value;
+    };
+    return s;
+}
+
+Setting real(std::string key, std::string label, std::string help, double min, double max, Effect effect,
+             double Settings::*member) {
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}};
+    s.get = [member](const Settings& settings) { return exact_text(settings.*member); };
+    s.set = [=](Settings& settings, const std::string& text) {
+        double value = 0;
+        if (!read_number(text, value) || value < min || value > max)
+            refuse(key, text, "a number from " + exact_text(min) + " to " + exact_text(max));
+        settings.*member = value;
+    };
+    return s;
+}
+
+Setting boolean(std::string key, std::string label, std::string help, Effect effect, bool Settings::*member) {
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::boolean, 0, 1, {}, effect, {}, {}};
+    s.get = [member](const Settings& settings) { return std::string(settings.*member ? "true" : "false"); };
+    s.set = [=](Settings& settings, const std::string& text) {
+        if (text == "1" || text == "true" || text == "on" || text == "yes")
+            settings.*member = true;
+        else if (text == "0" || text == "false" || text == "off" || text == "no")
+            settings.*member = false;
+        else
+            refuse(key, text, "true or false");
+    };
+    return s;
+}
+
+Setting choice(std::string key, std::string label, std::string help, std::vector<std::string> choices, Effect effect,
+               std::string Settings::*member) {
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::choice, 0, 0, choices, effect, {}, {}};
+    s.get = [member](const Settings& settings) { return settings.*member; };
+    s.set = [=](Settings& settings, const std::string& text) {
+        std::string known;
+        for (const std::string& c : choices) {
+            if (c == text) {
+                settings.*member = text;
+                return;
+            }
+            known += (known.empty() ? "" : ", ") + c;
+        }
+        refuse(key, text, "one of " + known);
+    };
+    return s;
+}
+
+Setting size(std::string key, std::string label, std::string help, int min, int max, bool automatic, Effect effect,
+             int Settings::*width, int Settings::*height) {
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::size, double(min), double(max), {}, effect, {}, {}};
+    s.get = [=](const Settings& settings) {
+        if (automatic && settings.*width == 0) return std::string("auto");
+        return std::to_string(settings.*width) + "x" + std::to_string(settings.*height);
+    };
+    s.set = [=](Settings& settings, const std::string& text) {
+        if (automatic && text == "auto") {
+            settings.*width = settings.*height = 0;
+            return;
+        }
+        const size_t x = text.find('x');
+        int w = 0, h = 0;
+        if (x == std::string::npos || !read_number(text.substr(0, x), w) || !read_number(text.substr(x + 1), h) || w < min ||
+            h < min || w > max || h > max)
+            refuse(key, text, "WIDTHxHEIGHT, each from " + std::to_string(min) + " to " + std::to_string(max));
+        settings.*width = w;
+        settings.*height = h;
+    };
+    return s;
+}
+
+Setting lanes_setting() {
+    Setting s =
+        choice("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
+               {"auto", "1", "4", "8", "16"}, Effect::recompile, &Settings::tracer);
+    const auto choices = s.choices;
+    s.get = [](const Settings& settings) { return settings.lanes == 0 ? std::string("auto") : std::to_string(settings.lanes); };
+    s.set = [choices](Settings& settings, const std::string& text) {
+        for (const std::string& c : choices)
+            if (c == text) {
+                settings.lanes = text == "auto" ? 0 : std::stoi(text);
+                return;
+            }
+        refuse("lanes", text, "auto, 1, 4, 8 or 16");
+    };
+    return s;
+}
+
+}  // namespace
+
+const std::vector<Setting>& settings_table() {
+    static const std::vector<Setting> table = {
+        choice("tracer", "Tracer",
+               "iterative: each packet goes through its generations of rays by itself; wavefront: rays that part go on side by "
+               "side, by way of queues in the device's memory; auto: wavefront on a GPU if nothing refracts, else iterative",
+               {"auto", "iterative", "wavefront"}, Effect::recompile, &Settings::tracer),
+        integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
+        size("packet", "Packet",
+             "pixels that one work-item computes; auto: 1x1 on a GPU, lanes x lanes but 4x4 at least on a CPU", 1, 32, true,
+             Effect::recompile, &Settings::packet_w, &Settings::packet_h),
+        lanes_setting(),
+        integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,
+                Effect::recompile, &Settings::ray_slots),
+        size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height),
+        integer("spp", "Samples", "samples a pixel", 1, 65536, Effect::frame, &Settings::spp),
+        boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
+        real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
+             &Settings::min_weight),
+        choice("aov", "Show", aov_help(), aov_names(), Effect::recompile, &Settings::aov),
+        real("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
+             Effect::frame, &Settings::scale_max),
+        real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::frame, &Settings::exposure),
+        choice("tone", "Tone mapping", "from linear light to the screen", {"linear", "reinhard", "aces", "agx"}, Effect::frame,
+               &Settings::tone),
+        boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break",
+                Effect::recompile, &Settings::fast_math),
+        boolean("portable", "Portable code", "no CPU instructions beyond OpenCL C: for tests of the fallbacks",
+                Effect::recompile, &Settings::portable),
+        boolean("debug", "Debug kernels", "bounds every traversal stack and counts what would overflow", Effect::recompile,
+                &Settings::debug),
+    };
+    return table;
+}
+
+const Setting* find_setting(const std::string& key) {
+    for (const Setting& setting : settings_table())
+        if (setting.key == key) return &setting;
+    return nullptr;
+}
+
+void set_setting(Settings& settings, const std::string& key, const std::string& value) {
+    if (const Setting* setting = find_setting(key)) {
+        setting->set(settings, value);
+        return;
+    }
+    std::string known;
+    for (const Setting& setting : settings_table()) known += (known.empty() ? "" : ", ") + setting.key;
+    throw Error(Exit::usage, "no setting `" + key + "`; there are " + known);
+}
+
+}  // namespace clarity

@@ -1,0 +1,137 @@
+// file_watch_test.cpp -- each save is one change, however it is made; what changes nothing is none.
+#include "base/file_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <condition_variable>
+#include <ctime>
+#include <mutex>
+
+#include "support/scratch.hpp"
+
+using clarity::FileWatch;
+namespace fs = std::filesystem;
+
+namespace {
+
+class Watch : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        a_ = scratch_.write("cl/a.cl", "one");
+        b_ = scratch_.write("cl/sub/b.h", "two");
+        missing_ = scratch_.path("cl/sub/missing.h");
+    }
+    void open() {
+        watch_ = std::make_unique<FileWatch>(std::vector<std::string>{a_, b_, missing_}, [this] {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            ++calls_;
+            called_.notify_all();
+        });
+    }
+    int calls() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return calls_;
+    }
+    // Generous: a busy machine is no failure, a change that is never seen is.
+    bool called(int count) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        return called_.wait_for(lock, std::chrono::seconds(20), [&] { return calls_ >= count; });
+    }
+    // Longer than the watch compares times and waits for the end of a burst.
+    static void wait_long() { std::this_thread::sleep_for(std::chrono::milliseconds(1500)); }
+
+    Scratch scratch_;
+    std::string a_, b_, missing_;
+    std::mutex mutex_;
+    std::condition_variable called_;
+    int calls_ = 0;
+    std::unique_ptr<FileWatch> watch_;
+};
+
+TEST_F(Watch, SeesAFileWrittenInPlace) {
+    open();
+    EXPECT_EQ(watch_->revision(), 0u);
+    scratch_.write("cl/a.cl", "other");
+    ASSERT_TRUE(called(1));
+    EXPECT_EQ(watch_->revision(), 1u);
+    EXPECT_EQ(watch_->last_changed(), std::vector<std::string>{a_});
+}
+
+TEST_F(Watch, SeesAFileRenamedOverIt) {
+    open();
+    for (int i = 1; i <= 3; ++i) {  // each leaves another inode
+        fs::rename(scratch_.write("cl/.a.cl.swp", "version " + std::to_string(i)), a_);
+        ASSERT_TRUE(called(i)) << i;
+    }
+    EXPECT_EQ(watch_->revision(), 3u);
+}
+
+TEST_F(Watch, ABurstIsOneChange) {
+    open();
+    for (int i = 0; i < 20; ++i) {
+        scratch_.write("cl/a.cl", "a" + std::to_string(i));
+        scratch_.write("cl/sub/b.h", "b" + std::to_string(i));
+    }
+    ASSERT_TRUE(called(1));
+    wait_long();
+    // Two, if the machine stood still in the middle of it.
+    EXPECT_LE(watch_->revision(), 2u);
+    if (watch_->revision() == 1) {
+        EXPECT_EQ(watch_->last_changed(), (std::vector<std::string>{a_, b_}));
+    }
+}
+
+TEST_F(Watch, DeletedAndMadeAgain) {
+    open();
+    fs::remove(b_);
+    ASSERT_TRUE(called(1));
+    scratch_.write("cl/sub/b.h", "two");
+    ASSERT_TRUE(called(2));
+    fs::remove_all(scratch_.path("cl/sub"));
+    ASSERT_TRUE(called(3));
+    scratch_.write("cl/sub/b.h", "two");
+    ASSERT_TRUE(called(4));
+    scratch_.write("cl/sub/b.h", "three");  // the folder that came back is watched again
+    ASSERT_TRUE(called(5));
+}
+
+TEST_F(Watch, AFileThatComesIntoBeing) {
+    open();
+    scratch_.write("cl/sub/missing.h", "here");
+    ASSERT_TRUE(called(1));
+    EXPECT_EQ(watch_->last_changed(), std::vector<std::string>{missing_});
+}
+
+TEST_F(Watch, TheTargetOfALink) {
+    const std::string target = scratch_.write("elsewhere/real.h", "one");
+    fs::create_symlink(target, missing_);
+    open();
+    scratch_.write("elsewhere/real.h", "two");
+    ASSERT_TRUE(called(1));
+}
+
+TEST_F(Watch, SameContentAndOtherFilesAreNoChange) {
+    open();
+    scratch_.write("cl/a.cl", "one");
+    fs::rename(scratch_.write("cl/new", "two"), b_);
+    fs::last_write_time(a_, fs::file_time_type::clock::now());
+    scratch_.write("cl/other.txt", "nobody asked");
+    wait_long();
+    EXPECT_EQ(calls(), 0);
+    EXPECT_EQ(watch_->revision(), 0u);
+}
+
+TEST_F(Watch, EndsAtOnceAndCostsNothingWhileNothingHappens) {
+    open();
+    EXPECT_TRUE(watch_->prompt()) << "inotify is not to be had here";
+    const std::clock_t before = std::clock();  // of all threads
+    wait_long();
+    EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 0.1);
+    scratch_.write("cl/a.cl", "in a burst");
+    watch_.reset();  // does not hang, whatever it is at
+    FileWatch nothing({}, nullptr);
+    EXPECT_EQ(nothing.revision(), 0u);
+}
+
+}  // namespace

@@ -1,0 +1,141 @@
+// kernel_text_test.cpp -- which text a kernel is compiled from, and what is made of a compiler's words.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "base/error.hpp"
+#include "device/kernel_files.hpp"
+#include "device/program.hpp"
+#include "support/scratch.hpp"
+
+using namespace clarity;
+namespace fs = std::filesystem;
+
+namespace {
+
+// A plugin that is this test program, so that files beside its library are files beside the test.
+const rt_accel kAccel = {sizeof(rt_accel),           0,       nullptr, {"watched_types.h", "compiled types\n"},
+                         {"watched.cl", "compiled"}, nullptr, nullptr, nullptr};
+const rt_plugin kPlugin = {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, 0,      "watched", "Watched", "1",
+                           nullptr,        nullptr,           &kAccel,         nullptr};
+
+class KernelText : public ::testing::Test {
+ protected:
+    void SetUp() override { environment_.set("CLARITY_KERNEL_PATH", "embedded"); }
+    void from_disk() {
+        fs::create_directories(scratch_.path("cl"));
+        environment_.set("CLARITY_KERNEL_PATH", scratch_.path("cl"));
+    }
+    static std::string why(const std::function<void()>& read) {
+        try {
+            read();
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), Exit::kernel_build_failed);
+            return error.what();
+        }
+        return "nothing was thrown";
+    }
+    Scratch scratch_;
+    Environment environment_;
+};
+
+TEST_F(KernelText, OnDiskComesBeforeEmbedded) {
+    const std::string embedded = kernel_text("tracers/camera.h");
+    EXPECT_EQ(kernel_path("cl/tracers/camera.h"), "");
+    from_disk();
+    EXPECT_EQ(kernel_text("tracers/camera.h"), embedded) << "a file that is not there";
+    const std::string path = scratch_.write("cl/tracers/camera.h", "mine");
+    EXPECT_EQ(kernel_text("tracers/camera.h"), "mine");
+    EXPECT_EQ(kernel_path("cl/tracers/camera.h"), path);
+    environment_.set("CLARITY_KERNEL_PATH", scratch_.path("cl") + "/");
+    const std::string traversal = scratch_.write("plugins/accel/watched/watched.cl", "mine too");
+    EXPECT_EQ(plugin_kernel_text(kPlugin, kAccel.traverse), "mine too");
+    EXPECT_EQ(kernel_path("plugins/accel/watched/watched.cl"), traversal);
+    environment_.set("CLARITY_KERNEL_PATH", "embedded");
+    EXPECT_EQ(kernel_text("tracers/camera.h"), embedded);
+    EXPECT_EQ(plugin_kernel_text(kPlugin, kAccel.traverse), "compiled");
+}
+
+TEST_F(KernelText, ARevisionForEachOtherText) {
+    from_disk();
+    scratch_.write("cl/tracers/camera.h", "one");
+    kernel_text("tracers/camera.h");
+    const uint64_t before = kernel_text_revision();
+    kernel_text("tracers/camera.h");
+    EXPECT_EQ(kernel_text_revision(), before);
+    scratch_.write("cl/tracers/camera.h", "two");
+    kernel_text("tracers/camera.h");
+    EXPECT_EQ(kernel_text_revision(), before + 1);
+}
+
+TEST_F(KernelText, OtherStructsThanCompiledAreRefused) {
+    const std::string types = kernel_text("rt_types.h");
+    from_disk();
+    scratch_.write("cl/rt_types.h", types);
+    EXPECT_EQ(kernel_text("rt_types.h"), types);
+    scratch_.write("cl/rt_types.h", "\n" + types);
+    std::string said = why([] { kernel_text("rt_types.h"); });
+    EXPECT_NE(said.find(scratch_.path("cl/rt_types.h:1:")), std::string::npos) << said;
+    EXPECT_NE(said.find("build the program again"), std::string::npos) << said;
+    scratch_.write("plugins/accel/watched/watched_types.h", "compiled types\n");
+    EXPECT_EQ(plugin_kernel_text(kPlugin, kAccel.types), "compiled types\n");
+    scratch_.write("plugins/accel/watched/watched_types.h", "compiled types\nand more");
+    said = why([] { plugin_kernel_text(kPlugin, kAccel.types); });
+    EXPECT_NE(said.find("watched_types.h:2:"), std::string::npos) << said;
+    EXPECT_NE(said.find("build the plugin again"), std::string::npos) << said;
+}
+
+TEST_F(KernelText, AFolderThatIsMissingIsSaid) {
+    environment_.set("CLARITY_KERNEL_PATH", scratch_.path("nowhere"));
+    const std::string said = why([] { kernel_text("tracers/camera.h"); });
+    EXPECT_NE(said.find(scratch_.path("nowhere")), std::string::npos) << said;
+}
+
+TEST_F(KernelText, CandidatesAreAllThatMayDecide) {
+    EXPECT_TRUE(kernel_candidates({&kPlugin}).empty());
+    from_disk();
+    const std::vector<std::string> all = kernel_candidates({&kPlugin});
+    for (const char* name : {"cl/rt_types.h", "cl/film.cl", "cl/tracers/iterative.cl", "plugins/accel/watched/watched.cl",
+                             "plugins/accel/watched/watched_types.h"})
+        EXPECT_EQ(std::count(all.begin(), all.end(), scratch_.path(name)), 1) << name;
+}
+
+TEST_F(KernelText, FilesBesideAPluginsLibrary) {
+    environment_.set("CLARITY_KERNEL_PATH", "");
+    const std::vector<std::string> all = kernel_candidates({&kPlugin});
+    const std::string beside = (fs::read_symlink("/proc/self/exe").parent_path() / "watched.cl").string();
+    EXPECT_EQ(std::count(all.begin(), all.end(), beside), 1) << beside;
+}
+
+TEST(CompilerMessages, AreReadFromPoclAndClang) {
+    const CompilerLog pocl = read_compiler_log(
+        "error: cl/a.cl:42:7: unknown type name 'this'\nwarning: cl/a.cl:1:2: odd\n"
+        "2 errors generated.\nDevice some CPU failed to build the program\n");
+    EXPECT_EQ(pocl.first.file, "cl/a.cl");
+    EXPECT_EQ(pocl.first.line, 42u);
+    EXPECT_EQ(pocl.first.column, 7u);
+    EXPECT_EQ(pocl.first.message, "unknown type name 'this'");
+    EXPECT_EQ(pocl.errors, 1u);
+    EXPECT_EQ(pocl.text, "cl/a.cl:42:7: error: unknown type name 'this'\ncl/a.cl:1:2: warning: odd");
+
+    const CompilerLog clang = read_compiler_log(
+        "cl/b.h:3:9: warning: unused: x\ncl/b.h:4:1: fatal error: no such: thing\n    x;\n"
+        "    ^\n1 warning and 1 error generated.\n");
+    EXPECT_EQ(clang.first.file, "cl/b.h");
+    EXPECT_EQ(clang.first.line, 4u);
+    EXPECT_EQ(clang.first.message, "no such: thing");
+    EXPECT_EQ(clang.text, "cl/b.h:3:9: warning: unused: x\ncl/b.h:4:1: fatal error: no such: thing\n    x;\n    ^");
+}
+
+TEST(CompilerMessages, WithoutAPlaceOrAReason) {
+    const CompilerLog bare = read_compiler_log("error: Invalid build option: -x\r\n");
+    EXPECT_EQ(bare.first.file, "");
+    EXPECT_EQ(bare.first.message, "Invalid build option: -x");
+    EXPECT_EQ(read_compiler_log("ptxas fatal: unresolved\n").first.message, "ptxas fatal: unresolved");
+    EXPECT_FALSE(read_compiler_log("").first.message.empty());
+    EXPECT_EQ(read_compiler_log(std::string(1 << 20, ':')).errors, 0u);
+    EXPECT_EQ(read_compiler_log("cl/a.cl:99999999999:1: error: far\n").first.line, 0u);
+}
+
+}  // namespace

@@ -1,0 +1,210 @@
+// Discovery: the order of places, who wins, who is shadowed, and which importer takes a file. The libraries are the sound one
+// of tests/bad_plugins under several names.
+#include "plugin/registry.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "base/log.hpp"
+#include "support/scratch.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using clarity::PluginRecord;
+using clarity::PluginRegistry;
+
+const std::string kSound = std::string(TEST_PLUGINS) + "/sound.so";
+const std::string kWrongAbi = std::string(TEST_PLUGINS) + "/wrong_abi.so";
+
+class Registry : public testing::Test {
+ protected:
+    Registry() {
+        // Nothing of the user's: neither their plugins nor their variable.
+        environment_.set("XDG_DATA_HOME", scratch_.path("data"));
+        environment_.set("CLARITY_PLUGIN_PATH", "");
+        clarity::set_log_listener([this](clarity::LogLevel level, const std::string& text) {
+            if (level >= clarity::LogLevel::warning) warnings_.push_back(text);
+        });
+    }
+    ~Registry() override { clarity::set_log_listener({}); }
+
+    // A library of its own: another file, not another name for the same.
+    std::string copy(const std::string& from, const std::string& to) {
+        fs::create_directories(fs::path(scratch_.path(to)).parent_path());
+        fs::copy_file(from, scratch_.path(to), fs::copy_options::overwrite_existing);
+        return scratch_.path(to);
+    }
+    // Records below the scratch folder: the program's own plugins are found as well.
+    std::vector<PluginRecord> ours(const PluginRegistry& registry) const {
+        std::vector<PluginRecord> list;
+        for (const PluginRecord& record : registry.records())
+            if (record.path.find(scratch_.path("")) == 0) list.push_back(record);
+        return list;
+    }
+    bool warned(const std::string& words) const {
+        for (const std::string& line : warnings_)
+            if (line.find(words) != std::string::npos) return true;
+        return false;
+    }
+
+    Scratch scratch_;
+    Environment environment_;
+    std::vector<std::string> warnings_;
+};
+
+TEST_F(Registry, OrderIsFilesThenVariableThenUserData) {
+    const std::string user = copy(kSound, "data/clarity/plugins/a.so");
+    const std::string second = copy(kSound, "two/b.so"), first_b = copy(kSound, "one/b.so"), first_a = copy(kSound, "one/a.so");
+    const std::string named = copy(kSound, "named/z.so");
+    environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("one") + ":" + scratch_.path("two"));
+    const PluginRegistry registry = PluginRegistry::discover({named});
+    const std::vector<PluginRecord> records = ours(registry);
+    const std::vector<std::string> expected = {named, first_a, first_b, second, user};
+    ASSERT_EQ(records.size(), expected.size());
+    for (size_t i = 0; i < expected.size(); ++i) {
+        EXPECT_EQ(records[i].path, expected[i]);
+        EXPECT_NE(records[i].plugin, nullptr) << records[i].why;
+        EXPECT_EQ(records[i].shadowed, i > 0) << "the first of an id wins";
+    }
+    EXPECT_EQ(registry.accel("sound"), records[0].plugin);
+}
+
+TEST_F(Registry, FindsByKindAndId) {
+    environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("one"));
+    copy(kSound, "one/a.so");
+    const PluginRegistry registry = PluginRegistry::discover();
+    EXPECT_NE(registry.accel("sound"), nullptr);
+    EXPECT_EQ(registry.importer("sound"), nullptr) << "it is no importer";
+    EXPECT_EQ(registry.accel("soun"), nullptr);
+    EXPECT_EQ(registry.accel(""), nullptr);
+    std::vector<std::string> ids;
+    for (const rt_plugin* plugin : registry.accels()) ids.push_back(plugin->id);
+    EXPECT_TRUE(std::is_sorted(ids.begin(), ids.end()));
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), "sound"), 1);
+}
+
+TEST_F(Registry, FoldersMayBeLaidOutAsTheBuilds) {
+    copy(kSound, "tree/accel/sound.so");
+    environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("tree"));
+    EXPECT_EQ(ours(PluginRegistry::discover()).size(), 1u);
+}
+
+TEST_F(Registry, OnlyLibrariesAreLookedAt) {
+    scratch_.write("one/readme.txt", "text");
+    scratch_.write("one/sound.so.bak", "text");
+    fs::create_directories(scratch_.path("one/deeper"));
+    copy(kSound, "one/deeper/hidden.so");
+    environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("one"));
+    EXPECT_TRUE(ours(PluginRegistry::discover()).empty());
+}
+
+TEST_F(Registry, ARefusedLibraryIsListedAndLeavesItsIdFree) {
+    const std::string bad = copy(kWrongAbi, "one/a.so"), text = scratch_.write("one/b.so", "text"),
+                      good = copy(kSound, "one/c.so");
+    environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("one"));
+    const PluginRegistry registry = PluginRegistry::discover();
+    const std::vector<PluginRecord> records = ours(registry);
+    ASSERT_EQ(records.size(), 3u);
+    EXPECT_EQ(records[0].plugin, nullptr);
+    EXPECT_NE(records[0].why.find("ABI version 2"), std::string::npos);
+    EXPECT_EQ(records[1].plugin, nullptr);
+    EXPECT_EQ(registry.accel("sound"), records[2].plugin);
+    EXPECT_TRUE(warned(bad + ": ABI version 2"));
+    EXPECT_TRUE(warned(text + ": "));
+}
+
+TEST_F(Registry, AMissingFolderOfTheVariableIsAWarning) {
+    environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("nowhere"));
+    EXPECT_TRUE(ours(PluginRegistry::discover()).empty());
+    EXPECT_TRUE(warned(scratch_.path("nowhere")));
+    EXPECT_FALSE(warned(scratch_.path("data"))) << "a place that nobody named may be missing";
+}
+
+TEST_F(Registry, SymlinksAreFollowedAndAFileCountsOnce) {
+    const std::string real = copy(kSound, "real/sound.so");
+    fs::create_directories(scratch_.path("links"));
+    fs::create_symlink(real, scratch_.path("links/a.so"));
+    fs::create_symlink(scratch_.path("links"), scratch_.path("folder"));
+    environment_.set("CLARITY_PLUGIN_PATH",
+                     scratch_.path("folder") + ":" + scratch_.path("real") + ":" + scratch_.path("links"));
+    const std::vector<PluginRecord> records = ours(PluginRegistry::discover());
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_EQ(records[0].path, scratch_.path("folder/a.so"));
+    EXPECT_NE(records[0].plugin, nullptr) << records[0].why;
+}
+
+TEST_F(Registry, ABrokenSymlinkIsRefusedAndNotFatal) {
+    fs::create_directories(scratch_.path("one"));
+    fs::create_symlink(scratch_.path("gone.so"), scratch_.path("one/a.so"));
+    environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("one"));
+    const std::vector<PluginRecord> records = ours(PluginRegistry::discover());
+    ASSERT_EQ(records.size(), 1u);
+    EXPECT_NE(records[0].why.find("No such file"), std::string::npos) << records[0].why;
+}
+
+// As in PATH an empty element would be the working directory, from where nobody expects code to be run.
+TEST_F(Registry, NeverTheWorkingDirectory) {
+    copy(kSound, "here/sound.so");
+    const fs::path before = fs::current_path();
+    fs::current_path(scratch_.path("here"));
+    for (const char* path : {"", ":", "::"}) {
+        environment_.set("CLARITY_PLUGIN_PATH", path);
+        EXPECT_EQ(PluginRegistry::discover().accel("sound"), nullptr) << "'" << path << "'";
+    }
+    environment_.set("XDG_DATA_HOME", ".");
+    fs::create_directories("clarity/plugins");
+    copy(kSound, "here/clarity/plugins/sound.so");
+    EXPECT_EQ(PluginRegistry::discover().accel("sound"), nullptr) << "a relative XDG_DATA_HOME";
+    // A file that was named is taken, also by a bare name that dlopen would look up elsewhere.
+    EXPECT_NE(PluginRegistry::discover({"sound.so"}).accel("sound"), nullptr);
+    fs::current_path(before);
+}
+
+// ---- which importer takes a file -------------------------------------------------------------------------------------------
+
+class ImporterChoice : public Registry {
+ protected:
+    ImporterChoice() {
+        copy(std::string(TEST_PLUGINS) + "/by_name.so", "one/by_name.so");
+        copy(std::string(TEST_PLUGINS) + "/by_content.so", "one/by_content.so");
+        environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("one"));
+        registry_ = PluginRegistry::discover();
+    }
+    std::string choice(const std::string& path) const {
+        const rt_plugin* plugin = registry_.importer_for(path);
+        return plugin ? plugin->id : "none";
+    }
+    PluginRegistry registry_;
+};
+
+TEST_F(ImporterChoice, ByExtensionWhateverItsCase) {
+    EXPECT_EQ(choice(scratch_.write("a.shape", "")), "by_name");
+    EXPECT_EQ(choice(scratch_.write("b.SHAPE", "text")), "by_name");
+    EXPECT_EQ(choice(scratch_.path("missing.shape")), "by_name") << "the importer says best what is wrong with the file";
+}
+
+TEST_F(ImporterChoice, ContentGoesBeforeTheName) {
+    EXPECT_EQ(choice(scratch_.write("c.shape", "MAGIC and more")), "by_content");
+    EXPECT_EQ(choice(scratch_.write("d.unknown", "MAGIC and more")), "by_content");
+    EXPECT_EQ(choice(scratch_.write("noextension", "MAGIC")), "by_content");
+}
+
+TEST_F(ImporterChoice, NobodyTakesWhatNobodyKnows) {
+    EXPECT_EQ(choice(scratch_.write("e.unknown", "text")), "none");
+    EXPECT_EQ(choice(scratch_.write("shape", "text")), "none") << "a name is no extension";
+    EXPECT_EQ(choice(scratch_.write("f.unknown", "MAYBE")), "none") << "too little certainty for a file of another name";
+    EXPECT_EQ(choice(scratch_.path("missing.unknown")), "none");
+    EXPECT_EQ(choice(scratch_.path("")), "none");
+}
+
+TEST_F(ImporterChoice, AProbeThatThrowsOnlyLosesItsSay) {
+    EXPECT_EQ(choice(scratch_.write("g.shape", "THROW")), "by_name");
+    EXPECT_EQ(choice(scratch_.write("g.magic", "THROW")), "by_content");
+    EXPECT_EQ(choice(scratch_.write("g.unknown", "THROW")), "none");
+}
+
+}  // namespace

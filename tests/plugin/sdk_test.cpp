@@ -1,0 +1,110 @@
+// The C++ helper of plugins, used against the real host services.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <string>
+
+#include "base/error.hpp"
+#include "plugin/host_services.hpp"
+#include "rt_plugin.hpp"
+
+namespace {
+
+// What the host says of a guarded function; "" for success.
+template <auto F>
+std::string outcome(clarity::Progress& progress) {
+    clarity::HostServices services("plugin", progress);
+    try {
+        services.check(1, [&] { return rt::guarded<F>(services.host(), 5); });
+    } catch (const clarity::Error& e) {
+        return e.what();
+    }
+    return "";
+}
+template <auto F>
+std::string outcome() {
+    clarity::Progress progress;
+    return outcome<F>(progress);
+}
+
+int32_t succeeds(const rt_host*, int number) {
+    return number == 5 ? RT_OK : RT_FAILED;
+}
+int32_t throws(const rt_host*, int) {
+    throw std::runtime_error("vertex 7 is not finite");
+}
+int32_t throws_number(const rt_host*, int) {
+    throw 7;
+}
+int32_t runs_out_of_memory(const rt_host*, int) {
+    throw std::bad_alloc();
+}
+int32_t fails(const rt_host* host, int) {
+    throw rt::fail(host, "face 3 has no corners");
+}
+int32_t reports(const rt_host* host, int) {
+    rt::progress(host, 0.5f);
+    return RT_OK;
+}
+int32_t throws_in_loop(const rt_host* host, int) {
+    rt::parallel_for(host, 100, [](rt_u32 i) {
+        if (i == 42) throw std::runtime_error("iteration 42");
+    });
+    return RT_OK;
+}
+int32_t loops(const rt_host* host, int) {
+    std::atomic<rt_u32> sum{0};
+    rt::parallel_for(host, 10, [&](rt_u32 i) { rt::parallel_for(host, 10, [&](rt_u32 j) { sum += i * 10 + j; }); });
+    return sum == 4950 ? int32_t{RT_OK} : host->fail(host->ctx, "wrong sum");
+}
+
+TEST(Guarded, PassesArgumentsAndStatusOn) {
+    EXPECT_EQ(outcome<succeeds>(), "");
+    EXPECT_EQ(outcome<loops>(), "");
+}
+
+TEST(Guarded, TurnsExceptionsIntoReasons) {
+    EXPECT_EQ(outcome<throws>(), "plugin: vertex 7 is not finite");
+    EXPECT_EQ(outcome<throws_number>(), "plugin: an exception of unknown type");
+    EXPECT_EQ(outcome<runs_out_of_memory>(), "plugin: out of memory");
+    EXPECT_EQ(outcome<throws_in_loop>(), "plugin: iteration 42");
+}
+
+TEST(Guarded, FailKeepsItsOwnReason) {
+    EXPECT_EQ(outcome<fails>(), "plugin: face 3 has no corners");
+}
+
+TEST(Guarded, CancelIsNoFailure) {
+    clarity::Progress progress;
+    EXPECT_EQ(outcome<reports>(progress), "");
+    progress.cancel();
+    EXPECT_EQ(outcome<reports>(progress), "cancelled");
+}
+
+// A host that has no memory to give has said so itself: the helper only stops.
+TEST(BuildOutput, NoMemoryStopsTheBuild) {
+    rt_build_output out{};
+    out.alloc = [](void*, rt_u32, uint64_t) -> void* { return nullptr; };
+    out.leaves = [](void*, uint64_t) -> rt_u32* { return nullptr; };
+    EXPECT_THROW(rt::alloc<float>(&out, 0, 1), rt::Stopped);
+    EXPECT_THROW(rt::leaves(&out, 1), rt::Stopped);
+    EXPECT_THROW(rt::id(RT_NONE), rt::Stopped);
+    EXPECT_EQ(rt::id(3), 3u);
+}
+
+// Everything a description is made of is a constant: the host reads its head from the file before any code runs.
+constexpr rt_cl_file kFiles[] = {{"a_types.h", "types"}, {"a.cl", "text"}};
+static_assert(rt::file(kFiles, "a.cl").text == kFiles[1].text);
+static_assert(rt::file(kFiles, "a").name == nullptr && rt::file(kFiles, "a.clx").name == nullptr);
+constexpr rt_slot kSlots[] = {rt::slot<rt_packed_prim>("leaves", "rt_packed_prim")};
+static_assert(kSlots[0].elem_bytes == 48);
+constexpr const char* kChoices[] = {"one", "two", "three", nullptr};
+constexpr rt_param kParams[] = {rt::enum_param("which", "Which", "of three", kChoices, 2)};
+static_assert(kParams[0].min == 0 && kParams[0].max == 2 && kParams[0].def == 2);
+constexpr rt_accel kAccel = {sizeof(rt_accel), 1, kSlots, kFiles[0], kFiles[1], nullptr, nullptr, nullptr};
+constexpr rt_plugin kPlugin = rt::accel_plugin("a", "A", "1", nullptr, kParams, kAccel);
+static_assert(kPlugin.abi_version == RT_ABI_VERSION && kPlugin.param_count == 1 && kPlugin.accel == &kAccel &&
+              !kPlugin.importer);
+
+}  // namespace

@@ -1,0 +1,69 @@
+// harness.hpp -- runs an acceleration structure's builder as the host does, without a device: loads the library, hands it
+// primitives in groups, keeps what it writes.
+#pragma once
+#include <atomic>
+#include <functional>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "rt_plugin.h"
+
+namespace accel_test {
+
+// The library of a plugin of this build. Throws std::runtime_error with the loader's reason.
+const rt_plugin& load(const std::string& id, const std::string& file = {});
+
+// What a builder is given. Group 0 exists always.
+struct Input {
+    std::vector<rt_prim> prims;
+    std::vector<rt_group> groups;
+    std::vector<rt_packed_prim> triangles;  // by ref index, for builders that cut them; may be empty
+    void add_group(const std::vector<rt_prim>& more);
+};
+
+// What it made of it.
+struct Built {
+    int32_t status = RT_OK;
+    std::string why;
+    std::vector<std::vector<char>> storage;  // over-allocated, see slot()
+    std::vector<const void*> slots;
+    std::vector<uint64_t> slot_counts;
+    std::vector<rt_u32> leaves, roots;
+    bool allocated_twice = false;
+    std::map<std::string, rt_u32> defines;
+    std::map<std::string, double> stats;
+
+    template <class T>
+    const T* slot(size_t i = 0) const {
+        return static_cast<const T*>(slots[i]);
+    }
+    rt_built view() const;
+};
+
+struct Options {
+    std::map<std::string, double> params;  // others take their defaults; an unknown key throws
+    unsigned threads = 2;                  // of parallel_for
+    std::function<bool(float)> progress;   // false: cancel
+};
+
+Built build(const rt_plugin& plugin, const Input& input, const Options& options = {});
+
+// The volumes of a level.
+struct Volume {
+    float lo[3], hi[3];            // box
+    float center[3], radius = -1;  // sphere, if radius >= 0
+};
+std::vector<Volume> volumes(const rt_plugin& plugin, const Built& built, rt_u32 group, rt_u32 level);
+
+// ---- primitives to build from
+
+rt_prim box_prim(const float lo[3], const float hi[3], rt_u32 ref, rt_u32 mesh = 0);
+// Triangles of a bumpy sphere, about `count` of them, as boxes; corners (9 floats each) if asked for.
+std::vector<rt_prim> bumpy_sphere(uint32_t count, std::vector<float>* corners = nullptr);
+// Small boxes all over a cube of the given size and centre.
+std::vector<rt_prim> scattered(uint32_t count, float size, float center, unsigned seed);
+
+}  // namespace accel_test

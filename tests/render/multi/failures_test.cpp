@@ -1,0 +1,149 @@
+// failures_test.cpp -- a device that fails costs a message, and the picture is whole.
+#include <cstring>
+#include <mutex>
+
+#include "base/log.hpp"
+#include "render/multi/team.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+// Warnings of its lifetime.
+class Warnings {
+ public:
+    Warnings() {
+        set_log_listener([this](LogLevel level, const std::string& text) {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            if (level == LogLevel::warning) text_ += text + "\n";
+        });
+    }
+    ~Warnings() { set_log_listener({}); }
+    std::string text() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return text_;
+    }
+
+ private:
+    std::mutex mutex_;
+    std::string text_;
+};
+
+class FailingDevice : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        if (const std::string why = why_no_parts(); !why.empty()) GTEST_SKIP() << why;
+        scene_ = load_scene(source_file("scenes/primitives.scene"));
+        view_ = make_view(*scene_, 160.0f / 120.0f);
+        Team whole("cpu");
+        whole.trace(scene_, settings_, view_, 0, 4);
+        truth_ = whole.frames.read_values().pixels;
+        display_ = whole.frames.read_display(settings_).pixels;
+    }
+    // Without context and queue, a device answers every call with an error.
+    void lose(Team& team, size_t device) {
+        team.devices[device]->queue() = cl::CommandQueue();
+        team.devices[device]->context() = cl::Context();
+    }
+    void expect_whole(Team& team, Warnings& warnings) {
+        EXPECT_EQ(differing(truth_, team.frames.read_values().pixels), 0u);
+        EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
+        EXPECT_NE(warnings.text().find("0:0/2.1 takes no further part"), std::string::npos) << warnings.text();
+        EXPECT_NE(warnings.text().find("part 2 of 2"), std::string::npos) << "it says which: " << warnings.text();
+    }
+
+    const Settings settings_ = make_settings({{"size", "160x120"}});
+    ScenePtr scene_;
+    View view_;
+    std::vector<float> truth_;
+    SharedBytes display_;
+};
+
+TEST_F(FailingDevice, BeforeAPicture) {
+    Team team("0:0/2");
+    const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+    Warnings warnings;
+    lose(team, 1);
+    const FrameStats stats = team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+    ASSERT_EQ(stats.devices.size(), 1u);
+    EXPECT_EQ(stats.devices[0].share, 1);
+    expect_whole(team, warnings);
+}
+
+TEST_F(FailingDevice, BetweenSamples) {
+    Team team("0:0/2");
+    const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+    Warnings warnings;
+    team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 2);
+    lose(team, 1);
+    EXPECT_EQ(team.frames.trace(prepared, settings_, view_, 2, false, team.progress, 2).samples, 4u);
+    expect_whole(team, warnings);
+}
+
+TEST_F(FailingDevice, BeforeItIsReadBack) {
+    Team team("0:0/2");
+    const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+    Warnings warnings;
+    team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+    lose(team, 1);
+    expect_whole(team, warnings);
+    const FloatImage distance = team.frames.read_distance();
+    EXPECT_EQ(distance.pixels.size(), 160u * 120u);
+    // And goes on so.
+    EXPECT_EQ(team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4).devices.size(), 1u);
+    expect_whole(team, warnings);
+}
+
+TEST_F(FailingDevice, BeforeItBringsWhatIsShown) {
+    Team team("0:0/2");
+    const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+    Warnings warnings;
+    for (int picture = 0; picture < 2; ++picture) {
+        team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+        EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
+    }
+    lose(team, 1);
+    team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+    EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
+    expect_whole(team, warnings);
+}
+
+TEST_F(FailingDevice, WhileItIsPrepared) {
+    Team team("0:0/2");
+    Warnings warnings;
+    lose(team, 1);
+    const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+    ASSERT_EQ(prepared->parts.size(), 1u);
+    EXPECT_NE(warnings.text().find("part 2 of 2"), std::string::npos) << warnings.text();
+    team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4);
+    EXPECT_EQ(differing(truth_, team.frames.read_values().pixels), 0u);
+}
+
+TEST_F(FailingDevice, AllOfThemIsAnError) {
+    Team team("0:0/2");
+    const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+    lose(team, 0);
+    lose(team, 1);
+    try {
+        team.frames.trace(prepared, settings_, view_, 0, false, team.progress);
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_EQ(e.code(), Exit::failed);
+        EXPECT_NE(std::string(e.what()).find("OpenCL error"), std::string::npos) << e.what();
+    }
+    EXPECT_THROW(team.frames.trace(prepared, settings_, view_, 0, false, team.progress), Error);
+}
+
+TEST_F(FailingDevice, DevicesOpenedAnewGoOn) {
+    Team team("0:0/2");
+    team.trace(scene_, settings_, view_);
+    team.frames.~MultiFrameRenderer();
+    const Devices anew = open_devices(team.preparer.close_devices());
+    new (&team.frames) MultiFrameRenderer(anew);
+    team.preparer.open_devices(anew);
+    team.trace(scene_, settings_, view_, 0, 4);
+    EXPECT_EQ(differing(truth_, team.frames.read_values().pixels), 0u);
+}
+
+}  // namespace

@@ -1,0 +1,42 @@
+// team.hpp -- a CPU alone and in parts, to compare what they make.
+#pragma once
+#include <gtest/gtest.h>
+
+#include "base/error.hpp"
+#include "render/multi/multi_frame_renderer.hpp"
+#include "support/scenes.hpp"
+
+namespace clarity::test {
+
+// Devices of one choice, with what makes pictures on them.
+struct Team {
+    explicit Team(const std::string& choice)
+        : devices(open_devices(choose_devices(choice))), preparer(Workbench::get().plugins(), devices), frames(devices) {}
+    Devices devices;
+    MultiPreparer preparer;
+    MultiFrameRenderer frames;
+    Progress progress;
+
+    FrameStats trace(const ScenePtr& scene, const Settings& settings, const View& view, unsigned sample = 0,
+                     unsigned samples = 1) {
+        return frames.trace(preparer.prepare(scene, settings, progress), settings, view, sample, true, progress, samples);
+    }
+};
+
+// Why this machine cannot part its CPU; empty if it can.
+inline std::string why_no_parts() {
+    try {
+        choose_devices("cpu/2");
+        return {};
+    } catch (const Error& e) {
+        return std::string("NOT TESTED: ") + e.what();
+    }
+}
+
+inline size_t differing(const std::vector<float>& a, const std::vector<float>& b) {
+    size_t differ = a.size() == b.size() ? 0 : ~size_t(0) / 2;
+    for (size_t i = 0; i < std::min(a.size(), b.size()); ++i) differ += std::memcmp(&a[i], &b[i], sizeof a[i]) != 0;
+    return differ;
+}
+
+}  // namespace clarity::test

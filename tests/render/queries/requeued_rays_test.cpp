@@ -1,0 +1,176 @@
+// requeued_rays_test.cpp -- rays of the caller's own in one launch, in two, drawn from a queue, and a warp's together: which it
+// is, is found out by trying, so the same rays are asked for as often as it takes to see all.
+#include "render/queries/autotuner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "render/queries/ray_blocks.hpp"
+#include "support/generated.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+constexpr unsigned kTries = 15;
+constexpr rt_u32 kLong = 64;  // turns: a node or two triangles each
+
+// Towards the rubble from all around, straight and askew, some reaching only half of the way, some inactive.
+std::vector<rt_ray> rays_at_rubble() {
+    std::vector<rt_ray> rays;
+    for (int i = 0; i < 3000; ++i) {
+        const float a = 0.7f * float(i), b = 1.9f * float(i), x = 6 * std::sin(a), y = 2 * std::cos(b), z = 6 * std::cos(a);
+        const float tx = 2 * std::sin(3 * b), ty = 2 * std::cos(5 * a), tz = 2 * std::sin(7 * a);
+        const float dx = tx - x, dy = i % 5 ? ty - y : 0, dz = tz - z, length = std::sqrt(dx * dx + dy * dy + dz * dz);
+        const float reach = i % 11 == 5 ? -1.0f : i % 7 == 3 ? 6.5f : INFINITY;
+        rays.push_back({{x, y, z}, 0, {dx / length, dy / length, dz / length}, reach});
+    }
+    return rays;
+}
+
+// Many times over at one place, so that rays meet the same distances again and again, and pass by more than they hit.
+ScenePtr heap() {
+    Scene scene = *rubble();
+    for (int i = 0; i < 8; ++i) {
+        Instance more = scene.instances[0];
+        more.world_from_object[3] = 0.01f * float(i / 2);
+        scene.instances.push_back(more);
+    }
+    scene.spheres.push_back({{0.3f, 0.2f, 0.1f}, 0.4f, 0});
+    scene.planes.push_back({{0, 1, 0}, -1.5f, 0});
+    return shared_scene(scene);
+}
+
+void expect_same_each_time(const ScenePtr& scene) {
+    const std::vector<rt_ray> rays = rays_at_rubble();
+    const Settings settings = make_settings({{"accel", "bvh4"}, {"lanes", "1"}, {"packet", "1x1"}, {"portable", "true"}});
+    const auto counted = Workbench::get().rays(scene, settings, rays, RayQuery{false, true});
+    EXPECT_GT(
+        std::count_if(counted.begin(), counted.end(), [](const rt_hit& hit) { return hit.steps + hit.leaf_tests / 2 > kLong; }),
+        10);
+    const RayBlocks packed(rays, 1);
+    const auto trace = [&](RayQuery query) {
+        std::vector<rt_hit> hits;
+        Workbench::get().frames().trace_rays(*Workbench::get().prepare(scene, settings), packed, query, &hits);
+        return hits;
+    };
+    for (const bool brief : {false, true})
+        for (unsigned i = 0; i < kTries; ++i) {
+            const auto hits = trace(RayQuery{false, false, brief});
+            ASSERT_EQ(hits.size(), rays.size());
+            for (size_t k = 0; k < rays.size(); ++k) {
+                ASSERT_EQ(hits[k].t, counted[k].t) << "try " << i << ", ray " << k;
+                ASSERT_EQ(hits[k].prim, counted[k].prim) << "try " << i << ", ray " << k;
+                if (brief) continue;
+                ASSERT_EQ(hits[k].u, counted[k].u) << "try " << i << ", ray " << k;
+                ASSERT_EQ(hits[k].v, counted[k].v) << "try " << i << ", ray " << k;
+                ASSERT_EQ(hits[k].instance, counted[k].instance) << "try " << i << ", ray " << k;
+            }
+        }
+    for (unsigned i = 0; i < kTries; ++i) {
+        const auto shadows = trace(RayQuery{true});
+        for (size_t k = 0; k < rays.size(); ++k)
+            ASSERT_EQ(shadows[k].t, counted[k].prim >= 0 ? 0 : INFINITY) << "try " << i << ", ray " << k;
+    }
+}
+
+}  // namespace
+
+TEST(RequeuedRays, AreThoseOfOneLaunch) {
+    expect_same_each_time(rubble());
+}
+
+TEST(RequeuedRays, AreThoseOfOneLaunchWithInstances) {
+    expect_same_each_time(heap());
+}
+
+TEST(Autotuner, TakesTheLeastTimeOfEachButTheFirst) {
+    for (const unsigned ways : {1u, 2u, 3u, 5u})
+        for (unsigned best = 0; best < ways; ++best) {
+            Autotuner way(ways);
+            for (unsigned i = 0; i < 3 * ways; ++i) {
+                EXPECT_EQ(way.way(), i % ways);
+                const bool better = i % ways == best;
+                way.took(i < ways ? (better ? 9 : 1) : i < 2 * ways ? 50 : better ? 2 : 3);
+            }
+            for (int i = 0; i < 3; ++i) {
+                EXPECT_EQ(way.way(), best);
+                way.took(way.way() == best ? 100 : 0);
+            }
+        }
+}
+
+TEST(Autotuner, TriesWhatIsFarBehindTwice) {
+    Autotuner way(3);
+    std::vector<unsigned> tried;
+    for (int i = 0; i < 10; ++i) {
+        tried.push_back(way.way());
+        way.took(way.way() == 1 ? 30 : way.way() == 2 ? 9 : 10);
+    }
+    EXPECT_EQ(tried, (std::vector<unsigned>{0, 1, 2, 0, 1, 2, 0, 2, 2, 2}));
+}
+
+TEST(Autotuner, StaysWithTheFirstForLittle) {
+    Autotuner way(2);
+    for (int i = 0; i < 6; ++i) way.took(i % 2 == 0 ? 100 : 98);
+    EXPECT_EQ(way.way(), 0u);
+}
+
+// Each way takes its time by `ms`; the clock is slower by `slowdown`.
+unsigned use(Autotuner& way, const std::vector<double>& ms, double slowdown, int runs) {
+    unsigned trials = 0;
+    for (int i = 0; i < runs; ++i) {
+        trials += way.trying();
+        way.took(slowdown * ms[way.way()]);
+    }
+    return trials;
+}
+
+TEST(Autotuner, IsSettledOnceARunConfirmsTheChoice) {
+    Autotuner way(2);
+    const std::vector<double> ms = {10, 5};
+    EXPECT_EQ(use(way, ms, 1, 5), 5u);
+    EXPECT_FALSE(way.trying());
+    EXPECT_FALSE(way.settled());
+    way.took(20);
+    EXPECT_FALSE(way.settled()) << "another time than it was chosen by";
+    way.took(5.2);
+    EXPECT_TRUE(way.settled());
+    EXPECT_TRUE(Autotuner(1).settled());
+    EXPECT_FALSE(Autotuner(1).trying());
+}
+
+TEST(Autotuner, LooksAgainWhenRunsTakeAnotherTime) {
+    Autotuner way(2);
+    use(way, {10, 12}, 8, 6);
+    EXPECT_EQ(way.way(), 0u);
+    const std::vector<double> warm = {10, 7};  // at full clock the second way is the faster one
+    EXPECT_EQ(use(way, warm, 1, 3), 0u);
+    EXPECT_TRUE(way.trying()) << "three runs took an eighth of the time";
+    EXPECT_EQ(use(way, warm, 1, 4), 4u);
+    EXPECT_EQ(way.way(), 1u);
+    // One disturbed run, or two, change nothing.
+    for (const double ms : {7.0, 30.0, 30.0, 7.0, 30.0}) way.took(ms);
+    EXPECT_FALSE(way.trying());
+}
+
+TEST(Autotuner, LooksAgainLessAndLess) {
+    Autotuner way(2);
+    const std::vector<double> ms = {10, 9};
+    EXPECT_EQ(use(way, ms, 1, 6), 6u);
+    EXPECT_EQ(use(way, ms, 1, 16), 0u);
+    EXPECT_EQ(use(way, ms, 1, 4), 4u) << "after 16 uses";
+    EXPECT_EQ(use(way, ms, 1, 64), 0u);
+    EXPECT_EQ(use(way, ms, 1, 4), 4u) << "after 64 more";
+    EXPECT_EQ(use(way, ms, 1, 200), 0u);
+}
+
+TEST(Autotuner, AMachineThatIsNeverSteadyDoesNotTuneForEver) {
+    Autotuner way(2);
+    unsigned trials = 0;
+    for (int i = 0; i < 2000; ++i) trials += use(way, {10, 9}, i / 5 % 2 ? 1 : 3, 1);
+    EXPECT_LT(trials, 100u);
+}

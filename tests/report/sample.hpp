@@ -1,9 +1,0 @@
-// sample.hpp -- records as a run could give them, by formula: every suite, two devices, peers, and rows without figures.
-#pragma once
-#include "bench/record.hpp"
-
-namespace clarity::test {
-
-BenchReport sample_report();
-
-}  // namespace clarity::test

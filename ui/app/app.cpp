@@ -1,0 +1,298 @@
+#include "ui/app/app.hpp"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "render/film/image_io.hpp"
+#include "ui/automation/script.hpp"
+#include "ui/hud/hud.hpp"
+#include "ui/panel/panel.hpp"
+#include "ui/viewport/camera_control.hpp"
+#include "ui/widgets/theme.hpp"
+
+namespace clarity {
+namespace {
+
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+constexpr float kTapSeconds = 0.06f;  // what a short press is worth, however short it was
+constexpr float kLongestStep = 0.1f;  // after a pause of the loop, motion does not jump
+constexpr float kTurnRadPerSecond = 0.9f;
+constexpr double kShortestTurn = 0.01;
+
+}  // namespace
+
+App::App(const ViewOptions& options) {
+    folder_ = preferences_folder();
+    std::string damage;
+    const Preferences preferences = load_preferences(folder_, &damage);
+    const std::string ini = folder_.empty() ? std::string() : folder_ + "/imgui.ini";
+    window_ = std::make_unique<GlWindow>("Clarity", preferences.width, preferences.height, ini);
+    state_.text_scale = preferences.text_scale;
+    state_.camera_speed = preferences.camera_speed;
+    state_.light_speed = preferences.light_speed;
+    state_.panel_visible = preferences.panel_visible;
+    const std::string& id = options.key_map.empty() ? preferences.key_map : options.key_map;
+    if (const KeyMap* map = find_key_map(id)) state_.key_map = map;
+    pane_ = std::make_unique<PicturePane>();
+    const auto wake = [this] {
+        woken_ = true;
+        GlWindow::wake();
+    };
+    session_ = std::make_unique<Session>(options, wake);
+    if (!damage.empty()) session_->report(damage);
+    memory_.begin(folder_, preferences, state_, session_->desired);
+    overlay_ = std::make_unique<VolumeOverlay>(wake);
+    script_ = Script::from_environment();
+    apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
+}
+
+App::~App() {
+    Preferences preferences;
+    window_->size(preferences.width, preferences.height);
+    preferences.text_scale = state_.text_scale;
+    preferences.camera_speed = state_.camera_speed;
+    preferences.light_speed = state_.light_speed;
+    preferences.key_map = state_.key_map->id;
+    preferences.panel_visible = state_.panel_visible;
+    memory_.note(preferences, state_, session_->desired);
+    save_preferences(folder_, preferences);
+    // A compiler that runs cannot be stopped: the window goes before it is waited for.
+    window_->hide();
+    window_->wait_events(0);
+    overlay_.reset();
+    session_.reset();
+    pane_.reset();
+}
+
+int App::run() {
+    turn();
+    while (!window_->closing()) {
+        if (window_->wait_events(wait_seconds())) settle_frames_ = 3;
+        if (due()) turn();
+    }
+    return 0;
+}
+
+// Frames are drawn when something changed: an event, a thread's news, a key that is down, a line of the script, the clock. A
+// flood of news (a small picture traced a thousand times a second) is shown a hundred times a second.
+bool App::due() const {
+    const double since = now_s() - last_turn_s_;
+    if (settle_frames_ > 0 || (script_ && script_->has_lines())) return true;
+    if (woken_ || held_.any_held(*state_.key_map)) return since >= kShortestTurn;
+    return since >= longest_wait();
+}
+
+double App::longest_wait() const {
+    if (session_->activity().busy || !overlay_->ready() || session_->moving()) return 1.0 / 30;
+    return typing() ? 0.1 : 0.5;  // a text field's cursor blinks
+}
+
+double App::wait_seconds() const {
+    if (settle_frames_ > 0) return 0;
+    if (woken_ || held_.any_held(*state_.key_map)) return std::max(kShortestTurn - (now_s() - last_turn_s_), 1e-4);
+    const double wait = std::max(longest_wait() - (now_s() - last_turn_s_), 1e-4);
+    return script_ ? std::min(wait, 0.005) : wait;  // nobody wakes us for its lines
+}
+
+bool App::typing() const {
+    return ImGui::GetIO().WantTextInput;
+}
+
+void App::turn() {
+    const double begin = now_s();
+    woken_ = false;
+    const auto seconds = static_cast<float>(std::min(begin - last_turn_s_, static_cast<double>(kLongestStep)));
+    last_turn_s_ = begin;
+    take_keys();
+    if (auto files = window_->take_dropped_files(); !files.empty()) session_->open(std::move(files));
+    if (script_) script_->step(*this);
+    move_held(seconds);
+    try {
+        session_->update(ImGui::IsAnyItemActive() || held_.any_held(*state_.key_map));
+    } catch (const Error& error) {
+        session_->report(error.what(), error.details());
+    }
+    memory_.follow(*session_, state_);
+    const auto ready = session_->ready();
+    overlay_->update(ready ? ready->main.accel : nullptr, ready && ready->other ? ready->other->accel : nullptr);
+    apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
+    upload_picture();
+    window_->begin_frame();
+    draw();
+    finish_frame();
+    if (settle_frames_ > 0) --settle_frames_;
+    const double end = now_s();
+    ++times_.frames;
+    times_.slowest_frame_ms = std::max(times_.slowest_frame_ms, (end - begin) * 1e3);
+    if (oldest_key_s_ > 0) times_.slowest_answer_ms = std::max(times_.slowest_answer_ms, (end - oldest_key_s_) * 1e3);
+    oldest_key_s_ = 0;
+}
+
+void App::finish_frame() {
+    if (capture_path_.empty()) {
+        window_->end_frame();
+        return;
+    }
+    const ByteImage image = window_->end_frame_and_read();
+    try {
+        write_image(capture_path_, {}, image);
+    } catch (const Error& error) {
+        session_->report(error.what());
+    }
+    capture_path_.clear();
+}
+
+void App::take_keys() {
+    for (const KeyEvent& event : window_->take_keys()) {
+        if (oldest_key_s_ == 0) oldest_key_s_ = now_s() - event.age_s();
+        if (event.kind == KeyEvent::Kind::lost_focus) {
+            held_.clear();
+        } else if (event.kind == KeyEvent::Kind::release) {
+            held_.release(event.key);
+        } else if (event.key == GLFW_KEY_ESCAPE && (state_.browser_open || state_.keys_open)) {
+            close_or_cancel();  // even while its field has the keyboard
+        } else if (!event.other_modifier && !typing()) {
+            if (const KeyBinding* binding = state_.key_map->find(event.key, event.ctrl)) act(*binding);
+        }
+    }
+}
+
+// A key's failure is a message like any other.
+void App::act(const KeyBinding& binding) {
+    try {
+        press(binding);
+    } catch (const Error& error) {
+        session_->report(error.what(), error.details());
+    }
+}
+
+void App::press(const KeyBinding& binding) {
+    if (is_held(binding.action)) {
+        held_.press(binding.key);
+        HeldKeys tapped;
+        tapped.press(binding.key);
+        apply_motion(kTapSeconds, tapped);
+        return;
+    }
+    switch (binding.action) {
+        case Action::print_frame_rate:
+            std::printf("%s\n", session_->frame_rate_line().c_str());
+            std::fflush(stdout);
+            break;
+        case Action::show_level:
+            overlay_->toggle(static_cast<rt_u32>(binding.argument));
+            break;
+        case Action::show_bottom_level:
+            overlay_->toggle(RT_LEVEL_BOTTOM);
+            break;
+        case Action::reset_camera:
+            session_->reset_view();
+            break;
+        case Action::cancel_work:
+            close_or_cancel();
+            break;
+        case Action::show_help:
+            state_.keys_open = !state_.keys_open;
+            break;
+        case Action::undo:
+            session_->undo();
+            break;
+        case Action::redo:
+            session_->redo();
+            break;
+        case Action::open_file:
+            state_.browser_open = true;
+            break;
+        case Action::save_picture:
+            session_->save_picture(next_picture_path(state_.pictures_folder));
+            break;
+        case Action::toggle_compare:
+            session_->compare(!session_->desired.other);
+            break;
+        case Action::swap_sides:
+            session_->swap_sides();
+            break;
+        case Action::toggle_inspector:
+            state_.inspect_hover = !state_.inspect_hover;
+            if (state_.inspect_hover) state_.show_tab(Tab::inspect);
+            break;
+        case Action::toggle_lights:
+            state_.show_lights = !state_.show_lights;
+            break;
+        case Action::add_bookmark:
+            state_.bookmarks.push_back({"view " + std::to_string(state_.bookmarks.size() + 1), session_->desired.camera});
+            break;
+        case Action::next_bookmark:
+            go_to_next_bookmark();
+            break;
+        case Action::frame_scene:
+            session_->frame_selection();
+            break;
+        case Action::toggle_panel:
+            state_.panel_visible = !state_.panel_visible;
+            break;
+        default:
+            break;
+    }
+}
+
+// The nearest thing first: what lies over the picture, then what is under way.
+void App::close_or_cancel() {
+    if (state_.keys_open)
+        state_.keys_open = false;
+    else if (state_.browser_open)
+        state_.browser_open = false;
+    else if (session_->sequence().running())
+        session_->sequence().stop(*session_);
+    else
+        session_->cancel();
+}
+
+void App::go_to_next_bookmark() {
+    std::vector<Camera> cameras;
+    if (session_->ready()) cameras = session_->ready()->loaded->scene->cameras;
+    for (const Bookmark& bookmark : state_.bookmarks) cameras.push_back(bookmark.camera);
+    if (!cameras.empty()) session_->desired.camera = cameras[next_bookmark_++ % cameras.size()];
+}
+
+void App::move_held(float seconds) {
+    apply_motion(seconds, held_);
+}
+
+void App::apply_motion(float seconds, const HeldKeys& keys) {
+    if (!keys.any_held(*state_.key_map)) return;
+    const auto between = [&](Action less, Action more) {
+        return keys.value(*state_.key_map, more) - keys.value(*state_.key_map, less);
+    };
+    const float step = session_->scene_size() * 0.33f * seconds;
+    const float camera = step * state_.camera_speed, turn = kTurnRadPerSecond * seconds * std::min(state_.camera_speed, 2.0f);
+    const Step motion{between(Action::camera_left, Action::camera_right) * camera,
+                      between(Action::camera_down, Action::camera_up) * camera,
+                      between(Action::camera_back, Action::camera_forward) * camera};
+    Camera& eye = session_->desired.camera;
+    if (!motion.none()) state_.key_map->mouse_look ? fly_camera(eye, motion) : move_camera(eye, motion);
+    const float yaw = between(Action::yaw_right, Action::yaw_left) * turn,
+                pitch = between(Action::pitch_down, Action::pitch_up) * turn;
+    if (yaw != 0 || pitch != 0) turn_camera(eye, yaw, pitch);
+
+    const float reach = step * state_.light_speed;
+    const Step shift{between(Action::light_left, Action::light_right) * reach,
+                     between(Action::light_down, Action::light_up) * reach,
+                     between(Action::light_back, Action::light_forward) * reach};
+    auto& lights = session_->desired.lights;
+    if (!shift.none() && session_->selected_light < lights.size())
+        move_light(lights[session_->selected_light].values, eye, shift, session_->scene_size());
+}
+
+}  // namespace clarity

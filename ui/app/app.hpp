@@ -1,0 +1,79 @@
+// app.hpp -- the running window: events to wishes, the session's newest to the screen, once a frame.
+#pragma once
+#include <atomic>
+#include <memory>
+
+#include "ui/app/gl_window.hpp"
+#include "ui/app/preferences.hpp"
+#include "ui/app/preferences_sync.hpp"
+#include "ui/app/ui_state.hpp"
+#include "ui/overlay/overlay.hpp"
+#include "ui/session/session.hpp"
+#include "ui/viewport/picture_pane.hpp"
+
+namespace clarity {
+
+class Script;
+
+// How the window itself fares; tests read it.
+struct UiTimes {
+    unsigned long frames = 0;
+    double slowest_frame_ms = 0;   // one turn of the loop, without its waiting
+    double slowest_answer_ms = 0;  // from a key's event to the end of the frame that took it in
+};
+
+class App {
+ public:
+    explicit App(const ViewOptions& options);
+    ~App();
+    int run();
+
+    // For the script of a test.
+    Session& session() { return *session_; }
+    UiState& state() { return state_; }
+    VolumeOverlay& overlay() { return *overlay_; }
+    UiTimes& times() { return times_; }
+    const PicturePane& pane() const { return *pane_; }
+    const Rect& picture_area() const { return pane_->area(); }
+    bool typing() const;
+    void close() { window_->close(); }
+    void drop(const std::vector<std::string>& files) { window_->drop(files); }
+    // The next frame is written there as PNG.
+    void capture(const std::string& path) { capture_path_ = path; }
+
+ private:
+    void turn();
+    bool due() const;  // something to draw has come
+    double wait_seconds() const;
+    double longest_wait() const;  // to the next turn if nothing happens
+    void take_keys();
+    void act(const KeyBinding& binding);
+    void press(const KeyBinding& binding);
+    void close_or_cancel();
+    void go_to_next_bookmark();
+    void move_held(float seconds);
+    void apply_motion(float seconds, const HeldKeys& keys);
+    void draw();
+    void upload_picture();
+    void finish_frame();
+
+    std::atomic<bool> woken_{false};  // a thread has news
+    std::string folder_;              // of the preferences; empty: none
+    std::unique_ptr<GlWindow> window_;
+    std::unique_ptr<PicturePane> pane_;
+    std::unique_ptr<Session> session_;
+    std::unique_ptr<VolumeOverlay> overlay_;
+    std::unique_ptr<Script> script_;
+    UiState state_;
+    UiTimes times_;
+    PreferencesSync memory_;
+    HeldKeys held_;
+    std::shared_ptr<const Picture> uploaded_;
+    std::string capture_path_;
+    size_t next_bookmark_ = 0;
+    double last_turn_s_ = 0;   // when it began
+    double oldest_key_s_ = 0;  // of the keys taken in since the last frame; 0: none
+    int settle_frames_ = 3;    // ImGui needs a few to settle after an event
+};
+
+}  // namespace clarity

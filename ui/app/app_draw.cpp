@@ -1,0 +1,44 @@
+// What App draws each frame: viewport at the left, panel at the right, status line at the bottom.
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/app/app.hpp"
+#include "ui/browser/file_browser.hpp"
+#include "ui/hud/hud.hpp"
+#include "ui/hud/keys_hud.hpp"
+#include "ui/panel/panel.hpp"
+#include "ui/widgets/theme.hpp"
+
+namespace clarity {
+
+void App::draw() {
+    const ImVec2 size = ImGui::GetIO().DisplaySize;
+    const float scale = ui_scale();
+    const float status = std::round(28 * scale);
+    const float panel = state_.panel_visible ? std::round(std::min(state_.panel_width * scale, size.x * 0.6f)) : 0;
+    const Rect viewport{0, 0, std::max(size.x - panel, 1.0f), std::max(size.y - status, 1.0f)};
+    pane_->draw(viewport, *session_, *overlay_, state_);
+    draw_empty_hint(viewport, *session_);
+    if (state_.panel_visible)
+        draw_panel({size.x - panel, 0, panel, viewport.height}, *session_, *overlay_, state_, window_->gl_text());
+    draw_status_line({0, viewport.height, size.x, status}, *session_, *overlay_, state_);
+    draw_progress_card(viewport, *session_);
+    draw_message_card(viewport, *session_, state_);
+    draw_file_browser(viewport, *session_, state_);
+    draw_keys_hud(viewport, state_);
+}
+
+void App::upload_picture() {
+    const auto picture = session_->picture();
+    if (!picture || picture == uploaded_) return;
+    if (const std::string why = pane_->upload(picture); !why.empty()) session_->report(why);
+    uploaded_ = picture;
+    std::string title = "Clarity";
+    if (const auto files = session_->files(); !files.empty())
+        title = files.front().substr(files.front().find_last_of('/') + 1) + " - Clarity";
+    window_->set_title(title);
+}
+
+}  // namespace clarity

@@ -1,0 +1,225 @@
+#include "ui/app/gl_window.hpp"
+
+#include <epoxy/gl.h>
+// Before GLFW, which would include the system's own GL header.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+#include "base/error.hpp"
+
+namespace clarity {
+namespace {
+
+std::string& last_glfw_error() {
+    static std::string text;
+    return text;
+}
+
+[[noreturn]] void no_window(const std::string& why) {
+    throw Error(Exit::usage, "cannot open a window: " + why + "; to render without one: clarity render SCENE -o out.png");
+}
+
+bool names_display(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value && *value;
+}
+
+}  // namespace
+
+// GLFW's callbacks, set before ImGui's, which then call these first.
+struct Callbacks {
+    static GlWindow& of(GLFWwindow* window) { return *static_cast<GlWindow*>(glfwGetWindowUserPointer(window)); }
+
+    static void key(GLFWwindow* window, int key, int, int action, int mods) {
+        GlWindow& self = of(window);
+        self.any_event_ = true;
+        if (action == GLFW_REPEAT) return;
+        const bool ctrl = mods & GLFW_MOD_CONTROL, other = mods & (GLFW_MOD_ALT | GLFW_MOD_SUPER);
+        const auto kind = action == GLFW_PRESS ? KeyEvent::Kind::press : KeyEvent::Kind::release;
+        self.keys_.push_back({key, kind, ctrl, other, glfwGetTime()});
+    }
+    static void focus(GLFWwindow* window, int focused) {
+        GlWindow& self = of(window);
+        self.any_event_ = true;
+        if (!focused) self.keys_.push_back({0, KeyEvent::Kind::lost_focus, false, false, glfwGetTime()});
+    }
+    static void drop(GLFWwindow* window, int count, const char** paths) {
+        GlWindow& self = of(window);
+        self.any_event_ = true;
+        self.dropped_.assign(paths, paths + count);
+    }
+    static void character(GLFWwindow* window, unsigned) { of(window).any_event_ = true; }
+    static void button(GLFWwindow* window, int, int, int) { of(window).any_event_ = true; }
+    static void cursor(GLFWwindow* window, double, double) { of(window).any_event_ = true; }
+    static void scroll(GLFWwindow* window, double, double) { of(window).any_event_ = true; }
+    static void resized(GLFWwindow* window, int, int) { of(window).any_event_ = true; }
+    static void refresh(GLFWwindow* window) { of(window).any_event_ = true; }
+};
+
+double KeyEvent::age_s() const {
+    return glfwGetTime() - time_s;
+}
+
+GlWindow::GlWindow(const std::string& title, int width, int height, const std::string& ini_path) : ini_path_(ini_path) {
+    // glfwInit without a display fails late or hangs on some systems: ask first.
+    if (!names_display("DISPLAY") && !names_display("WAYLAND_DISPLAY"))
+        no_window("there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)");
+    glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
+    if (!glfwInit()) no_window(last_glfw_error());
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+    glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
+    glfwWindowHintString(GLFW_X11_CLASS_NAME, "clarity");
+    glfwWindowHintString(GLFW_X11_INSTANCE_NAME, "clarity");
+    window_ = glfwCreateWindow(width, height, title.c_str(), nullptr, nullptr);
+    if (!window_) {
+        const std::string why = last_glfw_error();
+        glfwTerminate();
+        no_window("no OpenGL 3.3 core context (" + why + ")");
+    }
+    glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwMakeContextCurrent(window_);
+    glfwSwapInterval(1);
+    const auto text = [](GLenum name) {
+        const auto* value = reinterpret_cast<const char*>(glGetString(name));
+        return std::string(value ? value : "?");
+    };
+    gl_text_ = "OpenGL " + text(GL_VERSION) + ", " + text(GL_RENDERER);
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, Callbacks::key);
+    glfwSetWindowFocusCallback(window_, Callbacks::focus);
+    glfwSetDropCallback(window_, Callbacks::drop);
+    glfwSetCharCallback(window_, Callbacks::character);
+    glfwSetMouseButtonCallback(window_, Callbacks::button);
+    glfwSetCursorPosCallback(window_, Callbacks::cursor);
+    glfwSetScrollCallback(window_, Callbacks::scroll);
+    glfwSetFramebufferSizeCallback(window_, Callbacks::resized);
+    glfwSetWindowRefreshCallback(window_, Callbacks::refresh);
+    init_imgui();
+}
+
+void GlWindow::init_imgui() {
+    IMGUI_CHECKVERSION();
+    ImGui::CreateContext();
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = ini_path_.empty() ? nullptr : ini_path_.c_str();
+    io.LogFilename = nullptr;
+    ImGui_ImplGlfw_InitForOpenGL(window_, true);
+    ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+GlWindow::~GlWindow() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    glfwDestroyWindow(window_);
+    glfwTerminate();
+}
+
+bool GlWindow::closing() const {
+    return glfwWindowShouldClose(window_);
+}
+void GlWindow::close() {
+    glfwSetWindowShouldClose(window_, GLFW_TRUE);
+}
+void GlWindow::hide() {
+    glfwHideWindow(window_);
+}
+void GlWindow::set_title(const std::string& title) {
+    glfwSetWindowTitle(window_, title.c_str());
+}
+void GlWindow::wake() {
+    glfwPostEmptyEvent();
+}
+
+bool GlWindow::wait_events(double seconds) {
+    any_event_ = false;
+    if (seconds > 0)
+        glfwWaitEventsTimeout(seconds);
+    else
+        glfwPollEvents();
+    return any_event_;
+}
+
+std::vector<KeyEvent> GlWindow::take_keys() {
+    return std::exchange(keys_, {});
+}
+std::vector<std::string> GlWindow::take_dropped_files() {
+    return std::exchange(dropped_, {});
+}
+
+void GlWindow::drop(const std::vector<std::string>& files) {
+    std::vector<const char*> paths;
+    for (const std::string& file : files) paths.push_back(file.c_str());
+    Callbacks::drop(window_, static_cast<int>(paths.size()), paths.data());
+}
+
+double GlWindow::content_scale() const {
+    float x = 1, y = 1;
+    glfwGetWindowContentScale(window_, &x, &y);
+    // Where the framebuffer is finer than the window's coordinates (Wayland), ImGui scales by itself.
+    int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
+    glfwGetWindowSize(window_, &width, &height);
+    glfwGetFramebufferSize(window_, &pixels_x, &pixels_y);
+    const double finer = width > 0 ? static_cast<double>(pixels_x) / width : 1.0;
+    return std::clamp(static_cast<double>(x) / std::max(finer, 1.0), 0.5, 4.0);
+}
+
+void GlWindow::size(int& width, int& height) const {
+    glfwGetWindowSize(window_, &width, &height);
+}
+
+void GlWindow::begin_frame() {
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui_ImplGlfw_NewFrame();
+    ImGui::NewFrame();
+}
+
+void GlWindow::end_frame() {
+    draw();
+    glfwSwapBuffers(window_);
+}
+
+void GlWindow::draw() {
+    ImGui::Render();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    glViewport(0, 0, width, height);
+    const ImVec4 ground = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
+    glClearColor(ground.x, ground.y, ground.z, 1.0f);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+ByteImage GlWindow::end_frame_and_read() {
+    draw();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(window_, &width, &height);
+    const size_t row_bytes = size_t{4} * static_cast<unsigned>(width);
+    std::vector<uint8_t> rows(row_bytes * static_cast<unsigned>(height)), pixels;
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGBA, GL_UNSIGNED_BYTE, rows.data());
+    glfwSwapBuffers(window_);
+    for (size_t i = 3; i < rows.size(); i += 4) rows[i] = 255;
+    pixels.reserve(rows.size());
+    for (auto row = rows.end(); row != rows.begin();) {  // GL's first row is the lowest
+        row -= static_cast<std::ptrdiff_t>(row_bytes);
+        pixels.insert(pixels.end(), row, row + static_cast<std::ptrdiff_t>(row_bytes));
+    }
+    return {static_cast<unsigned>(width), static_cast<unsigned>(height), std::move(pixels)};
+}
+
+std::string GlWindow::gl_text() const {
+    return gl_text_;
+}
+
+}  // namespace clarity

@@ -1,0 +1,101 @@
+#include "ui/app/preferences.hpp"
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/output_file.hpp"
+#include "base/read_file.hpp"
+#include "ui/app/preferences_json.hpp"
+
+namespace clarity {
+namespace fs = std::filesystem;
+
+std::string preferences_folder() {
+    const auto variable = [](const char* name) {
+        const char* value = std::getenv(name);
+        return std::string(value ? value : "");
+    };
+    if (!variable("CLARITY_UI_NO_SAVE").empty()) return {};
+    fs::path folder = variable("XDG_CONFIG_HOME");
+    if (!folder.is_absolute()) {  // the XDG specification: a relative one is to be ignored
+        const fs::path home = variable("HOME");
+        if (!home.is_absolute()) return {};
+        folder = home / ".config";
+    }
+    folder /= "clarity";
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error || access(folder.c_str(), W_OK) != 0) {
+        log(LogLevel::warning, folder.string() + ": cannot be written; the window will not remember its settings");
+        return {};
+    }
+    return folder.string();
+}
+
+namespace {
+
+// The first name that is free: window.damaged-1.json.
+fs::path name_for_damaged(const fs::path& path) {
+    for (int number = 1;; ++number) {
+        fs::path name = path;
+        name.replace_filename("window.damaged-" + std::to_string(number) + ".json");
+        std::error_code error;
+        if (!fs::exists(name, error)) return name;
+    }
+}
+
+// What becomes of the damaged file, as the end of a message.
+std::string keep_aside(const fs::path& path) {
+    const fs::path aside = name_for_damaged(path);
+    std::error_code error;
+    fs::rename(path, aside, error);
+    if (error) return "it cannot be kept as " + aside.string() + ": " + error.message();
+    return "the damaged file is kept as " + aside.string();
+}
+
+}  // namespace
+
+Preferences load_preferences(const std::string& folder, std::string* notice) {
+    Preferences p;
+    if (folder.empty()) return p;
+    const fs::path path = fs::path(folder) / "window.json";
+    std::error_code error;
+    if (!fs::exists(path, error)) return p;
+    bool some = false;  // entries could be read
+    std::string content, why = try_read_file(path.string(), kMaxTextFileBytes, content);
+    if (why.empty()) try {
+            std::vector<std::string> problems;
+            p = preferences_from(nlohmann::json::parse(content), &problems);
+            if (problems.empty()) return p;
+            some = true;
+            why = "cannot be understood in part (" + problems.front() +
+                  (problems.size() > 1 ? ", and " + std::to_string(problems.size() - 1) + " more)" : ")");
+        } catch (const nlohmann::json::exception& failure) {
+            why = std::string("cannot be understood: ") + failure.what();
+        }
+    const std::string text =
+        path.string() + ": " + why + (some ? "; the rest is used, " : "; the defaults are used, ") + "and " + keep_aside(path);
+    // So that a window that ends by force loses nothing more.
+    if (some) save_preferences(folder, p);
+    if (notice)
+        *notice = text;
+    else
+        log(LogLevel::warning, text);
+    return p;
+}
+
+void save_preferences(const std::string& folder, const Preferences& p) {
+    if (folder.empty()) return;
+    const std::string path = (fs::path(folder) / "window.json").string();
+    try {
+        write_text_file(path, to_json(p).dump(4, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+    } catch (const Error& error) {
+        log(LogLevel::warning, error.what());
+    }
+}
+
+}  // namespace clarity

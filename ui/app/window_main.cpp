@@ -1,0 +1,12 @@
+#include "ui/app/window_main.hpp"
+
+#include "ui/app/app.hpp"
+
+namespace clarity {
+
+int ui_main(const ViewOptions& options) {
+    App app(options);
+    return app.run();
+}
+
+}  // namespace clarity

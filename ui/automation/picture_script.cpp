@@ -1,0 +1,62 @@
+#include "ui/automation/picture_script.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "ui/app/app.hpp"
+
+namespace clarity {
+namespace {
+
+CompareMode mode_of(const std::string& text) {
+    if (text == "wipe") return CompareMode::wipe;
+    if (text == "side") return CompareMode::side_by_side;
+    if (text == "difference") return CompareMode::difference;
+    throw Error(Exit::usage, "no mode `" + text + "`; there are wipe, side, difference");
+}
+
+nlohmann::json json_of(const Rect& rect) {
+    return {rect.x, rect.y, rect.width, rect.height};
+}
+
+std::string layout_text(App& app) {
+    const PicturePane& pane = app.pane();
+    nlohmann::json json = {{"places", nlohmann::json::array()},
+                           {"handles", nlohmann::json::array()},
+                           {"lines", {pane.lines_drawn(0), pane.lines_drawn(1)}},
+                           {"lines_ms", pane.lines_ms()},
+                           {"rays", pane.rays_shown()},
+                           {"light", app.session().selected_light}};
+    for (const PicturePlace& place : pane.places())
+        json["places"].push_back({{"area", json_of(place.area)}, {"shown", json_of(place.shown)}, {"side", place.side()}});
+    for (const LightHandle& handle : pane.handles())
+        json["handles"].push_back({{"x", handle.place.x}, {"y", handle.place.y}, {"kind", static_cast<int>(handle.kind)}});
+    return json.dump();
+}
+
+}  // namespace
+
+bool run_picture_command(App& app, const std::string& command, const std::string& text) {
+    UiState& state = app.state();
+    if (command == "mode")
+        state.compare_mode = mode_of(text);
+    else if (command == "wipe")
+        state.wipe = std::strtof(text.c_str(), nullptr);
+    else if (command == "follow")
+        state.inspect_hover = text == "1";
+    else if (command == "rays")
+        state.show_rays = text == "1";
+    else if (command == "lights")
+        state.show_lights = text == "1";
+    else if (command == "behind")
+        app.overlay().hide_behind(text == "0");
+    else if (command == "layout")
+        std::printf("%s\n", layout_text(app).c_str());
+    else
+        return false;
+    return true;
+}
+
+}  // namespace clarity

@@ -1,0 +1,328 @@
+#include "ui/automation/script.hpp"
+
+#include <fcntl.h>
+#include <imgui.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "base/error.hpp"
+#include "plugin/parameters.hpp"
+#include "render/film/image_io.hpp"
+#include "ui/app/app.hpp"
+#include "ui/automation/picture_script.hpp"
+#include "ui/widgets/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+std::string rest_of(std::istringstream& in) {
+    std::string text;
+    std::getline(in >> std::ws, text);
+    return text;
+}
+
+void choose_accel(Session& session, const std::string& text) {
+    const PluginChoice choice = parse_plugin_choice(text);
+    const Settings before = session.edited().settings;
+    session.set_accel(choice.id);
+    try {
+        for (const auto& [key, value] : choice.settings)
+            set_parameter(*session.plugins().accel(choice.id), session.edited().settings.accel_params, key, value);
+    } catch (const Error&) {
+        session.edited().settings = before;
+        throw;
+    }
+}
+
+long resident_kilobytes() {
+    std::ifstream statm("/proc/self/statm");
+    long total = 0, resident = 0;
+    statm >> total >> resident;
+    return resident * (sysconf(_SC_PAGESIZE) / 1024);
+}
+
+// "background 1,0,0": a change of the view, as edit.hpp has it.
+void edit(Session& session, const std::string& text) {
+    if (!session.ready()) throw Error(Exit::usage, "no scene yet");
+    const size_t space = text.find(' ');
+    EditedView edited = edited_view(session.desired);
+    apply_edit(*session.ready()->loaded->scene, edited, text.substr(0, space),
+               space == std::string::npos ? "" : text.substr(space + 1));
+    session.adopt_view(edited);
+}
+
+std::string inspection_text(const Session& session) {
+    const auto inspection = session.inspection();
+    if (!inspection) throw Error(Exit::failed, "no pixel was inspected");
+    if (!inspection->failure.empty()) throw Error(Exit::failed, inspection->failure);
+    nlohmann::json json = {{"x", inspection->x}, {"y", inspection->y}, {"rays", nlohmann::json::array()}};
+    for (const RayRecord& ray : inspection->result.rays)
+        json["rays"].push_back({{"kind", static_cast<int>(ray.kind)},
+                                {"parent", ray.parent},
+                                {"t", std::isfinite(ray.t) ? nlohmann::json(ray.t) : nlohmann::json()},
+                                {"prim", ray.prim}});
+    return json.dump();
+}
+
+std::vector<std::string> dropped_files(const std::string& text) {
+    try {
+        return nlohmann::json::parse(text).get<std::vector<std::string>>();
+    } catch (const nlohmann::json::exception&) {
+        throw Error(Exit::usage, "`" + text + "` is no array of paths");
+    }
+}
+
+void choose_tab(UiState& state, const std::string& name) {
+    for (int i = 0; i < kTabCount; ++i)
+        if (name == kTabNames[i]) return state.show_tab(static_cast<Tab>(i));
+    throw Error(Exit::usage, "no tab `" + name + "`");
+}
+
+void choose_map(UiState& state, const std::string& id) {
+    const KeyMap* map = find_key_map(id);
+    if (!map) throw Error(Exit::usage, "no key map `" + id + "`");
+    state.key_map = map;
+}
+
+}  // namespace
+
+std::unique_ptr<Script> Script::from_environment() {
+    const char* path = std::getenv("CLARITY_UI_SCRIPT");
+    if (!path || !*path) return nullptr;
+    // A pipe would block until its writer comes.
+    const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0)
+        throw Error(Exit::usage, std::string(path) + ": cannot be read as the window's script: " + std::strerror(errno));
+    return std::make_unique<Script>(file);
+}
+
+Script::~Script() {
+    close(file_);
+}
+
+void Script::read_lines() {
+    char buffer[4096];
+    for (;;) {
+        const ssize_t bytes = read(file_, buffer, sizeof buffer);
+        if (bytes <= 0) return;
+        partial_.append(buffer, static_cast<size_t>(bytes));
+        for (size_t end; (end = partial_.find('\n')) != std::string::npos; partial_.erase(0, end + 1))
+            lines_.push_back(partial_.substr(0, end));
+    }
+}
+
+bool Script::has_lines() {
+    read_lines();
+    return !lines_.empty();
+}
+
+void Script::step(App& app) {
+    read_lines();
+    while (!lines_.empty()) {
+        const std::string line = lines_.front();
+        std::string answer = "ok " + line;
+        try {
+            if (!run(app, line)) return;
+        } catch (const Error& error) {
+            answer = "error " + line + ": " + error.what();
+        }
+        waiting_since_ = 0;
+        lines_.pop_front();
+        std::printf("%s\n", answer.c_str());
+        std::fflush(stdout);
+        return;  // one a frame: its effect shows before the next
+    }
+}
+
+bool Script::wait(App& app, const std::string& text) {
+    std::istringstream in(text);
+    std::string what;
+    double limit = 60;
+    in >> what >> limit;
+    if (in.fail()) limit = 60;
+    const double now = ImGui::GetTime();
+    if (waiting_since_ == 0) {
+        waiting_since_ = now;
+        frames_left_ = 2;
+    }
+    const Session& session = app.session();
+    const bool busy = session.activity().busy;
+    const bool met = what == "busy"    ? busy
+                     : what == "ready" ? !busy && !session.behind()
+                                       : session.idle() && app.overlay().ready();
+    if (met && (what == "busy" || --frames_left_ < 0)) return true;
+    if (!met) frames_left_ = 2;
+    if (now - waiting_since_ > limit) throw Error(Exit::failed, "still waiting after " + std::to_string(limit) + " s");
+    return false;
+}
+
+bool Script::run(App& app, const std::string& line) {
+    std::istringstream in(line);
+    std::string command;
+    in >> command;
+    Session& session = app.session();
+    const std::string text = rest_of(in);
+    if (command.empty() || command[0] == '#') return true;
+    if (command == "wait") return wait(app, text);
+    if (command == "set") {
+        const size_t space = text.find(' ');
+        const std::string key = text.substr(0, space);
+        set_setting(session.settings_for(key), key, space == std::string::npos ? "" : text.substr(space + 1));
+    } else if (command == "accel") {
+        choose_accel(session, text);
+    } else if (command == "device") {
+        session.edited().device = text;
+    } else if (command == "open") {
+        session.open({text});
+    } else if (command == "drop") {
+        app.drop(dropped_files(text));
+    } else if (command == "moving_fps") {
+        session.desired.moving_fps = std::strtof(text.c_str(), nullptr);
+    } else if (command == "cancel") {
+        session.cancel();
+    } else if (command == "edit") {
+        edit(session, text);
+    } else if (command == "compare") {
+        session.compare(text != "off");
+        session.editing_other = text == "b";
+    } else if (command == "swap") {
+        session.swap_sides();
+    } else if (command == "undo") {
+        session.undo();
+    } else if (command == "redo") {
+        session.redo();
+    } else if (command == "save_preset") {
+        session.save_preset(text);
+    } else if (command == "load_preset") {
+        session.load_preset(text);
+    } else if (command == "command_line") {
+        std::printf("%s\n", nlohmann::json{{"command", session.render_command(text)}}.dump().c_str());
+    } else if (command == "save") {
+        session.save_picture(text);
+    } else if (command == "turntable") {
+        const size_t space = text.find(' ');
+        session.sequence().start_turntable(session, text.substr(space + 1), std::atoi(text.c_str()));
+    } else if (command == "inspect" || command == "pick") {
+        unsigned x = 0, y = 0;
+        std::istringstream(text) >> x >> y;
+        command == "pick" ? session.pick(x, y) : session.inspect(x, y);
+    } else if (command == "inspection") {
+        std::printf("%s\n", inspection_text(session).c_str());
+    } else if (command == "continuous") {
+        session.desired.continuous = text == "1";
+    } else if (command == "tab") {
+        choose_tab(app.state(), text);
+    } else if (command == "map") {
+        choose_map(app.state(), text);
+    } else if (command == "level") {
+        if (text == "off")
+            app.overlay().show(std::nullopt);
+        else
+            app.overlay().show(text == "bottom" ? RT_LEVEL_BOTTOM
+                                                : static_cast<rt_u32>(std::strtoul(text.c_str(), nullptr, 10)));
+    } else if (command == "focus") {
+        app.state().show_tab(Tab::scene);
+        app.state().focus_path_asked = true;
+    } else if (command == "scale") {
+        app.state().text_scale = std::strtof(text.c_str(), nullptr);
+    } else if (command == "screenshot") {
+        app.capture(text);
+    } else if (command == "picture") {
+        if (!session.picture()) throw Error(Exit::failed, "no picture yet");
+        write_image(text, {}, session.picture()->main.image);
+    } else if (command == "state") {
+        if (text == "reset") app.times() = {};
+        std::printf("%s\n", state_text(app).c_str());
+    } else if (command == "find") {
+        const Rect* place = drawn_place(text);
+        // What is scrolled out of sight comes with one of the next frames.
+        if (!place && waiting_since_ == 0) {
+            waiting_since_ = ImGui::GetTime();
+            frames_left_ = 4;
+        }
+        if (!place && frames_left_-- > 0) return false;
+        if (!place) throw Error(Exit::failed, "not drawn");
+        std::printf("%s\n",
+                    nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());
+    } else if (command == "quit") {
+        app.close();
+    } else if (!run_picture_command(app, command, text)) {
+        throw Error(Exit::usage, "no such command");
+    }
+    return true;
+}
+
+std::string Script::state_text(App& app) const {
+    Session& session = app.session();
+    const Rect& area = app.picture_area();
+    nlohmann::json json = {{"eye", session.desired.camera.eye},
+                           {"target", session.desired.camera.target},
+                           {"busy", session.activity().busy},
+                           {"stage", session.activity().stage},
+                           {"behind", session.behind()},
+                           {"message", session.message().text},
+                           {"messages", session.message_count()},
+                           {"path", app.state().path},
+                           {"map", app.state().key_map->id},
+                           {"typing", app.typing()},
+                           {"volumes", app.overlay().count()},
+                           {"fps", session.frames_per_second()},
+                           {"ui_frames", app.times().frames},
+                           {"slowest_frame_ms", app.times().slowest_frame_ms},
+                           {"slowest_answer_ms", app.times().slowest_answer_ms},
+                           {"area", {area.x, area.y, area.width, area.height}},
+                           {"files", session.files()}};
+    json["level"] = app.overlay().level() ? static_cast<long>(*app.overlay().level()) : -1L;
+    if (session.selected_light < session.desired.lights.size())
+        json["light"] = session.desired.lights[session.selected_light].values.position;
+    json["selected"] = {
+        {"prim", session.selection.prim}, {"instance", session.selection.instance}, {"material", session.selection.material}};
+    json["hidden"] = session.desired.hidden;
+    json["undo"] = session.history().undo_name();
+    json["redo"] = session.history().redo_name();
+    json["kernel_revision"] = session.kernels().revision();
+    json["comparing"] = session.desired.other.has_value();
+    json["bookmarks"] = app.state().bookmarks.size();
+    json["keys_open"] = app.state().keys_open;
+    json["browser_open"] = app.state().browser_open;
+    json["panel_visible"] = app.state().panel_visible;
+    json["inspect_hover"] = app.state().inspect_hover;
+    json["show_lights"] = app.state().show_lights;
+    json["compare_mode"] = kCompareNames[static_cast<int>(app.state().compare_mode)];
+    json["wipe"] = app.state().wipe;
+    json["resident_kb"] = resident_kilobytes();
+    if (const auto picture = session.picture(); picture && picture->other) {
+        json["other"] = {{"accel", picture->other->settings.accel},
+                         {"depth", picture->other->settings.depth},
+                         {"samples", picture->other->stats.samples},
+                         {"frame_ms", picture->other->frame_ms}};
+        if (picture->difference)
+            json["difference"] = {{"share", picture->difference->share}, {"largest", picture->difference->largest}};
+    }
+    if (const auto picture = session.picture()) {
+        const Settings& s = picture->main.settings;
+        json["aov"] = s.aov;
+        json["reduced"] = picture->reduced;
+        json["device"] = picture->job.ready->main.devices_text();
+        json["accel"] = s.accel;
+        json["packet"] = std::to_string(s.packet_w) + "x" + std::to_string(s.packet_h);
+        json["lanes"] = s.lanes;
+        json["depth"] = s.depth;
+        json["size"] = std::to_string(s.width) + "x" + std::to_string(s.height);
+        json["samples"] = picture->main.stats.samples;
+        json["spp"] = s.spp;
+        json["triangles"] = picture->job.ready->loaded->placed_triangles;
+        json["primary"] = picture->main.stats.primary;
+    }
+    return json.dump();
+}
+
+}  // namespace clarity

@@ -1,0 +1,206 @@
+#include "ui/hud/hud.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+
+#include "ui/widgets/log_rows.hpp"
+#include "ui/widgets/theme.hpp"
+#include "ui/widgets/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr ImGuiWindowFlags kCardFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                        ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
+                                        ImGuiWindowFlags_NoFocusOnAppearing;
+
+void begin_card(const char* name, const ImVec2& position, const ImVec2& pivot, float width) {
+    ImGui::SetNextWindowPos(position, ImGuiCond_Always, pivot);
+    ImGui::SetNextWindowSize({width, 0});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kCard);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * ui_scale());
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
+    ImGui::Begin(name, nullptr, kCardFlags | ImGuiWindowFlags_AlwaysAutoResize);
+}
+
+void end_card() {
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+    ImGui::PopStyleColor();
+}
+
+// Text on the status line, then a gap.
+void status_item(const std::string& text, const ImVec4& color, const std::string& help = {}) {
+    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x) return;  // what comes first matters more
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    tooltip(help);
+    ImGui::SameLine(0, 22 * ui_scale());
+}
+
+constexpr double kNoticeSeconds = 6;
+
+// What was just done: a word of the window's own, or the log's last line. Empty: it is long ago.
+std::string current_notice(Session& session, const UiState& state) {
+    static uint64_t seen = 0;
+    static double at_s = -1e9;
+    const double now = ImGui::GetTime();
+    if (state.notices != seen) {
+        seen = state.notices;
+        at_s = now;
+    }
+    if (now - at_s < kNoticeSeconds) return state.notice;
+    const auto last = session.log_lines().last();
+    const double clock_s = std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    const bool tells = last && last->level == LogLevel::info && clock_s - last->at_s < kNoticeSeconds;
+    return tells ? last->text.substr(0, last->text.find('\n')) : std::string();
+}
+
+}  // namespace
+
+void draw_progress_card(const Rect& viewport, Session& session) {
+    // Work that is done at once would only flash.
+    static double busy_since = -1;
+    const Activity activity = session.activity();
+    if (!activity.busy) {
+        busy_since = -1;
+        return;
+    }
+    if (busy_since < 0) busy_since = ImGui::GetTime();
+    if (ImGui::GetTime() - busy_since < 0.15) return;
+    const float scale = ui_scale(), width = std::min(420 * scale, viewport.width - 32 * scale);
+    begin_card("Progress", {viewport.x + viewport.width / 2, viewport.y + viewport.height - 18 * scale}, {0.5f, 1}, width);
+    const float cancel = 72 * scale;
+    const float inner = ImGui::GetContentRegionAvail().x;
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(
+        cut_front_to(activity.stage.empty() ? "working" : activity.stage, inner - cancel - 12 * scale).c_str());
+    ImGui::SameLine(ImGui::GetCursorPosX() + inner - cancel);
+    if (button("Cancel", "back to the settings of the picture (Esc)", cancel)) session.cancel();
+    const ImVec2 bar(-FLT_MIN, 6 * scale);
+    if (activity.fraction >= 0) {
+        ImGui::ProgressBar(activity.fraction, bar, "");
+    } else {  // of unknown length: a piece that wanders
+        const ImVec2 from = ImGui::GetCursorScreenPos();
+        ImGui::ProgressBar(0, bar, "");
+        const float piece = inner * 0.25f,
+                    at = (inner - piece) * (0.5f - 0.5f * std::cos(static_cast<float>(ImGui::GetTime()) * 2.2f));
+        ImGui::GetWindowDrawList()->AddRectFilled({from.x + at, from.y}, {from.x + at + piece, from.y + bar.y},
+                                                  ImGui::GetColorU32(ImGuiCol_PlotHistogram), 3 * scale);
+    }
+    end_card();
+}
+
+// A compiler's or a builder's failure is read in the log, at its place in the source: the first one opens it.
+void open_log_at_failure(const Session& session, UiState& state) {
+    static bool failing = false;
+    const WindowMessage& message = session.message();
+    const bool source = !message.details.empty() || find_source_place(message.text) || message.text.rfind("accel ", 0) == 0;
+    if (!message.text.empty() && source && !failing) {
+        state.show_tab(Tab::log);
+        state.log_jump = true;
+    }
+    failing = !message.text.empty() && source;
+}
+
+void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
+    open_log_at_failure(session, state);
+    if (session.message().text.empty()) return;
+    const float scale = ui_scale(), width = std::min(620 * scale, viewport.width - 32 * scale);
+    begin_card("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
+    const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    list.PushClipRectFullScreen();  // the padding is clipped else
+    list.AddRectFilled(corner, {corner.x + 5 * scale, corner.y + size.y}, ImGui::GetColorU32(colors::kRed), 5 * scale,
+                       ImDrawFlags_RoundCornersLeft);
+    list.PopClipRect();
+    ImGui::Indent(6 * scale);
+    ImGui::PushTextWrapPos(0);
+    const std::string& text = session.message().text;
+    constexpr size_t kMost = 700;  // bytes; the rest is in the log
+    ImGui::TextUnformatted(text.size() <= kMost ? text.c_str() : (text.substr(0, kMost) + "\u2026").c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::Dummy({0, 2 * scale});
+    const bool dismissed = button("Dismiss");
+    ImGui::SameLine();
+    if (button("Show log", "with all that was said about it")) {
+        state.show_tab(Tab::log);
+        state.log_jump = true;
+    }
+    if (session.ready()) {
+        ImGui::SameLine(0, 14 * scale);
+        ImGui::AlignTextToFramePadding();
+        dim_text("The last good picture goes on.");
+    }
+    ImGui::Unindent(6 * scale);
+    end_card();
+    if (dismissed) session.dismiss_message();
+}
+
+void draw_empty_hint(const Rect& viewport, const Session& session) {
+    if (session.picture() || session.activity().busy || !session.message().text.empty()) return;
+    const char* const lines[] = {"No scene yet", "Drop a file here, or press Open\u2026 at the right"};
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    float y = viewport.y + viewport.height / 2 - ImGui::GetTextLineHeightWithSpacing();
+    for (const char* line : lines) {
+        const ImVec2 size = ImGui::CalcTextSize(line);
+        const ImVec4& color = line == lines[0] ? colors::kText : colors::kDim;
+        list.AddText({std::floor(viewport.x + (viewport.width - size.x) / 2), y}, ImGui::GetColorU32(color), line);
+        y += size.y * 1.6f;
+    }
+}
+
+void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& overlay, const UiState& state) {
+    ImGui::SetNextWindowPos({area.x, area.y});
+    ImGui::SetNextWindowSize({area.width, area.height});
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kPanel);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(14 * ui_scale(), (area.height - ImGui::GetTextLineHeight()) / 2));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, ImVec2(1, 1));
+    ImGui::Begin("Status", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoNav | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
+    const auto picture = session.picture();
+    if (!picture) {
+        status_item(session.activity().busy ? session.activity().stage : "ready", colors::kDim);
+    } else {
+        const Settings& s = picture->main.settings;
+        char text[96];
+        std::snprintf(text, sizeof text, "%.1f fps", session.frames_per_second());
+        status_item(text, colors::kText, "frames a second, mean of the last ten");
+        std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second());
+        status_item(text, colors::kText, "rays of all kinds by the time of the kernels");
+        std::snprintf(text, sizeof text, "%d\u00d7%d", s.width, s.height);
+        status_item(
+            text, colors::kDim,
+            picture->reduced ? "pixels of the picture, fewer than asked for while something moves" : "pixels of the picture");
+        std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->main.stats.samples), s.spp);
+        status_item(text, colors::kDim, "samples a pixel so far; they add up while the camera rests");
+        if (picture->main.stats.dropped > 0)
+            status_item(count_text(static_cast<double>(picture->main.stats.dropped)) + " rays dropped", colors::kAmber,
+                        "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab");
+        if (overlay.level()) {
+            const std::string level =
+                *overlay.level() == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(*overlay.level() + 1);
+            const std::string more = overlay.count() >= VolumeOverlay::kLimit ? ", first " : ", ";
+            status_item(level + more + std::to_string(overlay.count()) + " volumes", colors::kAmber);
+        }
+        const ReadySide& side = picture->job.ready->main;
+        if (const std::string notice = current_notice(session, state); !notice.empty()) {
+            status_item(cut_to(notice, ImGui::GetContentRegionAvail().x), colors::kGreen, notice);
+        } else {
+            status_item(side.accel->plugin->id, colors::kDim, side.accel->plugin->name);
+            const std::string name = side.device_name();
+            status_item(cut_to(name, ImGui::GetContentRegionAvail().x), colors::kDim, name);
+        }
+    }
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+    ImGui::PopStyleColor();
+}
+
+}  // namespace clarity

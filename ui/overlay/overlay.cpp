@@ -1,0 +1,99 @@
+#include "ui/overlay/overlay.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "base/log.hpp"
+
+namespace clarity {
+
+std::string level_name(rt_u32 level) {
+    return level == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(level + 1);
+}
+
+// Neighbouring levels differ in hue by the golden ratio of a turn, so that no two near ones look alike.
+uint32_t level_color(rt_u32 level) {
+    if (level == RT_LEVEL_BOTTOM) return IM_COL32(244, 180, 80, 255);
+    const float hue = std::fmod(0.11f + 0.618034f * static_cast<float>(level % 64), 1.0f);
+    return static_cast<uint32_t>(static_cast<ImU32>(ImColor::HSV(hue, 0.62f, 1.0f)));
+}
+
+void VolumeOverlay::toggle(rt_u32 level) {
+    if (level_ == level)
+        level_.reset();
+    else
+        level_ = level;
+}
+
+size_t VolumeOverlay::count(unsigned side) const {
+    const Result& volumes = sides_[side].volumes;
+    return volumes ? volumes->boxes.size() + volumes->spheres.size() : 0;
+}
+
+void VolumeOverlay::update(const std::shared_ptr<const AccelData>& main, const std::shared_ptr<const AccelData>& other) {
+    update_side(sides_[0], main);
+    update_side(sides_[1], other);
+}
+
+void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const AccelData>& accel) {
+    if (side.fetching.valid()) {
+        if (side.fetching.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+        try {
+            side.volumes = side.fetching.get();
+        } catch (const std::exception& error) {
+            log(LogLevel::warning, std::string("bounding volumes: ") + error.what());
+            side.volumes.reset();
+        }
+        ++side.revision;
+    }
+    if (!accel || !level_) {
+        if (side.volumes) ++side.revision;
+        side.volumes.reset();
+        side.accel.reset();
+        side.fetched.reset();
+        return;
+    }
+    if (side.accel == accel && side.fetched == level_) return;
+    side.accel = accel;
+    side.fetched = level_;
+    side.fetching = std::async(std::launch::async, [accel = side.accel, level = *level_, wake = wake_] {
+        auto found = std::make_shared<Level>();
+        // One more than is drawn tells whether there are more.
+        static_cast<Volumes&>(*found) = accel_volumes(*accel, level, kLimit + 1);
+        found->more = found->boxes.size() + found->spheres.size() > kLimit;
+        if (found->more && found->spheres.empty())
+            found->boxes.pop_back();
+        else if (found->more)
+            found->spheres.pop_back();
+        wake();
+        return Result(std::move(found));
+    });
+}
+
+void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float scale, unsigned stride, LineList& lines) const {
+    const Side& side = sides_[index];
+    if (!side.volumes || !side.fetched) return;
+    // The more there are, the fainter and the plainer.
+    const size_t shown = std::max<size_t>(count(index), 1);
+    const float strength = std::clamp(8.0f / std::sqrt(static_cast<float>(shown)), 0.3f, 1.0f);
+    const float width = (shown < 64 ? 1.8f : shown < 1000 ? 1.4f : 1.0f) * scale;
+    const uint32_t color = with_opacity(level_color(*side.fetched), strength), faint = with_opacity(color, 0.4f);
+    const int segments = std::clamp(static_cast<int>(16000 / shown), 12, 64);
+    const bool circles = shown <= 200;  // beyond, outlines say as much
+    const auto& boxes = side.volumes->boxes;
+    const auto& spheres = side.volumes->spheres;
+    lines.reserve(lines.size() +
+                  (boxes.size() * 12 + spheres.size() * static_cast<size_t>(segments) * (circles ? 4 : 1)) / stride);
+    for (size_t i = 0; i < boxes.size(); i += stride) lines.box(boxes[i], color, width);
+    for (size_t i = 0; i < spheres.size(); i += stride) {
+        const glm::vec3 center(spheres[i][0], spheres[i][1], spheres[i][2]);
+        if (circles) lines.great_circles(center, spheres[i][3], segments, faint, width);
+        lines.outline(center, spheres[i][3], eye, segments, color, width);
+    }
+}
+
+}  // namespace clarity

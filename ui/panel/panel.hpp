@@ -1,0 +1,25 @@
+// panel.hpp -- the tabs beside the picture. Each draws from tables and statistics, and changes the session's wish.
+#pragma once
+#include "ui/app/ui_state.hpp"
+#include "ui/overlay/overlay.hpp"
+#include "ui/session/session.hpp"
+
+namespace clarity {
+
+void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state, const std::string& gl_text);
+
+void draw_toolbar(Session& session, VolumeOverlay& overlay, UiState& state);
+void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state);
+void draw_output_rows(Session& session, UiState& state);  // of the Render tab: presets, pictures, sequences
+void draw_scene_tab(Session& session, UiState& state);
+void draw_scene_tree(Session& session, UiState& state);
+void draw_material_rows(Session& session);
+void draw_light_rows(Session& session, UiState& state);
+void draw_bookmark_rows(Session& session, UiState& state);
+void draw_inspect_tab(Session& session, UiState& state);
+void draw_statistics_tab(Session& session);
+void draw_log_tab(Session& session, UiState& state);
+void draw_plugins_tab(Session& session);
+void draw_help_tab(UiState& state, const std::string& gl_text);
+
+}  // namespace clarity

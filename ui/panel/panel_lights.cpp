@@ -1,0 +1,132 @@
+// Rows of the lights, and of the bookmarks of the camera.
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "ui/panel/panel.hpp"
+#include "ui/widgets/theme.hpp"
+#include "ui/widgets/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+void make_unit(float* v) {
+    const float length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+    for (int i = 0; i < 3; ++i) v[i] = length > 0 ? v[i] / length : (i == 1 ? 1.0f : 0.0f);
+}
+
+// A lamp stands above the target, a sun shines from where the camera is.
+void change_kind(Session& session, rt_light& light, rt_u32 kind) {
+    if (light.kind == kind) return;
+    light.kind = kind;
+    const Camera& camera = session.desired.camera;
+    for (int i = 0; i < 3; ++i) {
+        const float towards = camera.eye[i] - camera.target[i] + camera.up[i] * session.scene_size() * 0.3f;
+        light.position[i] = kind == RT_LIGHT_POINT ? camera.target[i] + towards : towards;
+    }
+    if (kind == RT_LIGHT_DIRECTIONAL) make_unit(light.position);
+}
+
+void add_light(Session& session) {
+    DesiredLight light;
+    light.name = "light " + std::to_string(session.desired.lights.size() + 1);
+    light.values.kind = RT_LIGHT_DIRECTIONAL;
+    change_kind(session, light.values, RT_LIGHT_POINT);
+    for (float& x : light.values.color) x = 0.5f;
+    session.desired.lights.push_back(light);
+    session.selected_light = static_cast<unsigned>(session.desired.lights.size()) - 1;
+}
+
+void light_list(Session& session) {
+    auto& lights = session.desired.lights;
+    const float line = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemSpacing.y;
+    const size_t shown = std::min<size_t>(lights.size(), 6);
+    ImGui::BeginChild("lights", {0, static_cast<float>(shown) * line}, false);
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(lights.size()), line);
+    while (clipper.Step())
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            DesiredLight& light = lights[static_cast<size_t>(i)];
+            ImGui::PushID(i);
+            ImGui::Checkbox("##on", &light.on);
+            note_place("on " + light.name);
+            tooltip("whether it shines");
+            ImGui::SameLine();
+            const float swatch = ImGui::GetFrameHeight();
+            ImGui::AlignTextToFramePadding();
+            const ImVec2 size(std::max(10.0f, ImGui::GetContentRegionAvail().x - swatch - 10 * ui_scale()), 0);
+            const bool chosen = session.selected_light == static_cast<unsigned>(i);
+            if (ImGui::Selectable(cut_to(light.name, size.x).c_str(), chosen, 0, size)) session.selected_light = unsigned(i);
+            note_place(light.name);
+            tooltip("the keys move the chosen one");
+            ImGui::SameLine();
+            const float* c = light.values.color;
+            const float most = std::max({c[0], c[1], c[2], 1e-6f});
+            ImGui::ColorButton("##colour", {c[0] / most, c[1] / most, c[2] / most, 1},
+                               ImGuiColorEditFlags_NoTooltip | ImGuiColorEditFlags_NoPicker, {swatch, swatch});
+            ImGui::PopID();
+        }
+    ImGui::EndChild();
+}
+
+}  // namespace
+
+void draw_light_rows(Session& session, UiState& state) {
+    auto& lights = session.desired.lights;
+    const float half = share_of_line(2);
+    if (toggle_button("Show in the picture", state.show_lights, "as handles that can be dragged (L)", half))
+        state.show_lights = !state.show_lights;
+    ImGui::SameLine();
+    if (button("Add a light", "a lamp above the camera", half)) add_light(session);
+    if (lights.empty()) {
+        dim_text("this scene has no lights");
+        return;
+    }
+    light_list(session);
+    session.selected_light = std::min<unsigned>(session.selected_light, static_cast<unsigned>(lights.size()) - 1);
+    DesiredLight& light = lights[session.selected_light];
+    row_label("Kind", "lamp: at a place, the same everywhere, however far; sun: from one direction");
+    const char* const kinds[] = {"lamp", "sun"};
+    const bool sun = light.values.kind == RT_LIGHT_DIRECTIONAL;
+    if (ImGui::BeginCombo("##kind", kinds[sun])) {
+        if (option(kinds[0], !sun)) change_kind(session, light.values, RT_LIGHT_POINT);
+        if (option(kinds[1], sun)) change_kind(session, light.values, RT_LIGHT_DIRECTIONAL);
+        ImGui::EndCombo();
+    }
+    row_label(sun ? "Direction" : "Position", sun ? "towards the light" : "in units of the file");
+    const float speed = sun ? 0.005f : session.scene_size() * 0.002f;
+    if (ImGui::DragFloat3("##position", light.values.position, speed, 0, 0, "%.3g") && sun) make_unit(light.values.position);
+    row_label("Light colour", "linear, intensity included");
+    color_field("##colour", light.values.color);
+    const auto ready = session.ready();
+    const bool own = !ready || session.selected_light >= ready->loaded->first_view.lights.size();
+    if (own && session.selected_light + 1 == lights.size() && button("Remove this light", {}, -FLT_MIN)) lights.pop_back();
+}
+
+void draw_bookmark_rows(Session& session, UiState& state) {
+    if (button("Bookmark this view", "kept for this scene's file (B); N goes through them", -FLT_MIN))
+        state.bookmarks.push_back({"view " + std::to_string(state.bookmarks.size() + 1), session.desired.camera});
+    size_t gone = state.bookmarks.size();
+    for (size_t i = 0; i < state.bookmarks.size(); ++i) {
+        Bookmark& bookmark = state.bookmarks[i];
+        ImGui::PushID(static_cast<int>(i));
+        const ImGuiStyle& style = ImGui::GetStyle();
+        const float go = ImGui::CalcTextSize("Go").x + 2 * style.FramePadding.x, cross = ImGui::GetFrameHeight();
+        ImGui::SetNextItemWidth(-go - cross - 2 * style.ItemSpacing.x);
+        ImGui::InputText("##name", &bookmark.name);
+        note_place("name of bookmark " + std::to_string(i + 1));
+        tooltip("click to rename");
+        ImGui::SameLine();
+        if (button("Go", "to this view", go)) session.desired.camera = bookmark.camera;
+        note_place("go to " + bookmark.name);
+        ImGui::SameLine();
+        if (button("\u00d7", "forget it", cross)) gone = i;
+        note_place("forget " + bookmark.name);
+        ImGui::PopID();
+    }
+    if (gone < state.bookmarks.size()) state.bookmarks.erase(state.bookmarks.begin() + static_cast<std::ptrdiff_t>(gone));
+}
+
+}  // namespace clarity

@@ -1,0 +1,122 @@
+// The tab of what is traced: files, tree, materials, camera, lights, background.
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <utility>
+
+#include "ui/panel/panel.hpp"
+#include "ui/widgets/theme.hpp"
+#include "ui/widgets/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+void open_rows(Session& session, UiState& state) {
+    const float half = share_of_line(2);
+    if (button("Open\u2026", "a model or a scene (Ctrl+O); several, chosen with Ctrl+click, become one scene", half))
+        state.browse(BrowseFor::scene);
+    ImGui::SameLine();
+    ImGui::SetNextItemWidth(half);
+    if (ImGui::BeginCombo("##recent", "Recent files", ImGuiComboFlags_HeightLarge)) {
+        for (const std::string& file : state.recent_files) {
+            ImGui::PushID(file.c_str());
+            if (ImGui::Selectable(file_name(file).c_str())) session.open({file});
+            note_place("recent " + file_name(file));
+            tooltip(file);
+            ImGui::PopID();
+        }
+        if (state.recent_files.empty()) ImGui::TextUnformatted("none yet");
+        ImGui::EndCombo();
+    }
+    note_place("Recent files");
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    if (std::exchange(state.focus_path_asked, false)) ImGui::SetKeyboardFocusHere();
+    const bool entered = ImGui::InputTextWithHint("##path", "or a path, and Enter; or drop files onto the window", &state.path,
+                                                  ImGuiInputTextFlags_EnterReturnsTrue);
+    if (entered && !state.path.empty()) session.open({state.path});
+}
+
+void fact_rows(const Ready& ready) {
+    const Scene& scene = *ready.loaded->scene;
+    row_text("Triangles", count_text(static_cast<double>(ready.loaded->placed_triangles)),
+             "in the world: those of every instance");
+    row_text("Meshes", std::to_string(scene.meshes.size()) + " in " + plural(scene.instances.size(), "place"));
+    const size_t analytic = scene.spheres.size() + scene.polygons.size() + scene.planes.size();
+    if (analytic > 0)
+        row_text("Analytic", plural(scene.spheres.size(), "sphere") + ", " + plural(scene.polygons.size(), "polygon") + ", " +
+                                 plural(scene.planes.size(), "plane"));
+    row_text("Materials", std::to_string(scene.materials.size()) + ", " + plural(scene.textures.size(), "texture"));
+    row_text("Up axis", std::string(1, "XYZ"[scene.up_axis % 3]), "as the file says it; nothing is turned");
+    row_text("Unit", scene.unit_scale > 0 ? number_text(scene.unit_scale) + " m" : "not said", "metres per unit of the file");
+    row_text("Diagonal", number_text(ready.loaded->bounds.diagonal()), "of the box around it, in units of the file");
+    if (!scene.warnings.empty()) {
+        wrapped_text(plural(scene.warnings.size(), "warning") + " in the log", colors::kAmber);
+        tooltip(scene.warnings.front());
+    }
+}
+
+bool drag3(const char* label, const char* help, float* values, float speed) {
+    row_label(label, help);
+    return ImGui::DragFloat3((std::string("##") + label).c_str(), values, speed, 0, 0, "%.3g");
+}
+
+void camera_rows(Session& session, UiState& state) {
+    const auto ready = session.ready();
+    Camera& camera = session.desired.camera;
+    if (ready && !ready->loaded->scene->cameras.empty()) {
+        row_label("From file", "cameras that the file holds");
+        if (ImGui::BeginCombo("##cameras", camera.name.empty() ? "choose" : camera.name.c_str())) {
+            for (size_t i = 0; i < ready->loaded->scene->cameras.size(); ++i) {
+                const Camera& other = ready->loaded->scene->cameras[i];
+                const std::string name = other.name.empty() ? "camera " + std::to_string(i + 1) : other.name;
+                ImGui::PushID(static_cast<int>(i));
+                if (ImGui::Selectable(name.c_str())) camera = other;
+                note_place(name);
+                ImGui::PopID();
+            }
+            ImGui::EndCombo();
+        }
+    }
+    const float speed = session.scene_size() * 0.002f;
+    drag3("Eye", "where the camera is, in units of the file", camera.eye.data(), speed);
+    drag3("Target", "the point it looks at", camera.target.data(), speed);
+    float degrees = camera.fov_y_rad * 57.29578f;
+    row_label("Field of view", "vertical, in degrees");
+    if (slider("##fov", degrees, 5, 120, "%.1f\u00b0")) camera.fov_y_rad = degrees / 57.29578f;
+    row_label("Key speed", "how fast the keys move the camera; 1: a third of the scene a second");
+    slider("##speed", state.camera_speed, 0.05f, 10, "%.2f", true);
+    const float half = share_of_line(2);
+    if (button("Show all", "all of the scene, or what is selected, comes into view (G)", half)) session.frame_selection();
+    ImGui::SameLine();
+    if (button("Reset view", "the scene's own camera, lights and materials again (Home)", half)) session.reset_view();
+}
+
+}  // namespace
+
+void draw_scene_tab(Session& session, UiState& state) {
+    section("FILE");
+    open_rows(session, state);
+    const auto ready = session.ready();
+    if (!ready) {
+        dim_text("no scene yet");
+        return;
+    }
+    for (const std::string& file : ready->loaded->files) {
+        ImGui::TextUnformatted(cut_front_to(file_name(file), ImGui::GetContentRegionAvail().x).c_str());
+        tooltip(file);
+    }
+    if (folding_section("WHAT IT HOLDS", false)) fact_rows(*ready);
+    if (folding_section("TREE")) draw_scene_tree(session, state);
+    if (folding_section("MATERIAL")) draw_material_rows(session);
+    if (folding_section("LIGHTS")) draw_light_rows(session, state);
+    if (folding_section("CAMERA")) camera_rows(session, state);
+    if (folding_section("BOOKMARKS")) draw_bookmark_rows(session, state);
+    if (folding_section("SURROUNDINGS")) {
+        row_label("Background", "what rays see that hit nothing; linear");
+        color_field("##background", session.desired.background.data());
+        row_label("Ambient", "light that comes from everywhere; linear");
+        color_field("##ambient", session.desired.ambient.data());
+    }
+}
+
+}  // namespace clarity

@@ -1,0 +1,216 @@
+// The tab of numbers: frames, rays, structure, times; of both sides where two are compared.
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numeric>
+
+#include "ui/panel/panel.hpp"
+#include "ui/widgets/frame_graph.hpp"
+#include "ui/widgets/theme.hpp"
+#include "ui/widgets/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+const ImVec4& side_color(unsigned side) {
+    return side == 0 ? colors::kAccent : colors::kAmber;
+}
+
+// One value a side: "81.2 ms" or "81.2 ms | 40.1 ms".
+struct Sides {
+    std::string text;
+    void add(const std::string& value) { text += (text.empty() ? "" : "   |   ") + value; }
+};
+
+std::vector<const PictureSide*> picture_sides(const std::shared_ptr<const Picture>& picture) {
+    std::vector<const PictureSide*> sides;
+    if (picture) sides.push_back(&picture->main);
+    if (picture && picture->other) sides.push_back(&*picture->other);
+    return sides;
+}
+
+void graph_legend(const std::vector<FrameSeries>& series) {
+    if (series.size() < 2) return;
+    for (unsigned i = 0; i < series.size(); ++i) {
+        if (i > 0) ImGui::SameLine(0, 14 * ui_scale());
+        ImGui::PushStyleColor(ImGuiCol_Text, side_color(i));
+        ImGui::TextUnformatted(("\u25a0 " + series[i].name).c_str());
+        ImGui::PopStyleColor();
+    }
+}
+
+void frame_rows(Session& session) {
+    const auto picture = session.picture();
+    const auto sides = picture_sides(picture);
+    std::vector<FrameSeries> series;
+    Sides rate, median, late, latest, kernels;
+    for (unsigned i = 0; i < sides.size(); ++i) {
+        const std::vector<float> times = session.frame_times(i);
+        char fps[32];
+        std::snprintf(fps, sizeof fps, "%.1f", session.frames_per_second(i));
+        rate.add(fps);
+        median.add(time_text(static_cast<double>(percentile(times, 0.5))));
+        late.add(time_text(static_cast<double>(percentile(times, 0.95))));
+        latest.add(time_text(static_cast<double>(percentile(times, 0.99))));
+        series.push_back({std::string(1, "AB"[i]) + " " + sides[i]->settings.accel, times, ImGui::GetColorU32(side_color(i))});
+    }
+    graph_legend(series);
+    const float target = session.desired.moving_fps > 0 ? 1000 / session.desired.moving_fps : 0;
+    draw_frame_graph(series, target, 110 * ui_scale());
+    tooltip("milliseconds of the last frames, tracing and reading back; dashed: what `While moving` asks for");
+    if (sides.empty()) return;
+    row_text("Frames/s", rate.text, "mean of the last ten");
+    row_text("p50", median.text, "the median: half of the frames were faster");
+    row_text("p95", late.text, "19 frames of 20 were faster");
+    row_text("p99", latest.text, "99 frames of 100 were faster");
+    row_label("Keep tracing", "trace the same picture again and again, to measure");
+    ImGui::Checkbox("##continuous", &session.desired.continuous);
+}
+
+double sum_of(const std::vector<KernelTime>& kernels) {
+    return std::accumulate(kernels.begin(), kernels.end(), 0.0, [](double ms, const KernelTime& k) { return ms + k.ms; });
+}
+
+void kernel_bars(const PictureSide& side, unsigned which) {
+    const std::vector<KernelTime>& kernels = side.stats.kernels;
+    const double sum = sum_of(kernels);
+    double longest = 0;
+    for (const KernelTime& kernel : kernels) longest = std::max(longest, kernel.ms);
+    for (const KernelTime& kernel : kernels) {
+        row_label(kernel.name.c_str(), "by the device's clock");
+        const ImVec2 from = ImGui::GetCursorScreenPos();
+        const float room = ImGui::GetContentRegionAvail().x, height = ImGui::GetFrameHeight();
+        const float share = longest > 0 ? static_cast<float>(kernel.ms / longest) : 0;
+        ImVec4 color = side_color(which);
+        color.w = 0.4f;
+        ImDrawList& list = *ImGui::GetWindowDrawList();
+        list.AddRectFilled({from.x, from.y + 3 * ui_scale()},
+                           {from.x + std::max(2.0f, room * share), from.y + height - 3 * ui_scale()}, ImGui::GetColorU32(color),
+                           3 * ui_scale());
+        char text[64];
+        std::snprintf(text, sizeof text, "%s   %.0f %%", time_text(kernel.ms).c_str(), sum > 0 ? 100 * kernel.ms / sum : 0);
+        list.AddText({from.x + 8 * ui_scale(), from.y + (height - ImGui::GetTextLineHeight()) / 2},
+                     ImGui::GetColorU32(colors::kText), text);
+        ImGui::Dummy({room, height});
+    }
+}
+
+// What each device of several had of the picture.
+void share_rows(const PictureSide& side) {
+    for (const DeviceShare& share : side.stats.devices) {
+        char text[96];
+        std::snprintf(text, sizeof text, "%.1f %%   %s", 100 * share.share, time_text(share.device_ms).c_str());
+        row_text(share.id.c_str(), text, share.name + "\nits share of the rows, and how long it traced them by its clock");
+    }
+}
+
+void kernel_rows(const std::vector<const PictureSide*>& sides) {
+    for (unsigned i = 0; i < sides.size(); ++i) {
+        if (sides.size() > 1) wrapped_text(std::string(1, "AB"[i]) + "  " + sides[i]->settings.accel, side_color(i));
+        kernel_bars(*sides[i], i);
+        row_text("Sum", time_text(sum_of(sides[i]->stats.kernels)), "of what is above");
+        share_rows(*sides[i]);
+    }
+}
+
+void ray_rows(const Session& session, const std::vector<const PictureSide*>& sides) {
+    Sides rate, primary, shadow, secondary, dropped, overflowed;
+    bool lost = false, full = false;
+    for (unsigned i = 0; i < sides.size(); ++i) {
+        const FrameStats& stats = sides[i]->stats;
+        char text[48];
+        std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second(i));
+        rate.add(text);
+        primary.add(count_text(static_cast<double>(stats.primary)));
+        shadow.add(count_text(static_cast<double>(stats.shadow)));
+        secondary.add(count_text(static_cast<double>(stats.secondary)));
+        dropped.add(count_text(static_cast<double>(stats.dropped)));
+        overflowed.add(count_text(static_cast<double>(stats.overflowed)));
+        lost |= stats.dropped > 0;
+        full |= stats.overflowed > 0;
+    }
+    row_text("Rate", rate.text, "rays of all kinds by the time of the kernels");
+    row_text("Primary", primary.text);
+    row_text("Shadow", shadow.text);
+    row_text("Secondary", secondary.text, "mirrored and refracted");
+    row_text("Dropped", dropped.text, "found no slot in their pixel's arrays: raise `Ray slots`",
+             lost ? colors::kAmber : colors::kText);
+    if (full) row_text("Stacks full", overflowed.text, "of traversal", colors::kAmber);
+}
+
+void structure_rows(const ReadySide& side, const ImportedScene& loaded) {
+    const AccelData& accel = *side.accel;
+    row_text("Structure", accel.plugin->name);
+    const auto triangles = static_cast<double>(std::max<uint64_t>(1, accel.leaf_count));
+    char rate[64];
+    std::snprintf(rate, sizeof rate, "%s   %.2f M/s", time_text(accel.build_ms).c_str(),
+                  accel.build_ms > 0 ? triangles / accel.build_ms * 1e-3 : 0);
+    row_text("Build", rate, "the plugin's builder alone, and how many primitives a second");
+    row_text("Packing", time_text(accel.pack_ms), "primitives into leaf order");
+    row_text("Memory", bytes_text(static_cast<double>(accel.bytes)), "nodes and leaves, on the device");
+    row_text("Per primitive", number_text(std::round(static_cast<double>(accel.bytes) / triangles * 10) / 10) + " bytes",
+             count_text(triangles) + " primitives in leaves; " + count_text(static_cast<double>(loaded.placed_triangles)) +
+                 " triangles in the world");
+    for (const auto& [label, value] : accel.stats) row_text(label.c_str(), number_text(value), "as the plugin reports it");
+}
+
+void memory_rows(const ReadySide& side) {
+    const AccelData& accel = *side.accel;
+    const uint64_t all = side.device_bytes;
+    uint64_t slots = 0;
+    for (size_t i = 0; i < accel.slots.size(); ++i) {
+        const uint64_t bytes = accel.slots[i].memory.bytes();
+        slots += bytes;
+        row_text(("Nodes " + std::to_string(i)).c_str(), bytes_text(static_cast<double>(bytes)), "a buffer of the structure");
+    }
+    row_text("Leaves", bytes_text(static_cast<double>(accel.leaves.bytes())));
+    const uint64_t known = slots + accel.leaves.bytes();
+    row_text("Attributes", bytes_text(static_cast<double>(all > known ? all - known : 0)),
+             "normals, texture coordinates, textures, materials, instances");
+    row_text("Scene in all", bytes_text(static_cast<double>(all)));
+}
+
+void preparation_rows(const ImportedScene& loaded, const ReadySide& side) {
+    row_text("Import", time_text(loaded.import_ms));
+    row_text("Upload", side.upload_ms > 0 ? time_text(side.upload_ms) : "shared with the last");
+    const std::string cached = side.compile_cached ? " (cached)" : "";
+    row_text("Compile", side.compile_ms > 0 ? time_text(side.compile_ms) + cached : "shared with the last");
+}
+
+void device_rows(const ReadySide& side) {
+    for (const ReadySide::Part& part : side.parts) {
+        const DeviceInfo& device = part.device;
+        row_text("Name", device.name);
+        row_text("Platform", device.platform);
+        row_text("Driver", device.driver);
+        row_text("Units", std::to_string(device.compute_units) + " at " + std::to_string(device.clock_mhz) + " MHz");
+        row_text("Memory", bytes_text(static_cast<double>(device.global_bytes)));
+        row_text("Lanes", std::to_string(part.lanes));
+    }
+}
+
+void side_sections(const Ready& ready, const ReadySide& side, const std::string& prefix) {
+    if (folding_section((prefix + "STRUCTURE").c_str())) structure_rows(side, *ready.loaded);
+    if (folding_section((prefix + "MEMORY ON THE DEVICE").c_str())) memory_rows(side);
+    if (folding_section((prefix + "PREPARATION").c_str())) preparation_rows(*ready.loaded, side);
+    if (folding_section((prefix + "DEVICE").c_str())) device_rows(side);
+}
+
+}  // namespace
+
+void draw_statistics_tab(Session& session) {
+    const auto picture = session.picture();
+    const auto sides = picture_sides(picture);
+    section("FRAMES");
+    frame_rows(session);
+    if (!sides.empty() && folding_section("TIME BY KERNEL")) kernel_rows(sides);
+    if (!sides.empty() && folding_section("RAYS OF THE LAST SAMPLE")) ray_rows(session, sides);
+    const auto ready = session.ready();
+    if (!ready) return;
+    side_sections(*ready, ready->main, ready->other ? "A: " : "");
+    if (ready->other) side_sections(*ready, *ready->other, "B: ");
+}
+
+}  // namespace clarity

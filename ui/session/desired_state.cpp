@@ -1,0 +1,19 @@
+#include "ui/session/desired_state.hpp"
+
+namespace clarity {
+
+EditedView edited_view(const DesiredState& desired) {
+    EditedView edited;
+    edited.view.camera = desired.camera;
+    edited.view.background = desired.background;
+    edited.view.ambient = desired.ambient;
+    edited.view.materials = desired.materials;
+    for (const DesiredLight& light : desired.lights) {
+        edited.view.lights.push_back(light.values);
+        edited.lights_on.push_back(light.on);
+    }
+    edited.hidden = desired.hidden;
+    return edited;
+}
+
+}  // namespace clarity

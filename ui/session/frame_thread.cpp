@@ -1,0 +1,420 @@
+#include "ui/session/frame_thread.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/elapsed.hpp"
+#include "base/error.hpp"
+#include "ui/app/thread_priority.hpp"
+#include "ui/session/picture_difference.hpp"
+
+namespace clarity {
+
+using Clock = std::chrono::steady_clock;
+
+class FrameThread::StopProgress : public Progress {};
+
+Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
+    Settings settings = prepared;
+    for (const Setting& row : settings_table())
+        if (row.effect == Effect::frame) row.set(settings, row.get(desired_now));
+    return settings;
+}
+
+namespace {
+
+// Without the times of showing, which read_display() adds anew.
+FrameStats traced_part(FrameStats stats) {
+    const auto shown = std::find_if(stats.kernels.begin(), stats.kernels.end(),
+                                    [](const KernelTime& time) { return time.name != "trace" && time.name != "counters"; });
+    stats.kernels.erase(shown, stats.kernels.end());
+    return stats;
+}
+
+// Two pictures of amounts can be compared only if a colour means the same in both: the longer scale serves.
+void share_scale(PictureSide& a, PictureSide& b) {
+    const bool amounts = a.scale.map == FalseColorScale::Map::heat && b.scale.map == a.scale.map && a.values && b.values;
+    if (!amounts || a.settings.aov != b.settings.aov || a.scale.max == b.scale.max) return;
+    PictureSide& shorter = a.scale.max < b.scale.max ? a : b;
+    shorter.scale = scale_of(*shorter.values, shorter.settings.aov, std::max(a.scale.max, b.scale.max));
+    shorter.image = false_colors(*shorter.values, shorter.settings.aov, shorter.scale);
+}
+
+}  // namespace
+
+FrameThread::FrameThread(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
+
+FrameThread::~FrameThread() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stop_ = true;
+        if (running_) running_->cancel();
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void FrameThread::post(FrameJob job) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        // The first sample of a view is always finished, so that a slow picture still follows a moving camera; later samples
+        // are refinement, and give way at once.
+        if (running_ && job.revision != job_.revision && samples_ > 0) running_->cancel();
+        job_ = std::move(job);
+        failed_ = false;
+    }
+    changed_.notify_all();
+}
+
+std::shared_ptr<const Picture> FrameThread::latest() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return latest_;
+}
+
+bool FrameThread::idle() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    unsigned sample = 0;
+    bool retrace = false;
+    return !tracing_ && !traced_ && !wants_work(sample, retrace);
+}
+
+std::string FrameThread::take_failure() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(failure_, {});
+}
+
+std::vector<float> FrameThread::times(unsigned side) const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return times_[side].ms;
+}
+
+void FrameThread::want_distance(bool wanted) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (wanted == distance_) return;
+    distance_ = wanted;
+    changed_.notify_all();
+}
+
+uint64_t FrameThread::save(const std::string& path) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    to_save_.push_back({++last_save_, path, {}});
+    changed_.notify_all();
+    return last_save_;
+}
+
+void FrameThread::cancel_save(uint64_t number) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto it = [&](const Saved& waiting) { return waiting.number == number; };
+    to_save_.erase(std::remove_if(to_save_.begin(), to_save_.end(), it), to_save_.end());
+}
+
+void FrameThread::release() {
+    std::unique_lock<std::mutex> lock(mutex_);
+    released_ = true;
+    if (running_) running_->cancel();
+    stopped_.wait(lock, [this] { return !tracing_ && !traced_; });
+    for (Tracer& tracer : tracers_) tracer = {};
+}
+
+void FrameThread::resume() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        released_ = false;
+    }
+    changed_.notify_all();
+}
+
+std::vector<FrameThread::Saved> FrameThread::take_saved() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(saved_, {});
+}
+
+// With the lock held: whether there is something to do, which sample, and whether it needs tracing at all.
+bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
+    retrace = false;
+    if (!job_.ready || failed_ || released_ || job_.ready->withdrawn()) return false;
+    const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
+    const bool fresh = job_.revision != traced_revision_ || sharpen;
+    sample = fresh ? 0 : samples_;
+    // What moves is shown once; its samples would be gone with the next step.
+    retrace = fresh || (!traced_reduced_ && samples_ < static_cast<unsigned>(job_.settings.spp));
+    // A comparison is worth a few frames more: the first ones of a program are slower.
+    constexpr size_t kFairFrames = 5;
+    const bool comparing = job_.other_settings && job_.ready->other && !traced_reduced_;
+    const bool unfair = comparing && std::min(times_[0].ms.size(), times_[1].ms.size()) < kFairFrames;
+    if (!retrace && (job_.continuous || unfair)) {
+        sample = 0;
+        retrace = true;
+    }
+    const bool distance = distance_ && latest_ && !latest_->main.distance;
+    return retrace || distance || job_.display_revision != shown_revision_ || has_saving();
+}
+
+// With the lock held: the picture in the films is the one to be written.
+bool FrameThread::has_saving() const {
+    return !to_save_.empty() && latest_ && !failed_ && job_.revision == traced_revision_ && !traced_reduced_ &&
+           samples_ >= static_cast<unsigned>(job_.settings.spp) && job_.display_revision == shown_revision_;
+}
+
+void FrameThread::run() {
+    yield_to_window();
+    for (;;) {
+        FrameJob job;
+        unsigned sample = 0;
+        bool retrace = false, save = false, settle = false;
+        {
+            std::unique_lock<std::mutex> lock(mutex_);
+            changed_.wait(lock, [&] { return wants_work(sample, retrace) || traced_ || stop_; });
+            if (stop_) return;
+            job = job_;
+            save = has_saving();
+            settle = traced_ && (save || !retrace);  // there is nothing to trace meanwhile
+            tracing_ = true;
+            running_ = std::make_shared<StopProgress>();
+            if (sample == 0 && retrace && !save) samples_ = 0;
+        }
+        std::string failure;
+        try {
+            if (settle)
+                finish(true);
+            else if (save)
+                save_waiting();
+            else
+                trace(job, sample, retrace);
+        } catch (const Cancelled&) {
+        } catch (const std::exception& error) {
+            failure = std::string("tracing stopped: ") + error.what();
+        }
+        bool news = false;
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            tracing_ = false;
+            running_.reset();
+            if (!failure.empty()) {
+                failure_ = failure;
+                failed_ = job_.revision == job.revision;
+            }
+            news = !traced_;
+        }
+        stopped_.notify_all();
+        if (news) wake_();
+    }
+}
+
+void FrameThread::save_waiting() {
+    std::vector<Saved> waiting;
+    std::shared_ptr<const Picture> picture;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        waiting.swap(to_save_);
+        picture = latest_;
+    }
+    for (Saved& outcome : waiting) {
+        try {
+            if (writes_display(outcome.path))
+                write_image(outcome.path, {}, picture->main.image);
+            else
+                write_image(outcome.path, tracers_[0].frames->read_values(), {});
+        } catch (const std::exception& error) {
+            outcome.failure = error.what();
+        }
+        const std::lock_guard<std::mutex> lock(mutex_);
+        saved_.push_back(outcome);
+    }
+}
+
+// Each way, of the pixels asked for, so that what moves keeps its pace.
+float FrameThread::moving_scale(const FrameJob& job) const {
+    if (job.moving_fps <= 0 || ms_per_pixel_ <= 0 || paced_ != job.ready) return 1;
+    const double pixels = double(job.settings.width) * job.settings.height * job.resolution_scale * job.resolution_scale;
+    const double expected = ms_per_pixel_ * pixels, budget = 1000.0 / job.moving_fps;
+    if (expected <= budget) return 1;
+    // Few steps, so that pictures do not breathe.
+    const double steps = std::floor(std::sqrt(budget / expected) * 16);
+    return static_cast<float>(std::clamp(steps, 2.0, 16.0) / 16);
+}
+
+PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared,
+                                    const Settings& settings, const View& view, const Order& order, const PictureSide* last,
+                                    Progress& progress, AsyncReadback& image) {
+    PictureSide side;
+    side.settings = settings;
+    const auto begin = Clock::now();
+    if (order.retrace) {
+        const auto show_last = [this] {
+            if (finish(false)) wake_();
+        };
+        side.stats = tracer.frames->trace(prepared, settings, view, order.sample, true, progress, 1, show_last);
+    } else if (last) {
+        side.stats = traced_part(last->stats);
+    }
+    if (tracer.frames->copies_aside())
+        image = tracer.frames->begin_display(settings);
+    else
+        side.image = tracer.frames->read_display(settings, &side.stats, &side.scale);
+    side.frame_ms = ms_since(begin);
+    if (side.scale.map != FalseColorScale::Map::none)
+        side.values = std::make_shared<const FloatImage>(tracer.frames->read_values());
+    if (!order.retrace && last) side.frame_ms = last->frame_ms;
+    if (order.distance) {
+        if (last && last->distance && order.sample > 0)
+            side.distance = last->distance;
+        else
+            side.distance = std::make_shared<const FloatImage>(tracer.frames->read_distance());
+    }
+    return side;
+}
+
+// Waits for what is still on its way of the picture traced last, and leaves that as the newest; false: it is already. held_up:
+// nothing else is done meanwhile.
+bool FrameThread::finish(bool held_up) {
+    Traced traced;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        if (!traced_) return false;
+        traced = std::move(*traced_);
+        traced_.reset();
+    }
+    Picture& picture = *traced.picture;
+    const auto receive = [&](PictureSide& side, AsyncReadback& image) {
+        if (!image) return;
+        const auto begin = Clock::now();
+        side.image = image.wait(&side.stats.kernels);
+        if (held_up && traced.fresh) side.frame_ms += ms_since(begin);
+    };
+    receive(picture.main, traced.images[0]);
+    if (picture.other) {
+        receive(*picture.other, traced.images[1]);
+        share_scale(picture.main, *picture.other);
+        picture.difference = compare_pictures(picture.main.image, picture.other->image);
+    }
+    if (traced.finished) {
+        keep_image(picture.main, traced.finished->main);
+        if (picture.other && traced.finished->other) keep_image(*picture.other, *traced.finished->other);
+        picture.difference = traced.finished->difference;
+    }
+    const std::lock_guard<std::mutex> lock(mutex_);
+    latest_ = traced.picture;
+    if (!traced.fresh) return true;
+    note_time(times_[0], picture.job.ready, picture.main.frame_ms);
+    if (picture.other)
+        note_time(times_[1], picture.job.ready, picture.other->frame_ms);
+    else
+        times_[1] = {};
+    return true;
+}
+
+// One sample would be jagged, and to see it between finished ones is worse than either.
+void FrameThread::keep_image(PictureSide& side, const PictureSide& finished) {
+    side.image = finished.image;
+    side.scale = finished.scale;
+    side.values = finished.values;
+    side.stats.samples = finished.stats.samples;
+}
+
+// The film has kernels of its own. If edited ones do not compile, the last good ones go on.
+void FrameThread::fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision) {
+    if (tracer.devices != devices) {
+        tracer = {};
+        tracer.frames = std::make_unique<MultiFrameRenderer>(devices);
+        tracer.devices = devices;
+    } else if (tracer.kernel_revision != kernel_revision) {
+        try {
+            tracer.frames = std::make_unique<MultiFrameRenderer>(devices);
+        } catch (const Error& error) {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            failure_ = error.what();
+        }
+    }
+    tracer.kernel_revision = kernel_revision;
+}
+
+void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
+    std::shared_ptr<StopProgress> progress;
+    std::shared_ptr<const Picture> last, shown;
+    bool distance = false, reduced = false;
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        progress = running_;
+        last = traced_ ? traced_->picture : latest_;
+        shown = traced_ && traced_->finished ? traced_->finished : last;
+        distance = distance_;
+        reduced = traced_reduced_;
+    }
+    const bool two = job.other_settings && job.ready->other;
+    const auto on_main = job.ready->main.loan->get(), on_other = two ? job.ready->other->loan->get() : nullptr;
+    if (!on_main || (two && !on_other)) return;  // withdrawn: its devices are about to be opened anew
+    // What is only shown anew keeps the size that its film has.
+    float scale = job.resolution_scale;
+    if (retrace) {
+        const float moving = moving_scale(job);
+        reduced = moving < 1;
+        scale *= moving;
+    }
+    Traced traced;
+    const auto picture = traced.picture = std::make_shared<Picture>();
+    traced.fresh = retrace;
+    picture->job = job;
+    const auto sized = [&](const ReadySide& side, const Settings& desired_now, const PictureSide* before) {
+        Settings settings = frame_settings(side.settings, desired_now);
+        const bool keep = !retrace && before;
+        settings.width = keep ? before->settings.width : std::max(1, static_cast<int>(std::lround(settings.width * scale)));
+        settings.height = keep ? before->settings.height : std::max(1, static_cast<int>(std::lround(settings.height * scale)));
+        return settings;
+    };
+    fit_tracer(tracers_[0], on_main->devices, job.ready->request.kernel_revision);
+    if (two)
+        fit_tracer(tracers_[1], on_other->devices, job.ready->request.kernel_revision);
+    else
+        tracers_[1] = {};
+    const Order order{sample, retrace, distance};
+    const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
+    picture->main = trace_side(tracers_[0], on_main->prepared, sized(job.ready->main, job.settings, before[0]), job.view, order,
+                               before[0], *progress, traced.images[0]);
+    double ms = picture->main.frame_ms;
+    if (two) {
+        picture->other = trace_side(tracers_[1], on_other->prepared, sized(*job.ready->other, *job.other_settings, before[1]),
+                                    job.view, order, before[1], *progress, traced.images[1]);
+        ms += picture->other->frame_ms;
+    }
+    picture->job.settings = picture->main.settings;
+    picture->reduced = reduced;
+    const bool same = shown && retrace && shown->job.revision == job.revision && shown->job.ready == job.ready &&
+                      shown->job.display_revision == job.display_revision && shown->reduced == reduced &&
+                      shown->other.has_value() == two;
+    if (same && shown->main.stats.samples > picture->main.stats.samples) traced.finished = shown;
+    const bool pending = traced.images[0] || traced.images[1];
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        traced_ = std::move(traced);
+        traced_revision_ = job.revision;
+        shown_revision_ = job.display_revision;
+        if (retrace) {
+            traced_reduced_ = reduced;
+            samples_ = sample + 1;
+        }
+    }
+    if (retrace) {
+        // The first frame of a program is slower than those that follow.
+        const double pixels = double(picture->main.settings.width) * picture->main.settings.height;
+        ms_per_pixel_ = paced_ == job.ready ? ms / pixels : 0;
+        paced_ = job.ready;
+    }
+    if (!pending) finish(false);
+}
+
+// Times of another program say nothing of this one, nor does its first frame: drivers compile the last bit then.
+void FrameThread::note_time(Times& times, const std::shared_ptr<const Ready>& of, double ms) {
+    constexpr size_t kTimes = 240;
+    if (times.of != of) {
+        times = {{}, of, true};
+    } else if (times.cold) {
+        times.ms.clear();
+        times.cold = false;
+    }
+    times.ms.push_back(static_cast<float>(ms));
+    if (times.ms.size() > kTimes) times.ms.erase(times.ms.begin());
+}
+
+}  // namespace clarity

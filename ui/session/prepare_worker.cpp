@@ -1,0 +1,301 @@
+#include "ui/session/prepare_worker.hpp"
+
+#include <algorithm>
+#include <chrono>
+
+#include "base/elapsed.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "ui/app/thread_priority.hpp"
+
+namespace clarity {
+
+using Clock = std::chrono::steady_clock;
+
+// Keeps the stage for the window, and wakes it, though not more than thirty times a second.
+class PrepareWorker::StageProgress : public Progress {
+ public:
+    explicit StageProgress(const std::function<void()>& wake) : wake_(wake) {}
+    void stage(const std::string& name) override {
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            stage_ = name;
+            fraction_ = -1;
+        }
+        wake_();
+    }
+    bool report(float fraction) override {
+        bool wake = false;
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            fraction_ = fraction;
+            const auto now = Clock::now();
+            if (now - woken_ > std::chrono::milliseconds(33)) {
+                woken_ = now;
+                wake = true;
+            }
+        }
+        if (wake) wake_();
+        return !cancelled();
+    }
+    Activity activity() const {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        return {true, stage_, fraction_};
+    }
+
+ private:
+    const std::function<void()>& wake_;
+    mutable std::mutex mutex_;
+    std::string stage_;
+    float fraction_ = -1;
+    Clock::time_point woken_{};
+};
+
+PrepareWorker::PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake)
+    : plugins_(plugins), import_(std::move(import)), tracers_(std::move(tracers)), wake_(std::move(wake)), thread_([this] {
+          run();
+      }) {}
+
+PrepareWorker::~PrepareWorker() {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        stop_ = true;
+        waiting_.reset();
+        if (running_) running_->cancel();
+    }
+    changed_.notify_all();
+    thread_.join();
+}
+
+void PrepareWorker::request(PrepareRequest request) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        // An import goes on if only settings changed: they are used once it is done.
+        const bool importing = files_revision_ != running_request_.files_revision;
+        const bool same_source =
+            request.files_revision == running_request_.files_revision && request.main.device == running_request_.main.device;
+        if (running_ && !(importing && same_source)) running_->cancel();
+        waiting_ = std::make_unique<PrepareRequest>(std::move(request));
+    }
+    changed_.notify_all();
+}
+
+void PrepareWorker::cancel() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    waiting_.reset();
+    if (running_) running_->cancel();
+}
+
+std::vector<Outcome> PrepareWorker::take() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return std::exchange(outcomes_, {});
+}
+
+Activity PrepareWorker::activity() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (running_) return running_->activity();
+    if (waiting_) return {true, "starting", -1};
+    return {};
+}
+
+std::shared_ptr<const std::vector<DeviceInfo>> PrepareWorker::devices() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return devices_;
+}
+
+void PrepareWorker::publish(Outcome outcome) {
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        outcomes_.push_back(std::move(outcome));
+    }
+    wake_();
+}
+
+void PrepareWorker::list_all_devices() {
+    std::vector<std::string> warnings;
+    auto devices = std::make_shared<const std::vector<DeviceInfo>>(list_devices(&warnings));
+    for (const std::string& warning : warnings) log(LogLevel::warning, warning);
+    {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        devices_ = std::move(devices);
+    }
+    wake_();
+}
+
+void PrepareWorker::run() {
+    yield_to_window();
+    for (;;) {
+        PrepareRequest request;
+        std::shared_ptr<StageProgress> progress;
+        {
+            std::unique_lock<std::mutex> lock(mutex_);
+            changed_.wait(lock, [this] { return stop_ || waiting_; });
+            if (stop_) return;
+            request = *waiting_;
+            running_request_ = request;
+            waiting_.reset();
+            progress = running_ = std::make_shared<StageProgress>(wake_);
+        }
+        try {
+            handle(request, *progress);
+        } catch (const Cancelled&) {
+            publish({Outcome::Kind::cancelled, nullptr, "", "", false, false});
+        } catch (const Error& error) {
+            publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
+        } catch (const std::exception& error) {  // bad_alloc, an OpenCL call of a driver that gave up
+            publish({Outcome::Kind::failed, nullptr, std::string("preparing the picture failed: ") + error.what(), "", false,
+                     false});
+        }
+        {
+            const std::lock_guard<std::mutex> lock(mutex_);
+            running_.reset();
+        }
+        wake_();
+    }
+}
+
+void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progress) {
+    progress.stage("looking for devices");
+    if (!devices()) list_all_devices();
+    // A scene that cannot be read must not keep the old one from new settings, nor a missing device the scene from loading.
+    bool whole = true;
+    const auto open = [&](const Side& side, SideState& shop, const SideState& neighbour) {
+        try {
+            open_side(side.device, shop, neighbour, progress);
+        } catch (const Error& error) {
+            whole = false;
+            publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
+        }
+    };
+    open(request.main, main_, other_);
+    if (request.other)
+        open(*request.other, other_, main_);
+    else
+        other_ = {};
+    try {
+        import_files(request, progress);
+    } catch (const Cancelled&) {  // superseded: the next request imports them
+        throw;
+    } catch (const Error& error) {
+        whole = false;
+        tried(request.files_revision);
+        publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), true, false});
+    }
+    if (!main_.preparer || !loaded_) return;
+    hide(request);
+    auto ready = std::make_shared<Ready>();
+    ready->request = request;
+    ready->request.main.device = main_.choice;
+    ready->request.files = loaded_->files;
+    ready->request.files_revision = loaded_->files_revision;
+    ready->request.hidden = hidden_;
+    ready->loaded = loaded_;
+    prepare_sides(request, *ready, whole, progress);
+    if (needs_reopen()) {
+        // It works; now the same on devices opened anew, from the compiler's cache.
+        renew_devices();
+        prepare_sides(request, *ready, whole, progress);
+    }
+    publish({Outcome::Kind::ready, ready, "", "", false, whole});
+}
+
+void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress) {
+    ready.main = lend(main_.devices, main_.preparer->prepare(visible_, request.main.settings, progress));
+    ready.other.reset();
+    if (!request.other || !other_.preparer) return;
+    ready.request.other->device = other_.choice;
+    // What the second side cannot have must not keep the first from changing.
+    try {
+        ready.other = lend(other_.devices, other_.preparer->prepare(visible_, request.other->settings, progress));
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const Error& error) {
+        whole = false;
+        publish(
+            {Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false, false});
+    }
+}
+
+bool PrepareWorker::needs_reopen() const {
+    return main_.preparer->needs_reopen() || (other_.preparer && other_.preparer->needs_reopen());
+}
+
+ReadySide PrepareWorker::lend(const Devices& devices, std::shared_ptr<const MultiPrepared> prepared) {
+    ReadySide side(devices, std::move(prepared));
+    const auto gone = [](const std::weak_ptr<DeviceLoan>& loan) { return loan.expired(); };
+    loans_.erase(std::remove_if(loans_.begin(), loans_.end(), gone), loans_.end());
+    loans_.push_back(side.loan);
+    return side;
+}
+
+void PrepareWorker::withdraw_loans() {
+    for (const std::weak_ptr<DeviceLoan>& given : loans_)
+        if (const auto loan = given.lock()) loan->withdraw();
+    loans_.clear();
+}
+
+// Closes the devices of both sides before it opens any anew: PoCL frees memory only with the last context of a process.
+void PrepareWorker::renew_devices() {
+    tracers_.release();
+    const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
+    withdraw_loans();
+    main_.devices.clear();
+    other_.devices.clear();
+    std::vector<DeviceInfo> other;
+    if (other_.preparer) other = other_.preparer->close_devices();
+    main_.devices = open_devices(main_.preparer->close_devices());
+    main_.preparer->open_devices(main_.devices);
+    if (!other_.preparer) return;
+    other_.devices = open_devices(other, main_.devices);
+    other_.preparer->open_devices(other_.devices);
+}
+
+// The scene that is built: without what is hidden. Kept while neither changes, since a new one is built anew.
+void PrepareWorker::hide(const PrepareRequest& request) {
+    const bool same_files = request.files_revision == loaded_->files_revision;
+    const std::vector<rt_u32>& hidden = same_files ? request.hidden : hidden_;
+    if (visible_ && visible_of_ == loaded_ && hidden_ == hidden) return;
+    hidden_ = same_files ? hidden : std::vector<rt_u32>();
+    visible_of_ = loaded_;
+    visible_ = hidden_.empty() ? loaded_->scene : std::make_shared<const Scene>(without_instances(*loaded_->scene, hidden_));
+}
+
+void PrepareWorker::open_side(const std::string& choice, SideState& shop, const SideState& neighbour, StageProgress& progress) {
+    if (!shop.devices.empty() && choice == shop.choice) return;
+    progress.stage("opening the device");
+    Devices devices = open_devices(choose_devices(choice), neighbour.devices);
+    shop.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
+    shop.devices = std::move(devices);
+    shop.choice = choice;
+}
+
+void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& progress) {
+    if (request.files_revision == files_revision_) return;
+    if (loaded_ && request.files_revision == loaded_->files_revision) return tried(request.files_revision);
+    if (request.files.empty()) return tried(request.files_revision);
+    progress.stage("importing " + request.files.front());
+    const auto begin = Clock::now();
+    auto loaded = std::make_shared<ImportedScene>();
+    loaded->scene = std::make_shared<const Scene>(import_scene(plugins_, request.files, import_, progress));
+    loaded->import_ms = ms_since(begin);
+    loaded->files = request.files;
+    loaded->files_revision = request.files_revision;
+    loaded->bounds = loaded->scene->bounds();
+    loaded->placed_triangles = loaded->scene->placed_triangle_count();
+    const float aspect = static_cast<float>(request.main.settings.width) / static_cast<float>(request.main.settings.height);
+    try {
+        loaded->first_view = make_view(*loaded->scene, aspect, request.camera, request.light);
+    } catch (const Error& error) {
+        loaded->view_error = error.what();
+        loaded->first_view = make_view(*loaded->scene, aspect);
+    }
+    loaded_ = std::move(loaded);
+    tried(request.files_revision);
+}
+
+void PrepareWorker::tried(uint64_t files_revision) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    files_revision_ = files_revision;
+}
+
+}  // namespace clarity

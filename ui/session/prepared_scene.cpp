@@ -1,0 +1,44 @@
+#include "ui/session/prepared_scene.hpp"
+
+#include <algorithm>
+
+#include "render/frame/device_scene.hpp"
+
+namespace clarity {
+
+std::shared_ptr<const OnDevices> DeviceLoan::get() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return lent_;
+}
+
+bool DeviceLoan::withdrawn() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return !lent_;
+}
+
+void DeviceLoan::withdraw() {
+    std::shared_ptr<const OnDevices> last;  // destroyed without the lock: drivers take their time
+    const std::lock_guard<std::mutex> lock(mutex_);
+    last.swap(lent_);
+}
+
+ReadySide::ReadySide(Devices chosen, std::shared_ptr<const MultiPrepared> prepared) : devices(infos_of(chosen)) {
+    for (const MultiPrepared::Part& part : prepared->parts)
+        parts.push_back({part.device->info(), part.prepared->settings.lanes});
+    const Prepared& first = *prepared->first();
+    accel = first.accel;
+    settings = first.settings;
+    upload_ms = first.upload_ms;
+    compile_ms = first.compile_ms;
+    compile_cached = first.compile_cached;
+    device_bytes = first.on_device->bytes();
+    loan = std::make_shared<DeviceLoan>(OnDevices{std::move(chosen), std::move(prepared)});
+}
+
+bool ReadySide::uses(const DeviceInfo& info) const {
+    return std::any_of(devices.begin(), devices.end(), [&](const DeviceInfo& device) {
+        return device.platform_index == info.platform_index && device.device_index == info.device_index;
+    });
+}
+
+}  // namespace clarity

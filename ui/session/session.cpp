@@ -1,0 +1,326 @@
+#include "ui/session/session.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <utility>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/numbers.hpp"
+#include "plugin/parameters.hpp"
+#include "ui/viewport/camera_control.hpp"
+
+namespace clarity {
+namespace {
+
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool same_view(const View& a, const View& b) {
+    const bool cameras = a.camera.eye == b.camera.eye && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
+                         a.camera.fov_y_rad == b.camera.fov_y_rad;
+    return cameras && a.background == b.background && a.ambient == b.ambient && same_bytes(a.lights, b.lights) &&
+           same_bytes(a.materials, b.materials);
+}
+
+double now_s() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+constexpr double kMovingSeconds = 0.25;  // after the last change of the view, pictures are sharp again
+
+// Exposure, tone map and colour scale show what is in the film already; every other setting of a frame, but for the count of
+// samples, traces it anew.
+bool only_displays(const std::string& key) {
+    return key == "exposure" || key == "tone" || key == "scale_max";
+}
+
+// What two sides of a comparison have in common: without it pictures could not be compared.
+bool is_shared(const std::string& key) {
+    return key == "size" || key == "spp" || key == "aov" || only_displays(key);
+}
+
+std::string frame_key(const Settings& settings, bool displaying) {
+    std::string key;
+    for (const Setting& row : settings_table())
+        if (row.effect == Effect::frame && row.key != "spp" && only_displays(row.key) == displaying)
+            key += row.key + "=" + row.get(settings) + ";";
+    return key;
+}
+
+std::string prepare_key(const Side& side) {
+    std::string key = side.device + ";" + side.settings.accel;
+    for (const double value : side.settings.accel_params) key += "," + exact_text(value);
+    for (const Setting& row : settings_table())
+        if (row.effect != Effect::frame) key += ";" + row.key + "=" + row.get(side.settings);
+    return key;
+}
+
+std::string prepare_key(const PrepareRequest& request) {
+    std::string key = std::to_string(request.files_revision) + "|" + std::to_string(request.kernel_revision) + "|" +
+                      prepare_key(request.main) + "|" + (request.other ? prepare_key(*request.other) : std::string()) + "|";
+    for (const rt_u32 i : request.hidden) key += std::to_string(i) + ",";
+    return key;
+}
+
+}  // namespace
+
+Session::Session(const ViewOptions& options, std::function<void()> wake)
+    : plugins_(*options.plugins),
+      first_camera_(options.camera),
+      first_light_(options.light),
+      first_edits_(options.edits),
+      log_(wake),
+      kernels_(plugins_.accels(), wake),
+      frames_(wake),
+      inspector_(wake),
+      worker_(plugins_, options.import,
+              {[this] {
+                   frames_.release();
+                   inspector_.release();
+               },
+               [this] {
+                   frames_.resume();
+                   inspector_.resume();
+               }},
+              wake) {
+    desired.main = {options.device, options.settings};
+    if (desired.main.settings.accel_params.empty())
+        if (const rt_plugin* accel = plugins_.accel(desired.main.settings.accel))
+            desired.main.settings.accel_params = default_parameters(*accel);
+    if (!options.scenes.empty()) open(options.scenes);
+}
+
+void Session::open(std::vector<std::string> files) {
+    files_ = std::move(files);
+    files_revision_ = ++last_files_revision_;
+}
+
+void Session::set_accel(const std::string& id) {
+    const rt_plugin* plugin = plugins_.accel(id);
+    if (!plugin) throw Error(Exit::usage, "no acceleration structure `" + id + "` among the plugins");
+    edited().settings.accel = id;
+    edited().settings.accel_params = default_parameters(*plugin);
+}
+
+void Session::compare(bool on) {
+    editing_other = false;
+    if (on && !desired.other) desired.other = desired.main;
+    if (!on) desired.other.reset();
+}
+
+void Session::swap_sides() {
+    if (desired.other) std::swap(desired.main, *desired.other);
+}
+
+std::vector<std::string> Session::files() const {
+    return ready_ ? ready_->loaded->files : std::vector<std::string>();
+}
+
+void Session::cancel() {
+    worker_.cancel();
+    if (!ready_) return;
+    const PrepareRequest& was = ready_->request;
+    const bool was_withdrawn = ready_->withdrawn();
+    // What only concerns frames stays as it is wished.
+    const auto back = [](Side& side, const Side& to) {
+        side.device = to.device;
+        side.settings = frame_settings(to.settings, side.settings);
+    };
+    back(desired.main, was.main);
+    if (was.other && desired.other)
+        back(*desired.other, *was.other);
+    else
+        desired.other = was.other;
+    desired.hidden = was.hidden;
+    files_ = was.files;
+    files_revision_ = was.files_revision;
+    // It is what we have: nothing to ask for, unless its devices were closed meanwhile.
+    posted_key_ = was_withdrawn ? std::string() : prepare_key(desired_request());
+}
+
+Settings& Session::settings_for(const std::string& key) {
+    return is_shared(key) ? desired.main.settings : edited().settings;
+}
+
+void Session::follow_main() {
+    if (!desired.other) {
+        editing_other = false;
+        return;
+    }
+    Settings& other = desired.other->settings;
+    for (const Setting& row : settings_table())
+        if (is_shared(row.key)) row.set(other, row.get(desired.main.settings));
+}
+
+PrepareRequest Session::desired_request() const {
+    PrepareRequest request{files_, files_revision_, first_camera_, first_light_, desired.main, desired.other,
+                           {},     seen_kernels_};
+    // Numbers of instances mean nothing in another scene.
+    if (files_revision_ == viewed_files_revision_) request.hidden = desired.hidden;
+    return request;
+}
+
+void Session::post_request() {
+    PrepareRequest request = desired_request();
+    const std::string key = prepare_key(request);
+    if (key == posted_key_) return;
+    posted_key_ = key;
+    worker_.request(std::move(request));
+}
+
+void Session::post_frame() {
+    if (!ready_) return;
+    FrameJob job = posted_job_;
+    job.ready = ready_;
+    job.settings = desired.main.settings;
+    // A sample of anything but colours replaces the one before: sixteen would only make it tremble.
+    if (ready_->main.settings.aov != "color") job.settings.spp = 1;
+    job.other_settings.reset();
+    if (desired.other) job.other_settings = desired.other->settings;
+    job.view = visible_view(edited_view(desired));
+    job.continuous = desired.continuous;
+    job.resolution_scale = std::clamp(desired.resolution_scale, 0.05f, 4.0f);
+    const bool first = !posted_job_.ready, moved = !first && !same_view(job.view, posted_job_.view);
+    const double now = now_s();
+    if (moved) moved_at_s_ = now;
+    moving_ = now - moved_at_s_ < kMovingSeconds && !sequence_.running();
+    job.moving_fps = moving_ ? desired.moving_fps : 0;
+    const auto key = [](const FrameJob& j, bool displaying) {
+        return frame_key(j.settings, displaying) +
+               (j.other_settings && !displaying ? "|" + frame_key(*j.other_settings, false) : std::string());
+    };
+    const bool anew = first || moved || job.ready != posted_job_.ready || key(job, false) != key(posted_job_, false) ||
+                      job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
+    const bool shown = first || key(job, true) != key(posted_job_, true);
+    const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous ||
+                       job.moving_fps != posted_job_.moving_fps;
+    if (anew || shown || other) {
+        job.revision += anew;
+        job.display_revision += shown;
+        posted_job_ = job;
+        frames_.post(std::move(job));
+    }
+}
+
+void Session::update(bool gesture) {
+    take_outcomes();
+    if (const uint64_t revision = kernels_.revision(); revision != seen_kernels_) {
+        seen_kernels_ = revision;
+        for (const std::string& path : kernels_.last_changed()) log(LogLevel::info, "changed: " + path);
+    }
+    if (auto why = frames_.take_failure(); !why.empty()) report(why);
+    sequence_.update(*this);
+    follow_main();
+    if (ready_ && !sequence_.running()) history_.observe(desired, gesture);
+    post_request();
+    post_frame();
+    if (!behind()) sequence_.posted(*this);
+    picture_ = frames_.latest();
+    take_saved();
+    take_pick();
+}
+
+void Session::take_outcomes() {
+    for (Outcome& outcome : worker_.take()) {
+        switch (outcome.kind) {
+            case Outcome::Kind::ready:
+                if (outcome.whole) message_ = {};
+                adopt(outcome.ready);
+                break;
+            case Outcome::Kind::failed:
+                report(outcome.message, outcome.details);
+                if (outcome.files_failed && ready_) {
+                    // The worker goes on with the old files by itself: asking again would take the message away.
+                    const bool asked = posted_key_ == prepare_key(desired_request());
+                    files_ = ready_->loaded->files;
+                    files_revision_ = ready_->loaded->files_revision;
+                    if (asked) posted_key_ = prepare_key(desired_request());
+                }
+                break;
+            case Outcome::Kind::cancelled:
+                log(LogLevel::debug, "work in hand was cancelled");
+                break;
+        }
+    }
+}
+
+void Session::adopt(const std::shared_ptr<const Ready>& ready) {
+    ready_ = ready;
+    ready_key_ = prepare_key(ready->request);
+    if (viewed_files_revision_ == ready->loaded->files_revision) return;
+    viewed_files_revision_ = ready->loaded->files_revision;
+    selection = {};
+    reset_view();
+    if (!ready->loaded->view_error.empty()) report(ready->loaded->view_error);
+    first_camera_.clear();
+    first_light_.clear();
+    EditedView edited = edited_view(desired);
+    for (const Word& word : std::exchange(first_edits_, {})) {
+        try {
+            apply_edit(*ready->loaded->scene, edited, word.key, word.value);
+        } catch (const Error& error) {
+            report(error.what());
+        }
+    }
+    adopt_view(edited);
+    history_.forget();
+}
+
+void Session::report(const std::string& text, const std::string& details) {
+    log(LogLevel::error, details.empty() ? text : text + "\n" + details);
+    message_ = {text, details};
+    ++message_count_;
+}
+
+bool Session::behind() const {
+    return ready_ && ready_key_ != prepare_key(desired_request());
+}
+
+bool Session::idle() const {
+    return !worker_.activity().busy && posted_key_ == prepare_key(desired_request()) && !moving_ && frames_.idle() &&
+           !inspector_.busy() && pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();
+}
+
+float Session::scene_size() const {
+    const float diagonal = ready_ ? ready_->loaded->bounds.diagonal() : 0.0f;
+    if (diagonal > 0) return diagonal;
+    float squared = 0;  // planes only, or nothing: the distance looked at
+    for (int i = 0; i < 3; ++i)
+        squared += (desired.camera.target[i] - desired.camera.eye[i]) * (desired.camera.target[i] - desired.camera.eye[i]);
+    return std::max(std::sqrt(squared), 1e-3f);
+}
+
+double Session::frames_per_second(unsigned side) const {
+    const std::vector<float> times = frames_.times(side);
+    const size_t count = std::min<size_t>(times.size(), 10);
+    double sum = 0;
+    for (size_t i = times.size() - count; i < times.size(); ++i) sum += times[i];
+    return sum > 0 ? 1000.0 * static_cast<double>(count) / sum : 0.0;
+}
+
+double Session::mrays_per_second(unsigned side) const {
+    if (!picture_ || (side == 1 && !picture_->other)) return 0;
+    const FrameStats& stats = side == 1 ? picture_->other->stats : picture_->main.stats;
+    const double ms = stats.device_ms > 0 ? stats.device_ms : stats.wall_ms;
+    return ms > 0 ? static_cast<double>(stats.primary + stats.shadow + stats.secondary) / ms * 1e-3 : 0;
+}
+
+std::string Session::frame_rate_line() const {
+    if (!picture_) return "fps 0.0  no picture yet";
+    const Settings& s = picture_->main.settings;
+    const double fps = frames_per_second();
+    char text[256];
+    std::snprintf(text, sizeof text, "fps %.1f  %.1f ms  %.1f Mrays/s  %dx%d  %s  packet %dx%d  lanes %d  depth %d", fps,
+                  fps > 0 ? 1000.0 / fps : 0.0, mrays_per_second(), s.width, s.height, s.accel.c_str(), s.packet_w, s.packet_h,
+                  s.lanes, s.depth);
+    return text;
+}
+
+}  // namespace clarity

@@ -1,0 +1,69 @@
+// What leaves the session: pictures, presets, command lines.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "ui/session/session.hpp"
+
+namespace clarity {
+
+void Session::take_saved() {
+    for (const FrameThread::Saved& saved : frames_.take_saved()) {
+        if (saved.failure.empty())
+            log(LogLevel::info, "saved " + saved.path);
+        else
+            report(saved.failure);
+        sequence_.saved(*this, saved.number, saved.failure.empty());
+    }
+}
+
+uint64_t Session::save_picture(const std::string& path) {
+    check_output_path(path);
+    if (!ready_) throw Error(Exit::usage, path + ": there is no picture yet to save");
+    return frames_.save(path);
+}
+
+Preset Session::desired_preset(const View& base) const {
+    Preset preset{desired.main.device, desired.main.settings, {}};
+    if (preset.settings.aov != "color") preset.settings.spp = 1;  // as post_frame() has it
+    if (ready_) preset.edits = edits_between(*ready_->loaded->scene, base, edited_view(desired));
+    return preset;
+}
+
+void Session::save_preset(const std::string& path) const {
+    clarity::save_preset(plugins_, desired_preset(ready_ ? ready_->loaded->first_view : View()), path);
+}
+
+void Session::load_preset(const std::string& path) {
+    const Preset preset = clarity::load_preset(plugins_, path);
+    if (!ready_ && !preset.edits.empty())
+        throw Error(Exit::usage, path + ": it changes a scene's view, and no scene is open yet");
+    EditedView edited;
+    if (ready_) {
+        edited.view = ready_->loaded->first_view;
+        for (const Word& word : preset.edits) apply_edit(*ready_->loaded->scene, edited, word.key, word.value);
+    }
+    desired.main = {preset.device.empty() ? desired.main.device : preset.device, preset.settings};
+    if (ready_) adopt_view(edited);
+    log(LogLevel::info, "preset " + path);
+}
+
+std::string Session::render_command(const std::string& output) const {
+    if (!ready_) throw Error(Exit::usage, "there is no scene yet to render");
+    // Exactly what the command line begins with, whatever this window was started with.
+    Preset preset;
+    const Settings& s = desired.main.settings;
+    const auto scaled = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * desired.resolution_scale))); };
+    const int width = scaled(s.width), height = scaled(s.height);
+    preset = desired_preset(make_view(*ready_->loaded->scene, static_cast<float>(width) / static_cast<float>(height)));
+    preset.settings.width = width;
+    preset.settings.height = height;
+    preset.device = ready_->main.devices_text();
+    std::vector<std::string> files = ready_->loaded->files;
+    for (std::string& file : files) file = std::filesystem::absolute(file).lexically_normal().string();
+    return clarity::render_command(plugins_, preset, files, output);
+}
+
+}  // namespace clarity

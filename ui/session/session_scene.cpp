@@ -1,0 +1,100 @@
+// The session's hands on the scene: pixels followed and picked, what is selected, looked at, edited and hidden.
+#include <algorithm>
+
+#include "ui/session/session.hpp"
+#include "ui/viewport/camera_control.hpp"
+
+namespace clarity {
+
+void Session::inspect(unsigned x, unsigned y) {
+    if (!picture_) return;
+    inspector_.ask(picture_->job, x, y);
+}
+
+void Session::pick(unsigned x, unsigned y) {
+    if (!picture_) return;
+    pick_request_ = inspector_.ask(picture_->job, x, y);
+}
+
+// What the camera ray of the picked pixel met becomes the selection.
+void Session::take_pick() {
+    const auto inspection = inspector_.latest();
+    if (!inspection || inspection->request < pick_request_ || pick_request_ == picked_request_) return;
+    picked_request_ = pick_request_;
+    if (!inspection->failure.empty()) return report(inspection->failure);
+    selection = {};
+    if (!ready_ || inspection->job.ready->loaded != ready_->loaded || inspection->result.rays.empty()) return;
+    const PrimPlace place = place_of_prim(*ready_->loaded->scene, inspection->result.rays.front().prim);
+    if (place.kind == PrimPlace::Kind::none) return;
+    selection.prim = inspection->result.rays.front().prim;
+    selection.instance = place.instance == RT_NONE ? -1 : static_cast<rt_i32>(place.instance);
+    selection.material = place.material == RT_NONE ? -1 : static_cast<rt_i32>(place.material);
+}
+
+void Session::focus_on(const std::array<float, 3>& point, float nearer) {
+    Camera& camera = desired.camera;
+    for (int k = 0; k < 3; ++k) {
+        const float away = camera.eye[k] - camera.target[k];
+        camera.target[k] = point[k];
+        camera.eye[k] = point[k] + away * nearer;
+    }
+}
+
+void Session::focus_on_instance(rt_u32 instance) {
+    if (!ready_ || instance >= ready_->loaded->scene->instances.size()) return;
+    frame_bounds(desired.camera, instance_bounds(*ready_->loaded->scene, instance), picture_aspect());
+}
+
+void Session::frame_selection() {
+    if (!ready_) return;
+    if (selection.instance >= 0) return focus_on_instance(static_cast<rt_u32>(selection.instance));
+    if (!ready_->loaded->bounds.empty) frame_bounds(desired.camera, ready_->loaded->bounds, picture_aspect());
+}
+
+float Session::picture_aspect() const {
+    return static_cast<float>(desired.main.settings.width) / static_cast<float>(desired.main.settings.height);
+}
+
+rt_material& Session::edited_material(rt_u32 index) {
+    if (desired.materials.empty())
+        for (const Material& material : ready_->loaded->scene->materials) desired.materials.push_back(material.values);
+    return desired.materials.at(index);
+}
+
+const rt_material& Session::material(rt_u32 index) const {
+    return desired.materials.empty() ? ready_->loaded->scene->materials.at(index).values : desired.materials.at(index);
+}
+
+bool Session::hidden(rt_u32 instance) const {
+    return std::binary_search(desired.hidden.begin(), desired.hidden.end(), instance);
+}
+
+void Session::hide(rt_u32 instance, bool hidden) {
+    const auto at = std::lower_bound(desired.hidden.begin(), desired.hidden.end(), instance);
+    const bool is = at != desired.hidden.end() && *at == instance;
+    if (hidden && !is) desired.hidden.insert(at, instance);
+    if (!hidden && is) desired.hidden.erase(at);
+}
+
+void Session::reset_view() {
+    if (ready_) adopt_view({ready_->loaded->first_view, {}, {}});
+}
+
+void Session::adopt_view(const EditedView& edited) {
+    const Scene& scene = *ready_->loaded->scene;
+    const View& view = edited.view;
+    desired.camera = view.camera;
+    desired.background = view.background;
+    desired.ambient = view.ambient;
+    desired.materials = view.materials;
+    desired.hidden = edited.hidden;
+    desired.lights.clear();
+    selected_light = 0;
+    for (size_t i = 0; i < view.lights.size(); ++i) {
+        std::string name = i < scene.lights.size() ? scene.lights[i].name : "";
+        if (name.empty()) name = "light " + std::to_string(i + 1);
+        desired.lights.push_back({name, view.lights[i], i >= edited.lights_on.size() || edited.lights_on[i]});
+    }
+}
+
+}  // namespace clarity

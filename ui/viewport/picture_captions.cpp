@@ -1,0 +1,106 @@
+#include "ui/viewport/picture_captions.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+
+#include "base/numbers.hpp"
+#include "ui/viewport/speed_verdict.hpp"
+#include "ui/widgets/theme.hpp"
+#include "ui/widgets/widgets.hpp"
+
+namespace clarity {
+namespace {
+
+std::string joined(const std::vector<std::string>& words) {
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+    return text;
+}
+
+// "Max leaf size" stands within a sentence; "SAH bins" keeps its capitals.
+std::string in_a_sentence(std::string label) {
+    if (label.size() > 1 && std::islower(static_cast<unsigned char>(label[1])))
+        label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
+    return label;
+}
+
+const ReadySide& ready_side(const Picture& picture, unsigned side) {
+    return side == 1 && picture.job.ready->other ? *picture.job.ready->other : picture.job.ready->main;
+}
+const PictureSide& picture_side(const Picture& picture, unsigned side) {
+    return side == 1 && picture.other ? *picture.other : picture.main;
+}
+
+std::string ms_text(double ms) {
+    char text[32];
+    std::snprintf(text, sizeof text, ms < 10 ? "%.2f ms" : "%.1f ms", ms);
+    return text;
+}
+
+}  // namespace
+
+Differences differing_settings(const Picture& picture) {
+    Differences out;
+    if (!picture.other) return out;
+    const Settings &a = picture.main.settings, &b = picture.other->settings;
+    const ReadySide &on_a = ready_side(picture, 0), &on_b = ready_side(picture, 1);
+    const auto add = [&](const std::string& label, const std::string& of_a, const std::string& of_b) {
+        if (of_a == of_b) return;
+        out.of[0].push_back(in_a_sentence(label) + " " + of_a);
+        out.of[1].push_back(in_a_sentence(label) + " " + of_b);
+    };
+    if (a.accel == b.accel && on_a.accel->plugin) {
+        const rt_plugin& plugin = *on_a.accel->plugin;
+        for (size_t i = 0; i < std::min(a.accel_params.size(), b.accel_params.size()) && i < plugin.param_count; ++i)
+            add(plugin.params[i].label, exact_text(a.accel_params[i]), exact_text(b.accel_params[i]));
+    }
+    for (const Setting& row : settings_table()) add(row.label, row.get(a), row.get(b));
+    if (on_a.devices_text() != on_b.devices_text()) {
+        out.of[0].push_back(on_a.device_name());
+        out.of[1].push_back(on_b.device_name());
+    }
+    return out;
+}
+
+Caption caption_of(const Session& session, const Picture& picture, unsigned side) {
+    Caption caption;
+    caption.title = std::string(side == 0 ? "A  " : "B  ") + picture_side(picture, side).settings.accel;
+    caption.details = joined(differing_settings(picture).of[side]);
+    // The last thirty: with more, an older camera's pictures would still count.
+    const auto recent = [&](unsigned of) {
+        std::vector<float> times = session.frame_times(of);
+        if (times.size() > 30) times.erase(times.begin(), times.end() - 30);
+        return times;
+    };
+    const std::vector<float> mine = recent(side), others = recent(1 - side);
+    if (const double ms = median_of(mine); ms > 0) {
+        char text[64];
+        std::snprintf(text, sizeof text, "%s, %.1f Mrays/s", ms_text(ms).c_str(), session.mrays_per_second(side));
+        caption.speed = text;
+    }
+    caption.verdict = speed_verdict(mine, others);
+    caption.faster = !caption.verdict.empty() && caption.verdict != kAboutTheSame;
+    return caption;
+}
+
+std::vector<HudText> caption_lines(const Caption& caption) {
+    std::vector<HudText> lines = {{caption.title, colors::kText, true}};
+    if (!caption.speed.empty()) lines.push_back({caption.speed, colors::kText, false, true});
+    if (!caption.verdict.empty())
+        lines.push_back({caption.verdict, caption.faster ? colors::kGreen : colors::kDim, caption.faster, true});
+    if (!caption.details.empty()) lines.push_back({caption.details, colors::kDim});
+    return lines;
+}
+
+std::string difference_text(const PictureDifference& difference) {
+    if (difference.image.pixels.empty()) return "the pictures are of different sizes";
+    if (difference.largest <= 0) return "no pixel differs";
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "mean %.3g, largest %.0f of 255; %.3g %% of pixels differ by more than 1; shown 8 times as bright",
+                  difference.mean, difference.largest, difference.share * 100);
+    return text;
+}
+
+}  // namespace clarity

@@ -1,0 +1,203 @@
+#include "ui/viewport/picture_mouse.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "ui/viewport/camera_control.hpp"
+#include "ui/widgets/theme.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr float kClickSlack = 4;      // units that a mouse may move within a click
+constexpr float kFocusNearer = 0.7f;  // what a double click leaves of the distance
+
+glm::vec2 vec(const ImVec2& a) {
+    return {a.x, a.y};
+}
+
+const Camera& camera_of(const Picture& picture) {
+    return picture.job.view.camera;
+}
+
+}  // namespace
+
+void PictureMouse::find_hovered(const Target& target, const glm::vec2& mouse, bool hovered) {
+    hover_.reset();
+    hovered_light_ = -1;
+    wipe_hovered_ = false;
+    if (!hovered) return;
+    const ByteImage& image = target.picture.main.image;
+    for (size_t i = 0; i < target.places.size() && !hover_; ++i) {
+        Hover hover{i, 0, 0};
+        const Rect& shown = target.places[i].shown;
+        if (shown.holds(mouse.x, mouse.y) &&
+            pixel_at(target.places[i].area, mouse, image.width, image.height, hover.x, hover.y))
+            hover_ = hover;
+    }
+    float nearest = target.handle_radius;
+    for (const LightHandle& handle : target.handles)
+        if (const float away = glm::length(handle.place - mouse); away <= nearest) {
+            nearest = away;
+            hovered_light_ = static_cast<int>(handle.index);
+        }
+    if (target.wipe && hovered_light_ < 0) {
+        const Rect& right = target.places.back().shown;
+        wipe_hovered_ = std::abs(mouse.x - right.x) <= 7 * ui_scale() && mouse.y >= right.y && mouse.y < right.y + right.height;
+    }
+}
+
+void PictureMouse::press(const Target& target, Session& session, const glm::vec2& mouse) {
+    pressed_ = last_ = mouse;
+    moved_ = false;
+    double_ = ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
+    button_ = ImGui::IsMouseDown(ImGuiMouseButton_Right)    ? ImGuiMouseButton_Right
+              : ImGui::IsMouseDown(ImGuiMouseButton_Middle) ? ImGuiMouseButton_Middle
+                                                            : ImGuiMouseButton_Left;
+    grab_ = Grab::camera;
+    offset_ = {0, 0};
+    if (button_ != ImGuiMouseButton_Left) return;
+    if (hovered_light_ >= 0) {
+        grab_ = Grab::light;
+        light_ = static_cast<unsigned>(hovered_light_);
+        session.selected_light = light_;
+        for (const LightHandle& handle : target.handles)
+            if (handle.index == light_) offset_ = handle.place - mouse;
+    } else if (wipe_hovered_) {
+        grab_ = Grab::wipe;
+        offset_.x = target.places.back().shown.x - mouse.x;
+    }
+}
+
+void PictureMouse::drag_camera(const Rect& area, Camera& camera, bool look, const glm::vec2& moved) const {
+    const float height = std::max(area.height, 1.0f);
+    if (button_ != ImGuiMouseButton_Left) {
+        // What lies in the target's plane follows the mouse.
+        float squared = 0;
+        for (int i = 0; i < 3; ++i) squared += (camera.target[i] - camera.eye[i]) * (camera.target[i] - camera.eye[i]);
+        const float unit = 2 * std::tan(camera.fov_y_rad / 2) * std::sqrt(squared) / height;
+        pan_camera(camera, -moved.x * unit, moved.y * unit);
+    } else if (look) {
+        const float turn = camera.fov_y_rad / height;
+        turn_camera(camera, -moved.x * turn, -moved.y * turn);
+    } else {
+        const float turn = 3.0f / height;
+        orbit_camera(camera, -moved.x * turn, -moved.y * turn);
+    }
+}
+
+void PictureMouse::drag(const Target& target, Session& session, UiState& state, const glm::vec2& mouse,
+                        const glm::vec2& moved) {
+    const Rect& area = target.places.front().area;
+    switch (grab_) {
+        case Grab::camera:
+            drag_camera(area, session.desired.camera, state.key_map->mouse_look, moved);
+            break;
+        case Grab::wipe:
+            state.wipe = std::clamp((mouse.x + offset_.x - area.x) / std::max(area.width, 1.0f), 0.0f, 1.0f);
+            break;
+        case Grab::light: {
+            if (light_ >= session.desired.lights.size()) break;
+            rt_light& light = session.desired.lights[light_].values;
+            const Projection projection(area, camera_of(target.picture));
+            if (light.kind == RT_LIGHT_DIRECTIONAL)
+                drag_sun(light, projection, mouse + offset_);
+            else if (ImGui::GetIO().KeyShift)
+                push_point_light(light, projection, std::exp(-moved.y * 0.006f / ui_scale()));
+            else
+                drag_point_light(light, projection, mouse + offset_);
+            break;
+        }
+        case Grab::nothing:
+            break;
+    }
+}
+
+void PictureMouse::click(const Target& target, Session& session, UiState& state) {
+    if (grab_ != Grab::camera || !hover_ || button_ == ImGuiMouseButton_Middle) return;
+    if (button_ == ImGuiMouseButton_Right || ImGui::GetIO().KeyShift) {
+        rays_asked_ = true;
+        state.selected_ray = -1;
+        state.tab = Tab::inspect;
+        state.tab_asked = true;
+        session.inspect(hover_->x, hover_->y);
+        return;
+    }
+    if (double_) {
+        focus_on_ = hover_;
+        focus_after_ = session.inspection() ? session.inspection()->request : 0;
+        if (const auto& distance = target.picture.main.distance; distance && !distance->pixels.empty()) {
+            const float t = distance->pixels[size_t{hover_->y} * distance->width + hover_->x];
+            const Projection projection(target.places[hover_->place].area, camera_of(target.picture));
+            const glm::vec3 point = projection.eye() + projection.ray(last_) * t;
+            if (std::isfinite(t)) session.focus_on({point.x, point.y, point.z}, kFocusNearer);
+            focus_on_.reset();
+        } else {
+            session.inspect(hover_->x, hover_->y);
+        }
+        return;
+    }
+    rays_asked_ = false;
+    session.pick(hover_->x, hover_->y);
+}
+
+void PictureMouse::focus_when_known(Session& session) {
+    if (!focus_on_) return;
+    const auto inspection = session.inspection();
+    if (!inspection || inspection->request <= focus_after_) return;
+    if (inspection->x != focus_on_->x || inspection->y != focus_on_->y) {
+        if (!session.inspecting()) focus_on_.reset();  // another pixel was asked for meanwhile
+        return;
+    }
+    focus_on_.reset();
+    if (!inspection->failure.empty() || inspection->result.rays.empty()) return;
+    const RayRecord& ray = inspection->result.rays.front();
+    if (!std::isfinite(ray.t)) return;
+    std::array<float, 3> point;
+    for (size_t i = 0; i < 3; ++i) point[i] = ray.origin[i] + ray.direction[i] * ray.t;
+    session.focus_on(point, kFocusNearer);
+}
+
+void PictureMouse::update(const Target& target, Session& session, UiState& state) {
+    const ImGuiIO& io = ImGui::GetIO();
+    const glm::vec2 mouse = vec(io.MousePos);
+    const bool hovered = ImGui::IsItemHovered(), active = ImGui::IsItemActive();
+    find_hovered(target, mouse, hovered || active);
+    if (ImGui::IsItemActivated()) press(target, session, mouse);
+    if (active && grab_ != Grab::nothing) {
+        if (!moved_ && glm::length(mouse - pressed_) > kClickSlack * ui_scale()) moved_ = true;
+        if (moved_ && mouse != last_) {
+            drag(target, session, state, mouse, mouse - last_);
+            last_ = mouse;
+        }
+    }
+    if (ImGui::IsItemDeactivated()) {
+        if (!moved_ && grab_ != Grab::nothing) click(target, session, state);
+        grab_ = Grab::nothing;
+    }
+    focus_when_known(session);
+    if (hovered && io.MouseWheel != 0) zoom_camera(session.desired.camera, std::pow(0.88f, io.MouseWheel));
+
+    const bool resting = hovered && !active;
+    if (resting && state.inspect_hover && hover_) {
+        const bool same = inspected_hover_ && inspected_hover_->x == hover_->x && inspected_hover_->y == hover_->y &&
+                          hover_revision_ == target.picture.job.revision;
+        if (!same) {
+            session.inspect(hover_->x, hover_->y);
+            inspected_hover_ = hover_;
+            hover_revision_ = target.picture.job.revision;
+            state.selected_ray = -1;
+        }
+    }
+    if (grab_ == Grab::wipe || (resting && wipe_hovered_))
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
+    else if (grab_ == Grab::light || (resting && hovered_light_ >= 0))
+        ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    else if (active && moved_ && button_ != ImGuiMouseButton_Left)
+        ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
+}
+
+}  // namespace clarity

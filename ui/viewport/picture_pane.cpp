@@ -1,0 +1,246 @@
+#include "ui/viewport/picture_pane.hpp"
+
+#include <epoxy/gl.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "base/elapsed.hpp"
+#include "ui/overlay/ray_lines.hpp"
+#include "ui/overlay/selection_box.hpp"
+#include "ui/viewport/camera_control.hpp"
+#include "ui/viewport/picture_captions.hpp"
+#include "ui/widgets/theme.hpp"
+
+namespace clarity {
+namespace {
+
+using What = PicturePlace::What;
+
+constexpr float kBehind = 0.15f;  // opacity of what lies behind a surface
+
+bool same(const Camera& a, const Camera& b) {
+    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
+}
+
+constexpr size_t kMovingVolumes = 4000;  // while the camera moves, every n-th is drawn: a frame of the window has no more time
+
+// The shown part of a texture that covers `area`, its first row at the top or at the bottom.
+void add_part(ImDrawList& list, unsigned texture, const Rect& area, const Rect& shown, bool top_first) {
+    if (shown.width <= 0 || shown.height <= 0) return;
+    const float left = (shown.x - area.x) / area.width, right = left + shown.width / area.width;
+    list.AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture)), {shown.x, shown.y},
+                  {shown.x + shown.width, shown.y + shown.height}, {left, top_first ? 0.0f : 1.0f},
+                  {right, top_first ? 1.0f : 0.0f});
+}
+
+void blend_premultiplied(const ImDrawList*, const ImDrawCmd*) {
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+}
+
+}  // namespace
+
+std::string PicturePane::upload(const std::shared_ptr<const Picture>& picture) {
+    picture_ = picture;
+    std::string why = textures_[0].upload(picture->main.image);
+    if (picture->other && why.empty()) why = textures_[1].upload(picture->other->image);
+    if (picture->difference && why.empty()) why = difference_.upload(picture->difference->image);
+    if (!why.empty()) picture_.reset();
+    return why;
+}
+
+const PictureSide& PicturePane::side_of(const PicturePlace& place) const {
+    return place.side() == 1 && picture_->other ? *picture_->other : picture_->main;
+}
+
+void PicturePane::lay_out(const Rect& room, const Session& session, const UiState& state) {
+    const float aspect = static_cast<float>(textures_[0].width()) / static_cast<float>(std::max(1u, textures_[0].height()));
+    float head = 0;
+    if (picture_->other && state.compare_mode == CompareMode::side_by_side)
+        for (unsigned side = 0; side < 2; ++side)
+            head = std::max(head,
+                            card_size(caption_lines(caption_of(session, *picture_, side)), std::floor(room.width / 2 - 8)).y);
+    places_ = lay_out_pictures(room, aspect, picture_->other.has_value(), state.compare_mode, state.wipe, std::round(head + 6),
+                               foot_);
+    area_ = places_.front().area;
+    const float margin = std::round(10 * ui_scale()), least = 190 * ui_scale();
+    below_ = {};
+    cards_.clear();
+    foot_ = 0;
+    for (size_t i = 0; i < places_.size(); ++i) {
+        const Rect& area = places_[i].area;
+        const float bottom = area.y + area.height;
+        stacks_[i] = HudStack(area, margin, least);
+        if (side_by_side())
+            below_[i] = HudStack({area.x - margin, bottom, area.width + 2 * margin, room.y + room.height - bottom + margin},
+                                 margin, least);
+    }
+}
+
+std::optional<Rect> PicturePane::take_card(size_t place, Corner corner, const ImVec2& size) {
+    std::optional<Rect> card;
+    const bool low = corner == Corner::bottom_left || corner == Corner::bottom_right;
+    if (side_by_side() && low) {
+        card = below_[place].take(corner == Corner::bottom_right ? Corner::top_right : Corner::top_left, size.x, size.y);
+        const float wanted =
+            card ? card->y + card->height - places_[place].area.y - places_[place].area.height : foot_ + size.y;
+        foot_ = std::max(foot_, wanted + 10 * ui_scale());
+    }
+    if (!card) card = stacks_[side_by_side() ? place : 0].take(corner, size.x, size.y);
+    if (card) cards_.push_back(*card);
+    return card;
+}
+
+// By a card that lies over a picture, or by another label.
+bool PicturePane::covered(const Rect& label) const {
+    return std::any_of(cards_.begin(), cards_.end(), [&](const Rect& card) {
+        return label.x < card.x + card.width && card.x < label.x + label.width && label.y < card.y + card.height &&
+               card.y < label.y + label.height;
+    });
+}
+
+void PicturePane::draw_pictures(ImDrawList& list) {
+    for (const PicturePlace& place : places_) {
+        PictureTexture& texture =
+            place.what == What::difference && picture_->difference ? difference_ : textures_[place.side()];
+        // Enlarged pixels stay sharp.
+        texture.set_magnified(place.area.width >= 2 * static_cast<float>(texture.width()));
+        add_part(list, texture.name(), place.area, place.shown, true);
+    }
+}
+
+// Rays and what is selected, as lines of the world.
+void PicturePane::collect_marks(const Session& session, const UiState& state) {
+    const float scale = ui_scale();
+    const Camera& camera = picture_->job.view.camera;
+    const Projection projection(area_, camera);
+    LineList marks;
+    const Scene* scene = picture_->job.ready->loaded->scene.get();
+    const Selection& selection = session.selection;
+    if (selection.any() && session.ready() && session.ready()->loaded->scene.get() == scene) {
+        const bool known = selected_.scene == scene && selected_.selection.instance == selection.instance &&
+                           selected_.selection.prim == selection.prim;
+        if (!known) selected_ = {scene, selection, selection_box(*scene, selection)};
+        if (selected_.box) {
+            marks.box(*selected_.box, IM_COL32(0, 0, 0, 130), 3.4f * scale);
+            marks.box(*selected_.box, ImGui::GetColorU32(colors::kAccent), 1.6f * scale);
+        }
+    } else {
+        selected_ = {};
+    }
+    const auto inspection = session.inspection();
+    const bool looking = (state.tab == Tab::inspect && state.panel_visible) || state.inspect_hover || mouse_.rays_asked();
+    rays_shown_ = looking && state.show_rays && inspection && inspection->failure.empty() &&
+                  inspection->job.ready->loaded->scene.get() == scene;
+    if (rays_shown_)
+        append_ray_lines(inspection->result, projection, session.scene_size() * 0.6f, scale, state.selected_ray, marks);
+    if (marks == marks_) return;
+    marks_ = std::move(marks);
+    ++marks_revision_;
+}
+
+void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const VolumeOverlay& overlay, bool moving) {
+    const unsigned side = place.side();
+    const float scale = ui_scale(), pixels = std::max(ImGui::GetIO().DisplayFramebufferScale.x, 0.1f);
+    const Camera& camera = picture_->job.view.camera;
+    const Scene* scene = picture_->job.ready->loaded->scene.get();
+    auto distance = side_of(place).distance;
+    // Heat maps bring no distances: those of an earlier picture of the same view serve as well.
+    if (distance && !distance->pixels.empty()) {
+        lines.seen = distance;
+        lines.seen_by = camera;
+        lines.seen_scene = scene;
+    } else if (lines.seen && lines.seen_scene == scene && same(lines.seen_by, camera)) {
+        distance = lines.seen;
+    }
+    const bool moved = !same(lines.camera, camera), scaled = lines.scale != scale;
+    const unsigned stride = moving ? static_cast<unsigned>(overlay.count(side) / kMovingVolumes + 1) : 1;
+    const bool volumes = lines.volumes_revision != overlay.revision(side) || scaled || lines.stride != stride ||
+                         (moved && overlay.has_spheres(side));
+    const bool resized =
+        lines.area.width != place.area.width || lines.area.height != place.area.height || lines.pixels != pixels;
+    const bool anew = volumes || moved || resized || lines.marks_revision != marks_revision_ ||
+                      lines.distance != distance.get() || lines.hides_behind != overlay.hides_behind();
+    if (!anew) return;
+    const auto begin = std::chrono::steady_clock::now();
+    const Projection projection(place.area, camera);
+    if (volumes) {
+        lines.volumes.clear();
+        overlay.append_lines(side, projection.eye(), scale, stride, lines.volumes);
+    }
+    lines.volumes_revision = overlay.revision(side);
+    lines.marks_revision = marks_revision_;
+    lines.stride = stride;
+    lines.camera = camera;
+    lines.area = place.area;
+    lines.pixels = pixels;
+    lines.scale = scale;
+    lines.distance = distance.get();
+    lines.hides_behind = overlay.hides_behind();
+    lines.any = !lines.volumes.empty() || !marks_.empty();
+    if (!lines.any) return;
+    const bool known = distance && !distance->pixels.empty();
+    if (known && distances_of_[side] != distance && distances_[side].upload(*distance).empty()) distances_of_[side] = distance;
+    LinesBehind behind;
+    if (known) behind = {&distances_[side], distance.get(), overlay.hides_behind() ? 0.0f : kBehind};
+    lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, behind);
+    lines_ms_ = ms_since(begin);
+}
+
+void PicturePane::draw_lines(ImDrawList& list, const VolumeOverlay& overlay, bool moving) {
+    for (const PicturePlace& place : places_) {
+        Lines& lines = lines_[place.side()];
+        update_lines(lines, place, overlay, moving);
+        if (!lines.any || !lines.layer.failure().empty() || lines.layer.drawn() == 0) continue;
+        list.AddCallback(blend_premultiplied, nullptr);
+        add_part(list, lines.layer.texture(), place.area, place.shown, false);
+        list.AddCallback(ImDrawCallback_ResetRenderState, nullptr);
+    }
+}
+
+void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state) {
+    ImGui::SetNextWindowPos({area.x, area.y});
+    ImGui::SetNextWindowSize({area.width, area.height});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+    ImGui::Begin("Viewport", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNav |
+                     ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::PopStyleVar();
+    const float margin = std::round(12 * ui_scale());
+    const Rect room{area.x + margin, area.y + margin, std::max(area.width - 2 * margin, 1.0f),
+                    std::max(area.height - 2 * margin, 1.0f)};
+    const ImVec2 pixels = ImGui::GetIO().DisplayFramebufferScale;
+    state.room_width = static_cast<int>(room.width * pixels.x);
+    state.room_height = static_cast<int>(room.height * pixels.y);
+    if (picture_ && textures_[0].name() != 0) {
+        lay_out(room, session, state);
+        ImDrawList& list = *ImGui::GetWindowDrawList();
+        draw_pictures(list);
+        collect_marks(session, state);
+        draw_lines(list, overlay, session.moving());
+        handles_.clear();
+        if (state.show_lights) handles_ = light_handles(Projection(area_, picture_->job.view.camera), session.desired.lights);
+        ImGui::SetCursorScreenPos({room.x, room.y});
+        ImGui::InvisibleButton(
+            "picture", {room.width, room.height},
+            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
+        ImGui::SetItemAllowOverlap();
+        const bool wipe = places_.size() == 2 && !side_by_side();
+        mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe}, session, state);
+        if (wipe) draw_wipe(list);
+        draw_pixel_marks(list, session, state);
+        list.ChannelsSplit(2);  // cards lie over handles, whose names keep clear of them
+        list.ChannelsSetCurrent(1);
+        draw_hud(list, session, overlay);
+        list.ChannelsSetCurrent(0);
+        draw_handles(list, session);
+        list.ChannelsMerge();
+        session.want_distance(overlay.level().has_value() || !marks_.empty() || state.show_lights);
+    }
+    ImGui::End();
+}
+
+}  // namespace clarity

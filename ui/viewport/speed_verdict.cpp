@@ -1,0 +1,34 @@
+#include "ui/viewport/speed_verdict.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdio>
+
+#include "ui/widgets/frame_graph.hpp"
+
+namespace clarity {
+
+double median_of(std::vector<float> values) {
+    if (values.empty()) return 0;
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+std::string speed_verdict(const std::vector<float>& mine, const std::vector<float>& others) {
+    constexpr size_t kFewest = 5;
+    if (std::min(mine.size(), others.size()) < kFewest) return {};
+    // The spread is nine tenths of the times, so that one frame that another program held up changes nothing: the slow ones of
+    // the faster side must still be faster than the fast ones of the slower side.
+    const auto beats = [](const std::vector<float>& a, const std::vector<float>& b) {
+        return percentile(a, 0.9) < percentile(b, 0.1);
+    };
+    if (beats(others, mine)) return {};
+    const double ratio = median_of(others) / std::max(median_of(mine), 1e-9);
+    if (!beats(mine, others) || ratio < 1.005) return kAboutTheSame;
+    char text[64];
+    std::snprintf(text, sizeof text, ratio < 10 ? "%.2f\u00d7 faster" : "%.0f\u00d7 faster", ratio);
+    return text;
+}
+
+}  // namespace clarity

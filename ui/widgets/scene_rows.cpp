@@ -1,0 +1,86 @@
+#include "ui/widgets/scene_rows.hpp"
+
+#include "ui/widgets/formats.hpp"
+
+namespace clarity {
+namespace {
+
+const std::string& own_name(const Scene& scene, RowKind kind, size_t index) {
+    static const std::string none;
+    switch (kind) {
+        case RowKind::instance:
+            return scene.instances[index].name.empty() ? scene.meshes[scene.instances[index].mesh].name
+                                                       : scene.instances[index].name;
+        case RowKind::mesh:
+            return scene.meshes[index].name;
+        case RowKind::material:
+            return scene.materials[index].name;
+        case RowKind::light:
+            return scene.lights[index].name;
+        case RowKind::camera:
+            return scene.cameras[index].name;
+        default:
+            return none;
+    }
+}
+
+}  // namespace
+
+const char* kind_title(RowKind kind) {
+    static const char* const titles[kRowKinds] = {"Instances", "Spheres",   "Polygons", "Planes",
+                                                  "Meshes",    "Materials", "Lights",   "Cameras"};
+    return titles[static_cast<int>(kind)];
+}
+
+size_t row_count(const Scene& scene, RowKind kind) {
+    const size_t counts[kRowKinds] = {scene.instances.size(), scene.spheres.size(), scene.polygons.size(),
+                                      scene.planes.size(),    scene.meshes.size(),  scene.materials.size(),
+                                      scene.lights.size(),    scene.cameras.size()};
+    return counts[static_cast<int>(kind)];
+}
+
+std::string row_name(const Scene& scene, RowKind kind, size_t index) {
+    static const char* const nouns[kRowKinds] = {"instance", "sphere",   "polygon", "plane",
+                                                 "mesh",     "material", "light",   "camera"};
+    const std::string& name = own_name(scene, kind, index);
+    return name.empty() ? std::string(nouns[static_cast<int>(kind)]) + " " + std::to_string(index) : name;
+}
+
+rt_u32 instance_material(const Scene& scene, rt_u32 instance) {
+    const Instance& placed = scene.instances[instance];
+    if (placed.material != RT_NONE) return placed.material;
+    const Mesh& mesh = scene.meshes[placed.mesh];
+    return mesh.triangle_count > 0 ? scene.triangle_materials[mesh.first_triangle] : RT_NONE;
+}
+
+std::vector<uint64_t> first_prims(const Scene& scene) {
+    std::vector<uint64_t> first(scene.instances.size() + 1);
+    for (size_t i = 0; i < scene.instances.size(); ++i)
+        first[i + 1] = first[i] + scene.meshes[scene.instances[i].mesh].triangle_count;
+    return first;
+}
+
+const std::vector<SceneRow>& SceneRows::update(const std::shared_ptr<const Scene>& scene, const std::string& filter,
+                                               const std::array<bool, kRowKinds>& open) {
+    if (scene == scene_ && filter == filter_ && open == open_) return rows_;
+    scene_ = scene;
+    filter_ = filter;
+    open_ = open;
+    rows_.clear();
+    if (!scene) return rows_;
+    const bool all = matches({}, filter);
+    for (int k = 0; k < kRowKinds; ++k) {
+        const auto kind = static_cast<RowKind>(k);
+        const size_t count = row_count(*scene, kind), title = rows_.size();
+        if (count == 0) continue;
+        rows_.push_back({kind, -1, count});
+        if (all && !open[static_cast<size_t>(k)]) continue;
+        for (size_t i = 0; i < count; ++i)
+            if (all || matches(row_name(*scene, kind, i), filter)) rows_.push_back({kind, static_cast<int>(i), 0});
+        rows_[title].count = rows_.size() - title - 1;
+        if (rows_[title].count == 0) rows_.pop_back();
+    }
+    return rows_;
+}
+
+}  // namespace clarity

@@ -1,0 +1,136 @@
+#include "ui/widgets/theme.hpp"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <string>
+
+namespace clarity {
+namespace {
+
+Fonts the_fonts;
+float the_scale = 0;
+
+ImVec4 with_alpha(ImVec4 color, float alpha) {
+    color.w = alpha;
+    return color;
+}
+
+ImVec4 lighter(const ImVec4& color, float by) {
+    return {color.x + by, color.y + by, color.z + by, color.w};
+}
+
+// Debian's fonts-dejavu-core and where other systems keep the same files; else ImGui's own bitmap font.
+ImFont* load_font(const char* file, float pixels) {
+    static const char* const folders[] = {"/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu/",
+                                          "/usr/share/fonts/TTF/", "/usr/share/fonts/dejavu-sans-fonts/"};
+    // Latin, Greek, Cyrillic (names in files), punctuation, arrows, mathematical and geometric signs.
+    static const ImWchar ranges[] = {0x20,   0x17F,  0x370,  0x3FF,  0x400,  0x52F,  0x2010, 0x2044,
+                                     0x2190, 0x21FF, 0x2200, 0x22FF, 0x25A0, 0x25FF, 0};
+    ImGuiIO& io = ImGui::GetIO();
+    for (const char* folder : folders) {
+        const std::string path = std::string(folder) + file;
+        if (access(path.c_str(), R_OK) != 0) continue;
+        ImFontConfig config;
+        config.OversampleH = 2;
+        config.OversampleV = 1;
+        if (ImFont* font = io.Fonts->AddFontFromFileTTF(path.c_str(), pixels, &config, ranges)) return font;
+    }
+    ImFontConfig config;
+    config.SizePixels = pixels;
+    return io.Fonts->AddFontDefault(&config);
+}
+
+void set_colors(ImGuiStyle& style) {
+    using namespace colors;
+    ImGui::StyleColorsDark(&style);
+    const ImVec4 frame = lighter(kPanel, 0.052f), clear(0, 0, 0, 0);
+    ImVec4* c = style.Colors;
+    c[ImGuiCol_Text] = kText;
+    c[ImGuiCol_TextDisabled] = kDim;
+    c[ImGuiCol_WindowBg] = kGround;
+    c[ImGuiCol_ChildBg] = clear;
+    c[ImGuiCol_PopupBg] = lighter(kPanel, 0.02f);
+    c[ImGuiCol_Border] = with_alpha(kText, 0.10f);
+    c[ImGuiCol_FrameBg] = frame;
+    c[ImGuiCol_FrameBgHovered] = lighter(frame, 0.035f);
+    c[ImGuiCol_FrameBgActive] = lighter(frame, 0.06f);
+    c[ImGuiCol_CheckMark] = kAccent;
+    c[ImGuiCol_SliderGrab] = clear;  // widgets.cpp fills sliders from the left
+    c[ImGuiCol_SliderGrabActive] = clear;
+    c[ImGuiCol_Button] = lighter(frame, 0.03f);
+    c[ImGuiCol_ButtonHovered] = with_alpha(kAccent, 0.45f);
+    c[ImGuiCol_ButtonActive] = with_alpha(kAccent, 0.75f);
+    c[ImGuiCol_Header] = with_alpha(kAccent, 0.22f);
+    c[ImGuiCol_HeaderHovered] = with_alpha(kAccent, 0.32f);
+    c[ImGuiCol_HeaderActive] = with_alpha(kAccent, 0.45f);
+    c[ImGuiCol_Separator] = with_alpha(kText, 0.08f);
+    c[ImGuiCol_Tab] = clear;
+    c[ImGuiCol_TabHovered] = with_alpha(kAccent, 0.30f);
+    c[ImGuiCol_TabActive] = with_alpha(kAccent, 0.28f);
+    c[ImGuiCol_ScrollbarBg] = clear;
+    c[ImGuiCol_ScrollbarGrab] = with_alpha(kText, 0.16f);
+    c[ImGuiCol_ScrollbarGrabHovered] = with_alpha(kText, 0.26f);
+    c[ImGuiCol_ScrollbarGrabActive] = with_alpha(kText, 0.36f);
+    c[ImGuiCol_PlotLines] = kAccent;
+    c[ImGuiCol_PlotHistogram] = kAccent;
+    c[ImGuiCol_TextSelectedBg] = with_alpha(kAccent, 0.40f);
+    c[ImGuiCol_TableRowBgAlt] = with_alpha(kText, 0.025f);
+}
+
+void set_sizes(ImGuiStyle& style) {
+    style.WindowPadding = {14, 12};
+    style.FramePadding = {8, 4};
+    style.ItemSpacing = {8, 6};
+    style.ItemInnerSpacing = {6, 4};
+    style.CellPadding = {4, 3};
+    style.ScrollbarSize = 11;
+    style.GrabMinSize = 10;
+    style.WindowRounding = 0;
+    style.ChildRounding = 6;
+    style.FrameRounding = 4;
+    style.PopupRounding = 5;
+    style.ScrollbarRounding = 6;
+    style.GrabRounding = 3;
+    style.TabRounding = 4;
+    style.WindowBorderSize = 0;
+    style.ChildBorderSize = 0;
+    style.PopupBorderSize = 1;
+    style.FrameBorderSize = 0;
+    style.TabBorderSize = 0;
+    style.WindowMenuButtonPosition = ImGuiDir_None;
+}
+
+}  // namespace
+
+void apply_theme(float scale) {
+    if (scale == the_scale) return;
+    const bool first = the_scale == 0;
+    the_scale = scale;
+    ImGuiStyle style;
+    set_colors(style);
+    set_sizes(style);
+    style.ScaleAllSizes(scale);
+    ImGui::GetStyle() = style;
+
+    ImGuiIO& io = ImGui::GetIO();
+    io.Fonts->Clear();
+    const float pixels = std::round(14.0f * scale);
+    the_fonts.text = load_font("DejaVuSans.ttf", pixels);
+    the_fonts.bold = load_font("DejaVuSans-Bold.ttf", pixels);
+    the_fonts.mono = load_font("DejaVuSansMono.ttf", std::round(13.0f * scale));
+    if (!first) {  // the backend makes its first texture by itself
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+    }
+}
+
+const Fonts& fonts() {
+    return the_fonts;
+}
+float ui_scale() {
+    return the_scale;
+}
+
+}  // namespace clarity

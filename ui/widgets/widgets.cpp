@@ -1,0 +1,182 @@
+#include "ui/widgets/widgets.hpp"
+
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "base/error.hpp"
+#include "ui/session/session.hpp"
+#include "ui/widgets/slider_bar.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr float kLabelWidth = 130;
+
+bool inside_character(const std::string& text, size_t at) {  // of UTF-8
+    return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0) == 0x80;
+}
+
+float text_width(const std::string& text) {
+    return ImGui::CalcTextSize(text.c_str()).x;
+}
+
+void title_text(const char* title) {
+    ImGui::PushFont(fonts().bold);
+    ImGui::PushStyleColor(ImGuiCol_Text, colors::kDim);
+    ImGui::TextUnformatted(title);
+    ImGui::PopStyleColor();
+    ImGui::PopFont();
+}
+
+}  // namespace
+
+std::string cut_to(const std::string& text, float width) {
+    if (text_width(text) <= width) return text;
+    size_t low = 0, high = text.size();  // `low` bytes fit
+    while (low + 1 < high) {
+        const size_t middle = (low + high) / 2;
+        (text_width(text.substr(0, middle) + "\u2026") <= width ? low : high) = middle;
+    }
+    while (low > 0 && inside_character(text, low)) --low;
+    return text.substr(0, low) + "\u2026";
+}
+
+std::string cut_front_to(const std::string& text, float width) {
+    if (text_width(text) <= width) return text;
+    size_t low = 0, high = text.size();  // from `high` on it fits
+    while (low + 1 < high) {
+        const size_t middle = (low + high) / 2;
+        (text_width("\u2026" + text.substr(middle)) <= width ? high : low) = middle;
+    }
+    while (inside_character(text, high)) ++high;
+    return "\u2026" + text.substr(high);
+}
+
+void section(const char* title) {
+    ImGui::Dummy({0, 6 * ui_scale()});
+    title_text(title);
+    ImGui::Separator();
+}
+
+bool folding_section(const char* title, bool open) {
+    ImGui::Dummy({0, 6 * ui_scale()});
+    ImGuiStorage& storage = *ImGui::GetStateStorage();
+    const ImGuiID id = ImGui::GetID(title);
+    bool unfolded = storage.GetBool(id, open);
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    const ImVec2 size(ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight());
+    if (ImGui::InvisibleButton(title, size)) storage.SetBool(id, unfolded = !unfolded);
+    note_place(title);
+    const bool hovered = ImGui::IsItemHovered();
+    ImDrawList& list = *ImGui::GetWindowDrawList();
+    const ImU32 color = ImGui::GetColorU32(hovered ? colors::kText : colors::kDim);
+    list.AddText(fonts().bold, fonts().bold->FontSize, from, color, title);
+    const char* sign = unfolded ? "\u25be" : "\u25b8";
+    list.AddText({from.x + size.x - ImGui::CalcTextSize(sign).x, from.y}, color, sign);
+    ImGui::Separator();
+    return unfolded;
+}
+
+void tooltip(const std::string& text) {
+    if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(10 * ui_scale(), 8 * ui_scale()));
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(320 * ui_scale());
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+    ImGui::PopStyleVar();
+}
+
+bool option(const std::string& label, bool chosen) {
+    const bool clicked = ImGui::Selectable(label.c_str(), chosen);
+    note_place(label);
+    return clicked && !chosen;
+}
+
+bool slider(const char* id, float& value, float min, float max, const char* format, bool logarithmic) {
+    const ImGuiSliderFlags flags = ImGuiSliderFlags_AlwaysClamp | (logarithmic ? ImGuiSliderFlags_Logarithmic : 0);
+    draw_slider_bar(value, min, max, logarithmic);
+    const BareFrames bare;
+    return ImGui::SliderFloat(id, &value, min, max, format, flags);
+}
+
+bool color_field(const char* id, float* rgb) {
+    return ImGui::ColorEdit3(id, rgb, ImGuiColorEditFlags_Float | ImGuiColorEditFlags_HDR);
+}
+
+void row_label(const char* label, const std::string& help) {
+    const float start = ImGui::GetCursorPosX(), width = kLabelWidth * ui_scale();
+    ImGui::AlignTextToFramePadding();
+    const std::string text = cut_to(label, width - 8 * ui_scale());
+    ImGui::TextUnformatted(text.c_str());
+    tooltip(text == label ? help : std::string(label) + "\n" + help);
+    ImGui::SameLine(start + width);
+    const ImVec2 from = ImGui::GetCursorScreenPos();
+    note_place(label, {from.x, from.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()});
+    ImGui::SetNextItemWidth(-FLT_MIN);
+}
+
+void row_text(const char* label, const std::string& value, const std::string& help, const ImVec4& color) {
+    const float start = ImGui::GetCursorPosX(), width = kLabelWidth * ui_scale();
+    const std::string text = cut_to(label, width - 8 * ui_scale());
+    ImGui::PushStyleColor(ImGuiCol_Text, colors::kDim);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+    tooltip(text == label ? help : std::string(label) + "\n" + help);
+    ImGui::SameLine(start + width);
+    wrapped_text(value, color);
+}
+
+void wrapped_text(const std::string& text, const ImVec4& color) {
+    ImGui::PushStyleColor(ImGuiCol_Text, color);
+    ImGui::PushTextWrapPos(0);
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopTextWrapPos();
+    ImGui::PopStyleColor();
+}
+
+void dim_text(const std::string& text) {
+    wrapped_text(text, colors::kDim);
+}
+
+bool button(const char* label, const std::string& help, float width) {
+    const bool pressed = ImGui::Button(label, {width, 0});
+    const std::string name = label;
+    note_place(name.substr(0, name.find("##")));
+    tooltip(help);
+    return pressed;
+}
+
+bool toggle_button(const char* label, bool on, const std::string& help, float width) {
+    if (on) {
+        const ImVec4& accent = colors::kAccent;
+        ImGui::PushStyleColor(ImGuiCol_Button, ImVec4(accent.x, accent.y, accent.z, 0.38f));
+    }
+    const bool pressed = button(label, help, width);
+    if (on) ImGui::PopStyleColor();
+    return pressed;
+}
+
+float share_of_line(int count) {
+    const float gaps = ImGui::GetStyle().ItemSpacing.x * static_cast<float>(count - 1);
+    return (ImGui::GetContentRegionAvail().x - gaps) / static_cast<float>(count);
+}
+
+void same_line_if_fits(const char* next_label) {
+    const ImGuiStyle& style = ImGui::GetStyle();
+    const float right = ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x;
+    const float needed = style.ItemSpacing.x + ImGui::CalcTextSize(next_label, nullptr, true).x + 2 * style.FramePadding.x;
+    if (ImGui::GetItemRectMax().x + needed <= right) ImGui::SameLine();
+}
+
+void attempt(Session& session, const std::function<void()>& what) {
+    try {
+        what();
+    } catch (const Error& error) {
+        session.report(error.what(), error.details());
+    }
+}
+
+}  // namespace clarity
