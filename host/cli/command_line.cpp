@@ -98,7 +98,7 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
         ->type_name("D");
     single(app.add_option("--accel", trace.accel, "Acceleration structure with its parameters (`clarity plugins` lists them)"))
         ->type_name("ID[,key=value...]")
-        ->default_str("bvh8, on a GPU bvh4");
+        ->default_str("the one of highest merit for the device");
     single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or where it stands and looks"))
         ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
     single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");

@@ -5,6 +5,7 @@
 
 #include "base/printable.hpp"
 #include "cli/commands.hpp"
+#include "plugin/capabilities.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
 
@@ -28,6 +29,10 @@ const char* kind_name(int32_t kind) {
 
 const char* effect_name(int32_t effect) {
     return effect == RT_EFFECT_RECOMPILE ? "recompile" : "rebuild";
+}
+
+const char* ray_cost_name(const rt_accel& accel) {
+    return accel.ray_cost == RT_RAY_COST_LINEAR ? "linear" : "logarithmic";
 }
 
 const char* status_name(const PluginRecord& record) {
@@ -73,6 +78,12 @@ Json record_json(const PluginRecord& record) {
     json["name"] = plugin.name;
     json["version"] = plugin.version;
     json["reference"] = plugin.reference ? Json(plugin.reference) : Json();
+    if (plugin.accel) {
+        json["capabilities"] = Json::array();
+        for (const std::string& name : capability_names(*plugin.accel)) json["capabilities"].push_back(name);
+        json["merit"] = {{"cpu", plugin.accel->merit_cpu}, {"gpu", plugin.accel->merit_gpu}};
+        json["ray_cost"] = ray_cost_name(*plugin.accel);
+    }
     if (plugin.importer) {
         json["extensions"] = Json::array();
         for (const char* const* e = plugin.importer->extensions; *e; ++e) json["extensions"].push_back(*e);
@@ -97,12 +108,27 @@ std::string range_text(const rt_param& param) {
 
 constexpr const char* kIndent = "          ";
 
+std::string merit_text(float merit, const char* kind) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g", double(merit));
+    return (merit > 0 ? std::string(text) : "not measured") + " on a " + kind;
+}
+
+void print_accel(const rt_accel& accel) {
+    std::string can;
+    for (const std::string& name : capability_names(accel)) can += (can.empty() ? "" : ", ") + name;
+    if (!can.empty()) print_text("%scapabilities: %s\n", kIndent, can.c_str());
+    print_text("%smerit: %s, %s; a ray's cost is %s\n", kIndent, merit_text(accel.merit_cpu, "CPU").c_str(),
+               merit_text(accel.merit_gpu, "GPU").c_str(), ray_cost_name(accel));
+}
+
 void print_plugin(const PluginRecord& record) {
     const rt_plugin& plugin = *record.plugin;
     print_text("%-9s %s  (%s, %s)%s\n%s%s\n", plugin.accel ? "accel" : "importer", plugin.id, plugin.name, plugin.version,
                record.shadowed ? "  SHADOWED: a library above has the same id, this one is not used" : "", kIndent,
                record.path.c_str());
     if (plugin.reference) print_text("%sreference: %s\n", kIndent, plugin.reference);
+    if (plugin.accel) print_accel(*plugin.accel);
     if (plugin.importer && plugin.importer->extensions[0]) {
         print_text("%sfiles:", kIndent);
         for (const char* const* e = plugin.importer->extensions; *e; ++e) print_text(" .%s", *e);

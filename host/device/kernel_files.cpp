@@ -78,10 +78,6 @@ std::vector<fs::path> plugin_places(const rt_plugin& plugin, const char* name) {
     return all;
 }
 
-std::string shown_plugin_name(const rt_plugin& plugin, const char* name) {
-    return std::string("plugins/accel/") + plugin.id + "/" + name;
-}
-
 // Texts as they were read last, by the name that the compiler is told.
 struct Texts {
     struct Last {
@@ -146,8 +142,12 @@ std::string kernel_text(const std::string& name) {
                                                ": build the program again");
 }
 
+std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file) {
+    return file.name ? std::string("plugins/accel/") + accel.id + "/" + file.name : "";
+}
+
 std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
-    const std::string shown = file.name ? shown_plugin_name(accel, file.name) : "";
+    const std::string shown = plugin_kernel_name(accel, file);
     std::string text;
     if (file.name)
         for (const fs::path& path : plugin_places(accel, file.name)) {

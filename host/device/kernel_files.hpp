@@ -27,6 +27,8 @@ std::string kernel_text(const std::string& name);
 
 // A plugin's own file. Throws Error(kernel_build_failed) if its types on disk are not those that it was compiled with.
 std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file);
+// What the compiler is told that file is called.
+std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file);
 
 // The path behind a name in a compiler's message, once its text was read from disk; else "".
 std::string kernel_path(const std::string& shown_name);

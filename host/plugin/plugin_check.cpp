@@ -104,6 +104,13 @@ std::string check_params(const rt_plugin& plugin) {
     return {};
 }
 
+std::string check_merit(const char* which, float merit) {
+    if (std::isfinite(merit) && merit >= 0) return {};
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", double(merit));
+    return std::string("its ") + which + " is " + text + ", expected a finite number, 0 or more (0: not measured)";
+}
+
 std::string check_accel(const rt_accel& accel) {
     if (std::string why = check_struct_bytes("rt_accel", accel.struct_bytes, sizeof(rt_accel)); !why.empty()) return why;
     if (accel.slot_count == 0 || accel.slot_count > kMaxSlots)
@@ -127,6 +134,10 @@ std::string check_accel(const rt_accel& accel) {
     if (!accel.traverse.text || !*accel.traverse.text)
         return "its traversal has no text: embed <id>.cl (clarity_add_plugin does) and point traverse.text at it";
     if (!accel.build) return "build is NULL";
+    if (std::string why = check_merit("merit_cpu", accel.merit_cpu); !why.empty()) return why;
+    if (std::string why = check_merit("merit_gpu", accel.merit_gpu); !why.empty()) return why;
+    if (accel.ray_cost != RT_RAY_COST_LOGARITHMIC && accel.ray_cost != RT_RAY_COST_LINEAR)
+        return "its ray_cost is " + std::to_string(accel.ray_cost) + ", expected RT_RAY_COST_LOGARITHMIC or RT_RAY_COST_LINEAR";
     return {};
 }
 

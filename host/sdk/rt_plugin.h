@@ -7,11 +7,14 @@
  *
  * Growth: structs grow at the end only and carry their size; a reader tests struct_bytes before it reads a later field.
  * Any other change bumps RT_ABI_VERSION.
- * Version history:  1  first release. */
+ * Version history:
+ *   1  First release.
+ *   2  Draft: it may still change without a new number, until a release freezes it. What a structure can do is data in rt_accel
+ *      (capabilities, merit_cpu, merit_gpu, ray_cost). Version 1 found it as #defines in the text of <id>_types.h. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include "rt_types.h"
-#define RT_ABI_VERSION 1u
+#define RT_ABI_VERSION 2u
 #ifdef _WIN32
 #define RT_EXPORT __declspec(dllexport)
 #else
@@ -111,6 +114,19 @@ typedef struct rt_volume_sink {
     void (*sphere)(void *ctx, const float center[3], float radius);
 } rt_volume_sink;
 
+/* What a traversal offers besides RT_TRAVERSE, as bits of rt_accel::capabilities; cl/CONTRACT.md describes each. The host defines
+ * the names of those that are set in the structure's kernels. It ignores bits that it does not know. */
+enum {
+    RT_TRAVERSES_STREAMS = 1,  /* RT_TRAVERSE_STREAM: neighbouring packets together, on CPUs */
+    RT_TRAVERSES_STEPS = 2,    /* RT_TRAVERSE_step: node by node, so that a work-item may fetch another ray, on GPUs */
+    RT_TRAVERSES_WARPS = 4,    /* RT_TRAVERSE_WARP: all rays of a warp one way, on GPUs */
+    RT_REQUEUES_LONG_RAYS = 8, /* RT_TRAVERSE_REQUEUED: many work-items trace one long ray, on GPUs */
+    RT_SPLITS_INCOHERENT = 16  /* wants ray->incoherent: it traces packets whose rays part ray by ray, on CPUs */
+};
+/* How the time of a ray grows with the number n of primitives: as log n, the case of trees, or as n. Tests and benches leave out
+ * structures of linear cost where a scene is large. */
+enum { RT_RAY_COST_LOGARITHMIC, RT_RAY_COST_LINEAR };
+
 typedef struct rt_accel {
     rt_u32 struct_bytes, slot_count;
     const rt_slot *slots;
@@ -120,6 +136,12 @@ typedef struct rt_accel {
     /* Bounding volumes of level n of one group's tree (0 = root, RT_LEVEL_BOTTOM = leaves), in the group's space. [any thread] */
     int32_t (*levels)(const rt_host *, const rt_built *, rt_u32 group, rt_u32 level, const rt_volume_sink *); /* or NULL */
     int32_t (*refit)(const rt_host *, const rt_build_input *, void *const *slot_data);                       /* or NULL */
+    /* Since version 2. */
+    rt_u32 capabilities;        /* RT_TRAVERSES_STREAMS, ...: bits */
+    float merit_cpu, merit_gpu; /* rays a second, primary and diffuse ones over usual scenes, as a multiple of what Clarity's binary
+                                 * BVH traces on a device of that kind; 0: not measured. Where the user names no structure, the
+                                 * host takes the one of the highest merit, of equal ones the first by id. */
+    rt_u32 ray_cost;            /* RT_RAY_COST_LOGARITHMIC or RT_RAY_COST_LINEAR */
 } rt_accel;
 
 /* ---- importers ------------------------------------------------------------------------------------------------------------ */

@@ -2,7 +2,7 @@
 // nothing but the C structs of rt_plugin.h crosses the seam.
 //
 //   static int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) { ...may throw... }
-//   constexpr rt_accel accel = {sizeof(rt_accel), ..., rt::guarded<build>, nullptr, nullptr};
+//   constexpr rt_accel accel = rt::accel(slots, types, traverse, rt::guarded<build>, nullptr, rt::Traits());
 //   const rt_plugin rt_plugin_v1 = rt::accel_plugin("mine", "My structure", "1.0.0", nullptr, params, accel);
 //
 // rt_plugin_v1 must be a constant (all that is here is constexpr): the host reads its first words from the file.
@@ -145,6 +145,37 @@ constexpr rt_cl_file file(const rt_cl_file (&files)[N], const char* name) {
     for (const rt_cl_file& f : files)
         if (detail::same_text(f.name, name)) return f;
     return {nullptr, nullptr};
+}
+
+// What a structure can do, and how fast it is expected to be; rt_plugin.h has the units. Each call returns the changed traits:
+// rt::Traits().can(RT_TRAVERSES_STREAMS).merit(1.4f, 0.5f).
+struct Traits {
+    rt_u32 capabilities = 0;
+    float merit_cpu = 0, merit_gpu = 0;
+    rt_u32 ray_cost = RT_RAY_COST_LOGARITHMIC;
+    constexpr Traits can(rt_u32 bits) const { return {capabilities | bits, merit_cpu, merit_gpu, ray_cost}; }
+    constexpr Traits merit(float cpu, float gpu) const { return {capabilities, cpu, gpu, ray_cost}; }
+    constexpr Traits tests_everything() const { return {capabilities, merit_cpu, merit_gpu, RT_RAY_COST_LINEAR}; }
+};
+
+using Build = int32_t (*)(const rt_host*, const rt_build_input*, const rt_build_output*);
+using Levels = int32_t (*)(const rt_host*, const rt_built*, rt_u32 group, rt_u32 level, const rt_volume_sink*);
+// The description of a structure. levels: nullptr if it has no bounding volumes to draw.
+template <size_t N>
+constexpr rt_accel accel(const rt_slot (&slots)[N], const rt_cl_file& types, const rt_cl_file& traverse, Build build,
+                         Levels levels, const Traits& traits) {
+    return {sizeof(rt_accel),
+            N,
+            slots,
+            types,
+            traverse,
+            build,
+            levels,
+            nullptr,
+            traits.capabilities,
+            traits.merit_cpu,
+            traits.merit_gpu,
+            traits.ray_cost};
 }
 
 // Zeroed memory of the host for `count` elements of a slot; once per slot.

@@ -72,10 +72,11 @@ TEST_P(BadPlugin, IsRefusedAndSaysWhy) {
 INSTANTIATE_TEST_SUITE_P(
     Defects, BadPlugin,
     testing::Values(
-        Refusal{"wrong_abi", {"ABI version 2", "this host speaks 1", "rebuild"}},
-        Refusal{"old_abi", {"ABI version 0", "this host speaks 1", "rebuild"}},
+        Refusal{"wrong_abi", {"ABI version 3", "this host speaks 2", "rebuild"}},
+        Refusal{"first_abi", {"ABI version 1", "this host speaks 2", "rebuild"}},
+        Refusal{"old_abi", {"ABI version 0", "this host speaks 2", "rebuild"}},
         Refusal{"not_constant", {"zero in the file", "constexpr"}},
-        Refusal{"aborts_when_loaded", {"ABI version 2", "this host speaks 1"}},
+        Refusal{"aborts_when_loaded", {"ABI version 3", "this host speaks 2"}},
         Refusal{"wrong_digest", {"digest", "0x", "rt_types.h", "rebuild"}},
         Refusal{"small_struct", {"rt_plugin has struct_bytes", "expects", "rebuild"}},
         Refusal{"large_struct", {"struct_bytes", "exports", "bytes"}},
@@ -88,6 +89,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"small_accel", {"rt_accel has struct_bytes", "expects", "rebuild"}},
         Refusal{"small_importer", {"rt_importer has struct_bytes 8", "expects"}}, Refusal{"no_build", {"build is NULL"}},
         Refusal{"no_traversal", {"traversal has no text", "embed"}},
+        Refusal{"merit_not_a_number", {"merit_gpu is nan", "0 or more"}},
+        Refusal{"merit_below_zero", {"merit_cpu is -1", "0 or more"}}, Refusal{"unknown_ray_cost", {"ray_cost is 7"}},
         Refusal{"slots_of_one_name", {"two slots", "'sound_nodes'"}},
         Refusal{"slot_of_no_size", {"'sound_nodes'", "elem_bytes 0"}}, Refusal{"slot_of_odd_name", {"slot 0", "identifier"}},
         Refusal{"slot_of_no_type", {"'sound_nodes'", "cl_type"}}, Refusal{"params_of_one_key", {"two parameters 'leaf'"}},
@@ -100,7 +103,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The same parts without a defect are taken: it is the defect that is refused above.
 TEST(GoodPlugin, IsTaken) {
-    for (const char* name : {"sound", "bad_builder"}) {
+    for (const char* name : {"sound", "bad_builder", "unknown_capability"}) {
         const clarity::PluginRecord record = clarity::load_plugin(library(name));
         ASSERT_NE(record.plugin, nullptr) << record.why;
         EXPECT_EQ(record.why, "");
@@ -122,13 +125,13 @@ TEST(AbortsWhenLoadedDeathTest, IsArmed) {
 // Every source beside this one is covered above: a defect that nobody tests would look like one that is refused.
 TEST(BadPlugins, AllAreTested) {
     size_t libraries = 0, tests = 0;
-    for (const auto& entry : fs::directory_iterator(fs::path(CLARITY_SOURCE_DIR) / "tests/bad_plugins"))
+    for (const auto& entry : fs::directory_iterator(fs::path(CLARITY_SOURCE_DIR) / "tests/bad_plugins/libraries"))
         libraries += entry.path().extension() == ".c";
     const testing::UnitTest& all = *testing::UnitTest::GetInstance();
     for (int i = 0; i < all.total_test_suite_count(); ++i)
         if (std::string(all.GetTestSuite(i)->name()) == "Defects/BadPlugin")
             tests = static_cast<size_t>(all.GetTestSuite(i)->total_test_count());
-    EXPECT_EQ(tests + 2, libraries) << "sound.c and grown_struct.c are the two without a defect";
+    EXPECT_EQ(tests + 3, libraries) << "sound.c, grown_struct.c and unknown_capability.c are the three without a defect";
 }
 
 TEST(NoPlugin, TextFile) {

@@ -183,7 +183,7 @@ TEST(Suites, TheCpuHasFramesOfPeersFromNearAndFar) {
     for (const auto& [scene, found] : measures)
         EXPECT_EQ(found, (std::set<std::string>{"build", "primary", "shadow", "diffuse", "whitted"})) << scene;
     EXPECT_FALSE(suite.notes.empty());
-    EXPECT_EQ(suite_of({"cpu"}).cases[0].variants.at(0).accel, Settings().accel);
+    EXPECT_EQ(suite_of({"cpu"}).cases[0].variants.at(0).accel, "bvh8");
 }
 
 TEST_F(Catalog, ViewsAreOfWhatIsThere) {

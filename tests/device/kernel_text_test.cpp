@@ -15,8 +15,18 @@ namespace fs = std::filesystem;
 namespace {
 
 // A plugin that is this test program, so that files beside its library are files beside the test.
-const rt_accel kAccel = {sizeof(rt_accel),           0,       nullptr, {"watched_types.h", "compiled types\n"},
-                         {"watched.cl", "compiled"}, nullptr, nullptr, nullptr};
+const rt_accel kAccel = {sizeof(rt_accel),
+                         0,
+                         nullptr,
+                         {"watched_types.h", "compiled types\n"},
+                         {"watched.cl", "compiled"},
+                         nullptr,
+                         nullptr,
+                         nullptr,
+                         0,
+                         0,
+                         0,
+                         0};
 const rt_plugin kPlugin = {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, 0,      "watched", "Watched", "1",
                            nullptr,        nullptr,           &kAccel,         nullptr};
 

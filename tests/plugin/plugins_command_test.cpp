@@ -50,6 +50,9 @@ TEST_F(PluginsCommand, JsonListsEveryLibrary) {
     EXPECT_EQ(loaded["name"], "A sound plugin");
     EXPECT_EQ(loaded["version"], "1.0");
     EXPECT_TRUE(loaded["reference"].is_null());
+    EXPECT_EQ(loaded["capabilities"], nlohmann::json({"streams", "splits_incoherent"}));
+    EXPECT_EQ(loaded["merit"], nlohmann::json({{"cpu", 0.25}, {"gpu", 0}}));
+    EXPECT_EQ(loaded["ray_cost"], "linear");
     ASSERT_EQ(loaded["parameters"].size(), 1u);
     const nlohmann::json expected = {{"key", "max_leaf"},
                                      {"label", "Max leaf size"},
@@ -63,9 +66,10 @@ TEST_F(PluginsCommand, JsonListsEveryLibrary) {
     EXPECT_EQ(shadowed["status"], "shadowed");
     EXPECT_EQ(refused["status"], "refused");
     EXPECT_EQ(refused["path"], scratch_.path("p/c.so"));
-    EXPECT_NE(refused["why"].get<std::string>().find("ABI version 2"), std::string::npos);
+    EXPECT_NE(refused["why"].get<std::string>().find("ABI version 3"), std::string::npos);
     EXPECT_FALSE(refused.contains("id"));
     EXPECT_EQ(importer["kind"], "importer");
+    EXPECT_FALSE(importer.contains("merit"));
     EXPECT_EQ(importer["extensions"], nlohmann::json({"shape"}));
 }
 
@@ -78,7 +82,8 @@ TEST_F(PluginsCommand, TextSaysTheSame) {
     const std::string text = output(false);
     for (const char* words :
          {"accel     sound  (A sound plugin, 1.0)", "max_leaf=4", "primitives in a leaf, at most", "1 to 16", "needs a rebuild",
-          "SHADOWED", "REFUSED", "ABI version 2, this host speaks 1", "files: .shape"})
+          "capabilities: streams, splits_incoherent", "merit: 0.25 on a CPU, not measured on a GPU; a ray's cost is linear",
+          "SHADOWED", "REFUSED", "ABI version 3, this host speaks 2", "files: .shape"})
         EXPECT_NE(text.find(words), std::string::npos) << words << "\nin:\n" << text;
     for (const char* file : {"p/a.so", "p/b.so", "p/c.so", "p/d.so"})
         EXPECT_NE(text.find(scratch_.path(file)), std::string::npos) << file;

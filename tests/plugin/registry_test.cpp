@@ -110,10 +110,10 @@ TEST_F(Registry, ARefusedLibraryIsListedAndLeavesItsIdFree) {
     const std::vector<PluginRecord> records = ours(registry);
     ASSERT_EQ(records.size(), 3u);
     EXPECT_EQ(records[0].plugin, nullptr);
-    EXPECT_NE(records[0].why.find("ABI version 2"), std::string::npos);
+    EXPECT_NE(records[0].why.find("ABI version 3"), std::string::npos);
     EXPECT_EQ(records[1].plugin, nullptr);
     EXPECT_EQ(registry.accel("sound"), records[2].plugin);
-    EXPECT_TRUE(warned(bad + ": ABI version 2"));
+    EXPECT_TRUE(warned(bad + ": ABI version 3"));
     EXPECT_TRUE(warned(text + ": "));
 }
 

@@ -102,7 +102,13 @@ static_assert(kSlots[0].elem_bytes == 48);
 constexpr const char* kChoices[] = {"one", "two", "three", nullptr};
 constexpr rt_param kParams[] = {rt::enum_param("which", "Which", "of three", kChoices, 2)};
 static_assert(kParams[0].min == 0 && kParams[0].max == 2 && kParams[0].def == 2);
-constexpr rt_accel kAccel = {sizeof(rt_accel), 1, kSlots, kFiles[0], kFiles[1], nullptr, nullptr, nullptr};
+constexpr rt_accel kAccel =
+    rt::accel(kSlots, kFiles[0], kFiles[1], nullptr, nullptr,
+              rt::Traits().can(RT_TRAVERSES_STEPS).can(RT_TRAVERSES_WARPS).merit(0.5f, 2).tests_everything());
+static_assert(kAccel.struct_bytes == sizeof(rt_accel) && kAccel.slot_count == 1 && kAccel.slots == kSlots && !kAccel.refit);
+static_assert(kAccel.types.text == kFiles[0].text && kAccel.traverse.text == kFiles[1].text);
+static_assert(kAccel.capabilities == (RT_TRAVERSES_STEPS | RT_TRAVERSES_WARPS) && kAccel.merit_cpu == 0.5f &&
+              kAccel.merit_gpu == 2 && kAccel.ray_cost == RT_RAY_COST_LINEAR);
 constexpr rt_plugin kPlugin = rt::accel_plugin("a", "A", "1", nullptr, kParams, kAccel);
 static_assert(kPlugin.abi_version == RT_ABI_VERSION && kPlugin.param_count == 1 && kPlugin.accel == &kAccel &&
               !kPlugin.importer);

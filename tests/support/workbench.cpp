@@ -28,8 +28,8 @@ std::vector<std::string> Workbench::accels() const {
 
 std::vector<std::string> Workbench::fast_accels() const {
     std::vector<std::string> ids;
-    for (const std::string& id : accels())
-        if (id != "linear") ids.push_back(id);
+    for (const rt_plugin* plugin : plugins_.accels())
+        if (plugin->accel->ray_cost != RT_RAY_COST_LINEAR) ids.push_back(plugin->id);
     return ids;
 }
 

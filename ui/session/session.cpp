@@ -12,6 +12,7 @@
 #include "base/log.hpp"
 #include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
+#include "render/accel/accel_choice.hpp"
 #include "ui/viewport/camera_control.hpp"
 
 namespace clarity {
@@ -91,6 +92,8 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
                }},
               wake) {
     desired.main = {options.device, options.settings};
+    if (desired.main.settings.accel.empty())
+        choose_accel(plugins_, default_accel(plugins_, options.device), desired.main.settings);
     if (desired.main.settings.accel_params.empty())
         if (const rt_plugin* accel = plugins_.accel(desired.main.settings.accel))
             desired.main.settings.accel_params = default_parameters(*accel);

@@ -112,7 +112,7 @@ class CaseRunner {
         }
         describe(row, fixture_.device(device));
         describe(row, settings);
-        if (settings.accel == "linear" && row.primitives > kTryEverything) {
+        if (plugin.accel->ray_cost == RT_RAY_COST_LINEAR && row.primitives > kTryEverything) {
             row.status = RowStatus::skipped;
             row.why = "tests every primitive: " + std::to_string(row.primitives) + " would take it minutes";
             return;

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
+#include "render/accel/accel_choice.hpp"
 
 namespace clarity {
 namespace {
@@ -98,7 +99,8 @@ class Planner {
     }
 
     // The structure that a suite about something else uses.
-    std::string main_accel() const { return request_.accels.empty() ? Settings().accel : request_.accels.front(); }
+    std::string main_accel() const { return request_.accels.empty() ? cpu_accel() : request_.accels.front(); }
+    std::string cpu_accel() const { return best_accel(plugins_, DeviceKind::cpu).id; }
 
     std::vector<Variant> every_accel() const {
         std::vector<Variant> variants;
@@ -107,6 +109,19 @@ class Planner {
         else
             for (const rt_plugin* plugin : plugins_.accels()) variants.push_back({plugin->id, plugin->id, {}, false});
         return variants;
+    }
+
+    std::vector<Variant> best_on_gpus(size_t count) const {
+        std::vector<Variant> variants;
+        for (const rt_plugin* plugin : accels_by_merit(plugins_, DeviceKind::gpu))
+            if (variants.size() < count) variants.push_back({plugin->id, plugin->id, {}, false});
+        return variants;
+    }
+
+    // An unknown structure does not: its rows say that it is unknown.
+    bool tests_everything(const Variant& variant) const {
+        const rt_plugin* plugin = plugins_.accel(variant.accel.substr(0, variant.accel.find(',')));
+        return plugin && plugin->accel->ray_cost == RT_RAY_COST_LINEAR;
     }
 
     void limit(double seconds) { suite_.time_limit_s += seconds; }
@@ -199,17 +214,18 @@ class Planner {
                 for (const char* measure : {"build", "primary", "shadow", "diffuse", "frame"}) {
                     BenchCase& c = add_case("scale", scene, measure, measure);
                     for (const Variant& variant : every_accel())
-                        if (variant.accel.substr(0, variant.accel.find(',')) != "linear") c.variants.push_back(variant);
+                        if (!tests_everything(variant)) c.variants.push_back(variant);
                     if (request_.baselines && c.measure != "frame") c.baseline_qualities = {"medium"};
                 }
         }
     }
 
-    // What a model costs in memory and speed once it outgrows caches: a GPU's two structures, or those that are asked for.
+    // What a model costs in memory and speed once it outgrows caches: the two best structures of GPUs, or those that are asked
+    // for.
     void large() {
         limit(1200);
         std::vector<Variant> variants = every_accel();
-        if (request_.accels.empty()) variants = {{"bvh4", "bvh4", {}, false}, {"cwbvh", "cwbvh", {}, false}};
+        if (request_.accels.empty()) variants = best_on_gpus(2);
         std::vector<size_t> scenes;
         if (request_.files.empty()) {
             std::vector<BenchScene> whole = catalog_.shared();
@@ -240,7 +256,7 @@ class Planner {
         for (const size_t scene : scenes)
             for (const char* measure : {"build", "primary", "shadow", "diffuse", "whitted"}) {
                 BenchCase& c = add_case("cpu", scene, measure, measure);
-                c.variants = {{Settings().accel, Settings().accel, {}, false}};
+                c.variants = {{cpu_accel(), cpu_accel(), {}, false}};
                 if (!request_.accels.empty()) c.variants = every_accel();
                 if (c.measure == "whitted")
                     for (Variant& variant : c.variants) variant.settings.emplace_back("depth", "5");

@@ -28,16 +28,45 @@ void choose_accel(const PluginRegistry& plugins, const std::string& text, Settin
     for (const auto& [key, value] : choice.settings) set_parameter(*plugin, settings.accel_params, key, value);
 }
 
+std::vector<const rt_plugin*> accels_by_merit(const PluginRegistry& plugins, DeviceKind kind) {
+    const auto merit = [kind](const rt_plugin* plugin) {
+        return kind == DeviceKind::cpu ? plugin->accel->merit_cpu : plugin->accel->merit_gpu;
+    };
+    std::vector<const rt_plugin*> accels = plugins.accels();  // by id
+    std::stable_sort(accels.begin(), accels.end(), [&](const rt_plugin* a, const rt_plugin* b) { return merit(a) > merit(b); });
+    return accels;
+}
+
+const rt_plugin& best_accel(const PluginRegistry& plugins, DeviceKind kind) {
+    const std::vector<const rt_plugin*> accels = accels_by_merit(plugins, kind);
+    if (accels.empty()) throw Error(Exit::usage, "no acceleration structure: " + accel_names(plugins));
+    return *accels.front();
+}
+
+DeviceKind kind_of(const std::vector<DeviceInfo>& devices) {
+    const auto is_cpu = [](const DeviceInfo& info) { return info.cpu; };
+    return std::all_of(devices.begin(), devices.end(), is_cpu) ? DeviceKind::cpu : DeviceKind::gpu;
+}
+
 std::string default_accel(const PluginRegistry& plugins, const std::string& device) {
-    const std::string otherwise = Settings().accel, on_gpu = "bvh4";
-    if (!plugins.accel(on_gpu)) return otherwise;
+    DeviceKind kind = DeviceKind::cpu;
     try {
-        const std::vector<DeviceInfo> devices = choose_devices(device);
-        const auto is_cpu = [](const DeviceInfo& info) { return info.cpu; };
-        return std::all_of(devices.begin(), devices.end(), is_cpu) ? otherwise : on_gpu;
+        kind = kind_of(choose_devices(device));
     } catch (const Error&) {
-        return otherwise;  // whoever opens the device says what is wrong with it
+        // Opening the device says what is wrong with it.
     }
+    return best_accel(plugins, kind).id;
+}
+
+const rt_plugin& resolve_accel(const PluginRegistry& plugins, DeviceKind kind, Settings& settings) {
+    if (settings.accel.empty()) {
+        const rt_plugin& best = best_accel(plugins, kind);
+        settings.accel = best.id;
+        settings.accel_params = default_parameters(best);
+        return best;
+    }
+    if (const rt_plugin* plugin = plugins.accel(settings.accel)) return *plugin;
+    throw Error(Exit::usage, "no acceleration structure `" + settings.accel + "`; " + accel_names(plugins));
 }
 
 }  // namespace clarity

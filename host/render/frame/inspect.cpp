@@ -69,12 +69,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         throw Error(Exit::usage, "there is no pixel " + std::to_string(x) + "," + std::to_string(y) + " in a picture of " +
                                      std::to_string(width) + "x" + std::to_string(height));
     const Layout& layout = prepared.layout;
-    bool fresh = false;
-    const KernelSource source =
-        assemble_kernel(prepared.settings, layout, KernelKind::inspect, features_of(*prepared.scene, prepared.accel->scene),
-                        *prepared.accel->plugin, prepared.accel->defines);
-    const auto program =
-        im.programs.get(source, KernelKind::inspect, std::string("inspector with accel ") + prepared.accel->plugin->id, &fresh);
+    const auto program = im.programs.get(kernel_for(prepared, KernelKind::inspect));
     return wrap_cl_errors(*im.device, "inspecting a pixel", [&] {
         const cl::Context& context = im.device->context();
         im.view.write(im.queue, *prepared.scene, {make_frame(view, settings, layout, *prepared.accel, 0)}, view);

@@ -1,6 +1,7 @@
 // preparer.cpp -- what is slow between settings and frames, and what of it can be kept.
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "render/accel/accel_choice.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/device_scene.hpp"
@@ -31,7 +32,7 @@ Settings resolve(const Settings& asked, const Device& device, const Scene& scene
     if (s.tracer == "auto") s.tracer = tracer_for(device, scene);
     if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
     if (s.packet_w == 0)
-        s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a bundle: cl/lanes/packet_stream.h
+        s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a packet stream: cl/lanes/packet_stream.h
     return s;
 }
 
@@ -126,23 +127,17 @@ void Preparer::open_device(std::shared_ptr<Device> device) {
     programs_ = std::make_unique<ProgramCache>(device_);
 }
 
-const rt_plugin& Preparer::plugin_of(const Settings& settings) const {
-    if (const rt_plugin* plugin = plugins_.accel(settings.accel)) return *plugin;
-    std::string known;
-    for (const rt_plugin* p : plugins_.accels()) known += (known.empty() ? "" : ", ") + std::string(p->id);
-    throw Error(Exit::usage, "no acceleration structure `" + settings.accel + "`; there " +
-                                 (known.empty() ? "are none: `clarity plugins` says why" : "are " + known));
-}
-
 std::shared_ptr<const AccelData> Preparer::build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                  Progress& progress) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return build_or_last(scene, settings, progress);
+    Settings resolved = settings;
+    resolve_accel(plugins_, kind_of({info_}), resolved);
+    return build_or_last(scene, resolved, progress);
 }
 
 std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                          Progress& progress) {
-    const rt_plugin& plugin = plugin_of(settings);
+    const rt_plugin& plugin = *plugins_.accel(settings.accel);
     const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
     if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->params == params)
         return last_->accel;
@@ -159,12 +154,13 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
                                                   Progress& progress, std::shared_ptr<const AccelData> built) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose it anew");
-    const rt_plugin* plugin = &plugin_of(settings);
     auto next = std::make_shared<Prepared>();
     next->scene = scene;
     next->settings = resolve(settings, *device_, *scene);
+    const rt_plugin* plugin = &resolve_accel(plugins_, kind_of({info_}), next->settings);
+    next->layout = make_layout(next->settings, device_->info().cpu);
     try {
-        next->accel = built ? std::move(built) : build_or_last(scene, settings, progress);
+        next->accel = built ? std::move(built) : build_or_last(scene, next->settings, progress);
         if (last_ && last_->scene == scene && last_->accel == next->accel) next->on_device = last_->on_device;
         if (!next->on_device) {
             progress.stage("uploading the scene");
@@ -175,14 +171,9 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         if (progress.cancelled()) throw Cancelled();
         progress.stage("compiling kernels");
         progress.report(-1);
-        const KernelKind kind = kind_for(find_aov(next->settings.aov));
         const auto start = std::chrono::steady_clock::now();
-        next->layout = make_layout(next->settings, device_->info().cpu);
-        const KernelSource source = assemble_kernel(next->settings, next->layout, kind, features_of(*scene, next->accel->scene),
-                                                    *plugin, next->accel->defines);
         bool fresh = false;
-        const std::string what = "tracer " + next->settings.tracer + " with accel " + plugin->id;
-        auto program = programs_->get(source, kind, what, &fresh);
+        const auto program = programs_->get(kernel_for(*next, kind_for(find_aov(next->settings.aov))), &fresh);
         next->program = program;
         if (fresh) warm_up(device_, *program, *next);
         next->compile_ms = fresh ? ms_since(start) : 0;

@@ -36,8 +36,8 @@ struct Prepared {
     std::shared_ptr<const AccelData> accel;
     std::shared_ptr<const DeviceScene> on_device;
     std::shared_ptr<const TraceProgram> program;
-    Settings settings;                     // as asked for, with 0 = automatic resolved
-    Layout layout;                         // that follows from these settings on this device
+    Settings settings;                     // as asked for, with what was automatic resolved
+    Layout layout;                         // that follows from them
     double compile_ms = 0, upload_ms = 0;  // 0 if shared with an earlier one
     bool compile_cached = false;
 };
@@ -65,7 +65,7 @@ class Preparer {
     void open_device(std::shared_ptr<Device> device);
 
  private:
-    const rt_plugin& plugin_of(const Settings& settings) const;
+    // settings: of a structure that is there.
     std::shared_ptr<const AccelData> build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                    Progress& progress);
     const PluginRegistry& plugins_;

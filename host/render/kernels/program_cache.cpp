@@ -9,13 +9,13 @@ namespace {
 // A picture's kernel holds two traversals and shading, and would take 145 to 160 registers of a work-item, so that 12 warps
 // share one of an H200's multiprocessors. With 128 there are 16, and 1.02 to 1.16 times the frames; 112 and 144 are worse.
 std::string options_for(const DeviceInfo& info, const KernelSource& source) {
-    return source.options + (source.fewer_registers && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "");
+    return source.options + (source.limit_registers && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "");
 }
 
 }  // namespace
 
-std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, KernelKind kind, const std::string& what,
-                                                bool* fresh) {
+std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool* fresh) {
+    if (fresh) *fresh = false;
     // Programs of texts that were edited since would only take room: a megabyte each on PoCL.
     if (const uint64_t revision = kernel_text_revision(); revision != text_revision_) {
         entries_.clear();
@@ -25,19 +25,15 @@ std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, Kern
     for (auto it = entries_.begin(); it != entries_.end(); ++it)
         if (it->key == key) {
             entries_.splice(entries_.begin(), entries_, it);
-            *fresh = false;
             return it->program;
         }
     ++compiled_;
-    const BuildResult built = build_program(*device_, source.text, options_for(device_->info(), source), what);
-    auto program = std::make_shared<TraceProgram>();
-    program->program = built.program;
-    program->entry = source.entry;
-    program->kind = kind;
+    const BuildResult built = build_program(*device_, source.text, options_for(device_->info(), source), source.what);
+    auto program = std::make_shared<TraceProgram>(*source.row, built.program);
     program->compile_ms = built.ms;
     entries_.push_front({key, program});
     if (entries_.size() > kKept) entries_.pop_back();
-    *fresh = true;
+    if (fresh) *fresh = true;
     return program;
 }
 

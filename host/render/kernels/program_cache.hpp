@@ -13,23 +13,23 @@ namespace clarity {
 
 class TraceProgram {
  public:
+    TraceProgram(const KernelRow& table_row, cl::Program compiled) : row(table_row), program(std::move(compiled)) {}
+    const KernelRow& row;  // of the kernel that traces; a program may have others besides
     cl::Program program;
-    std::string entry;
-    KernelKind kind = KernelKind::color;
     double compile_ms = 0;
     // Whether it traces more than camera rays, and so takes buffers for counters and distances.
-    bool has_generations() const { return kind == KernelKind::color || kind == KernelKind::generations; }
-    bool is_wavefront() const { return entry == kWavefrontEntry; }
+    bool has_generations() const { return row.kind == KernelKind::color || row.kind == KernelKind::generations; }
+    bool is_wavefront() const { return row.has(kFrameQueues); }
     // Kernel objects hold arguments, so each user makes its own.
-    cl::Kernel kernel() const { return cl::Kernel(program, entry.c_str()); }
+    cl::Kernel kernel() const { return cl::Kernel(program, row.entry); }
 };
 
 // Programs by source and options, the most recently used ones; toggling a setting back is free.
 class ProgramCache {
  public:
     explicit ProgramCache(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // fresh: whether it was compiled now.
-    std::shared_ptr<TraceProgram> get(const KernelSource& source, KernelKind kind, const std::string& what, bool* fresh);
+    // fresh, if given: whether it was compiled now. Throws Error(kernel_build_failed).
+    std::shared_ptr<TraceProgram> get(const KernelSource& source, bool* fresh = nullptr);
     std::shared_ptr<Device> device() const { return device_; }
     unsigned compiled() const { return compiled_; }
 

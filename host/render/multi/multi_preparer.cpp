@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "render/accel/accel_choice.hpp"
 
 namespace clarity {
 
@@ -55,13 +56,15 @@ const std::shared_ptr<const Prepared>* MultiPrepared::of(const std::shared_ptr<D
 }
 
 MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devices)
-    : infos_(infos_of(devices)), devices_(devices) {
+    : plugins_(plugins), infos_(infos_of(devices)), devices_(devices) {
     for (const auto& device : devices) preparers_.push_back(std::make_unique<Preparer>(plugins, device));
 }
 
-std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
+std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<const Scene> scene, const Settings& asked,
                                                             Progress& progress) {
     auto prepared = std::make_shared<MultiPrepared>();
+    Settings settings = asked;
+    resolve_accel(plugins_, kind_of(infos_of(devices_)), settings);
     if (preparers_.size() == 1) {
         prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress)}};
         return prepared;

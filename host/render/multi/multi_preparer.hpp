@@ -42,6 +42,7 @@ class MultiPreparer {
     void open_devices(const Devices& devices);
 
  private:
+    const PluginRegistry& plugins_;
     std::vector<std::unique_ptr<Preparer>> preparers_;
     const std::vector<DeviceInfo> infos_;  // one for each preparer
     Devices devices_;                      // the same; nullptr: closed

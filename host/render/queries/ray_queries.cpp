@@ -12,15 +12,16 @@ bool votes(const DeviceInfo& info, const Settings& settings) {
     return (info.nvidia && !info.pocl) || settings.portable;
 }
 
-// Of a query, the plain one first.
-std::vector<KernelKind> ways_for(const rt_plugin& accel, const Layout& layout, bool votes, RayQuery query) {
+// Kernels that answer a query, the plain one first. The others need capabilities of the structure.
+std::vector<KernelKind> kinds_for(const rt_plugin& accel, const Layout& layout, bool votes, RayQuery query) {
     if (query.count) return {KernelKind::counted_rays};
-    std::vector<KernelKind> ways{KernelKind::rays};
-    if (layout.lanes > 1 || layout.cpu) return ways;
-    if (requeues_long_rays(accel)) ways.push_back(KernelKind::requeued_rays);
-    if (traverses_by_steps(accel) && !query.any_hit) ways.push_back(KernelKind::dynamic_fetch);
-    if (traverses_by_warps(accel) && votes) ways.insert(ways.end(), {KernelKind::warp_rays, KernelKind::warp_pairs});
-    return ways;
+    std::vector<KernelKind> kinds{KernelKind::rays};
+    if (layout.lanes > 1 || layout.cpu) return kinds;
+    for (const KernelRow& row : kernel_table())
+        if (row.needs != 0 && (row.needs & ~accel.accel->capabilities) == 0 && (votes || !row.has(kVotes)) &&
+            (!query.any_hit || !row.has(kNearestOnly)) && kinds.size() < Autotuner::kMost)
+            kinds.push_back(row.kind);
+    return kinds;
 }
 
 }  // namespace
@@ -38,11 +39,11 @@ LaunchTimes RayQueries::trace_at_once(const Prepared& prepared, const TraceProgr
     kernel.setArg(at++, in);
     kernel.setArg(at++, out);
     view_.bind(*prepared.on_device, kernel, overflows_.bind(kernel, at, prepared.settings.debug));
-    const unsigned each = warp_rays_each(program.kind);
+    const unsigned each = program.row.rays_per_item;
     const size_t in_group = each ? layout.local_size() * each : size_t(layout.group_packets()) * layout.blocks();
     const size_t groups = (blocks + in_group - 1) / in_group;
-    return launchers_[program.kind].run(device_->queue(), kernel, first_group, static_cast<unsigned>(groups),
-                                        layout.local_size(), [] {});
+    return launchers_[program.row.kind].run(device_->queue(), kernel, first_group, static_cast<unsigned>(groups),
+                                            layout.local_size(), [] {});
 }
 
 double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits) {
@@ -51,7 +52,6 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         tuning_ = {};
         if (rays.ray_count() == 0) return 0.0;
         const Layout& layout = prepared.layout;
-        bool fresh = false;
         if (rays.lanes() != layout.lanes)
             throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
                                           " lanes and the program has " + std::to_string(layout.lanes) + ": pack them anew");
@@ -72,16 +72,12 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         }
         if (packing_ != rays.packing()) {
             packing_ = rays.packing();
-            ways_ = ways_for(*prepared.accel->plugin, layout, votes(device_->info(), prepared.settings), query);
-            way_ = Autotuner(static_cast<unsigned>(ways_.size()));
+            kinds_ = kinds_for(*prepared.accel->plugin, layout, votes(device_->info(), prepared.settings), query);
+            way_ = Autotuner(static_cast<unsigned>(kinds_.size()));
         }
-        const KernelKind kind = ways_[way_.way()];
+        const KernelKind kind = kinds_[way_.way()];
+        const auto program = programs_.get(kernel_for(prepared, kind));
         tuning_ = {way_.way(), way_.trying(), false};
-        const KernelSource source =
-            assemble_kernel(prepared.settings, layout, kind, features_of(*prepared.scene, prepared.accel->scene),
-                            *prepared.accel->plugin, prepared.accel->defines);
-        const auto program =
-            programs_.get(source, kind, std::string("ray queries with accel ") + prepared.accel->plugin->id, &fresh);
         cl::CommandQueue& queue = device_->queue();
         view_.write(queue, *prepared.scene, {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
         const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));

@@ -50,7 +50,7 @@ class RayQueries {
     Asked last_;
     // The fastest way is that of the same rays: mirrored ones may want another than diffuse ones.
     uint64_t packing_ = 0;
-    std::vector<KernelKind> ways_;
+    std::vector<KernelKind> kinds_;
     Autotuner way_;
     RayTuning tuning_;
     OverflowCounter overflows_;  // of debug programs

@@ -6,6 +6,7 @@
 #include "base/output_file.hpp"
 #include "base/read_file.hpp"
 #include "plugin/parameters.hpp"
+#include "render/accel/accel_choice.hpp"
 
 namespace clarity {
 namespace {
@@ -50,7 +51,8 @@ std::string preset_json(const PluginRegistry& plugins, const Preset& preset) {
     Json json;
     json["clarity_preset"] = 1;
     json["device"] = preset.device;
-    const rt_plugin& accel = *accel_of(plugins, preset.settings.accel, "preset");
+    const std::string id = preset.settings.accel.empty() ? default_accel(plugins, preset.device) : preset.settings.accel;
+    const rt_plugin& accel = *accel_of(plugins, id, "preset");
     json["accel"] = {{"id", accel.id}};
     for (size_t i = 0; i < preset.settings.accel_params.size(); ++i) {
         const Word word = parameter_word(accel, preset.settings.accel_params, i);
@@ -84,6 +86,7 @@ Preset parse_preset(const PluginRegistry& plugins, const std::string& text, cons
         if (json.contains("accel")) accel = words_of(json["accel"], name, "accel");
         for (const Word& word : accel)
             if (word.key == "id") preset.settings.accel = word.value;
+        if (preset.settings.accel.empty()) preset.settings.accel = default_accel(plugins, preset.device);
         const rt_plugin& plugin = *accel_of(plugins, preset.settings.accel, name);
         preset.settings.accel_params = default_parameters(plugin);
         for (const Word& word : accel)
@@ -119,13 +122,15 @@ std::string render_command(const PluginRegistry& plugins, const Preset& preset, 
     for (const std::string& file : files) line += " " + shell_word(file);
     line += " -o " + shell_word(output);
     if (!preset.device.empty()) line += " --device " + shell_word(preset.device);
-    const rt_plugin& accel = *accel_of(plugins, preset.settings.accel, "the command line");
+    const std::string usual_accel = default_accel(plugins, preset.device);
+    const std::string id = preset.settings.accel.empty() ? usual_accel : preset.settings.accel;
+    const rt_plugin& accel = *accel_of(plugins, id, "the command line");
     std::string structure = accel.id;
     const ParameterValues usual = default_parameters(accel);
     for (size_t i = 0; i < preset.settings.accel_params.size() && i < usual.size(); ++i)
         if (preset.settings.accel_params[i] != usual[i])
             structure += "," + parameter_text(accel, preset.settings.accel_params, i);
-    if (structure != defaults.accel) line += " --accel " + shell_word(structure);
+    if (structure != usual_accel) line += " --accel " + shell_word(structure);
     for (const Setting& row : settings_table())
         if (const std::string value = row.get(preset.settings); value != row.get(defaults))
             line += " --set " + shell_word(row.key + "=" + value);

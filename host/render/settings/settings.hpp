@@ -11,7 +11,7 @@ enum class Effect { frame, recompile, rebuild };
 
 struct Settings {
     // How the scene is held.
-    std::string accel = "bvh8";        // id of an accel plugin; see default_accel()
+    std::string accel;                 // id of an accel plugin; empty: the best for the device, see accel_choice.hpp
     std::vector<double> accel_params;  // in the order its plugin declares; empty: defaults
     // How it is traced.
     std::string tracer = "auto";

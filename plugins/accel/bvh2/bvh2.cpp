@@ -77,9 +77,8 @@ constexpr rt_cl_file kFiles[] = {
 #include "bvh2.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<bvh2_node>("bvh2_nodes", "bvh2_node")};
-constexpr rt_accel kAccel = {
-    sizeof(rt_accel),    1,      kSlots, rt::file(kFiles, "bvh2_types.h"), rt::file(kFiles, "bvh2.cl"), rt::guarded<build>,
-    rt::guarded<levels>, nullptr};
+constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "bvh2_types.h"), rt::file(kFiles, "bvh2.cl"), rt::guarded<build>,
+                                      rt::guarded<levels>, rt::Traits().merit(1, 1));
 static_assert(sizeof(bvh2_node) == 64, "a node is a cache line");
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 

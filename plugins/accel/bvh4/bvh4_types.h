@@ -31,7 +31,6 @@ typedef struct bvh4_node {
 #ifdef __OPENCL_VERSION__
 #if RT_LANES == 1
 
-#define RT_REQUEUES_LONG_RAYS
 #ifdef RT_STEP_BUDGET
 #define BVH4_LONG_STACK (BVH4_STACK + 512u)
 typedef struct rt_requeue_scratch {
@@ -40,8 +39,6 @@ typedef struct rt_requeue_scratch {
     uint nearest; /* bits of the distance; any hit: 0 once there is one */
 } rt_requeue_scratch;
 #endif
-
-#define RT_TRAVERSES_BY_WARPS
 
 #define BVH4_DONE 0xFFFFFFFFu /* in place of a child: the stack is empty */
 
@@ -139,7 +136,6 @@ RT_INLINE void bvh4_order(float *t0, uint *child0, float *t1, uint *child1)
 #define BVH4_ENTRY(t, child) ((ulong)as_uint(t) << 32 | (child))
 #define BVH4_LOWEST BVH4_ENTRY(-INFINITY, BVH4_DONE)
 
-#define RT_TRAVERSES_BY_STEPS
 typedef ulong rt_step_entry;
 typedef bvh4_ray rt_step_ray;
 #define RT_STEP_STACK_SIZE (BVH4_STACK + 1u)

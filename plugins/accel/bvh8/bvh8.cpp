@@ -21,6 +21,7 @@ constexpr rt_slot kSlots[] = {rt::slot<bvh8_node>("bvh8_nodes", "bvh8_node")};
 static_assert(sizeof(bvh8_node) == 224, "rows are aligned vectors");
 constexpr const char *kId = "bvh8", *kName = "8-wide BVH (binned SAH)", *kStack = "BVH8_STACK";
 constexpr rt_cl_file kTypes = rt::file(kFiles, "bvh8_types.h"), kTraversal = rt::file(kFiles, "bvh8.cl");
+constexpr rt::Traits kTraits = rt::Traits().can(RT_TRAVERSES_STREAMS | RT_SPLITS_INCOHERENT).merit(1.4f, 1.17f);
 
 // How a CPU traces packets whose rays part.
 constexpr int kIncoherent = kOwnParams;
@@ -65,7 +66,7 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     return RT_OK;
 }
 
-constexpr rt_accel kAccel = {sizeof(rt_accel), 1, kSlots, kTypes, kTraversal, rt::guarded<build>, rt::guarded<levels>, nullptr};
+constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build>, rt::guarded<levels>, kTraits);
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 
 }  // namespace

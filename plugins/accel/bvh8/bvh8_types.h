@@ -34,7 +34,6 @@ typedef struct bvh8_node {
 #define BVH8_EMPTY BVH8_MAKE_LEAF(0u, 0u)
 
 #ifdef __OPENCL_VERSION__
-#define RT_TRAVERSES_STREAMS
 /* Mask to bits, lane 0 in bit 0: as rt_bits of lanes.h, for eight children instead of RT_LANES rays. */
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && defined(__AVX__)
 #define BVH8_BITS(m) ((uint)__builtin_ia32_movmskps256(as_float8(m)))
@@ -81,9 +80,9 @@ RT_INLINE void bvh8_prefetch(const global bvh8_node *nodes, const global rt_pack
 #if RT_LANES > 1
 /* Whether a packet whose rays start far apart is parted. Where rays that part go together it gains nothing. */
 #if BVH8_SINGLE
-#define RT_SPLITS_INCOHERENT
 #define BVH8_INCOHERENT(ray, rest) ((rest) != 0u && (ray)->incoherent)
 #else
+#undef RT_SPLITS_INCOHERENT /* packets stay together in this tree, so nobody needs to find out */
 #define BVH8_INCOHERENT(ray, rest) 0
 #endif
 /* Octants of directions that a packet may be split into: where it has more, its rays have too little in common. */

@@ -67,7 +67,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     return RT_OK;
 }
 
-constexpr rt_accel kAccel = {sizeof(rt_accel), 1, kSlots, kTypes, kTraversal, rt::guarded<build>, rt::guarded<levels>, nullptr};
+constexpr rt_accel kAccel =
+    rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build>, rt::guarded<levels>, rt::Traits().merit(0.5f, 1.35f));
 
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 

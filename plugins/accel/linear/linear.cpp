@@ -30,9 +30,8 @@ constexpr rt_cl_file kFiles[] = {
 };
 constexpr rt_slot kSlots[] = {rt::slot<linear_run>("linear_runs", "linear_run")};
 // It has no bounding volumes, hence no levels; and nothing to refit.
-constexpr rt_accel kAccel = {
-    sizeof(rt_accel),   1,       kSlots, rt::file(kFiles, "linear_types.h"), rt::file(kFiles, "linear.cl"),
-    rt::guarded<build>, nullptr, nullptr};
+constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "linear_types.h"), rt::file(kFiles, "linear.cl"),
+                                      rt::guarded<build>, nullptr, rt::Traits().tests_everything());
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 
 }  // namespace

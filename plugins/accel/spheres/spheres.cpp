@@ -185,14 +185,8 @@ constexpr rt_cl_file kFiles[] = {
 #include "spheres.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<spheres_node>("spheres_nodes", "spheres_node")};
-constexpr rt_accel kAccel = {sizeof(rt_accel),
-                             1,
-                             kSlots,
-                             rt::file(kFiles, "spheres_types.h"),
-                             rt::file(kFiles, "spheres.cl"),
-                             rt::guarded<build>,
-                             rt::guarded<levels>,
-                             nullptr};
+constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "spheres_types.h"), rt::file(kFiles, "spheres.cl"),
+                                      rt::guarded<build>, rt::guarded<levels>, rt::Traits().merit(0.3f, 0));
 static_assert(sizeof(spheres_node) == 32, "two nodes to a cache line");
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 

@@ -95,8 +95,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
 constexpr rt_slot kSlots[] = {rt::slot<Run>("bad_builder_runs", "uint2")};
 constexpr rt_param kParams[] = {rt::enum_param("defect", "Defect", "what the builder does wrong", kDefects, 0)};
 // Not wrapped in rt::guarded: what a careless plugin throws has to be stopped by the host.
-constexpr rt_accel kAccel = {sizeof(rt_accel), 1,      kSlots, {}, {"bad_builder.cl", "void RT_TRAVERSE() {}"}, build,
-                             nullptr,          nullptr};
+constexpr rt_accel kAccel = rt::accel(kSlots, {}, {"bad_builder.cl", "void RT_TRAVERSE() {}"}, build, nullptr, {});
 
 }  // namespace
 

@@ -34,6 +34,10 @@
 #ifndef BUILD
 #define BUILD build
 #endif
+/* capabilities, merit_cpu, merit_gpu, ray_cost */
+#ifndef TRAITS
+#define TRAITS RT_TRAVERSES_STREAMS | RT_SPLITS_INCOHERENT, 0.25f, 0, RT_RAY_COST_LINEAR
+#endif
 #ifndef SLOTS
 #define SLOTS \
     { "sound_nodes", "uint", sizeof(rt_u32) }
@@ -66,7 +70,7 @@ static const char* const choices[] = {"fast", "good", NULL};
 static const char* const no_choices[] = {NULL};
 static const rt_param params[] = {PARAMS};
 static const rt_slot slots[] = {SLOTS};
-static const rt_accel accel = {ACCEL_BYTES, sizeof slots / sizeof slots[0], slots, {NULL, NULL}, {TRAVERSE}, BUILD, NULL, NULL};
+static const rt_accel accel = {ACCEL_BYTES, sizeof slots / sizeof slots[0], slots, {NULL, NULL}, {TRAVERSE}, BUILD, NULL, NULL, TRAITS};
 static const char* const extensions[] = {"sound", NULL};
 static const rt_importer importer = {IMPORTER_BYTES, extensions, NULL, load};
 /* Not every defect uses every part. */

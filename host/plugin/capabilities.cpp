@@ -1,0 +1,21 @@
+#include "plugin/capabilities.hpp"
+
+namespace clarity {
+
+const std::vector<Capability>& capabilities() {
+    static const std::vector<Capability> all = {{RT_TRAVERSES_STREAMS, "streams", "RT_TRAVERSES_STREAMS"},
+                                                {RT_TRAVERSES_STEPS, "steps", "RT_TRAVERSES_STEPS"},
+                                                {RT_TRAVERSES_WARPS, "warps", "RT_TRAVERSES_WARPS"},
+                                                {RT_REQUEUES_LONG_RAYS, "requeues_long_rays", "RT_REQUEUES_LONG_RAYS"},
+                                                {RT_SPLITS_INCOHERENT, "splits_incoherent", "RT_SPLITS_INCOHERENT"}};
+    return all;
+}
+
+std::vector<std::string> capability_names(const rt_accel& accel) {
+    std::vector<std::string> names;
+    for (const Capability& capability : capabilities())
+        if (accel.capabilities & capability.bit) names.push_back(capability.name);
+    return names;
+}
+
+}  // namespace clarity

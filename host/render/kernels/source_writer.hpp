@@ -1,0 +1,31 @@
+// source_writer.hpp -- OpenCL C put together from defines and files.
+#pragma once
+#include <sstream>
+#include <string>
+
+#include "device/kernel_files.hpp"
+
+namespace clarity {
+
+class SourceWriter {
+ public:
+    void line(const std::string& text) { out_ << text << '\n'; }
+    // A number that kernels compare and compute with as an int, or as a uint.
+    void define_int(const std::string& name, unsigned value) { out_ << "#define " << name << ' ' << value << '\n'; }
+    void define_uint(const std::string& name, unsigned value) { out_ << "#define " << name << ' ' << value << "u\n"; }
+    void undef(const std::string& name) { out_ << "#undef " << name << '\n'; }
+    // #line keeps the compiler's messages at the author's file.
+    void part(const std::string& name, const std::string& text) { out_ << "#line 1 \"" << name << "\"\n" << text << '\n'; }
+    // A file of cl/, from disk in development, else the embedded text.
+    void include(const std::string& name) { part("cl/" + name, kernel_text(name)); }
+    // A plugin's file likewise.
+    void include(const rt_plugin& accel, const rt_cl_file& file) {
+        part(plugin_kernel_name(accel, file), plugin_kernel_text(accel, file));
+    }
+    std::string text() const { return out_.str(); }
+
+ private:
+    std::ostringstream out_;
+};
+
+}  // namespace clarity

@@ -1,0 +1,3 @@
+#define ABI 1
+#include "sound.h"
+PLUGIN

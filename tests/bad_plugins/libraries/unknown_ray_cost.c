@@ -1,0 +1,3 @@
+#define TRAITS 0, 1, 1, 7
+#include "sound.h"
+PLUGIN
