@@ -19,6 +19,7 @@
 #include "cli/progress_bar.hpp"
 
 namespace clarity {
+using namespace bench;
 namespace {
 
 bool is_suite(const std::string& word) {

@@ -14,7 +14,7 @@ namespace clarity {
 
 struct SceneOptions {
     std::vector<std::string> files;
-    ImportOptions import;
+    import::ImportOptions import;
 };
 
 // What render and view share.
@@ -67,7 +67,7 @@ struct BenchCommand {
     std::vector<std::string> only;
     bool breakdown = false;
     uint64_t max_triangles = 10'000'000;
-    ImportOptions import;
+    import::ImportOptions import;
     std::string text;  // of the command line
 };
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& options);

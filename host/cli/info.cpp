@@ -128,9 +128,9 @@ int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool js
     check_scene_files(options.files);
     ProgressBar progress(quiet);
     const CancelOnSignal cancel(progress);
-    ImportOptions import = options.import;
+    import::ImportOptions import = options.import;
     import.log_warnings = false;  // they are part of what is printed
-    const Scene scene = import_scene(plugins, options.files, import, progress);
+    const Scene scene = import::import_scene(plugins, options.files, import, progress);
     progress.clear();
     if (json)  // names in files need not be UTF-8; JSON must
         std::printf("%s\n", scene_json(scene, options.files).dump(2, ' ', false, Json::error_handler_t::replace).c_str());

@@ -66,7 +66,7 @@ int guarded_run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
     // The worker has limits of its own to set up before anything else runs.
-    if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import_worker_main(argc, argv);
+    if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import::import_worker_main(argc, argv);
     const int code = clarity::guarded_run(argc, argv);
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {

@@ -195,8 +195,8 @@ class RenderJob {
 
     void import(Progress& progress) {
         const auto begin = Clock::now();
-        auto scene =
-            std::make_shared<const Scene>(import_scene(plugins_, options_.scene.files, options_.scene.import, progress));
+        auto scene = std::make_shared<const Scene>(
+            import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress));
         stats_.import_ms = ms_since(begin);
         const float aspect = float(settings_.width) / float(settings_.height);
         EditedView edited;

@@ -8,7 +8,6 @@
 #endif
 
 namespace clarity {
-
 #ifdef CLARITY_HAVE_UI
 namespace {
 
@@ -27,18 +26,18 @@ int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
     const TraceWords words = read_trace_options(plugins, command.trace);
     check_scene_files(command.scene.files);
 #ifdef CLARITY_HAVE_UI
-    ViewOptions options;
+    ui::ViewOptions options;
     options.plugins = &plugins;
     options.scenes = command.scene.files;
     options.settings = words.settings;
-    if (!names_samples(command.trace)) options.settings.spp = kSamplesAtRest;
+    if (!names_samples(command.trace)) options.settings.spp = ui::kSamplesAtRest;
     options.edits = words.edits;
     options.device = words.device;
     options.camera = command.trace.camera;
     options.light = command.trace.light;
     options.import = command.scene.import;
     options.key_map = command.key_map;
-    return ui_main(options);
+    return ui::ui_main(options);
 #else
     const std::string scene = command.scene.files.empty() ? "SCENE" : command.scene.files.front();
     throw Error(Exit::usage,

@@ -8,7 +8,7 @@
 
 #include "base/error.hpp"
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 namespace fs = std::filesystem;
@@ -107,4 +107,4 @@ FileAccess::Found FileAccess::find_texture(const std::string& from, const std::s
     return found;
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

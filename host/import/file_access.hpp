@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::import {
 
 // Throws Error(import_failed) "FILE: why" for what no importer could read: missing, unreadable, a folder, a device, empty,
 // gzipped.
@@ -34,4 +34,4 @@ class FileAccess {
     std::vector<std::string> search_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -6,7 +6,7 @@
 #include "import/import_in_worker.hpp"
 #include "import/scene_builder.hpp"
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
@@ -32,4 +32,4 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
     return scene;
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -8,7 +8,7 @@
 #include "plugin/registry.hpp"
 #include "scene/scene.hpp"
 
-namespace clarity {
+namespace clarity::import {
 
 struct ImportOptions {
     bool in_process = false;                // for debugging a plugin; a crash is then ours
@@ -27,4 +27,4 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
 // Entry of the worker process (`clarity import-worker ...`, not for people); never returns to the caller's normal path.
 int import_worker_main(int argc, char** argv);
 
-}  // namespace clarity
+}  // namespace clarity::import

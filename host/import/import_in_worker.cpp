@@ -19,7 +19,7 @@
 #include "import/worker_channel.hpp"
 #include "import/worker_process.hpp"
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 constexpr double kPollSeconds = 0.02;
@@ -290,4 +290,4 @@ Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::str
     return scene;
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -2,10 +2,10 @@
 #pragma once
 #include "import/import.hpp"
 
-namespace clarity {
+namespace clarity::import {
 
 // As import_scene, whose options it obeys; the scene is as the worker left it, not yet validated.
 Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                        Progress& progress);
 
-}  // namespace clarity
+}  // namespace clarity::import

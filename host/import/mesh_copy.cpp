@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 constexpr uint64_t kMaxVertices = RT_NONE - 1;
@@ -180,4 +180,4 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
     return why;
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -8,7 +8,7 @@
 #include "scene/scene.hpp"
 #include "scene/triangulate.hpp"
 
-namespace clarity {
+namespace clarity::import {
 
 // Coordinates beyond this count as not finite: areas of boxes and their sums over all primitives still fit in a float.
 inline constexpr float kMaxCoordinate = 1e15f;
@@ -27,4 +27,4 @@ struct FaceCount {
 std::string copy_mesh(const rt_mesh& mesh, const std::vector<rt_u32>& materials, Scene& scene, Triangulator& triangulator,
                       FaceCount& faces);
 
-}  // namespace clarity
+}  // namespace clarity::import

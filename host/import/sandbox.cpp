@@ -19,7 +19,7 @@
 #define CLARITY_LANDLOCK
 #endif
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 // Sanitizers reserve terabytes of address space; there the parent's watch over resident memory must do.
@@ -125,4 +125,4 @@ std::string detail::restrict_files(const std::vector<std::string>&, const std::v
 }
 #endif
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::import {
 
 struct WorkerLimits {
     uint64_t memory_bytes = 0;       // address space that may be added to what is mapped already; 0: no limit
@@ -28,4 +28,4 @@ std::string restrict_system_calls();
 std::string restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files);
 }  // namespace detail
 
-}  // namespace clarity
+}  // namespace clarity::import

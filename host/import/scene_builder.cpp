@@ -13,7 +13,7 @@
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 namespace fs = std::filesystem;
@@ -358,4 +358,4 @@ Scene SceneBuilder::take() {
     return std::move(scene_);
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

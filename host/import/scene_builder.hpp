@@ -11,7 +11,7 @@
 #include "scene/scene.hpp"
 #include "scene/triangulate.hpp"
 
-namespace clarity {
+namespace clarity::import {
 
 // What one file places in its own space. Meshes, materials and textures are in the Scene already, once, however often the file
 // is placed.
@@ -84,4 +84,4 @@ class SceneBuilder {
     bool knows_axes_ = false, knows_background_ = false, knows_ambient_ = false;
 };
 
-}  // namespace clarity
+}  // namespace clarity::import

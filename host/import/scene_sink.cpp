@@ -6,7 +6,7 @@
 #include "base/error.hpp"
 #include "import/texture.hpp"
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 constexpr rt_u32 kFailed = RT_NONE;
@@ -348,4 +348,4 @@ std::string SceneSink::finish() {
     return {};
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

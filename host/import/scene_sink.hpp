@@ -9,7 +9,7 @@
 #include "plugin/host_services.hpp"
 #include "rt_plugin.h"
 
-namespace clarity {
+namespace clarity::import {
 
 // Replaces an unusable up vector or field of view; false if the camera looks nowhere.
 bool make_sound(Camera& camera);
@@ -58,4 +58,4 @@ class SceneSink {
     bool cancelled_ = false;
 };
 
-}  // namespace clarity
+}  // namespace clarity::import

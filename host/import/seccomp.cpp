@@ -16,7 +16,7 @@
 
 #include "import/sandbox.hpp"
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 // libseccomp skips those that the processor's architecture does not have.
@@ -113,4 +113,4 @@ std::string detail::restrict_system_calls() {
     return error == 0 ? std::string() : std::string("seccomp is not available: ") + std::strerror(error);
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

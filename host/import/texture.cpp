@@ -14,7 +14,7 @@
 #include <stb_image.h>
 #pragma GCC diagnostic pop
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 // Empty if a picture of this size may still be added.
@@ -62,4 +62,4 @@ std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width
     return {};
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -6,7 +6,7 @@
 
 #include "rt_types.h"
 
-namespace clarity {
+namespace clarity::import {
 
 inline constexpr rt_u32 kMaxTextureSide = 16384;
 inline constexpr uint64_t kMaxTexelBytes = 256u << 20;  // of one scene, decoded
@@ -19,4 +19,4 @@ std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vecto
 std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
                          rt_texture& texture);
 
-}  // namespace clarity
+}  // namespace clarity::import

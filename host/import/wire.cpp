@@ -15,7 +15,7 @@
 #include <cstring>
 #include <type_traits>
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
@@ -229,4 +229,4 @@ std::string read_scene(int fd, Scene& scene) {
     return why;
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

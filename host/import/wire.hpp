@@ -4,7 +4,7 @@
 
 #include "scene/scene.hpp"
 
-namespace clarity {
+namespace clarity::import {
 
 // Writes the scene into an empty memfd and seals it against any later change. Empty on success, else why not.
 std::string write_scene(int fd, const Scene& scene);
@@ -13,4 +13,4 @@ std::string write_scene(int fd, const Scene& scene);
 // against the file's own. Indices and numbers are for validate() to judge. Empty on success, else why not.
 std::string read_scene(int fd, Scene& scene);
 
-}  // namespace clarity
+}  // namespace clarity::import

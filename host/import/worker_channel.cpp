@@ -9,7 +9,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 constexpr size_t kMaxText = 8000;
@@ -73,4 +73,4 @@ Received receive_message(int fd, Message& message) {
     return Received::message;
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace clarity {
+namespace clarity::import {
 
 // Descriptors that the worker finds open.
 inline constexpr int kChannelFd = 3, kResultFd = 4;
@@ -40,4 +40,4 @@ enum class Received { message, nothing, closed };
 // Does not wait. A malformed packet counts as `closed`.
 Received receive_message(int fd, Message& message);
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -26,7 +26,7 @@
 #include "import/wire.hpp"
 #include "import/worker_channel.hpp"
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 // ---- last words: what the parent cannot see from outside
@@ -224,4 +224,4 @@ int import_worker_main(int argc, char** argv) {
     _exit(status);
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -19,7 +19,7 @@
 
 extern char** environ;
 
-namespace clarity {
+namespace clarity::import {
 namespace {
 
 [[noreturn]] void fail(const std::string& what, int error) {
@@ -136,4 +136,4 @@ uint64_t WorkerProcess::resident_bytes() const {
     return read ? resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
 }
 
-}  // namespace clarity
+}  // namespace clarity::import

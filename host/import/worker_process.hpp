@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace clarity {
+namespace clarity::import {
 
 class FileDescriptor {
  public:
@@ -51,4 +51,4 @@ class WorkerProcess {
     FileDescriptor channel_, result_, output_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::import

@@ -14,6 +14,8 @@
 namespace {
 
 using namespace clarity;
+using namespace clarity::bench;
+using namespace clarity::import;
 using namespace clarity::test;
 namespace fs = std::filesystem;
 

@@ -9,6 +9,7 @@
 #include "support/scenes.hpp"
 
 using namespace clarity;
+using namespace clarity::bench;
 using namespace clarity::test;
 
 namespace {

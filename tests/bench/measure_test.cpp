@@ -12,6 +12,7 @@
 namespace {
 
 using namespace clarity;
+using namespace clarity::bench;
 
 // Takes no time and says it took what the list says, over and over.
 Contender fake(const std::string& name, std::vector<double> ms, std::string* order = nullptr) {

@@ -14,6 +14,7 @@
 namespace {
 
 using namespace clarity;
+using namespace clarity::bench;
 using namespace clarity::test;
 using Vec = Vec3;
 

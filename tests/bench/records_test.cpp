@@ -17,6 +17,7 @@
 namespace {
 
 using namespace clarity;
+using namespace clarity::bench;
 using Json = nlohmann::json;
 
 BenchRecord frame_record(const std::string& scene, const std::string& variant, double ms) {

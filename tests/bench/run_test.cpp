@@ -9,6 +9,7 @@
 #include "support/workbench.hpp"
 
 using namespace clarity;
+using namespace clarity::bench;
 using namespace clarity::test;
 
 namespace {

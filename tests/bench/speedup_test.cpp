@@ -11,6 +11,7 @@
 namespace {
 
 using namespace clarity;
+using namespace clarity::bench;
 
 BenchRecord row(const std::string& scene, const std::string& measure, const std::string& variant, const std::string& baseline,
                 double speed) {

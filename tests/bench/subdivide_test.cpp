@@ -12,6 +12,7 @@
 namespace {
 
 using namespace clarity;
+using namespace clarity::bench;
 using namespace clarity::test;
 
 TriangleMesh mesh_of(const Scene& scene) {

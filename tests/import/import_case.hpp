@@ -11,6 +11,7 @@
 #include "import/import.hpp"
 
 namespace clarity {
+using namespace import;
 
 class ImportCase : public ::testing::Test {
  protected:

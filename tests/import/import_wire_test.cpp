@@ -12,6 +12,7 @@
 #include "scene/scene.hpp"
 
 namespace clarity {
+using namespace import;
 namespace {
 
 class MemoryFile {

@@ -7,6 +7,7 @@
 #include "import/import.hpp"
 
 namespace clarity::test {
+using namespace import;
 
 std::string source_file(const std::string& name) {
     return std::string(CLARITY_SOURCE_DIR) + "/" + name;

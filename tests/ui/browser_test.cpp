@@ -18,7 +18,7 @@
 #include "ui/widgets/log_rows.hpp"
 #include "ui/widgets/scene_rows.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -303,4 +303,4 @@ TEST(Keys, EveryBindingIsInTheList) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ TEST_F(Buttons, TheCommandLineIsCopied) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string bytes_of(const std::string& path) {
@@ -82,4 +82,4 @@ TEST_F(CommandLine, QuotesWhatAShellWouldTakeApart) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

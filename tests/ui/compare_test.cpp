@@ -3,7 +3,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 class Compare : public WindowTest {
@@ -142,4 +142,4 @@ TEST_F(Compare, AnImpossibleSecondSideCostsAMessage) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

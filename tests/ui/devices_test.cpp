@@ -3,7 +3,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 class Devices : public WindowTest {};
@@ -93,4 +93,4 @@ TEST_F(Devices, SeveralShareAPicture) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

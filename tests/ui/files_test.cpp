@@ -5,7 +5,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -147,4 +147,4 @@ TEST_F(Files, WhatCannotBeWrittenCostsAMessage) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -11,7 +11,7 @@
 #include "support/faults.hpp"
 #include "support/scenes.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using namespace test;
@@ -274,4 +274,4 @@ TEST_P(FrameThreads, WorkThatIsRefused) {
 INSTANTIATE_TEST_SUITE_P(Devices, FrameThreads, ::testing::Values("cpu", "gpu", "gpu, compared"));
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 TEST(History, TakesBackAndDoesAgain) {
@@ -108,4 +108,4 @@ TEST(History, NamesWhatDiffers) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

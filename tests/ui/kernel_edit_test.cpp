@@ -8,7 +8,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -152,4 +152,4 @@ TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 #include "ui/app/key_map.hpp"
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -319,4 +319,4 @@ TEST(KeyMapNames, EveryMapIsTested) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using Point = std::array<double, 3>;
@@ -157,4 +157,4 @@ TEST_F(Keys, AHeldKeyMovesUntilItIsReleased) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 #include "ui/driver/models.hpp"
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -116,4 +116,4 @@ TEST_F(Loading, ARunningBuildGivesWay) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using Point = std::array<double, 3>;
@@ -239,4 +239,4 @@ TEST_F(Mouse, LightsAreDraggedInTheView) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

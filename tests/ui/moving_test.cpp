@@ -3,7 +3,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 class Moving : public WindowTest {};
@@ -53,4 +53,4 @@ TEST_F(Moving, AllPixelsWhereThatIsAskedFor) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -3,7 +3,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -105,4 +105,4 @@ TEST_F(Panel, PacketSizeChangesQuicklyWithAColdCache) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -12,7 +12,7 @@
 #include "ui/viewport/camera_control.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -225,4 +225,4 @@ TEST(Preferences, LieUnderTheConfigurationFolder) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -14,7 +14,7 @@
 #include "ui/viewport/picture_layout.hpp"
 #include "ui/viewport/speed_verdict.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 const Rect kArea{100, 50, 800, 600};
@@ -369,4 +369,4 @@ TEST(SpeedVerdict, NamesNoFasterSideWithinTheSpread) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -3,7 +3,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 class Presets : public WindowTest {};
@@ -86,4 +86,4 @@ TEST_F(Presets, AWrongOneChangesNothing) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

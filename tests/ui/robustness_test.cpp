@@ -5,7 +5,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -117,4 +117,4 @@ TEST_F(Window, RemembersUnderTheConfigurationFolderOnly) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -114,4 +114,4 @@ TEST_F(SequenceOf, RefusesWhatCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

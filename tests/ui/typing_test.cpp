@@ -5,7 +5,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -101,4 +101,4 @@ TEST_F(Typing, AKeyIsUpOnceTheFocusIsLost) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

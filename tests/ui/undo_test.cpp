@@ -3,7 +3,7 @@
 
 #include "ui/driver/window_fixture.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 class Undo : public WindowTest {
@@ -112,4 +112,4 @@ TEST_F(Undo, AnotherSceneHasItsOwnHistory) {
 }
 
 }  // namespace
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -18,7 +18,7 @@
 #include "ui/viewport/camera_control.hpp"
 #include "ui/widgets/theme.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 double now_s() {
@@ -295,4 +295,4 @@ void App::apply_motion(float seconds, const HeldKeys& keys) {
         move_light(lights[session_->selected_light].values, eye, shift, session_->scene_size());
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -11,7 +11,7 @@
 #include "ui/session/session.hpp"
 #include "ui/viewport/picture_pane.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class Script;
 
@@ -76,4 +76,4 @@ class App {
     int settle_frames_ = 3;    // ImGui needs a few to settle after an event
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

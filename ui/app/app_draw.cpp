@@ -11,7 +11,7 @@
 #include "ui/panel/panel.hpp"
 #include "ui/widgets/theme.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 void App::draw() {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -41,4 +41,4 @@ void App::upload_picture() {
     window_->set_title(title);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -14,7 +14,7 @@
 
 #include "base/error.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string& last_glfw_error() {
@@ -222,4 +222,4 @@ std::string GlWindow::gl_text() const {
     return gl_text_;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 
 struct GLFWwindow;
 
-namespace clarity {
+namespace clarity::ui {
 
 struct KeyEvent {
     int key = 0;
@@ -60,4 +60,4 @@ class GlWindow {
     friend struct Callbacks;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -3,7 +3,7 @@
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 // Bindings that every preset has.
@@ -112,4 +112,4 @@ float HeldKeys::value(const KeyMap& map, Action action) const {
     return 0.0f;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

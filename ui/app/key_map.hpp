@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::ui {
 
 enum class Action {
     // Held: they act for as long as the key is down.
@@ -83,4 +83,4 @@ class HeldKeys {
     std::set<int> keys_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -11,7 +11,7 @@
 #include "base/read_file.hpp"
 #include "ui/app/preferences_json.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace fs = std::filesystem;
 
 std::string preferences_folder() {
@@ -98,4 +98,4 @@ void save_preferences(const std::string& folder, const Preferences& p) {
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 
 #include "ui/app/ui_state.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct Preferences {
     int width = 1280, height = 800;
@@ -34,4 +34,4 @@ Preferences load_preferences(const std::string& folder, std::string* notice = nu
 // Written to a temporary file, then renamed. A failure is a warning in the log.
 void save_preferences(const std::string& folder, const Preferences& preferences);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using Json = nlohmann::json;
@@ -131,4 +131,4 @@ Preferences preferences_from(const Json& json, std::vector<std::string>* problem
     return p;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

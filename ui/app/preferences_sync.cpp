@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string absolute(const std::string& path) {
@@ -95,4 +95,4 @@ void PreferencesSync::note(Preferences& preferences, const UiState& state, const
     preferences.bookmarked = now.bookmarked;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "ui/app/ui_state.hpp"
 #include "ui/session/session.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // "/a/b.obj": the files of a scene as a key, one a line.
 std::string scene_key(const std::vector<std::string>& files);
@@ -32,4 +32,4 @@ class PreferencesSync {
     std::vector<Bookmark> seen_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace fs = std::filesystem;
 
 std::vector<std::string> preset_names(const std::string& folder) {
@@ -34,4 +34,4 @@ std::string preset_path(const std::string& folder, const std::string& name) {
     return (fs::path(folder) / (fs::path(name).extension() == ".json" ? name : name + ".json")).string();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

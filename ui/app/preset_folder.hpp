@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::ui {
 
 // Names of the presets there, sorted; empty where the folder is missing.
 std::vector<std::string> preset_names(const std::string& folder);
@@ -11,4 +11,4 @@ std::vector<std::string> preset_names(const std::string& folder);
 // the name cannot be a file's, or there is no folder.
 std::string preset_path(const std::string& folder, const std::string& name);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-namespace clarity {
+namespace clarity::ui {
 
 // Lowers the calling thread's share, and that of the threads it starts (drivers' and builders' pools among them): Linux keeps
 // the nice value by thread. Costs nothing on an idle machine.
@@ -12,4 +12,4 @@ inline void yield_to_window() {
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

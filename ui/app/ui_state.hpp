@@ -6,7 +6,7 @@
 #include "scene/scene.hpp"
 #include "ui/app/key_map.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 enum class Tab { render, scene, inspect, statistics, log, plugins, help };
 inline constexpr const char* kTabNames[] = {"Render", "Scene", "Inspect", "Stats", "Log", "Plugins", "Help"};
@@ -67,4 +67,4 @@ struct UiState {
     }
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -2,11 +2,11 @@
 
 #include "ui/app/app.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 int ui_main(const ViewOptions& options) {
     App app(options);
     return app.run();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -8,7 +8,7 @@
 #include "render/settings/edit.hpp"
 #include "render/settings/settings.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // Samples a pixel that add up while nothing changes, unless the user asks for another number: with one, edges are jagged.
 inline constexpr int kSamplesAtRest = 16;
@@ -21,7 +21,7 @@ struct ViewOptions {
     std::string camera;                       // as --camera: "", a name or "ex,ey,ez,tx,ty,tz[,fov_deg]"
     std::string light;                        // as --light: "" or "x,y,z"
     std::vector<Word> edits;                  // of the first scene's view
-    ImportOptions import;
+    import::ImportOptions import;
     std::string key_map;  // "thesis", "viewer"; "": as remembered, at first "thesis"
 };
 
@@ -29,4 +29,4 @@ struct ViewOptions {
 // OpenGL 3.3; its message says how to render without a window. Every later failure is a message in the window.
 int ui_main(const ViewOptions& options);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "ui/app/app.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 CompareMode mode_of(const std::string& text) {
@@ -59,4 +59,4 @@ bool run_picture_command(App& app, const std::string& command, const std::string
     return true;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,11 +6,11 @@
 #pragma once
 #include <string>
 
-namespace clarity {
+namespace clarity::ui {
 
 class App;
 
 // False: it is no such command. Throws Error(usage).
 bool run_picture_command(App& app, const std::string& command, const std::string& text);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -20,7 +20,7 @@
 #include "ui/automation/picture_script.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string rest_of(std::istringstream& in) {
@@ -325,4 +325,4 @@ std::string Script::state_text(App& app) const {
     return json.dump();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

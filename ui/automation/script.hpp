@@ -18,7 +18,7 @@
 #include <memory>
 #include <string>
 
-namespace clarity {
+namespace clarity::ui {
 
 class App;
 
@@ -50,4 +50,4 @@ class Script {
     int frames_left_ = 0;  // frames to draw before a wait may end: what it waited for is on the screen then
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

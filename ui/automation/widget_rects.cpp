@@ -4,7 +4,7 @@
 
 #include <unordered_map>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 struct Place {
@@ -47,4 +47,4 @@ const Rect* drawn_place(const std::string& label) {
     return nullptr;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // Of the last item, or of a rectangle; within the clip rectangle of the window that is being drawn.
 void note_place(const std::string& label);
@@ -13,4 +13,4 @@ void note_place(const std::string& label, const Rect& place);
 // ask again then.
 const Rect* drawn_place(const std::string& label);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -14,7 +14,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -326,4 +326,4 @@ void draw_file_browser(const Rect& area, Session& session, UiState& state) {
     ImGui::PopStyleColor();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

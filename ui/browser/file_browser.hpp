@@ -4,9 +4,9 @@
 #include "ui/session/session.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // While UiState::browser_open. Folders are read on a thread of their own: a slow disk does not hold the window up.
 void draw_file_browser(const Rect& area, Session& session, UiState& state);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -12,7 +12,7 @@
 
 #include "ui/widgets/formats.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ std::string complete(const Listing& listing, const std::string& text) {
     return text.substr(0, begin) + common + (count == 1 && folder ? "/" : "");
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::ui {
 
 struct FileEntry {
     std::string name;
@@ -42,4 +42,4 @@ std::vector<size_t> matching(const Listing& listing, const std::string& word);
 // The text as far as it is certain: extended by what all entries that begin so have in common, and by "/" for a single folder.
 std::string complete(const Listing& listing, const std::string& text);
 
-}  // namespace clarity
+}  // namespace clarity::ui

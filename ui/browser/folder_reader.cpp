@@ -5,7 +5,7 @@
 
 #include "ui/app/gl_window.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct FolderReader::Shared {
     std::mutex mutex;
@@ -42,4 +42,4 @@ bool FolderReader::reading() const {
     return shared_->done != shared_->asked;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 
 #include "ui/browser/file_listing.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class FolderReader {
  public:
@@ -22,4 +22,4 @@ class FolderReader {
     bool stale_ = false;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

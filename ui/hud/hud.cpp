@@ -11,7 +11,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr ImGuiWindowFlags kCardFlags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
@@ -203,4 +203,4 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
     ImGui::PopStyleColor();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,11 +4,11 @@
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 void draw_progress_card(const Rect& viewport, Session& session);
 void draw_message_card(const Rect& viewport, Session& session, UiState& state);
 void draw_empty_hint(const Rect& viewport, const Session& session);
 void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& overlay, const UiState& state);
 
-}  // namespace clarity
+}  // namespace clarity::ui

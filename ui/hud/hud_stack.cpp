@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace clarity {
+namespace clarity::ui {
 
 HudStack::HudStack(const Rect& area, float margin, float least) : area_(area), margin_(margin) {
     const float half = std::floor((area.width - 3 * margin) / 2);
@@ -23,4 +23,4 @@ std::optional<Rect> HudStack::take(Corner corner, float width, float height) {
     return Rect{std::floor(x), std::floor(y), width, height};
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 enum class Corner { top_left, top_right, bottom_left, bottom_right };
 
@@ -26,4 +26,4 @@ class HudStack {
     float above_[2] = {}, below_[2] = {};  // taken so far, of the left and the right column
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 // Held actions of one kind are told by their help: "move the camera in X and Z".
@@ -127,4 +127,4 @@ void draw_keys_hud(const Rect& area, UiState& state) {
     ImGui::PopStyleColor();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 #include "ui/app/ui_state.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // One line of the list: the keys of each map, in the order of key_maps().
 struct KeyLine {
@@ -20,4 +20,4 @@ void draw_keys_hud(const Rect& area, UiState& state);
 // The table of them, for a tab or a card; the map that is in use stands out.
 void draw_key_table(const UiState& state);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr int kBarSteps = 64;
@@ -132,4 +132,4 @@ void draw_color_bar(ImDrawList& list, const Rect& card, const FalseColorScale& s
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -10,7 +10,7 @@
 #include "ui/hud/hud_stack.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct HudText {
     std::string text;
@@ -32,4 +32,4 @@ void draw_color_bar(ImDrawList& list, const Rect& card, const FalseColorScale& s
 // As the bar writes it: "12", "0.42", "1.2 k".
 std::string scale_number(const FalseColorScale& scale, float value);
 
-}  // namespace clarity
+}  // namespace clarity::ui

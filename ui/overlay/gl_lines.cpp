@@ -7,7 +7,7 @@
 
 #include "base/log.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr size_t kManyLines = 40000;
@@ -204,4 +204,4 @@ void LineLayer::draw(const std::vector<const LineList*>& lists, const Projection
     glBindFramebuffer(GL_FRAMEBUFFER, 0);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -8,7 +8,7 @@
 #include "ui/overlay/line_quads.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // What hides lines: the distances of the picture's camera rays, +inf where they met nothing, as a texture and as numbers.
 // Without them all is in front.
@@ -49,4 +49,4 @@ class LineLayer {
     std::vector<LineVertex> scratch_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr float kPi = 3.14159265f;
@@ -91,4 +91,4 @@ void drag_sun(rt_light& light, const Projection& projection, const glm::vec2& pl
     set_position(light, sun_direction(projection, place));
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

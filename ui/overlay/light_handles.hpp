@@ -9,7 +9,7 @@
 #include "ui/session/desired_state.hpp"
 #include "ui/viewport/projection.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct LightHandle {
     enum class Kind {
@@ -36,4 +36,4 @@ glm::vec2 sun_place(const Projection& projection, const glm::vec3& towards);
 glm::vec3 sun_direction(const Projection& projection, const glm::vec2& place);
 float sun_disc_radius(const Projection& projection);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr float kTwoPi = 6.2831853f;
@@ -91,4 +91,4 @@ void LineList::dot(const glm::vec3& center, float radius, uint32_t color, float 
             if (i / 2 != k / 2) line(corners[i], corners[k], color, width);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

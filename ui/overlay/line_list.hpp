@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-namespace clarity {
+namespace clarity::ui {
 
 struct Line {
     glm::vec3 a{}, b{};
@@ -45,4 +45,4 @@ std::array<glm::vec3, 2> axes_across(const glm::vec3& unit);
 // The color with its opacity multiplied.
 uint32_t with_opacity(uint32_t color, float factor);
 
-}  // namespace clarity
+}  // namespace clarity::ui

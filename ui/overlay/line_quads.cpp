@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr float kShortest = 0.25f;  // pixels
@@ -122,4 +122,4 @@ void append_thin(const LineList& lines, const Projection& projection, float scal
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

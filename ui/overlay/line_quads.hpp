@@ -8,7 +8,7 @@
 #include "ui/overlay/line_list.hpp"
 #include "ui/viewport/projection.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // 24 bytes, as gl_lines' shader reads it.
 struct LineVertex {
@@ -35,4 +35,4 @@ void append_quads(const LineList& lines, const Projection& projection, float sca
 void append_thin(const LineList& lines, const Projection& projection, float scale, const ThinLines& thin,
                  std::vector<LineVertex>& vertices);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 
 #include "base/log.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 std::string level_name(rt_u32 level) {
     return level == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(level + 1);
@@ -96,4 +96,4 @@ void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float sca
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

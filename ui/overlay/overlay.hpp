@@ -11,7 +11,7 @@
 #include "ui/overlay/line_list.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // The volumes of each side's structure, fetched on a thread of their own: a large tree takes a while to walk.
 class VolumeOverlay {
@@ -65,4 +65,4 @@ std::string level_name(rt_u32 level);
 // The colour of a level's volumes, opaque.
 uint32_t level_color(rt_u32 level);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr uint32_t kHalo = IM_COL32(0, 0, 0, 150);
@@ -61,4 +61,4 @@ void append_ray_lines(const RayTree& tree, const Projection& seen, float far, fl
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "ui/overlay/line_list.hpp"
 #include "ui/viewport/projection.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // What the legend says of a kind of ray, in the order that it lists them.
 struct RayKind {
@@ -23,4 +23,4 @@ size_t kind_of(const RayRecord& ray);
 // at hits. `seen` sizes dots and heads, which look the same from anywhere. selected: index of a ray that stands out; -1: none.
 void append_ray_lines(const RayTree& tree, const Projection& seen, float far, float scale, int selected, LineList& lines);
 
-}  // namespace clarity
+}  // namespace clarity::ui

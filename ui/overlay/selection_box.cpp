@@ -1,6 +1,6 @@
 #include "ui/overlay/selection_box.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using Corners = std::array<std::array<float, 3>, 8>;
@@ -43,4 +43,4 @@ std::optional<Corners> selection_box(const Scene& scene, const Selection& select
     return corners_of(bounds, kIdentity);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -8,7 +8,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr float kNarrowest = 320, kGrip = 5;  // at scale 1
@@ -108,4 +108,4 @@ void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiSt
     ImGui::PopStyleColor();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state, const std::string& gl_text);
 
@@ -22,4 +22,4 @@ void draw_log_tab(Session& session, UiState& state);
 void draw_plugins_tab(Session& session);
 void draw_help_tab(UiState& state, const std::string& gl_text);
 
-}  // namespace clarity
+}  // namespace clarity::ui

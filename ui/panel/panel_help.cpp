@@ -6,7 +6,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 void step(const char* what, const char* how) {
@@ -50,4 +50,4 @@ void draw_help_tab(UiState& state, const std::string& gl_text) {
     dim_text(gl_text);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

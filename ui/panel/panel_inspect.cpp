@@ -10,7 +10,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 void swatch(const std::array<float, 3>& linear, float size) {
@@ -143,4 +143,4 @@ void draw_inspect_tab(Session& session, UiState& state) {
     selected_rows(session, *inspection, state);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 void make_unit(float* v) {
@@ -129,4 +129,4 @@ void draw_bookmark_rows(Session& session, UiState& state) {
     if (gone < state.bookmarks.size()) state.bookmarks.erase(state.bookmarks.begin() + static_cast<std::ptrdiff_t>(gone));
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

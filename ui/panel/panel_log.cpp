@@ -9,7 +9,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 const ImVec4& level_color(LogLevel level) {
@@ -171,4 +171,4 @@ void draw_log_tab(Session& session, UiState& state) {
     ImGui::PopStyleColor();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

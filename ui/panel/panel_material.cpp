@@ -7,7 +7,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string material_name(const Scene& scene, size_t index) {
@@ -83,4 +83,4 @@ void draw_material_rows(Session& session) {
     ImGui::EndDisabled();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

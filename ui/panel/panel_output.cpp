@@ -12,7 +12,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 namespace fs = std::filesystem;
@@ -179,4 +179,4 @@ void draw_output_rows(Session& session, UiState& state) {
     if (folding_section("SEQUENCE", false)) sequence_rows(session, state);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

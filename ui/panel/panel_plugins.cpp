@@ -7,7 +7,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 void name_text(const std::string& name, const std::string& what) {
@@ -98,4 +98,4 @@ void draw_plugins_tab(Session& session) {
     kernel_rows(session);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -8,7 +8,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 struct Group {
@@ -199,4 +199,4 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
     draw_output_rows(session, state);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -8,7 +8,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 void open_rows(Session& session, UiState& state) {
@@ -119,4 +119,4 @@ void draw_scene_tab(Session& session, UiState& state) {
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

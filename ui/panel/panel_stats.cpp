@@ -11,7 +11,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 const ImVec4& side_color(unsigned side) {
@@ -213,4 +213,4 @@ void draw_statistics_tab(Session& session) {
     if (ready->other) side_sections(*ready, *ready->other, "B: ");
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 void step_button(const char* sign, bool can, const std::string& help, float width, const std::function<void()>& act) {
@@ -79,4 +79,4 @@ void draw_toolbar(Session& session, VolumeOverlay& overlay, UiState& state) {
     ImGui::PopStyleVar(2);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 struct Tree {
@@ -213,4 +213,4 @@ void draw_scene_tree(Session& session, UiState&) {
     ImGui::PopStyleColor();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

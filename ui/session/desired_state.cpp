@@ -1,6 +1,6 @@
 #include "ui/session/desired_state.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 EditedView edited_view(const DesiredState& desired) {
     EditedView edited;
@@ -16,4 +16,4 @@ EditedView edited_view(const DesiredState& desired) {
     return edited;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

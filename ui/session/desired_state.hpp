@@ -7,7 +7,7 @@
 #include "render/settings/edit.hpp"
 #include "render/settings/settings.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct DesiredLight {
     std::string name;
@@ -37,4 +37,4 @@ struct DesiredState {
 
 EditedView edited_view(const DesiredState& desired);
 
-}  // namespace clarity
+}  // namespace clarity::ui

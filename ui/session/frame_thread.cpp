@@ -9,7 +9,7 @@
 #include "ui/app/thread_priority.hpp"
 #include "ui/session/picture_difference.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 using Clock = std::chrono::steady_clock;
 
@@ -417,4 +417,4 @@ void FrameThread::note_time(Times& times, const std::shared_ptr<const Ready>& of
     if (times.ms.size() > kTimes) times.ms.erase(times.ms.begin());
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -17,7 +17,7 @@
 #include "render/multi/multi_frame_renderer.hpp"
 #include "ui/session/prepare_worker.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct FrameJob {
     std::shared_ptr<const Ready> ready;
@@ -150,4 +150,4 @@ class FrameThread {
 // The settings to trace with: those of `wished` that apply at once, the others as prepared.
 Settings frame_settings(const Settings& prepared, const Settings& desired_now);
 
-}  // namespace clarity
+}  // namespace clarity::ui

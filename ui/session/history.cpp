@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 template <class T>
@@ -103,4 +103,4 @@ void History::redo(DesiredState& desired) {
     restore(desired, settled_);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 
 #include "ui/session/desired_state.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class History {
  public:
@@ -30,4 +30,4 @@ class History {
 // What of a wish differs, for a person: "Depth", "3 changes". Empty: nothing that counts.
 std::string difference_name(const DesiredState& a, const DesiredState& b);
 
-}  // namespace clarity
+}  // namespace clarity::ui

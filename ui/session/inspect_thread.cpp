@@ -2,7 +2,7 @@
 
 #include "ui/app/thread_priority.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 InspectThread::InspectThread(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
 
@@ -92,4 +92,4 @@ void InspectThread::follow(const Request& request, Inspection& answer) {
     answer.result = inspector_->trace(*part.prepared, request.job.settings, request.job.view, request.x, request.y);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

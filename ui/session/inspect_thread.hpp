@@ -11,7 +11,7 @@
 #include "render/frame/inspect.hpp"
 #include "ui/session/frame_thread.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct Inspection {
     FrameJob job;           // of the picture that was looked at
@@ -53,4 +53,4 @@ class InspectThread {
     std::thread thread_;  // last: it sees the rest complete
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

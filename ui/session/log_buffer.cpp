@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-namespace clarity {
+namespace clarity::ui {
 
 LogBuffer::LogBuffer(std::function<void()> wake) {
     set_log_listener([this, wake = std::move(wake)](LogLevel level, const std::string& text) {
@@ -43,4 +43,4 @@ void LogBuffer::clear() {
     ++revision_;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -10,7 +10,7 @@
 
 #include "base/log.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct LogLine {
     LogLevel level;
@@ -39,4 +39,4 @@ class LogBuffer {
     uint64_t revision_ = 0;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <utility>
 
-namespace clarity {
+namespace clarity::ui {
 
 PictureDifference compare_pictures(const ByteImage& a, const ByteImage& b) {
     PictureDifference out;
@@ -39,4 +39,4 @@ PictureDifference compare_pictures(const ByteImage& a, const ByteImage& b) {
     return out;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

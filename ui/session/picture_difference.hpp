@@ -2,9 +2,9 @@
 #pragma once
 #include "ui/session/frame_thread.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // Of the same size; else everything differs, and the image is empty.
 PictureDifference compare_pictures(const ByteImage& a, const ByteImage& b);
 
-}  // namespace clarity
+}  // namespace clarity::ui

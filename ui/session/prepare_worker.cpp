@@ -8,7 +8,7 @@
 #include "base/log.hpp"
 #include "ui/app/thread_priority.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 using Clock = std::chrono::steady_clock;
 
@@ -51,7 +51,8 @@ class PrepareWorker::StageProgress : public Progress {
     Clock::time_point woken_{};
 };
 
-PrepareWorker::PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake)
+PrepareWorker::PrepareWorker(const PluginRegistry& plugins, import::ImportOptions import, Tracers tracers,
+                             std::function<void()> wake)
     : plugins_(plugins), import_(std::move(import)), tracers_(std::move(tracers)), wake_(std::move(wake)), thread_([this] {
           run();
       }) {}
@@ -276,7 +277,7 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     progress.stage("importing " + request.files.front());
     const auto begin = Clock::now();
     auto loaded = std::make_shared<ImportedScene>();
-    loaded->scene = std::make_shared<const Scene>(import_scene(plugins_, request.files, import_, progress));
+    loaded->scene = std::make_shared<const Scene>(import::import_scene(plugins_, request.files, import_, progress));
     loaded->import_ms = ms_since(begin);
     loaded->files = request.files;
     loaded->files_revision = request.files_revision;
@@ -298,4 +299,4 @@ void PrepareWorker::tried(uint64_t files_revision) {
     files_revision_ = files_revision;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -13,7 +13,7 @@
 #include "import/import.hpp"
 #include "ui/session/prepared_scene.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct Outcome {
     enum class Kind { ready, failed, cancelled };
@@ -38,7 +38,7 @@ class PrepareWorker {
         std::function<void()> release, resume;
     };
     // wake: called from the worker whenever there is news.
-    PrepareWorker(const PluginRegistry& plugins, ImportOptions import, Tracers tracers, std::function<void()> wake);
+    PrepareWorker(const PluginRegistry& plugins, import::ImportOptions import, Tracers tracers, std::function<void()> wake);
     ~PrepareWorker();
 
     // The newest request wins; work that it makes useless is cancelled.
@@ -72,7 +72,7 @@ class PrepareWorker {
     void publish(Outcome outcome);
 
     const PluginRegistry& plugins_;
-    const ImportOptions import_;
+    const import::ImportOptions import_;
     const Tracers tracers_;
     const std::function<void()> wake_;
 
@@ -96,4 +96,4 @@ class PrepareWorker {
     std::thread thread_;  // last: it sees the rest complete
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

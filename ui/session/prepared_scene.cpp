@@ -4,7 +4,7 @@
 
 #include "render/frame/device_scene.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 std::shared_ptr<const OnDevices> DeviceLoan::get() const {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -41,4 +41,4 @@ bool ReadySide::uses(const DeviceInfo& info) const {
     });
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

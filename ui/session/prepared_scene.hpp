@@ -10,7 +10,7 @@
 #include "render/multi/multi_preparer.hpp"
 #include "ui/session/desired_state.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // All that a picture needs besides view and frame settings.
 struct PrepareRequest {
@@ -86,4 +86,4 @@ struct Ready {
     bool withdrawn() const { return main.loan->withdrawn() || (other && other->loan->withdrawn()); }
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 #include "ui/session/session.hpp"
 #include "ui/viewport/camera_control.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr float kTurn = 6.2831853f;
@@ -113,4 +113,4 @@ std::string next_picture_path(const std::string& folder) {
     throw Error(Exit::failed, base.string() + ": holds 9999 saved pictures already; choose another folder");
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 
 #include "scene/scene.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class Session;
 
@@ -41,4 +41,4 @@ class Sequence {
 // "FOLDER/clarity_0001.png": the first such name that is free.
 std::string next_picture_path(const std::string& folder);
 
-}  // namespace clarity
+}  // namespace clarity::ui

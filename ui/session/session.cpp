@@ -15,7 +15,7 @@
 #include "render/accel/accel_choice.hpp"
 #include "ui/viewport/camera_control.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 template <class T>
@@ -326,4 +326,4 @@ std::string Session::frame_rate_line() const {
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -20,7 +20,7 @@
 #include "ui/session/prepare_worker.hpp"
 #include "ui/session/sequence.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // What stands over the picture until it is dismissed or mended.
 struct WindowMessage {
@@ -158,4 +158,4 @@ class Session {
     PrepareWorker worker_;  // after those that it asks to let go
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "base/log.hpp"
 #include "ui/session/session.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 void Session::take_saved() {
     for (const FrameThread::Saved& saved : frames_.take_saved()) {
@@ -66,4 +66,4 @@ std::string Session::render_command(const std::string& output) const {
     return clarity::render_command(plugins_, preset, files, output);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

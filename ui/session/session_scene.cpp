@@ -4,7 +4,7 @@
 #include "ui/session/session.hpp"
 #include "ui/viewport/camera_control.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 void Session::inspect(unsigned x, unsigned y) {
     if (!picture_) return;
@@ -97,4 +97,4 @@ void Session::adopt_view(const EditedView& edited) {
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

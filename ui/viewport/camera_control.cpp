@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 glm::vec3 vec(const Vec3& a) {
@@ -122,4 +122,4 @@ void move_light(rt_light& light, const Camera& camera, const Step& step, float s
     for (int i = 0; i < 3; ++i) light.position[i] = place[i];
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

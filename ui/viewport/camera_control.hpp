@@ -5,7 +5,7 @@
 #include "rt_types.h"
 #include "scene/scene.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 using Vec3 = std::array<float, 3>;
 
@@ -40,4 +40,4 @@ void frame_bounds(Camera& camera, const Bounds& bounds, float aspect);
 // brought back to unit length, `size` being the length that stands for one unit.
 void move_light(rt_light& light, const Camera& camera, const Step& step, float size);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string joined(const std::vector<std::string>& words) {
@@ -103,4 +103,4 @@ std::string difference_text(const PictureDifference& difference) {
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 #include "ui/hud/picture_hud.hpp"
 #include "ui/session/session.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // What differs between the two sides besides the structure, as a person says it: {"packet 4x4", "lanes 8"} of the first,
 // {"packet 8x8", "lanes 16"} of the second.
@@ -26,4 +26,4 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
 std::vector<HudText> caption_lines(const Caption& caption);
 std::string difference_text(const PictureDifference& difference);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 // Whole units: what is drawn over a picture meets it pixel by pixel.
@@ -41,4 +41,4 @@ bool pixel_at(const Rect& area, const glm::vec2& place, unsigned width, unsigned
     return true;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "ui/app/ui_state.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 struct PicturePlace {
     enum class What { main, other, difference };
@@ -26,4 +26,4 @@ std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool 
 // The pixel of a picture of width x height at a place of its area; false outside.
 bool pixel_at(const Rect& area, const glm::vec2& place, unsigned width, unsigned height, unsigned& x, unsigned& y);
 
-}  // namespace clarity
+}  // namespace clarity::ui

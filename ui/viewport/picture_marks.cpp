@@ -13,7 +13,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using What = PicturePlace::What;
@@ -224,4 +224,4 @@ void PicturePane::draw_pixel_marks(ImDrawList& list, const Session& session, con
     mark(places_[hover->place], middle(hover->x, image.width), middle(hover->y, image.height), image.width, kMark);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 #include "ui/viewport/camera_control.hpp"
 #include "ui/widgets/theme.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr float kClickSlack = 4;      // units that a mouse may move within a click
@@ -200,4 +200,4 @@ void PictureMouse::update(const Target& target, Session& session, UiState& state
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -16,7 +16,7 @@
 #include "ui/session/session.hpp"
 #include "ui/viewport/picture_layout.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class PictureMouse {
  public:
@@ -64,4 +64,4 @@ class PictureMouse {
     uint64_t focus_after_ = 0;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -14,7 +14,7 @@
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/widgets/theme.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 using What = PicturePlace::What;
@@ -243,4 +243,4 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
     ImGui::End();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

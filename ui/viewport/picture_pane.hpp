@@ -15,7 +15,7 @@
 #include "ui/viewport/picture_mouse.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // Needs the GL context current, for all of its life.
 class PicturePane {
@@ -94,4 +94,4 @@ class PicturePane {
     PictureMouse mouse_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 
 #include "ui/viewport/camera_control.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 glm::vec3 vec(const Vec3& a) {
@@ -55,4 +55,4 @@ float Projection::unit_at(float depth) const {
     return 2 * half_.y * depth / std::max(area_.height, 1.0f);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

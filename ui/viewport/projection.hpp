@@ -7,7 +7,7 @@
 #include "scene/scene.hpp"
 #include "ui/viewport/viewport.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class Projection {
  public:
@@ -38,4 +38,4 @@ class Projection {
     float near_ = 0;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

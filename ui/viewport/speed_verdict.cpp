@@ -6,7 +6,7 @@
 
 #include "ui/widgets/frame_graph.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 double median_of(std::vector<float> values) {
     if (values.empty()) return 0;
@@ -31,4 +31,4 @@ std::string speed_verdict(const std::vector<float>& mine, const std::vector<floa
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

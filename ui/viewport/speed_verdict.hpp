@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::ui {
 
 inline constexpr const char* kAboutTheSame = "about the same";
 
@@ -14,4 +14,4 @@ std::string speed_verdict(const std::vector<float>& mine, const std::vector<floa
 // The middle one of the values; 0 of none.
 double median_of(std::vector<float> values);
 
-}  // namespace clarity
+}  // namespace clarity::ui

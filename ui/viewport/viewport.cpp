@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace clarity {
+namespace clarity::ui {
 
 PictureTexture::~PictureTexture() {
     if (texture_) glDeleteTextures(1, &texture_);
@@ -80,4 +80,4 @@ Rect letter_box(const Rect& area, float aspect) {
     return {std::floor(area.x + (area.width - width) / 2), std::floor(area.y + (area.height - height) / 2), width, height};
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 
 #include "render/film/image_io.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // Needs the GL context current, for all of its life.
 class PictureTexture {
@@ -38,4 +38,4 @@ struct Rect {
 // The largest of that aspect inside the area, centred.
 Rect letter_box(const Rect& area, float aspect);
 
-}  // namespace clarity
+}  // namespace clarity::ui

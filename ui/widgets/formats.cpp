@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <sstream>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 char lower(char c) {
@@ -72,4 +72,4 @@ bool matches(const std::string& text, const std::string& filter) {
     return true;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

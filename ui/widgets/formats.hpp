@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-namespace clarity {
+namespace clarity::ui {
 
 // "1.2 M", "871 k", "12": for counts. "3.4 MiB": for bytes. "0.42 ms", "81.2 ms", "3.1 s": for milliseconds.
 std::string count_text(double count);
@@ -16,4 +16,4 @@ std::string file_name(const std::string& path);
 // Whether every word of `filter` is somewhere in `text`, whatever its case (of ASCII).
 bool matches(const std::string& text, const std::string& filter);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -9,7 +9,7 @@
 #include "ui/widgets/formats.hpp"
 #include "ui/widgets/theme.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 struct Plot {
@@ -94,4 +94,4 @@ void draw_frame_graph(const std::vector<FrameSeries>& series, float target_ms, f
     list.PopClipRect();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

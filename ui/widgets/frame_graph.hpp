@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::ui {
 
 // The value that `share` of the values do not exceed, by nearest rank: 0.5 is the median. 0 of nothing.
 float percentile(std::vector<float> values, double share);
@@ -18,4 +18,4 @@ struct FrameSeries {
 // target_ms: a line across; 0: none.
 void draw_frame_graph(const std::vector<FrameSeries>& series, float target_ms, float height);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -5,7 +5,7 @@
 
 #include "ui/widgets/formats.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 bool of_a_name(char c) {
@@ -64,4 +64,4 @@ std::vector<LogRow> log_rows(const std::vector<LogLine>& lines, const LogFilter&
     return rows;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

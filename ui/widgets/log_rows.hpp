@@ -6,7 +6,7 @@
 
 #include "ui/session/log_buffer.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // "file.cl:12" or "file.cl:12:3" within a line.
 struct SourcePlace {
@@ -32,4 +32,4 @@ struct LogRow {
 // A line that begins with a place becomes two rows, the place and what is said of it.
 std::vector<LogRow> log_rows(const std::vector<LogLine>& lines, const LogFilter& filter);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -7,7 +7,7 @@
 #include "ui/widgets/formats.hpp"
 #include "ui/widgets/scene_rows.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string what_it_hit(const RayRecord& ray, const Scene& scene) {
@@ -151,4 +151,4 @@ std::vector<std::string> ray_lines_of(const RayRecord& ray, const Scene& scene, 
     return lines;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -8,7 +8,7 @@
 #include "render/frame/inspect.hpp"
 #include "scene/scene.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class Session;
 
@@ -35,4 +35,4 @@ std::vector<std::pair<std::string, std::string>> ray_facts(const RayRecord& ray,
 std::vector<std::string> ray_lines_of(const RayRecord& ray, const Scene& scene, const std::vector<std::string>& lights);
 std::string triple_text(const std::array<float, 3>& v);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -2,7 +2,7 @@
 
 #include "ui/widgets/formats.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 const std::string& own_name(const Scene& scene, RowKind kind, size_t index) {
@@ -83,4 +83,4 @@ const std::vector<SceneRow>& SceneRows::update(const std::shared_ptr<const Scene
     return rows_;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

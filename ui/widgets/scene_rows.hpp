@@ -7,7 +7,7 @@
 
 #include "scene/scene.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 enum class RowKind { instance, sphere, polygon, plane, mesh, material, light, camera };
 inline constexpr int kRowKinds = 8;
@@ -40,4 +40,4 @@ class SceneRows {
     std::vector<SceneRow> rows_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

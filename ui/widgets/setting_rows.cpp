@@ -16,7 +16,7 @@
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 // The one widget whose value is being edited but not in force yet.
@@ -220,4 +220,4 @@ bool parameter_row(const rt_param& param, double& value) {
     return changed;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

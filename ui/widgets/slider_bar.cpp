@@ -7,7 +7,7 @@
 
 #include "ui/widgets/theme.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 void draw_slider_bar(double value, double min, double max, bool logarithmic) {
     double share = max > min ? (value - min) / (max - min) : 0;
@@ -37,4 +37,4 @@ BareFrames::~BareFrames() {
     ImGui::PopStyleColor(3);
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

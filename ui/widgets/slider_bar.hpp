@@ -1,7 +1,7 @@
 // slider_bar.hpp -- a slider's value as a bar from its left edge, under the number, instead of ImGui's grab, which covers it.
 #pragma once
 
-namespace clarity {
+namespace clarity::ui {
 
 // Call before the slider, which is then drawn with its frame's colours off.
 void draw_slider_bar(double value, double min, double max, bool logarithmic);
@@ -14,4 +14,4 @@ struct BareFrames {
     BareFrames& operator=(const BareFrames&) = delete;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 Fonts the_fonts;
@@ -133,4 +133,4 @@ float ui_scale() {
     return the_scale;
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

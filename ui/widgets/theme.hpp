@@ -2,7 +2,7 @@
 #pragma once
 #include <imgui.h>
 
-namespace clarity {
+namespace clarity::ui {
 
 namespace colors {
 inline const ImVec4 kGround{0.078f, 0.086f, 0.102f, 1.0f};  // behind the picture
@@ -28,4 +28,4 @@ const Fonts& fonts();
 // The scale that is applied: multiply lengths by it.
 float ui_scale();
 
-}  // namespace clarity
+}  // namespace clarity::ui

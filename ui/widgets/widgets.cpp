@@ -8,7 +8,7 @@
 #include "ui/session/session.hpp"
 #include "ui/widgets/slider_bar.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 constexpr float kLabelWidth = 130;
@@ -179,4 +179,4 @@ void attempt(Session& session, const std::function<void()>& what) {
     }
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

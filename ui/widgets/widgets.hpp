@@ -9,7 +9,7 @@
 #include "ui/widgets/setting_rows.hpp"
 #include "ui/widgets/theme.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class Session;
 
@@ -48,4 +48,4 @@ std::string cut_front_to(const std::string& text, float width);
 // Does it; an Error becomes the session's message.
 void attempt(Session& session, const std::function<void()>& what);
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -4,7 +4,7 @@
 #include "bench/baselines/embree_baseline.hpp"
 #endif
 
-namespace clarity {
+namespace clarity::bench {
 
 BaselineMesh make_baseline_mesh(const Scene& scene) {
     BaselineMesh mesh;
@@ -51,4 +51,4 @@ std::vector<BaselineKind> baseline_kinds(std::string* why) {
 #endif
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -8,7 +8,7 @@
 #include "bench/baselines/whitted.hpp"
 #include "bench/suites/ray_sets.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // World-space triangles of a scene, indexed.
 struct BaselineMesh {
@@ -63,4 +63,4 @@ struct BaselineKind {
 // Those that this program was built with; none: `why` says so.
 std::vector<BaselineKind> baseline_kinds(std::string* why);
 
-}  // namespace clarity
+}  // namespace clarity::bench

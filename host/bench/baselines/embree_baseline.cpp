@@ -18,7 +18,7 @@
 #include "base/parallel_for.hpp"
 #include "bench/baselines/embree_frame.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr size_t kBlock = 16;        // rays of the flat arrays' blocks
@@ -258,4 +258,4 @@ std::unique_ptr<BaselineScene> build_embree(const BaselineMesh& mesh, const std:
     return std::make_unique<EmbreeScene>(mesh, quality, threads);
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

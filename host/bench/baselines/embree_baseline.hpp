@@ -2,8 +2,8 @@
 #pragma once
 #include "bench/baselines/baseline.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 std::unique_ptr<BaselineScene> build_embree(const BaselineMesh& mesh, const std::string& quality, unsigned threads);
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -24,7 +24,7 @@
 #endif
 #define INLINED inline __attribute__((always_inline))
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr unsigned kWide = 16;
@@ -326,4 +326,4 @@ double embree_frame(RTCScene scene, const BaselineMesh& mesh, const WhittedScene
     return ms;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 bool measured(const BenchRecord& record) {
@@ -111,4 +111,4 @@ const SpeedupMean* mean_of(const std::vector<SpeedupMean>& means, const BenchRec
     return found == means.end() ? nullptr : &*found;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

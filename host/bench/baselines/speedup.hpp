@@ -5,7 +5,7 @@
 
 #include "bench/output/record.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // The quality of a peer's build that is as quick or as thorough as ours: by a curve, by the heuristic, or with spatial splits.
 // accel: "bvh8,builder=morton", or the parameters alone.
@@ -47,4 +47,4 @@ std::vector<SpeedupMean> speedup_means(const BenchReport& report);
 // nullptr if the record has no peer.
 const SpeedupMean* mean_of(const std::vector<SpeedupMean>& means, const BenchRecord& record);
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -5,7 +5,7 @@
 #include "base/error.hpp"
 #include "render/frame/frame_constants.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 View whitted_view(const Scene& scene, View view) {
     if (view.lights.empty()) throw Error(Exit::failed, "no light: the frame of peers has one");
@@ -42,4 +42,4 @@ double differing_pixels(const FloatImage& a, const FloatImage& b, float toleranc
     return double(differ) * a.channels / double(a.pixels.size());
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

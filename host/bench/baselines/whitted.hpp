@@ -2,7 +2,7 @@
 #pragma once
 #include "render/frame/renderer.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // What a peer needs of it. The camera's vectors are those of rt_frame, so that all rays are the same.
 struct WhittedScene {
@@ -20,4 +20,4 @@ WhittedScene whitted_scene(const View& view, const Settings& settings);
 // Of how many pixels two pictures differ by more than `tolerance` in any channel; 0..1. Sizes that differ: 1.
 double differing_pixels(const FloatImage& a, const FloatImage& b, float tolerance);
 
-}  // namespace clarity
+}  // namespace clarity::bench

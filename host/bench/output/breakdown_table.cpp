@@ -5,7 +5,7 @@
 #include "bench/output/output.hpp"
 #include "bench/output/text_table.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 std::string share_text(double part, double whole) {
@@ -47,4 +47,4 @@ std::string breakdown_table(const BenchReport& report) {
            "\nand of these, percent of the frame\n" + within.text(20) + "\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -5,7 +5,7 @@
 #include "bench/output/output.hpp"
 #include "bench/output/text_table.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 double kernel_ms(const BenchRecord& r, const std::string& name) {
@@ -45,4 +45,4 @@ std::string devices_table(const BenchReport& report) {
                                table.text(26) + "\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

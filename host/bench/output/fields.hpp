@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace clarity {
+namespace clarity::bench {
 
 using Json = nlohmann::ordered_json;
 
@@ -91,4 +91,4 @@ const Field<Owner>* find_field(const Fields<Owner>& fields, const std::string& k
     return nullptr;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

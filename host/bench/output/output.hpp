@@ -4,7 +4,7 @@
 
 #include "bench/output/record.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // A list of records, each whole with machine and run, so that lists of several runs may be joined (DESIGN.md section 5). Ends
 // in a newline.
@@ -25,4 +25,4 @@ std::string devices_table(const BenchReport& report);
 // And ours by the best of the peers.
 std::string speedup_table(const BenchReport& report);
 
-}  // namespace clarity
+}  // namespace clarity::bench

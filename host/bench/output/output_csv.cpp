@@ -3,7 +3,7 @@
 
 #include "bench/output/record_keys.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 std::string kernels_text(const Json& kernels) {
@@ -75,4 +75,4 @@ std::string bench_csv(const BenchReport& report) {
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

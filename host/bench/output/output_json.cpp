@@ -5,7 +5,7 @@
 #include "bench/output/record_fields.hpp"
 #include "bench/output/record_keys.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 BenchRecord read_record(const Json& json) {
@@ -82,4 +82,4 @@ BenchReport read_bench_json(const std::string& text) {
     return report;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

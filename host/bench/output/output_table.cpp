@@ -8,7 +8,7 @@
 #include "bench/output/record_fields.hpp"
 #include "bench/output/text_table.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 std::string who(const BenchRecord& r) {
@@ -281,4 +281,4 @@ std::string bench_table(const BenchReport& report) {
            breakdown_table(report) + devices_table(report) + analysis_table(report) + dropped_table(report) + left_out(report);
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -8,7 +8,7 @@
 
 #include "base/statistics.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 enum class RowStatus {
     ok,
@@ -120,4 +120,4 @@ struct BenchReport {
     std::string failure;  // why the run ended early; "": it did not
 };
 
-}  // namespace clarity
+}  // namespace clarity::bench

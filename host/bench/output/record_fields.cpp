@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "bench/output/text_table.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr const char* kStatus[] = {"ok", "refused", "failed", "skipped"};
@@ -260,4 +260,4 @@ std::string shown_text(double stored, const Look& look) {
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

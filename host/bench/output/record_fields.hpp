@@ -4,7 +4,7 @@
 #include "bench/output/fields.hpp"
 #include "bench/output/record.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 const Fields<BenchRecord>& record_fields();
 const Fields<Summary>& summary_fields();
@@ -21,4 +21,4 @@ std::string shown_text(const Field<Owner>& field, const Owner& owner) {
     return shown_text(field.number(owner), field.look);
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -3,9 +3,9 @@
 #include "bench/output/fields.hpp"
 #include "bench/output/output.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // Every key is there, null where there is nothing to say.
 Json record_json(const BenchReport& report, const BenchRecord& record);
 
-}  // namespace clarity
+}  // namespace clarity::bench

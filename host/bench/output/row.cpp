@@ -3,7 +3,7 @@
 #include "bench/run/machine.hpp"
 #include "plugin/parameters.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 void describe(BenchRecord& row, const Scene& scene) {
     row.triangles = scene.placed_triangle_count();
@@ -57,4 +57,4 @@ std::string parameters_text(const rt_plugin& plugin, const ParameterValues& valu
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -3,7 +3,7 @@
 #include "bench/output/record.hpp"
 #include "render/frame/renderer.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 void describe(BenchRecord& row, const Scene& scene);
 void describe(BenchRecord& row, const DeviceInfo& device);
@@ -15,4 +15,4 @@ void describe(BenchRecord& row, const Prepared& prepared);
 // "max_leaf=4,bins=32"
 std::string parameters_text(const rt_plugin& plugin, const ParameterValues& values);
 
-}  // namespace clarity
+}  // namespace clarity::bench

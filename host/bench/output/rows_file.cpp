@@ -4,7 +4,7 @@
 
 #include "bench/output/output.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 RowsFile::RowsFile(std::string path) : path_(std::move(path)) {
     std::error_code error;
@@ -36,4 +36,4 @@ void RowsFile::finish(const BenchReport& report) {
     file_.reset();
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

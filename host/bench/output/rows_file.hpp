@@ -6,7 +6,7 @@
 #include "base/output_file.hpp"
 #include "bench/output/record.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // Rows go into the temporary file beside `path` at once. finish() writes the whole report instead, whose rows also know how the
 // run ended and what the means over all of its scenes are. Without finish(), the destructor closes the list and puts the rows
@@ -30,4 +30,4 @@ class RowsFile {
     bool torn_ = false;  // the last row is there in part: the disk is full, say
 };
 
-}  // namespace clarity
+}  // namespace clarity::bench

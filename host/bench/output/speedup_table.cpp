@@ -5,7 +5,7 @@
 #include "bench/output/output.hpp"
 #include "bench/output/text_table.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr const char* kMeasures[] = {"primary", "shadow", "reflection", "diffuse", "whitted", "build"};
@@ -78,4 +78,4 @@ std::string speedup_table(const BenchReport& report) {
            table.text(26) + "\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 // Characters on the screen: bytes of UTF-8 that begin one.
@@ -50,4 +50,4 @@ std::string short_number(double value) {
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

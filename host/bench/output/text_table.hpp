@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::bench {
 
 class TextTable {
  public:
@@ -22,4 +22,4 @@ class TextTable {
 // Three significant digits: 0.0123, 1.23, 12.3, 1234; "" for 0.
 std::string short_number(double value);
 
-}  // namespace clarity
+}  // namespace clarity::bench

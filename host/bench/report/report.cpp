@@ -7,7 +7,7 @@
 #include "bench/output/output.hpp"
 #include "bench/report/report_page.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 void write_report(const std::string& folder, const BenchReport& report) {
     namespace fs = std::filesystem;
@@ -23,4 +23,4 @@ void write_report(const std::string& folder, const BenchReport& report) {
     write_text_file((base / "index.html").string(), report_page(report));
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

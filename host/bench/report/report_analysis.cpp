@@ -3,7 +3,7 @@
 #include "bench/report/report_markup.hpp"
 #include "bench/report/report_sections.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 std::string rays_of(const BenchRecord& r) {
@@ -85,4 +85,4 @@ std::string analysis_section(const BenchReport& report, const SeriesNames& names
            out;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

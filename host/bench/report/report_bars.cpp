@@ -6,7 +6,7 @@
 #include "bench/report/report_chart.hpp"
 #include "bench/report/report_markup.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 std::string css_percent(double share) {
@@ -103,4 +103,4 @@ std::string bar_chart(const BarChart& chart) {
     return out + "</span></div></figure>\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::bench {
 
 inline constexpr int kChartColors = 7;
 
@@ -47,4 +47,4 @@ struct CurveChart {
 // Both axes logarithmic. Empty without a curve of two points.
 std::string curve_chart(const CurveChart& chart);
 
-}  // namespace clarity
+}  // namespace clarity::bench

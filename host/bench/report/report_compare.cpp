@@ -7,7 +7,7 @@
 #include "bench/report/report_markup.hpp"
 #include "bench/report/report_sections.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 struct Measure {
@@ -166,4 +166,4 @@ std::string scale_section(const BenchReport& report, const SeriesNames& names) {
            "<div class=\"grid\">\n" + charts + "</div>\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

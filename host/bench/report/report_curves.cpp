@@ -6,7 +6,7 @@
 #include "bench/report/report_chart.hpp"
 #include "bench/report/report_markup.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr double kLeft = 56, kTop = 12, kWidth = 420, kHeight = 240, kTotal = 720, kLineHeight = 15;
@@ -125,4 +125,4 @@ std::string curve_chart(const CurveChart& chart) {
     return out + "</svg></div></figure>\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -6,7 +6,7 @@
 #include "bench/report/report_markup.hpp"
 #include "bench/report/report_sections.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 const char* status_word(RowStatus status) {
@@ -109,4 +109,4 @@ std::string machine_section(const BenchReport& report, const SeriesNames& names)
     return out;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

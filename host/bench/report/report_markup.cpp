@@ -5,7 +5,7 @@
 
 #include "bench/output/text_table.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 // Bytes of the UTF-8 character at `at` that XML allows; 0 if there is none.
@@ -95,4 +95,4 @@ std::string MarkupTable::markup() const {
     return out + "</tbody></table></div>\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::bench {
 
 // Text for element content and attribute values in double quotes. What no XML may hold (control characters, bytes that are not
 // UTF-8) becomes U+FFFD.
@@ -31,4 +31,4 @@ class MarkupTable {
     std::vector<std::vector<std::string>> rows_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::bench

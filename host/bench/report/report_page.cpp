@@ -4,7 +4,7 @@
 #include "bench/report/report_sections.hpp"
 #include "bench/report/report_style.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 std::string report_page(const BenchReport& report) {
     const SeriesNames names(report);
@@ -43,4 +43,4 @@ std::string report_page(const BenchReport& report) {
     return out + body + "</body>\n</html>\n";
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

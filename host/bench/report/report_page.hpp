@@ -4,8 +4,8 @@
 
 #include "bench/output/record.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 std::string report_page(const BenchReport& report);
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -4,7 +4,7 @@
 
 #include "bench/report/report_series.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 std::string thesis_section(const BenchReport& report, const SeriesNames& names);      // the six charts, the demo, the aim
 std::string packets_section(const BenchReport& report, const SeriesNames& names);     // packet size x lanes
@@ -14,4 +14,4 @@ std::string analysis_section(const BenchReport& report, const SeriesNames& names
 std::string left_out_section(const BenchReport& report, const SeriesNames& names);    // refused, failed, skipped
 std::string machine_section(const BenchReport& report, const SeriesNames& names);     // machine, method, all figures
 
-}  // namespace clarity
+}  // namespace clarity::bench

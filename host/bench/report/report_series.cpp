@@ -6,7 +6,7 @@
 #include "bench/baselines/speedup.hpp"
 #include "bench/report/report_markup.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr int kGrey = kChartColors - 1;  // of peers
@@ -122,4 +122,4 @@ Bar bar_of(const SeriesNames& names, const BenchRecord& record, double value, co
     return bar;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

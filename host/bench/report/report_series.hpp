@@ -8,7 +8,7 @@
 
 #include "bench/output/record.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // Records put together by a key, in the order in which keys first came.
 class RecordGroups {
@@ -52,4 +52,4 @@ std::string hint_of(const BenchRecord& record);
 // A bar of a record: its value, or in words why there is none.
 Bar bar_of(const SeriesNames& names, const BenchRecord& record, double value, const std::string& label = {});
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -1,6 +1,6 @@
 #include "bench/report/report_style.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // Colours: Okabe and Ito 2008. The track of a bar leaves 4.5em to its right for the number behind a full bar.
 const char* const kReportStyle = R"css(
@@ -46,4 +46,4 @@ details { margin: .6rem 0; } summary { cursor: pointer; font-weight: 600; } .war
 @media print { body { max-width: none; font-size: 10pt; } * { print-color-adjust: exact; -webkit-print-color-adjust: exact; } nav { display: none; } }
 )css";
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -1,8 +1,8 @@
 // report_style.hpp -- how a report looks: on light and dark screens, narrow ones and paper.
 #pragma once
 
-namespace clarity {
+namespace clarity::bench {
 
 extern const char* const kReportStyle;
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -6,7 +6,7 @@
 #include "bench/report/report_markup.hpp"
 #include "bench/report/report_sections.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 // What the thesis says about a scene: where the axis of its chart ends, which no device of 2008 reached.
@@ -161,4 +161,4 @@ std::string thesis_section(const BenchReport& report, const SeriesNames& names) 
     return out + "</div>\n" + table_of(rows, names) + kernels_of(scenes, names);
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

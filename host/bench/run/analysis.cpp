@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr size_t kWarp = 32;
@@ -55,4 +55,4 @@ Analysis analyze(const std::vector<rt_ray>& rays, const std::vector<rt_hit>& hit
     return a;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

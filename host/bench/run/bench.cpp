@@ -14,7 +14,7 @@
 #include "bench/run/machine.hpp"
 #include "render/accel/accel_choice.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -222,4 +222,4 @@ bool all_ok(const BenchReport& report) {
            });
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -7,12 +7,12 @@
 #include "bench/suites/suite.hpp"
 #include "device/device.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 struct BenchOptions {
     std::vector<DeviceInfo> devices;
     MeasureRules rules;  // budget_s is set case by case, from the suite's time limit
-    ImportOptions import;
+    import::ImportOptions import;
     // Called after each row with the report so far; the row is its last record. What it throws ends the run.
     std::function<void(const BenchReport&)> on_row;
 };
@@ -29,4 +29,4 @@ Settings variant_settings(const PluginRegistry& plugins, const BenchRequest& req
 // Whether all went well: the run came to its end, and no row is refused or failed.
 bool all_ok(const BenchReport& report);
 
-}  // namespace clarity
+}  // namespace clarity::bench

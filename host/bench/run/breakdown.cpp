@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "bench/output/row.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr const char* kNames[kProbes] = {"film",
@@ -107,4 +107,4 @@ void measure_breakdown(BenchRecord& row, Fixture& fixture, size_t device, const 
     for (const char* name : {"tone map", "read-back"}) row.parts_ms.emplace_back(name, median_of(shown, name));
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

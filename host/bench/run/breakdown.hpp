@@ -7,7 +7,7 @@
 #include "bench/run/measure.hpp"
 #include "render/kernels/frame_parts.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // Frames that are measured. Those with `shadows` or `depth` are settings, the others programs.
 enum class Probe {
@@ -34,4 +34,4 @@ Breakdown break_down(const double (&ms)[kProbes]);
 void measure_breakdown(BenchRecord& row, Fixture& fixture, size_t device, const Settings& settings, const View& view,
                        const MeasureRules& rules, Progress& progress);
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -23,7 +23,7 @@
 #include "render/accel/accel_choice.hpp"
 #include "render/queries/ray_blocks.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -481,4 +481,4 @@ std::vector<BenchRecord> run_case(Fixture& fixture, const PluginRegistry& plugin
     return CaseRunner(fixture, plugins, request, c, rules, progress).run();
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -4,7 +4,7 @@
 #include <new>
 #include <string>
 
-namespace clarity {
+namespace clarity::bench {
 
 inline std::string failure_text(const std::exception& e) {
     if (dynamic_cast<const std::bad_alloc*>(&e))
@@ -12,4 +12,4 @@ inline std::string failure_text(const std::exception& e) {
     return e.what();
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

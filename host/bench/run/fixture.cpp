@@ -10,7 +10,7 @@
 #include "bench/run/machine.hpp"
 #include "bench/suites/subdivide.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 // What a triangle takes on the host while three structures, a peer and their inputs are held and one more is built, roughly.
@@ -44,7 +44,7 @@ struct Fixture::Place {
         : device(std::make_shared<Device>(info)), preparer(plugins, device) {}
 };
 
-Fixture::Fixture(const PluginRegistry& plugins, const std::vector<DeviceInfo>& devices, const ImportOptions& import)
+Fixture::Fixture(const PluginRegistry& plugins, const std::vector<DeviceInfo>& devices, const import::ImportOptions& import)
     : plugins_(plugins), import_(import) {
     for (const DeviceInfo& info : devices) places_.push_back(std::make_unique<Place>(plugins, info));
 }
@@ -130,4 +130,4 @@ BaselineScene& Fixture::baseline(const BaselineKind& kind) {
     return *baseline;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -10,11 +10,11 @@
 #include "bench/suites/suite.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 class Fixture {
  public:
-    Fixture(const PluginRegistry& plugins, const std::vector<DeviceInfo>& devices, const ImportOptions& import);
+    Fixture(const PluginRegistry& plugins, const std::vector<DeviceInfo>& devices, const import::ImportOptions& import);
     ~Fixture();
 
     size_t device_count() const { return places_.size(); }
@@ -49,7 +49,7 @@ class Fixture {
  private:
     struct Place;
     const PluginRegistry& plugins_;
-    const ImportOptions import_;
+    const import::ImportOptions import_;
     std::vector<std::unique_ptr<Place>> places_;
     std::unique_ptr<MultiPreparer> together_;
     LoadedScene loaded_;
@@ -60,4 +60,4 @@ class Fixture {
     std::map<std::string, std::unique_ptr<BaselineScene>> baselines_;
 };
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <fstream>
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 // The text after the colon of each line of /proc/cpuinfo that begins with `key`, handed to `use`.
@@ -82,4 +82,4 @@ std::string utc_date() {
     return text;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

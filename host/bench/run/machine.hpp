@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace clarity {
+namespace clarity::bench {
 
 std::string host_cpu_name();
 // Mean over the cores that say it, MHz; 0 if none does.
@@ -17,4 +17,4 @@ uint64_t free_memory_bytes();
 // Now, ISO 8601, UTC.
 std::string utc_date();
 
-}  // namespace clarity
+}  // namespace clarity::bench

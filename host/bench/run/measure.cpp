@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "bench/run/failure.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -156,4 +156,4 @@ std::vector<Measured> measure_interleaved(const std::vector<Contender>& contende
     return results;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -8,7 +8,7 @@
 #include "base/progress.hpp"
 #include "bench/output/record.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // One repetition.
 struct Sample {
@@ -47,4 +47,4 @@ struct Measured {
 std::vector<Measured> measure_interleaved(const std::vector<Contender>& contenders, const MeasureRules& rules,
                                           Progress& progress);
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -7,7 +7,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr unsigned kPictures = 100;
@@ -62,4 +62,4 @@ Sample show_moving(FrameRenderer& frames, const Prepared& prepared, const Settin
     return take;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -14,7 +14,7 @@
 #include "render/accel/accel_choice.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -175,4 +175,4 @@ std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry
     return rows;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -12,7 +12,7 @@
 
 #include "base/error.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr unsigned kChunk = 1u << 20;  // bytes that are unpacked at a time
@@ -76,4 +76,4 @@ TemporaryFile gunzip(const std::string& path) {
     return file;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

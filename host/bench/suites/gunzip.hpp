@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 
-namespace clarity {
+namespace clarity::bench {
 
 // Lives as long as the object, in the folder for temporary files.
 class TemporaryFile {
@@ -21,4 +21,4 @@ class TemporaryFile {
 // "dir/bunny.ply.gz" -> a file that ends in "bunny.ply". Throws Error(import_failed).
 TemporaryFile gunzip(const std::string& path);
 
-}  // namespace clarity
+}  // namespace clarity::bench

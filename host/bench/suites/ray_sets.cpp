@@ -6,7 +6,7 @@
 #include "base/parallel_for.hpp"
 #include "bench/suites/vec3.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 constexpr int kTile = 16;        // pixels, in both directions
@@ -172,4 +172,4 @@ std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, co
     return sets;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

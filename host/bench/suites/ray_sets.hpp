@@ -7,7 +7,7 @@
 #include "bench/suites/vec3.hpp"
 #include "render/frame/renderer.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // Rays in an order that suits packets of any size up to 16x16 pixels: tiles of 16x16 in rows, Z-order within, so that any 4, 8
 // or 16 in a row are 2x2, 4x2 or 4x4 pixels. Rays of pixels that have none (beyond the picture's edge, or where the camera ray
@@ -51,4 +51,4 @@ class SurfaceNormals {
 // Wellons 2018, "Prospecting for Hash Functions": a 32-bit mix of low bias.
 uint32_t lowbias32(uint32_t x);
 
-}  // namespace clarity
+}  // namespace clarity::bench

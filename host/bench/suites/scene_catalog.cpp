@@ -12,7 +12,7 @@
 #include "base/error.hpp"
 #include "bench/suites/gunzip.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 namespace fs = std::filesystem;
@@ -175,8 +175,8 @@ BenchScene scene_of_file(const std::string& path) {
     return scene;
 }
 
-LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, float aspect, const ImportOptions& options,
-                       Progress& progress) {
+LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, float aspect,
+                       const import::ImportOptions& options, Progress& progress) {
     std::vector<TemporaryFile> unpacked;
     std::vector<std::string> files;
     for (const std::string& file : scene.files) {
@@ -186,10 +186,10 @@ LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, f
     }
     LoadedScene loaded;
     const auto begin = std::chrono::steady_clock::now();
-    loaded.scene = std::make_shared<const Scene>(import_scene(plugins, files, options, progress));
+    loaded.scene = std::make_shared<const Scene>(import::import_scene(plugins, files, options, progress));
     loaded.import_ms = ms_since(begin);
     loaded.view = make_view(*loaded.scene, aspect, scene.camera, scene.light);
     return loaded;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -7,7 +7,7 @@
 #include "import/import.hpp"
 #include "render/frame/renderer.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 struct BenchScene {
     std::string name;
@@ -53,7 +53,7 @@ struct LoadedScene {
     double import_ms = 0;
 };
 // Throws Error(import_failed), Error(usage) for a camera that is not there, Cancelled.
-LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, float aspect, const ImportOptions& options,
-                       Progress& progress);
+LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, float aspect,
+                       const import::ImportOptions& options, Progress& progress);
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -10,7 +10,7 @@
 #include "base/parallel_for.hpp"
 #include "bench/suites/vec3.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 // World-space corners, points at the same place being one vertex: seams of texture coordinates must not tear open.
@@ -226,4 +226,4 @@ Scene subdivide(const Scene& scene, unsigned n) {
     return out;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -2,7 +2,7 @@
 #pragma once
 #include "scene/scene.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // Each triangle becomes n x n. New points bulge as the vertex normals say (Boubekeur and Alexa 2008, "Phong Tessellation") and
 // are then displaced along the normal by a few octaves of waves down to the size of the new triangles, so that a large model is
@@ -10,4 +10,4 @@ namespace clarity {
 // mesh of one material each triangle; spheres, planes and polygons are kept.
 Scene subdivide(const Scene& scene, unsigned n);
 
-}  // namespace clarity
+}  // namespace clarity::bench

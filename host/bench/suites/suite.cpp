@@ -7,7 +7,7 @@
 #include "bench/baselines/speedup.hpp"
 #include "render/accel/accel_choice.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 namespace {
 
 const std::vector<std::string> kAllQualities = {"low", "medium", "high"};
@@ -365,4 +365,4 @@ Suite make_suite(const BenchRequest& request, const SceneCatalog& catalog, const
     return Planner(request, catalog, plugins).plan();
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

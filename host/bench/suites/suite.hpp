@@ -7,7 +7,7 @@
 #include "bench/suites/scene_catalog.hpp"
 #include "plugin/registry.hpp"
 
-namespace clarity {
+namespace clarity::bench {
 
 // What the command line asks for.
 struct BenchRequest {
@@ -61,4 +61,4 @@ const std::vector<std::string>& suite_names();
 // Throws Error(usage) for a suite that there is not.
 Suite make_suite(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins);
 
-}  // namespace clarity
+}  // namespace clarity::bench

@@ -3,7 +3,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace clarity {
+namespace clarity::bench {
 
 using Vec3 = glm::dvec3;
 
@@ -13,4 +13,4 @@ inline Vec3 normalized(const Vec3& a, const Vec3& otherwise) {
     return length > 0 ? (1 / length) * a : otherwise;
 }
 
-}  // namespace clarity
+}  // namespace clarity::bench

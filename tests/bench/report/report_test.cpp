@@ -18,6 +18,7 @@
 #include "support/scratch.hpp"
 
 using namespace clarity;
+using namespace clarity::bench;
 using namespace clarity::test;
 
 namespace {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 namespace clarity::test {
+using namespace bench;
 namespace {
 
 Summary around(double median) {

@@ -3,6 +3,7 @@
 #include "bench/output/record.hpp"
 
 namespace clarity::test {
+using namespace bench;
 
 BenchReport sample_report();
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 namespace clarity::test {
+using namespace bench;
 namespace {
 
 class Checker {

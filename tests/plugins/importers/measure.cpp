@@ -11,6 +11,7 @@
 #include "import/import.hpp"
 
 namespace clarity::test {
+using namespace import;
 namespace fs = std::filesystem;
 
 Scene import_file(const std::string& path) {

@@ -16,6 +16,7 @@
 namespace {
 
 using namespace clarity;
+using namespace clarity::import;
 namespace fs = std::filesystem;
 
 Scene import_file(const std::string& path) {

@@ -7,7 +7,7 @@
 
 #include "window_driver.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 // A wavy sheet of 2 n^2 triangles.
 inline void write_sheet(const std::string& path, int n) {
@@ -31,4 +31,4 @@ inline std::string large_model(const TemporaryFolder& folder) {
     return folder.path() + "/sheet.obj";
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

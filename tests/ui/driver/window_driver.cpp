@@ -17,7 +17,7 @@
 #include <fstream>
 #include <sstream>
 
-namespace clarity {
+namespace clarity::ui {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
@@ -283,4 +283,4 @@ std::string WindowDriver::errors() const {
     return text.str();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace clarity {
+namespace clarity::ui {
 
 struct Pixels {
     int width = 0, height = 0;
@@ -123,4 +123,4 @@ class WindowDriver {
     int pictures_ = 0;
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui

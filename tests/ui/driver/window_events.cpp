@@ -6,7 +6,7 @@
 
 #include "window_driver.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 namespace {
 
 std::string at(const Place& place) {
@@ -129,4 +129,4 @@ void WindowDriver::take_focus() {
     pass_frame();
 }
 
-}  // namespace clarity
+}  // namespace clarity::ui

@@ -11,7 +11,7 @@
 
 #include "window_driver.hpp"
 
-namespace clarity {
+namespace clarity::ui {
 
 class WindowTest : public ::testing::Test {
  protected:
@@ -49,4 +49,4 @@ class WindowTest : public ::testing::Test {
     }
 };
 
-}  // namespace clarity
+}  // namespace clarity::ui
