@@ -1,4 +1,4 @@
-// What the file browser, the log, the graph and the preferences compute, without a window.
+// Tests of what the file browser, the log, the graph and the preferences compute, without a window.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -107,7 +107,7 @@ TEST_F(Folder, CompletesAsFarAsItIsCertain) {
 
 TEST_F(Folder, NeverCompletesHalfACharacter) {
     file("caf\u00e9.obj");
-    file("caf\u00e8.obj");  // the same first byte
+    file("caf\u00e8.obj");  // its first byte is the same
     EXPECT_EQ(complete(list(), "c"), "caf");
 }
 
@@ -235,7 +235,7 @@ TEST(PreferencesJson, AreBroughtIntoRangeOrRefused) {
     EXPECT_LE(p.moving_fps, 240);
     EXPECT_EQ(p.compare_mode, CompareMode::wipe);
     EXPECT_EQ(p.recent_files.size(), kRecentFiles);
-    EXPECT_TRUE(p.bookmarks.at("/a.obj").empty());  // no camera can look at its own place
+    EXPECT_TRUE(p.bookmarks.at("/a.obj").empty());  // dropped: a camera cannot look at its own position
     EXPECT_EQ(to_json(preferences_from(nlohmann::json::object())), to_json(Preferences{}));
     json["recent_files"] = "not a list";
     EXPECT_THROW(preferences_from(json), nlohmann::json::exception);

@@ -1,4 +1,4 @@
-// What a first-time user clicks: open a file, save the picture, see the volumes, compare two structures, take a step back.
+// The first clicks of a new user: open a file, save the picture, show the volumes, compare two structures, undo.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -51,7 +51,7 @@ TEST_F(Buttons, StepsBackAndForth) {
     EXPECT_TRUE(reaches(*window, "depth", 1));
 }
 
-// By its path, and by a click on its name.
+// Files are opened by their path and by a click on their name.
 TEST_F(Buttons, TheBrowserOpensFiles) {
     const TemporaryFolder folder;
     for (const char* name : {"first.scene", "second.scene"})
@@ -65,7 +65,7 @@ TEST_F(Buttons, TheBrowserOpensFiles) {
     EXPECT_TRUE(reaches(*window, "files", nlohmann::json::array({folder.path() + "/first.scene"})));
     EXPECT_TRUE(reaches(*window, "browser_open", false));
     window->settle();
-    // A part of the name is enough to find it.
+    // A part of the name is enough to find the file.
     window->key("ctrl+o");
     ASSERT_TRUE(reaches(*window, "browser_open", true));
     ASSERT_TRUE(reaches(*window, "typing", true));
@@ -76,7 +76,7 @@ TEST_F(Buttons, TheBrowserOpensFiles) {
     EXPECT_EQ(window->state()["message"], "");
 }
 
-// To the clipboard, and from there into a text field.
+// The command line goes to the clipboard, and from there into a text field.
 TEST_F(Buttons, TheCommandLineIsCopied) {
     const auto window = open();
     ASSERT_EQ(window->command("set depth 2"), "");

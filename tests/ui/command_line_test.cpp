@@ -1,4 +1,4 @@
-// "Copy command line": the very line, run, makes the very picture.
+// "Copy command line": the copied command renders exactly the window's picture.
 #include <gtest/gtest.h>
 
 #include <iterator>
@@ -15,7 +15,7 @@ std::string bytes_of(const std::string& path) {
 
 class CommandLine : public WindowTest {
  protected:
-    // Saves the window's picture and runs the line that it gives.
+    // Saves the window's picture, runs the window's command line, and expects equal files.
     void expect_same(WindowDriver& window, const std::string& ending) {
         const std::string saved = folder.path() + "/of the window." + ending, rendered = folder.path() + "/it's one." + ending;
         save(window, saved);
@@ -35,7 +35,7 @@ class CommandLine : public WindowTest {
 
 TEST_F(CommandLine, MakesThePictureBitByBit) {
     const auto window = open();
-    // As it opens, and with the camera where keys and mouse brought it.
+    // First as the scene opens, then with the camera moved by keys and mouse.
     expect_same(*window, "png");
     window->key_down("Right");
     usleep(200000);
@@ -47,7 +47,7 @@ TEST_F(CommandLine, MakesThePictureBitByBit) {
     window->wheel(window->place_of_pixel(100, 100), 2);
     window->settle();
     expect_same(*window, "png");
-    // Lights by key and by number, materials, surroundings, what is hidden, settings.
+    // Then with lights, materials, surroundings, hidden instances and settings changed.
     window->key("a");
     for (const char* change :
          {"edit light.1 off", "edit light.2 point,1,5,3,.3,.1,.05", "edit material.1.color .123456,.9,.1",
@@ -71,7 +71,7 @@ TEST_F(CommandLine, NamesStructureAndSize) {
     expect_same(*window, "pfm");
 }
 
-// Names that a shell would take apart.
+// File names with characters that are special to a shell.
 TEST_F(CommandLine, QuotesWhatAShellWouldTakeApart) {
     const std::string scene = folder.path() + "/it's $HOME; a scene.scene";
     std::ofstream(scene) << "camera main eye 0 0 5 target 0 0 0 fov 40\nsphere center 0 0 0 radius 1\n"

@@ -1,4 +1,4 @@
-// Two settings of one view, side by side.
+// Two settings of the same view, side by side.
 #include <gtest/gtest.h>
 
 #include "ui/driver/window_fixture.hpp"
@@ -9,7 +9,7 @@ namespace {
 class Compare : public WindowTest {
  protected:
     static bool both_there(const nlohmann::json& state) { return state.contains("other") && !state["busy"]; }
-    // Pressing C: the second side begins as a copy, and becomes another structure.
+    // Opens a comparison with the key C: the second side begins as a copy, then gets another structure.
     std::unique_ptr<WindowDriver> compared() {
         auto window = open();
         window->key("c");
@@ -19,7 +19,7 @@ class Compare : public WindowTest {
         window->settle();
         return window;
     }
-    // The share of dark pixels in a part of the window.
+    // The share of dark pixels in an area of the window.
     static double dark(const Pixels& screen, const nlohmann::json& area) {
         size_t count = 0, all = 0;
         for (int y = int(area[1]) + int(area[3]) / 5; y < int(area[1]) + int(area[3]) * 4 / 5; ++y)
@@ -37,10 +37,10 @@ TEST_F(Compare, TwoStructuresShowTheSamePicture) {
     EXPECT_EQ(state["accel"], "bvh8");
     EXPECT_EQ(state["other"]["accel"], "spheres");
     ASSERT_TRUE(state.contains("difference"));
-    EXPECT_LT(double(state["difference"]["share"]), 1e-3);  // silhouettes may fall either way
+    EXPECT_LT(double(state["difference"]["share"]), 1e-3);  // pixels at silhouettes may differ
     EXPECT_GT(double(state["fps"]), 0);
     EXPECT_GT(double(state["other"]["frame_ms"]), 0);
-    // What differs is seen to differ.
+    // A visible difference is measured.
     ASSERT_EQ(window->command("set depth 1"), "");
     window->settle();
     EXPECT_GT(double(window->state()["difference"]["share"]), 0.02);
@@ -60,7 +60,7 @@ TEST_F(Compare, TheHandleIsDraggedByTheMouse) {
     EXPECT_NEAR(double(now["wipe"]), double(was["wipe"]) - 0.25, 0.03);
     EXPECT_EQ(now["eye"], was["eye"]);
     EXPECT_NEAR(double(window->query("layout")["places"][1]["shown"][0]), handle.x - 0.25 * double(area[2]), 8);
-    // Beside the handle a drag moves the camera, of both.
+    // A drag beside the handle moves the camera of both sides.
     window->drag({handle.x + 60, handle.y}, {handle.x + 120, handle.y});
     window->settle();
     EXPECT_NE(window->state()["eye"], was["eye"]);
@@ -92,7 +92,7 @@ TEST_F(Compare, SideBySideBothAreClicked) {
     nlohmann::json selected[2];
     for (const auto& [x, y] : {std::pair(20, 225), std::pair(210, 150)}) {  // the floor, the ball of glass
         for (size_t side : {0u, 1u}) {
-            ASSERT_EQ(window->command("pick 160 120"), "");  // something else first
+            ASSERT_EQ(window->command("pick 160 120"), "");  // pick something else first
             window->settle();
             window->click(window->place_of_pixel(x, y, side));
             window->settle();
@@ -126,7 +126,7 @@ TEST_F(Compare, SidesSwapAndOneIsLeft) {
     EXPECT_EQ(state["message"], "");
 }
 
-// What the second side cannot have is a message; the first goes on.
+// If the second side cannot be prepared, a message says so and the first side goes on.
 TEST_F(Compare, AnImpossibleSecondSideCostsAMessage) {
     const auto window = compared();
     const Pixels before = window->picture();

@@ -1,4 +1,4 @@
-// Devices switched live. PoCL shows one processor as several where it is asked to; elsewhere there may be one only.
+// Devices changed while the window runs. PoCL can show one processor as several devices; other drivers may have only one.
 #include <gtest/gtest.h>
 
 #include "ui/driver/window_fixture.hpp"
@@ -25,14 +25,14 @@ TEST_F(Devices, SwitchLive) {
     window->key("Left");
     window->settle();
     EXPECT_GT(difference(before, window->picture()), 0.01);
-    // Taken back like any other setting.
+    // The change can be undone like any other setting.
     window->key("Home");
     window->key("ctrl+z");
     window->settle();
     EXPECT_EQ(window->state()["device"], first);
     EXPECT_EQ(difference(before, window->picture(), 0), 0);
 
-    // Both at once, one a side.
+    // Each side on a device of its own.
     ASSERT_EQ(window->command("compare b"), "");
     ASSERT_EQ(window->command("device " + second), "");
     window->settle();
@@ -64,7 +64,7 @@ TEST_F(Devices, OneThatIsGoneCostsAMessage) {
     EXPECT_FALSE(window->state()["behind"]);
 }
 
-// A CPU in parts: two devices that share each picture, which stays what it was.
+// A CPU split into two devices which share each picture. The picture stays the same.
 TEST_F(Devices, SeveralShareAPicture) {
     const auto window = open();
     const std::string first = window->state()["device"];
@@ -75,7 +75,7 @@ TEST_F(Devices, SeveralShareAPicture) {
     EXPECT_EQ(window->state()["message"], "");
     EXPECT_EQ(window->state()["device"], first + "/2.0," + first + "/2.1");
     EXPECT_EQ(difference(before, window->picture(), 0), 0);
-    // Moving, refining, quantities, a pixel's rays and an edit go on as with one.
+    // Motion, refinement, other AOVs, a pixel's rays and an edit work as with one device.
     window->key("Left");
     window->settle();
     EXPECT_GT(difference(before, window->picture()), 0.01);

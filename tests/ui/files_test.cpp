@@ -1,4 +1,4 @@
-// Files opened, dropped, broken, empty: what cannot be read costs a message, and the program never ends by it.
+// Files opened, dropped, broken, empty: a file that cannot be read causes a message and never ends the program.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 class Files : public WindowTest {
  protected:
-    // Through the callback that the window system calls.
+    // Drops files through the callback that the window system calls.
     static void drop(WindowDriver& window, const std::vector<std::string>& files) {
         ASSERT_EQ(window.command("drop " + nlohmann::json(files).dump()), "");
         window.settle();
@@ -42,7 +42,7 @@ TEST_F(Files, ABrokenFileIsAMessageAndTheOldPictureGoesOn) {
     window->key("Left");
     window->settle();
     EXPECT_GT(difference(before, window->picture()), 0.01);
-    // A good file after them opens, and the message is gone.
+    // Afterwards a good file opens, and the message is gone.
     ASSERT_EQ(window->command("open " + source_path("scenes/cornell.scene")), "");
     window->settle();
     EXPECT_EQ(window->state()["message"], "");
@@ -78,20 +78,20 @@ TEST_F(Files, DroppedOnesAreOpenedAndSeveralBecomeOneScene) {
     drop(*window, {one, two});
     EXPECT_EQ(window->state()["files"], nlohmann::json({one, two}));
     EXPECT_EQ(window->state()["triangles"], 3);
-    // One bad file of several: none of them is taken.
+    // If one of several files is bad, none of them is opened.
     const Pixels before = window->picture();
     drop(*window, {two, folder.path() + "/missing.obj"});
     EXPECT_NE(std::string(window->state()["message"]).find("missing.obj"), std::string::npos);
     EXPECT_EQ(window->state()["files"], nlohmann::json({one, two}));
     EXPECT_EQ(difference(before, window->picture(), 0), 0);
-    // Onto a window that shows nothing yet.
+    // Drop onto a window without a scene.
     WindowDriver empty({});
     empty.settle();
     drop(empty, {source_path("scenes/cornell.scene")});
     EXPECT_EQ(empty.state()["files"][0], source_path("scenes/cornell.scene"));
 }
 
-// Scenes that lack what most have: they open, keys and clicks do no harm, and the next one opens too.
+// Scenes without camera, lights or shapes: they open, keys and clicks do no harm, and the next scene opens too.
 TEST_F(Files, ScenesThatLackSomething) {
     const TemporaryFolder folder;
     const std::pair<const char*, const char*> scenes[] = {
@@ -110,7 +110,7 @@ TEST_F(Files, ScenesThatLackSomething) {
         ASSERT_EQ(window->command("open " + path), "");
         window->settle();
         const auto now = window->state();
-        // It is shown, or a message says why not.
+        // The scene is shown, or a message says why it is not.
         EXPECT_TRUE(now["files"] == nlohmann::json({path}) || now["messages"] > was["messages"]) << now["message"];
         EXPECT_FALSE(now["behind"]);
         for (const char* key : {"Left", "w", "1", "0", "0", "g", "l", "l", "n", "c", "x", "c", "Home"}) window->key(key);
@@ -139,7 +139,7 @@ TEST_F(Files, WhatCannotBeWrittenCostsAMessage) {
     EXPECT_NE(window->command("save a.jpeg"), "");
     const auto was = window->state();
     fs::permissions(window->folder() + "/started_in", fs::perms::owner_read | fs::perms::owner_exec);
-    window->key("ctrl+s");  // root may write there all the same
+    window->key("ctrl+s");  // root can write there
     window->settle();
     fs::permissions(window->folder() + "/started_in", fs::perms::owner_all);
     EXPECT_TRUE(window->state()["messages"] > was["messages"] || fs::exists(window->folder() + "/started_in/clarity_0001.png"));

@@ -1,6 +1,6 @@
-// frame_thread_test.cpp -- the thread that traces, without a window: every picture is of the job that it says, they come in
-// order, the last one comes, and none changes while somebody has it. With a device that copies beside its tracing, as GPUs do
-// (a CPU that says it is one), and with one that does not.
+// frame_thread_test.cpp -- tests the thread that traces, without a window. Every picture belongs to the job that it names,
+// pictures arrive in order, the last one arrives, and no picture changes while someone holds it. Each test runs with a device
+// that copies while it traces, as GPUs do (a CPU which claims to), and with one that does not.
 #include "ui/session/frame_thread.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ Bytes bytes_of(const ByteImage& image) {
     return {image.pixels.begin(), image.pixels.end()};
 }
 
-// A scene on a device, ready to be traced, and another way to trace it.
+// A scene prepared on a device, and another preparation of it.
 struct Table {
     Table() {
         DeviceInfo info = choose_device("");
@@ -51,7 +51,8 @@ struct Table {
 };
 
 Table& table() {
-    static Table* const table = new Table;  // never destroyed: an OpenCL driver may be gone before static objects are
+    static Table* const table =
+        new Table;  // never destroyed, because OpenCL drivers may shut down before static objects are destroyed
     return *table;
 }
 
@@ -66,7 +67,7 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
     }
     void TearDown() override { faults.end(); }
 
-    // Whatever is new is kept, with its bytes as they were when it came.
+    // Keeps each new picture, with a copy of its bytes at the time of arrival.
     void news() {
         const auto picture = thread_.latest();
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -98,7 +99,7 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
         }
         return true;
     }
-    // Nothing is left to do, and we were told.
+    // Waits until the thread is idle and has said so.
     bool settles() {
         return wait_for([this] {
             const bool idle = thread_.idle();
@@ -122,7 +123,7 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
         EXPECT_TRUE(bytes_of(picture.other->image) == truth(picture, *picture.other, *picture.job.ready->other)) << what;
         EXPECT_TRUE(picture.difference.has_value());
     }
-    // All that came, when nothing more comes.
+    // Checks all pictures that arrived; call it when the thread is idle.
     void expect_order() {
         uint64_t last = 0;
         for (const Seen& seen : seen_) {
@@ -149,7 +150,7 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
     FrameThread thread_;
 };
 
-// Always something to trace, so that pictures overlap where they can; then rest.
+// A motion that always leaves something to trace, so that pictures overlap where the device can; then rest.
 TEST_P(FrameThreads, EveryPictureOfAMotionAndItsEnd) {
     for (const unsigned copy_ms : {0u, 20u}) {
         faults.copy_ms = copy_ms;
@@ -168,7 +169,7 @@ TEST_P(FrameThreads, EveryPictureOfAMotionAndItsEnd) {
     EXPECT_EQ(thread_.take_failure(), "");
 }
 
-// Traced on and on to be measured, a finished picture stays as it is: without its samples it would be jagged in turns.
+// A finished picture that is traced again and again, to measure, stays on the screen. With fewer samples it would flicker.
 TEST_P(FrameThreads, AFinishedPictureStaysWhileItIsMeasured) {
     job_.settings.spp = 4;
     if (two_) job_.other_settings->spp = 4;
@@ -194,7 +195,7 @@ TEST_P(FrameThreads, AFinishedPictureStaysWhileItIsMeasured) {
     expect_order();
 }
 
-// As a window posts them: faster than they can be traced.
+// Jobs posted faster than they can be traced, as a window does.
 TEST_P(FrameThreads, JobsThatOvertakeEachOther) {
     faults.copy_ms = 3;
     for (uint64_t number = 1; number <= 60; ++number) {
@@ -206,7 +207,7 @@ TEST_P(FrameThreads, JobsThatOvertakeEachOther) {
     expect_order();
 }
 
-// Sizes, tones and what is asked for besides change between two pictures.
+// Size, exposure and requested distances change between two pictures.
 TEST_P(FrameThreads, ChangesOnTheWay) {
     faults.copy_ms = 10;
     uint64_t number = 0;
@@ -223,7 +224,7 @@ TEST_P(FrameThreads, ChangesOnTheWay) {
         ASSERT_TRUE(wait_for([&] { return newest() >= number; }));
         EXPECT_TRUE(width != 33 || wait_for([&] { return thread_.latest()->main.distance != nullptr; }));
     }
-    // Only shown anew.
+    // A job that only displays the film again.
     post(++number, false);
     ASSERT_TRUE(settles());
     job_.settings.exposure = 0.5;
@@ -231,7 +232,7 @@ TEST_P(FrameThreads, ChangesOnTheWay) {
     thread_.post(job_);
     ASSERT_TRUE(settles());
     EXPECT_EQ(thread_.latest()->main.settings.exposure, 0.5);
-    // Another program, and the device's owner taking it away and giving it back.
+    // Then another program; then the devices are taken away and given back.
     job_.ready = table().ready(device_, two_);
     post(++number, true);
     ASSERT_TRUE(wait_for([&] { return newest() == number; }));
@@ -248,7 +249,7 @@ TEST_P(FrameThreads, ChangesOnTheWay) {
     expect_order();
 }
 
-// Work that the device refuses, at any point of two pictures: a message, and the next picture is right.
+// Device work that fails at any point of two pictures: there is a message, and the next picture is right.
 TEST_P(FrameThreads, WorkThatIsRefused) {
     uint64_t number = 1;
     post(number, true);

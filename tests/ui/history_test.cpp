@@ -1,4 +1,4 @@
-// Undo and redo: steps are gestures, not frames; the camera is no step.
+// Undo and redo: each gesture is one step, not each frame; camera motion is no step.
 #include "ui/session/history.hpp"
 
 #include <gtest/gtest.h>

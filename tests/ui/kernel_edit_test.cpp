@@ -1,4 +1,4 @@
-// Kernels edited while the window runs: nothing is pressed, the watch on the files does it all.
+// Kernels edited while the window runs. No key is pressed: the watch on the files compiles and swaps them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -27,14 +27,14 @@ class KernelEdit : public WindowTest {
         good = text_of(kernel);
     }
     std::map<std::string, std::string> environment() const { return {{"CLARITY_KERNEL_PATH", folder.path() + "/cl"}}; }
-    // As editors do: the whole file beside it, then renamed.
+    // Writes as editors do: a complete second file, which is then renamed.
     static void write(const fs::path& path, const std::string& text) {
         const std::string beside = path.string() + "~";
         std::ofstream(beside, std::ios::binary) << text;
         fs::rename(beside, path);
     }
     void write(const std::string& text) const { write(kernel, text); }
-    // An edit that one sees: red and blue change places.
+    // A visible edit: red and blue are swapped.
     std::string swapped() const {
         const std::string from = "rt_put_pixels(frame, origin, sums, film);",
                           to = "for (uint i = 0; i < RT_MAX_PIXELS; ++i) sums[i] = sums[i].zyxw; " + from;
@@ -72,11 +72,11 @@ TEST_F(KernelEdit, AMistakeIsNamedAndItsRepairTaken) {
     ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state["messages"] == 1; }));
     window->settle();
     const std::string message = window->state()["message"];
-    // The author's file and the line of the mistake.
+    // The message names the file as its author knows it, and the line of the error.
     EXPECT_NE(message.find("iterative.cl:" + std::to_string(lines + 2)), std::string::npos) << message;
     EXPECT_TRUE(window->state()["behind"]);
     EXPECT_EQ(difference(before, window->picture(), 0), 0);
-    // The last good program runs on.
+    // The last good program goes on.
     window->key("Left");
     window->settle();
     EXPECT_GT(difference(before, window->picture()), 0.01);
@@ -87,7 +87,7 @@ TEST_F(KernelEdit, AMistakeIsNamedAndItsRepairTaken) {
     ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state["message"] == "" && !state["behind"]; }));
     window->settle();
     EXPECT_EQ(difference(blue_for_red(before), window->picture(), 0), 0);
-    // Settings that compile anew take the new text too.
+    // Settings that need compilation use the new text too.
     ASSERT_EQ(window->command("set packet 8x8"), "");
     window->settle();
     EXPECT_LT(difference(blue_for_red(before), window->picture(), 1), 1e-3);
@@ -111,13 +111,13 @@ TEST_F(KernelEdit, ABurstEndsInTheLastText) {
     EXPECT_FALSE(window->state()["behind"]);
 }
 
-// The requirement is 200 reloads; CLARITY_RELOADS=200 makes so many. Sixteen programs wear a device of PoCL out, which is then
-// opened anew: memory is compared over whole turns of that.
+// The requirement is 200 reloads; CLARITY_RELOADS=200 runs that many. A PoCL device is reopened after 16 programs, so memory is
+// compared over whole periods of 16.
 TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
     constexpr int kTurn = 16;
     const char* desired_now = std::getenv("CLARITY_RELOADS");
     const int reloads = std::max(desired_now ? std::atoi(desired_now) : 0, 2 * kTurn);
-    // The smallest program there is: what a compiler leaves behind is what is looked for.
+    // The smallest possible program, because the test looks for what the compiler leaves behind.
     const auto window = open_scene(source_path("scenes/cornell.scene"), "64x48", environment());
     for (const char* change : {"accel linear", "set lanes 1", "set packet 1x1", "set aov t"})
         ASSERT_EQ(window->command(change), "");
@@ -138,7 +138,7 @@ TEST_F(KernelEdit, ReloadsLeaveMemoryFlat) {
         window->settle();
         const auto now = window->state();
         ASSERT_FALSE(now["behind"]) << now["message"];
-        const Pixels picture = window->picture();  // it is the new text that runs
+        const Pixels picture = window->picture();  // shows that the new text runs
         if (i == 1) {
             after = picture;
             ASSERT_GT(difference(before, after, 1), 0.1);

@@ -1,4 +1,5 @@
-// Every binding of every key map, pressed for real: what its help says happens. A new binding without a case here fails.
+// Presses every binding of every key map with real key events and checks that it does what its help says. A new binding without
+// a case here fails.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -35,7 +36,7 @@ Point times(const Point& a, double f) {
     return {a[0] * f, a[1] * f, a[2] * f};
 }
 
-// What xdotool calls the key that the help calls so.
+// Returns the name that xdotool uses for a key of the help text.
 std::string x_name(const std::string& help_name) {
     static const std::map<std::string, std::string> named = {{"\u2190", "Left"}, {"\u2192", "Right"}, {"\u2191", "Up"},
                                                              {"\u2193", "Down"}, {"PgUp", "Prior"},   {"PgDn", "Next"},
@@ -63,7 +64,7 @@ class KeyMaps : public WindowTest, public ::testing::WithParamInterface<std::str
     std::unique_ptr<WindowDriver> window;
 };
 
-// Held keys: where the eye, the target or the light goes.
+// Checks the motion of eye, target or light while a key is held.
 void KeyMaps::check_motion(const KeyMap& map, const KeyBinding& binding) {
     const auto was = window->state();
     const Point eye = was["eye"], target = was["target"];
@@ -108,7 +109,7 @@ void KeyMaps::check_motion(const KeyMap& map, const KeyBinding& binding) {
         if (c.moves == std::string("target"))
             EXPECT_EQ(now["eye"], was["eye"]);
         else
-            EXPECT_LT(length(minus(eye_moved, target_moved)), 1e-4);  // it looks the same way
+            EXPECT_LT(length(minus(eye_moved, target_moved)), 1e-4);  // the viewing direction stays
     }
 }
 
@@ -180,7 +181,7 @@ void KeyMaps::check_undo() {
     EXPECT_TRUE(reaches("depth", depth));
 }
 
-// Bookmarks come after the cameras of the file: main, left, top.
+// Checks bookmarks. They come after the cameras of the file: main, left, top.
 void KeyMaps::check_views(const KeyBinding& binding) {
     if (binding.action == Action::add_bookmark) {
         const int count = window->state()["bookmarks"];
@@ -224,7 +225,7 @@ void KeyMaps::check_common(const KeyBinding& binding) {
             EXPECT_TRUE(reaches("eye", was["eye"]));
             break;
         }
-        case Action::cancel_work:  // of what is being prepared: in robustness_test
+        case Action::cancel_work:  // tested in robustness_test
             window->key("F1");
             ASSERT_TRUE(reaches("keys_open", true));
             press(binding);
@@ -286,7 +287,8 @@ void KeyMaps::check_common(const KeyBinding& binding) {
             window->wheel(window->place_of_pixel(40, 30), -4);
             press(binding);
             window->settle();
-            EXPECT_LT(length(minus(Point(window->state()["eye"]), framed)), 1e-3);  // from wherever it looked so
+            EXPECT_LT(length(minus(Point(window->state()["eye"]), framed)),
+                      1e-3);  // the result does not depend on how far away the eye was
             break;
         }
         default:

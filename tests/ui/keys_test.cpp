@@ -1,4 +1,4 @@
-// The thesis keys, pressed for real: what must change changes, and nothing else.
+// The keys of the thesis, with real key events: each changes what it must, and nothing else.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ TEST_F(Keys, CameraKeysMoveTheCameraAndThePicture) {
         double sign;
         bool turns;
     };
-    // The scene's camera looks along -Z.
+    // The camera of the scene looks along -Z.
     const Case cases[] = {{"Left", 0, -1, false}, {"Right", 0, 1, false}, {"Up", 2, -1, false}, {"Down", 2, 1, false},
                           {"i", 1, 1, true},      {"k", 1, -1, true},     {"o", 0, -1, true},   {"p", 0, 1, true}};
     for (const Case& c : cases) {
@@ -50,7 +50,7 @@ TEST_F(Keys, CameraKeysMoveTheCameraAndThePicture) {
         if (c.turns)
             EXPECT_LT(distance(eye, eye_was), 1e-6);
         else
-            EXPECT_NEAR(distance(eye, target), distance(eye_was, target_was), 1e-4);  // it looks the same way
+            EXPECT_NEAR(distance(eye, target), distance(eye_was, target_was), 1e-4);  // the viewing direction stays
         EXPECT_EQ(now["light"], was["light"]);
     }
 }
@@ -87,11 +87,11 @@ TEST_F(Keys, FPrintsTheFrameRate) {
         << line;
     const double fps = std::stod(match[1]), ms = std::stod(match[2]);
     EXPECT_GT(fps, 0.1);
-    EXPECT_NEAR(fps * ms, 1000, 100);  // two roundings
+    EXPECT_NEAR(fps * ms, 1000, 100);  // both values are rounded
     EXPECT_GT(std::stod(match[3]), 0.01);
 }
 
-// Pixels of the picture's middle, where no caption lies, that differ.
+// Counts the pixels that differ in the middle of the picture, where there is no caption.
 size_t changed_pixels(const Pixels& a, const Pixels& b, const nlohmann::json& area) {
     const auto from = [&](size_t axis) { return int(double(area[axis]) + 0.2 * double(area[axis + 2])); };
     const auto to = [&](size_t axis) { return int(double(area[axis]) + 0.8 * double(area[axis + 2])); };
@@ -122,7 +122,7 @@ TEST_F(Keys, DigitsShowAndHideLevels) {
             volumes[i] = window->state()["volumes"];
             const Pixels shown = window->screenshot();
             EXPECT_GT(changed_pixels(plain, shown, area), 200u);
-            EXPECT_EQ(difference(traced, window->picture(), 0), 0);  // drawn over it, not traced
+            EXPECT_EQ(difference(traced, window->picture(), 0), 0);  // drawn over the picture, not traced
             window->key(keys[i]);
             window->settle();
             EXPECT_EQ(window->state()["volumes"], 0);
@@ -131,7 +131,7 @@ TEST_F(Keys, DigitsShowAndHideLevels) {
         EXPECT_GE(volumes[0], 1u);
         EXPECT_GT(volumes[1], volumes[0]);
         EXPECT_GT(volumes[2], volumes[1]);
-        // Another level replaces the one that is shown.
+        // Another level replaces the level on the screen.
         window->key("1");
         window->key("2");
         window->settle();

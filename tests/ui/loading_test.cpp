@@ -1,4 +1,4 @@
-// A large model comes in: keys are answered, and the last wish counts.
+// While a large model loads, keys are answered and the newest request counts.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,14 +13,14 @@ using Clock = std::chrono::steady_clock;
 
 class Loading : public WindowTest {
  protected:
-    // Whether that stage is seen before the work ends.
+    // Whether this stage is seen before the work ends.
     static bool sees_stage(WindowDriver& window, const std::string& word) {
         return window.reaches(
             [&](const nlohmann::json& state) { return std::string(state["stage"]).find(word) != std::string::npos; });
     }
 };
 
-// Real key presses while a large model is imported and built: time from the press to the line that F prints.
+// Presses keys while a large model is imported and built. Measures the time from the press to the line that F prints.
 TEST_F(Loading, AnswersWhileImportingAndBuilding) {
     const auto window = open();
     const TemporaryFolder folder;
@@ -51,7 +51,8 @@ TEST_F(Loading, AnswersWhileImportingAndBuilding) {
                 double(now["slowest_frame_ms"]));
     EXPECT_GE(answers.size(), 5u);
     EXPECT_LT(median, 100);
-    EXPECT_LT(last, 1000);  // a machine that is busy otherwise may starve us for a moment; a window that waits takes longer
+    // A busy machine may delay us for a moment. A window that waits for the work takes longer than this.
+    EXPECT_LT(last, 1000);
 }
 
 TEST_F(Loading, EscapeCancelsAnImport) {
@@ -68,14 +69,14 @@ TEST_F(Loading, EscapeCancelsAnImport) {
     EXPECT_EQ(now["files"], was["files"]);
     EXPECT_EQ(now["message"], "");
     EXPECT_EQ(difference(before, window->picture(), 0), 0);
-    // Settings still work on the old scene, and the file can be opened after all.
+    // Settings still work on the old scene, and the file can still be opened later.
     ASSERT_EQ(window->command("accel spheres"), "");
     window->settle();
     EXPECT_EQ(window->state()["files"], was["files"]);
     EXPECT_EQ(window->state()["accel"], "spheres");
 }
 
-// Another structure, nothing after all, another file: each while the large model is built.
+// While the large model is built: another structure, a cancel, another file.
 TEST_F(Loading, ARunningBuildGivesWay) {
     const auto window = open();
     const TemporaryFolder folder;
@@ -94,7 +95,7 @@ TEST_F(Loading, ARunningBuildGivesWay) {
     EXPECT_FALSE(now["behind"]);
     const Pixels large = window->picture();
 
-    // Esc: what is on the screen is wished for again.
+    // Esc sets the desired state back to what is on the screen.
     ASSERT_EQ(window->command("accel spheres"), "");
     ASSERT_TRUE(sees_stage(*window, "build"));
     window->key("Escape");
@@ -103,7 +104,7 @@ TEST_F(Loading, ARunningBuildGivesWay) {
     EXPECT_FALSE(window->state()["behind"]);
     EXPECT_EQ(difference(large, window->picture(), 0), 0);
 
-    // Another file: it is the one that comes.
+    // Another file replaces the one that is being built.
     ASSERT_EQ(window->command("accel spheres"), "");
     ASSERT_TRUE(sees_stage(*window, "build"));
     ASSERT_EQ(window->command("open " + source_path("scenes/primitives.scene")), "");

@@ -1,4 +1,4 @@
-// The mouse on the picture: clicks select what is there, drags move, and neither does the other's work.
+// The mouse on the picture: clicks select, drags move, and neither does the other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ double distance(const Point& a, const Point& b) {
 
 constexpr int kWidth = 160, kHeight = 120;
 
-// Two squares of one file in the plane z = 0, side by side, a sphere above them, the sky around.
+// Writes a scene: two squares of one file side by side in the plane z = 0, a sphere above them, sky around them.
 std::string write_scene(const std::string& folder) {
     std::ofstream(folder + "/square.obj") << "v -.8 -.8 0\nv .8 -.8 0\nv .8 .8 0\nv -.8 .8 0\nf 1 2 3 4\n";
     std::ofstream(folder + "/squares.scene") << "camera main eye 0 0 5 target 0 0 0 fov 40\n"
@@ -38,7 +38,7 @@ Place pixel_of(double x, double y) {
     return {kWidth / 2 + x * unit - 0.5, kHeight / 2 - y * unit - 0.5};
 }
 
-// One float a pixel, as aov values are written. Rows from the bottom.
+// Reads one float a pixel, as AOVs are written, lowest row first.
 std::vector<float> read_pfm(const std::string& path, int& width, int& height) {
     std::ifstream in(path, std::ios::binary);
     std::string kind;
@@ -97,7 +97,7 @@ TEST_F(Mouse, AClickSelectsTheInstanceAndItsMaterial) {
     EXPECT_EQ(selected_by_click(-1.8, 1.5), (nlohmann::json{{"prim", -1}, {"instance", -1}, {"material", -1}}));
     expect_same_view(was);
 
-    // It is the material that one sees there.
+    // The selected material has the colour that is seen there.
     const auto red = color(-1, 0.3), green = color(1.2, -0.4);
     EXPECT_GT(red[0], red[1] + 50);
     EXPECT_GT(green[1], green[0] + 50);
@@ -137,7 +137,7 @@ TEST_F(Mouse, ARightClickFollowsThePixelsRays) {
     }
     EXPECT_EQ(met.back(), -1);  // the sky
     EXPECT_NE(met[0], met[2]);
-    EXPECT_EQ(window->state()["selected"]["prim"], -1);  // it selects nothing
+    EXPECT_EQ(window->state()["selected"]["prim"], -1);  // the sky selects nothing
     expect_same_view(was);
 
     // Shift and the left button do the same.
@@ -170,7 +170,7 @@ TEST_F(Mouse, TheViewersMapLooksAround) {
     EXPECT_GT(distance(now["target"], was["target"]), 0.1);
 }
 
-// What lies in the target's plane follows the mouse.
+// A point in the target's plane follows the mouse.
 TEST_F(Mouse, OtherButtonsShiftTheView) {
     for (const Button button : {Button::middle, Button::right}) {
         const auto was = window->state();
@@ -203,7 +203,7 @@ TEST_F(Mouse, TheWheelNears) {
 
 TEST_F(Mouse, ADoubleClickLooksAtThePlace) {
     const auto was = window->state();
-    // A machine that is busy may take two clicks for two.
+    // On a busy machine, a double click may count as two clicks.
     for (int i = 0; i < 5 && window->state()["target"] == was["target"]; ++i) {
         window->double_click(at(1.2, -0.4));
         window->settle();
@@ -211,7 +211,7 @@ TEST_F(Mouse, ADoubleClickLooksAtThePlace) {
     const auto now = window->state();
     EXPECT_LT(distance(now["target"], {1.2, -0.4, 0}), 0.05);
     EXPECT_LT(distance(now["eye"], now["target"]), 0.9 * distance(was["eye"], was["target"]));
-    // On the sky there is nothing to look at.
+    // The sky gives no point to look at.
     window->double_click(window->place_of_pixel(2, 2));
     window->settle();
     expect_same_view(now);
@@ -232,7 +232,7 @@ TEST_F(Mouse, LightsAreDraggedInTheView) {
     const Point light = now["light"], light_was = was["light"];
     EXPECT_GT(light[0], light_was[0] + 0.05);
     EXPECT_LT(light[1], light_was[1] - 0.02);
-    EXPECT_NEAR(light[2], light_was[2], 1e-4);  // across the view
+    EXPECT_NEAR(light[2], light_was[2], 1e-4);  // perpendicular to the line of sight
     expect_same_view(was);
     EXPECT_GT(difference(before, window->picture(), 1), 0.01);
     EXPECT_EQ(now["selected"]["instance"], -1);

@@ -1,4 +1,4 @@
-// While the camera moves, pace counts more than pixels; at rest every pixel is there.
+// While the camera moves, the frame rate counts more than pixels; at rest, all pixels are traced.
 #include <gtest/gtest.h>
 
 #include "ui/driver/window_fixture.hpp"
@@ -10,10 +10,10 @@ class Moving : public WindowTest {};
 
 TEST_F(Moving, PicturesAreReducedAndSharpenAtRest) {
     const auto window = open();
-    ASSERT_EQ(window->command("moving_fps 1000"), "");  // more than any machine traces
+    ASSERT_EQ(window->command("moving_fps 1000"), "");  // more than any machine reaches
     ASSERT_EQ(window->command("set spp 2"), "");
     window->settle();
-    // A few frames, so that the pace is known.
+    // Trace a few frames, so that the time of a frame is known.
     for (int i = 0; i < 3; ++i) {
         window->key("Left");
         window->settle();
@@ -31,7 +31,7 @@ TEST_F(Moving, PicturesAreReducedAndSharpenAtRest) {
     const Pixels sharp = window->picture();
     EXPECT_EQ(sharp.width, 320);
 
-    // As good as one that never moved.
+    // The final picture equals that of a window which never moved.
     const TemporaryFolder folder;
     const std::string path = folder.path() + "/fresh.png", line = command_line(*window, path);
     ASSERT_EQ(run_command_line(line), 0) << line;

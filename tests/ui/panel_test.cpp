@@ -1,4 +1,4 @@
-// Settings changed live, by clicks in the panel and by the script: new pictures, the right ones.
+// Settings changed by clicks in the panel and by the script: each gives the right new picture.
 #include <gtest/gtest.h>
 
 #include "ui/driver/window_fixture.hpp"
@@ -17,7 +17,7 @@ TEST_F(Panel, ClicksChangeSettings) {
     window->settle();
     EXPECT_EQ(window->state()["depth"], 1);
     const Pixels flat = window->picture();
-    EXPECT_GT(difference(deep, flat), 0.02);  // mirrors and glass go dark
+    EXPECT_GT(difference(deep, flat), 0.02);  // mirrors and glass turn dark
 
     window->click_on("Shadows", 0.03);
     window->settle();
@@ -31,7 +31,7 @@ TEST_F(Panel, ClicksChangeSettings) {
     window->click_on("Bounding spheres (thesis)");
     window->settle();
     EXPECT_EQ(window->state()["accel"], "spheres");
-    // Silhouettes may fall either way.
+    // Pixels at silhouettes may differ.
     EXPECT_LT(difference(flat, window->picture(), 1), 1e-3);
 
     window->click_on("Packet", 0.96);
@@ -90,7 +90,7 @@ TEST_F(Panel, RefusedValuesChangeNothing) {
     for (const char* key : {"depth", "packet", "accel"}) EXPECT_EQ(after[key], before[key]) << key;
 }
 
-// The requirement: within 2 s on the reference machine when it is idle; the bound here leaves room for a busy one.
+// The requirement is 2 s on the idle reference machine. This bound leaves room for a busy machine.
 TEST_F(Panel, PacketSizeChangesQuicklyWithAColdCache) {
     const TemporaryFolder cache;
     const auto window = open({{"POCL_CACHE_DIR", cache.path()}});

@@ -1,4 +1,4 @@
-// The window's parts that need no screen.
+// Tests of the window's parts which need no screen.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -171,7 +171,7 @@ TEST(Preferences, ReturnAsTheyWere) {
     fs::remove_all(folder);
 }
 
-// A damaged file costs neither what of it can be read nor the file.
+// Of a damaged file, the readable entries are used and the file itself is kept.
 TEST(Preferences, KeepADamagedFileAside) {
     const fs::path folder = fs::path(::testing::TempDir()) / "clarity_damaged_preferences_test";
     fs::remove_all(folder);
@@ -202,7 +202,7 @@ TEST(Preferences, KeepADamagedFileAside) {
         return std::string(std::istreambuf_iterator<char>(in), {});
     };
     EXPECT_EQ(text_of("window.damaged-1.json"), json.dump());
-    // Cut off, as by a full disk: what the next save writes must not be all that is left.
+    // A file cut off, as by a full disk, is kept too: the next save must not destroy it.
     const std::string half = whole.substr(0, whole.size() / 2);
     std::ofstream(folder / "window.json") << half;
     save_preferences(folder.string(), load_preferences(folder.string()));

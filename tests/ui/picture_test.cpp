@@ -1,4 +1,4 @@
-// What is drawn over pictures: the parts that need no screen.
+// Tests of the overlays of pictures, as far as they need no screen.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -37,7 +37,7 @@ TEST(Projection, PutsTheTargetInTheMiddle) {
     ASSERT_TRUE(place);
     EXPECT_NEAR(place->x, 500, 0.01);
     EXPECT_NEAR(place->y, 350, 0.01);
-    EXPECT_FALSE(projection.place({6, 3, 13}));  // behind
+    EXPECT_FALSE(projection.place({6, 3, 13}));  // behind the eye
 }
 
 TEST(Projection, RaysGoThroughThePlacesOfTheirPoints) {
@@ -70,7 +70,7 @@ TEST(LineQuads, ALineThroughTheEyeIsClippedThere) {
         EXPECT_LE(v.y, 605);
         EXPECT_GT(v.inv_depth, 0);
     }
-    // The far end is where it is without clipping.
+    // Clipping does not move the far end.
     EXPECT_NEAR((vertices[2].x + vertices[3].x) / 2, 600, 1);
     EXPECT_NEAR((vertices[2].y + vertices[3].y) / 2, 150, 1);
 }
@@ -79,15 +79,15 @@ TEST(LineQuads, NothingOfWhatDoesNotShow) {
     const Projection projection(kArea, some_camera());
     LineList lines;
     lines.line({6, 3, 13}, {7, 3, 14}, ~0u, 1);                                        // behind the eye
-    lines.line({500, 0, -1}, {500, 9, -1}, ~0u, 1);                                    // far at the side
+    lines.line({500, 0, -1}, {500, 9, -1}, ~0u, 1);                                    // far to the side
     lines.line({0, 1, -1}, {0, 1, -1}, ~0u, 1);                                        // a point
-    lines.line({0, 1, -1}, {std::numeric_limits<float>::quiet_NaN(), 1, -1}, ~0u, 1);  // nowhere
+    lines.line({0, 1, -1}, {std::numeric_limits<float>::quiet_NaN(), 1, -1}, ~0u, 1);  // not a position
     std::vector<LineVertex> vertices;
     append_quads(lines, projection, 1, vertices);
     EXPECT_TRUE(vertices.empty());
 }
 
-// The shader takes the distance of each point from 1 / depth, which is linear on the screen.
+// The shader computes the distance of each point from 1 / depth, which is linear on the screen.
 TEST(LineQuads, DistanceAlongALineIsThatOfThePoint) {
     const Camera camera = some_camera();
     const Projection projection(kArea, camera);
@@ -105,7 +105,7 @@ TEST(LineQuads, DistanceAlongALineIsThatOfThePoint) {
         const float inverse = vertices[0].inv_depth + (vertices[2].inv_depth - vertices[0].inv_depth) * share;
         const glm::vec2 slope = (at / glm::vec2(kArea.width, kArea.height) * 2.0f - 1.0f) * projection.half_size();
         const float distance = std::sqrt(1 + glm::dot(slope, slope)) / inverse;
-        // The point of the line on that ray, by the plane that holds the eye and goes through the screen's place.
+        // The point at this distance along the ray must lie on the line.
         const glm::vec3 point = projection.eye() + projection.ray(at + glm::vec2(kArea.x, kArea.y)) * distance;
         const glm::vec3 along = glm::normalize(b - a);
         EXPECT_LT(glm::length(glm::cross(point - a, along)), 2e-3f) << share;
@@ -131,13 +131,13 @@ TEST(LineList, ASphereIsSeenByItsOutline) {
     ASSERT_EQ(lines.size(), 24u);
     for (const Line& line : lines.lines()) {
         EXPECT_NEAR(glm::length(line.a - center), radius, 1e-4);
-        // A line of sight that touches: square to the radius.
+        // The line of sight touches the sphere: it is perpendicular to the radius.
         EXPECT_NEAR(glm::dot(line.a - center, eye - line.a), 0, 1e-3);
     }
     EXPECT_EQ(lines.lines().back().b, lines.lines().front().a);
     lines.clear();
     lines.outline(center, radius, center + glm::vec3(0, 1, 0), 24, 1, 1);
-    EXPECT_TRUE(lines.empty());  // from within
+    EXPECT_TRUE(lines.empty());  // from inside the sphere
 }
 
 TEST(Layout, WipeSharesOnePlace) {
@@ -250,7 +250,7 @@ TEST(LightHandles, WhatThePictureDoesNotShowIsMarkedAtItsBorder) {
 TEST(LightHandles, EveryDirectionHasAPlaceOnTheDisc) {
     const Projection projection(kArea, some_camera());
     for (int i = 0; i < 200; ++i) {
-        // Fibonacci's spiral over the sphere.
+        // Directions on a Fibonacci spiral over the sphere.
         const float z = 1 - (2 * static_cast<float>(i) + 1) / 200, a = 2.399963f * static_cast<float>(i);
         const glm::vec3 direction(std::sqrt(1 - z * z) * std::cos(a), std::sqrt(1 - z * z) * std::sin(a), z);
         const glm::vec2 place = sun_place(projection, direction);
@@ -258,7 +258,7 @@ TEST(LightHandles, EveryDirectionHasAPlaceOnTheDisc) {
         EXPECT_LT(glm::length(sun_direction(projection, place) - direction), 2e-3f);
     }
     DesiredLight sun = light_at({0, 1, 0}, RT_LIGHT_DIRECTIONAL);
-    drag_sun(sun.values, projection, {5000, -300});  // far outside: straight behind the eye at most
+    drag_sun(sun.values, projection, {5000, -300});  // outside of the disc: straight behind the eye at most
     float squared = 0;
     for (const float x : sun.values.position) squared += x * x;
     EXPECT_NEAR(squared, 1, 1e-4);
@@ -295,7 +295,7 @@ TEST(RayLines, EndWhereRaysEnd) {
     const size_t without = lines.size();
     lines.clear();
     append_ray_lines(tree, Projection(kArea, some_camera()), 30, 1, 3, lines);
-    EXPECT_GT(lines.size(), without);  // a ray that is chosen shows though it was not followed
+    EXPECT_GT(lines.size(), without);  // a selected ray is drawn even if it was not traced
 }
 
 TEST(SelectionBox, LiesAlongTheInstance) {
@@ -343,7 +343,7 @@ TEST(PictureDifference, CountsPixels) {
     EXPECT_EQ(compare_pictures(a, b).share, 1);
 }
 
-// What two runs of one structure on a busy machine differ by is no verdict.
+// Two runs of one structure on a busy machine differ by chance, which must not give a verdict.
 TEST(SpeedVerdict, NamesNoFasterSideWithinTheSpread) {
     const std::vector<float> calm = {10, 10.1f, 10.2f, 9.9f, 10, 10.1f, 9.8f, 10, 10.1f, 10};
     const auto scaled = [](std::vector<float> times, float by) {
@@ -355,15 +355,15 @@ TEST(SpeedVerdict, NamesNoFasterSideWithinTheSpread) {
     EXPECT_EQ(speed_verdict(calm, scaled(calm, 20)), "20\u00d7 faster");
     EXPECT_EQ(speed_verdict(calm, calm), "about the same");
     EXPECT_EQ(speed_verdict(calm, scaled(calm, 1.01f)), "about the same");
-    // Medians that differ by 1.23, and times that differ by more from frame to frame.
+    // The medians differ by a factor of 1.23, but the times vary more than that from frame to frame.
     const std::vector<float> busy = {10, 14, 9, 18, 11, 10, 16, 12, 9, 13}, busier = scaled(busy, 1.23f);
     EXPECT_EQ(speed_verdict(busy, busier), "about the same");
     EXPECT_EQ(speed_verdict(busier, busy), "about the same");
-    // One frame that was held up changes nothing.
+    // One delayed frame changes nothing.
     std::vector<float> held_up = calm;
     held_up[3] = 500;
     EXPECT_EQ(speed_verdict(held_up, scaled(calm, 2)), "1.98\u00d7 faster");
-    // Too few to know.
+    // Too few times for a verdict.
     EXPECT_EQ(speed_verdict({1, 1, 1, 1}, {5, 5, 5, 5}), "");
     EXPECT_EQ(speed_verdict({}, {}), "");
 }

@@ -1,4 +1,4 @@
-// Presets: all that makes a picture, written and read again; a wrong one changes nothing.
+// Presets: all that determines a picture is written and read again; a wrong preset changes nothing.
 #include <gtest/gtest.h>
 
 #include "ui/driver/window_fixture.hpp"
@@ -36,12 +36,12 @@ TEST_F(Presets, BringThePictureBackBitByBit) {
     window->settle();
     EXPECT_EQ(desired(*window), saved);
     EXPECT_EQ(difference(picture, window->picture(), 0), 0);
-    // It is one step.
+    // Loading a preset is one step of undo.
     window->key("ctrl+z");
     window->settle();
     EXPECT_EQ(window->state()["size"], "160x120");
 
-    // In another window, on the same scene.
+    // The preset also works in another window on the same scene.
     const auto other = open();
     ASSERT_EQ(other->command("load_preset " + path), "");
     other->settle();

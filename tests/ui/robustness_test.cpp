@@ -1,4 +1,4 @@
-// How the window starts, ends and remembers; and that the last of many wishes counts.
+// Start and end of the window, what it remembers, and that the newest of many requests counts.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -27,7 +27,7 @@ TEST_F(Window, ManyChangesAtOnceEndInTheLast) {
     EXPECT_FALSE(now["behind"]);
 }
 
-// A device of PoCL is closed and opened anew after 16 programs; the Stats tab, drawn all the while, shows what was on it.
+// A PoCL device is closed and reopened after 16 programs. Meanwhile the Stats tab still shows what was on it.
 TEST_F(Window, StatisticsStayWhileDevicesAreOpenedAnew) {
     const auto window = open_scene(source_path("scenes/cornell.scene"), "64x48");
     ASSERT_EQ(window->command("tab Stats"), "");
@@ -46,7 +46,7 @@ TEST_F(Window, StatisticsStayWhileDevicesAreOpenedAnew) {
     EXPECT_EQ(window->exit_code(), 0);
 }
 
-// Samples add up while nothing changes, and what is shown then is what the command line makes.
+// Samples accumulate while nothing changes. The result is the picture that the command line makes.
 TEST_F(Window, SamplesAddUpAtRest) {
     const TemporaryFolder folder;
     const auto window = open();
@@ -55,7 +55,7 @@ TEST_F(Window, SamplesAddUpAtRest) {
     EXPECT_NE(line.find("spp"), std::string::npos) << line;
     ASSERT_EQ(run_command_line(line), 0);
     EXPECT_EQ(difference(window->picture(), read_png(folder.path() + "/again.png"), 0), 0);
-    // Of what is no colour, the last sample would be all that is left: there is one.
+    // For AOVs other than colour, only the last sample would remain. So there is one sample.
     const Pixels colors = window->picture();
     ASSERT_EQ(window->command("set aov prim"), "");
     window->settle();
@@ -66,7 +66,7 @@ TEST_F(Window, SamplesAddUpAtRest) {
     window->settle();
     EXPECT_EQ(window->state()["samples"], 16);
     EXPECT_EQ(difference(window->picture(), colors, 0), 0);
-    // A number that was asked for is kept.
+    // A number of samples that the user asked for is kept.
     WindowDriver single({"--size", "320x240", "--spp", "1", source_path("scenes/primitives.scene")});
     single.settle();
     EXPECT_EQ(single.state()["samples"], 1);
@@ -89,7 +89,7 @@ TEST_F(Window, SaysHowToRenderWithoutADisplay) {
     while (window.running() && seconds_since(begin) < 20) usleep(20000);
     EXPECT_EQ(window.exit_code(), 2);
     EXPECT_NE(window.errors().find("clarity render"), std::string::npos) << window.errors();
-    // A display that is named and not there.
+    // DISPLAY names a display that does not exist.
     WindowDriver gone({source_path("scenes/primitives.scene")}, {{"DISPLAY", ":4711"}});
     while (gone.running() && seconds_since(begin) < 40) usleep(20000);
     EXPECT_EQ(gone.exit_code(), 2);

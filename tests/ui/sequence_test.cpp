@@ -51,14 +51,14 @@ TEST_F(SequenceOf, EscapeStopsItAndTheCameraComesBack) {
     EXPECT_EQ(window->state()["eye"], was["eye"]);
     usleep(300000);
     EXPECT_EQ(files(), written);
-    // Another one can follow.
+    // Another sequence can follow.
     ASSERT_EQ(window->command("turntable 2 " + folder.path() + "/again_####.png"), "");
     window->settle();
     EXPECT_EQ(files(), written + 2);
     EXPECT_EQ(window->state()["message"], "");
 }
 
-// Whose first frame waits for more samples than there is time for.
+// The first frame of the replaced sequence waits for more samples than there is time for.
 TEST_F(SequenceOf, AnotherOneReplacesOneWhoseFrameIsPending) {
     const auto window = open_scene(source_path("scenes/cornell.scene"), "96x72");
     const auto was = window->state();
@@ -67,7 +67,7 @@ TEST_F(SequenceOf, AnotherOneReplacesOneWhoseFrameIsPending) {
     ASSERT_EQ(window->command("state"), "");
     ASSERT_EQ(window->command("turntable 3 " + folder.path() + "/second_####.png"), "");
     ASSERT_EQ(window->command("state"), "");
-    // The same again: its outcome must not be taken for that of the one before.
+    // The same sequence again: it must not take the outcome of the first one's save for its own.
     ASSERT_EQ(window->command("turntable 3 " + folder.path() + "/second_####.png"), "");
     ASSERT_EQ(window->command("set spp 1"), "");
     window->settle();
@@ -91,7 +91,7 @@ TEST_F(SequenceOf, APendingFrameIsNotWrittenAfterAStop) {
     ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["eye"] == was["eye"]; }));
     ASSERT_EQ(window->command("set spp 1"), "");
     window->settle();
-    EXPECT_LE(files(), written + 1);  // one may have been on its way to the disk
+    EXPECT_LE(files(), written + 1);  // one may have been in the middle of being written
     const Pixels still = window->picture();
     for (size_t i = 2; i <= files(); ++i) {
         char name[32];

@@ -1,4 +1,4 @@
-// The keyboard belongs to whoever has it: a text field, or another window.
+// The keyboard belongs to the window or text field which has the focus.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -45,13 +45,13 @@ TEST_F(Typing, MovesNothing) {
     const std::string typed = "wasd ikop 0123f eq cxrlgbnwasd ikop 0123f eq cxrlgbn";
     EXPECT_EQ(window->state()["path"], typed);
     EXPECT_EQ(window->line("fps ", 0.2), "");
-    // Ctrl and a letter are the field's as well.
+    // Ctrl with a letter goes to the field, too.
     for (const char* key : {"ctrl+z", "ctrl+y", "ctrl+o", "ctrl+s"}) window->key(key);
     window->settle();
     expect_unmoved(before, window->state());
     EXPECT_TRUE(fs::is_empty(window->folder() + "/started_in"));
 
-    // The same keys mean something once the field has been left.
+    // After the field is left, the same keys work again.
     leave_field(*window);
     window->key("ctrl+z");
     window->key("b");
@@ -74,7 +74,7 @@ TEST_F(Typing, AKeyThatWasDownComesUpInTheField) {
     EXPECT_EQ(window->state()["eye"], moved["eye"]);
 }
 
-// The release goes to the other window: what was held is up all the same.
+// The key's release goes to the other window. The key must count as released all the same.
 TEST_F(Typing, AKeyIsUpOnceTheFocusIsLost) {
     const auto window = open();
     WindowDriver other({});
@@ -94,7 +94,7 @@ TEST_F(Typing, AKeyIsUpOnceTheFocusIsLost) {
     usleep(300000);
     window->settle();
     EXPECT_EQ(window->state()["eye"], moved["eye"]);
-    // And it moves again when it is pressed again.
+    // The camera moves again at the next press.
     window->key("Right");
     window->settle();
     EXPECT_NE(window->state()["eye"], moved["eye"]);

@@ -1,4 +1,4 @@
-// Changes taken back and made again, by keys.
+// Undo and redo by keys.
 #include <gtest/gtest.h>
 
 #include "ui/driver/window_fixture.hpp"
@@ -38,7 +38,7 @@ TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
         pictures.push_back(window->picture());
         EXPECT_NE(desired_states.back(), desired_states[desired_states.size() - 2]) << change;
     }
-    // The camera is no part of it: it stays where the keys bring it.
+    // Undo leaves the camera where the keys have moved it.
     const auto eye = window->state()["eye"];
     for (size_t i = desired_states.size() - 1; i-- > 0;) {
         SCOPED_TRACE(changes[i]);
@@ -49,7 +49,7 @@ TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
         EXPECT_EQ(difference(window->picture(), pictures[i], 0), 0);
     }
     EXPECT_EQ(window->state()["undo"], "");
-    window->key("ctrl+z");  // nothing left: nothing happens
+    window->key("ctrl+z");  // nothing left to undo: nothing happens
     window->settle();
     EXPECT_EQ(desired(*window), desired_states.front());
     for (size_t i = 1; i < desired_states.size(); ++i) {
@@ -61,7 +61,7 @@ TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
     EXPECT_EQ(difference(window->picture(), pictures.back(), 0), 0);
     EXPECT_EQ(window->state()["redo"], "");
     EXPECT_EQ(window->state()["eye"], eye);
-    // A change after an undo ends what could be made again.
+    // A new change after an undo discards the steps to redo.
     window->key("ctrl+z");
     ASSERT_EQ(window->command("set depth 3"), "");
     window->settle();
@@ -85,7 +85,7 @@ TEST_F(Undo, AHeldKeyIsOneStep) {
     const std::string before = desired(*window);
     const auto light = window->state()["light"];
     window->key_down("d");
-    int moves = 0;  // seen to be more than one
+    int moves = 0;  // times that the light was seen to move; several of them are one step
     for (nlohmann::json last = light; moves < 3;) {
         ASSERT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["light"] != last; }));
         last = window->state()["light"];

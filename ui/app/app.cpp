@@ -25,8 +25,9 @@ double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-constexpr float kTapSeconds = 0.06f;  // what a short press is worth, however short it was
-constexpr float kLongestStep = 0.1f;  // after a pause of the loop, motion does not jump
+constexpr float kTapSeconds = 0.06f;  // a key press moves by at least this much time's motion, however short it was
+constexpr float kLongestStep =
+    0.1f;  // longest time that one step of motion covers, so that nothing jumps after the loop paused
 constexpr float kTurnRadPerSecond = 0.9f;
 constexpr double kShortestTurn = 0.01;
 
@@ -67,7 +68,7 @@ App::~App() {
     preferences.panel_visible = state_.panel_visible;
     memory_.note(preferences, state_, session_->desired);
     save_preferences(folder_, preferences);
-    // A compiler that runs cannot be stopped: the window goes before it is waited for.
+    // A running compiler cannot be stopped, and the session waits for it. So the window closes first.
     window_->hide();
     window_->wait_events(0);
     overlay_.reset();
@@ -84,8 +85,8 @@ int App::run() {
     return 0;
 }
 
-// Frames are drawn when something changed: an event, a thread's news, a key that is down, a line of the script, the clock. A
-// flood of news (a small picture traced a thousand times a second) is shown a hundred times a second.
+// Whether a frame is due: after an event, news from a thread, a key that is down, a line of the script, or when the clock asks
+// for one. At most 100 frames a second are drawn (kShortestTurn), even if a small picture is traced 1000 times a second.
 bool App::due() const {
     const double since = now_s() - last_turn_s_;
     if (settle_frames_ > 0 || (script_ && script_->has_lines())) return true;
@@ -95,14 +96,14 @@ bool App::due() const {
 
 double App::longest_wait() const {
     if (session_->activity().busy || !overlay_->ready() || session_->moving()) return 1.0 / 30;
-    return typing() ? 0.1 : 0.5;  // a text field's cursor blinks
+    return typing() ? 0.1 : 0.5;  // the cursor of a text field blinks
 }
 
 double App::wait_seconds() const {
     if (settle_frames_ > 0) return 0;
     if (woken_ || held_.any_held(*state_.key_map)) return std::max(kShortestTurn - (now_s() - last_turn_s_), 1e-4);
     const double wait = std::max(longest_wait() - (now_s() - last_turn_s_), 1e-4);
-    return script_ ? std::min(wait, 0.005) : wait;  // nobody wakes us for its lines
+    return script_ ? std::min(wait, 0.005) : wait;  // no event tells us that the script has a new line: poll for it every 5 ms
 }
 
 bool App::typing() const {
@@ -161,14 +162,14 @@ void App::take_keys() {
         } else if (event.kind == KeyEvent::Kind::release) {
             held_.release(event.key);
         } else if (event.key == GLFW_KEY_ESCAPE && (state_.browser_open || state_.keys_open)) {
-            close_or_cancel();  // even while its field has the keyboard
+            close_or_cancel();  // even while a text field has the keyboard
         } else if (!event.other_modifier && !typing()) {
             if (const KeyBinding* binding = state_.key_map->find(event.key, event.ctrl)) act(*binding);
         }
     }
 }
 
-// A key's failure is a message like any other.
+// Runs the key's action. If it fails, the failure is shown as a message.
 void App::act(const KeyBinding& binding) {
     try {
         press(binding);
@@ -247,7 +248,7 @@ void App::press(const KeyBinding& binding) {
     }
 }
 
-// The nearest thing first: what lies over the picture, then what is under way.
+// Closes what lies over the picture, if anything does. Otherwise stops the work that is under way.
 void App::close_or_cancel() {
     if (state_.keys_open)
         state_.keys_open = false;

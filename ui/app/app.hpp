@@ -1,4 +1,5 @@
-// app.hpp -- the running window: events to wishes, the session's newest to the screen, once a frame.
+// app.hpp -- the running window. Each turn of its loop handles events, updates the session's desired state, and draws the
+// newest picture.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -15,11 +16,11 @@ namespace clarity::ui {
 
 class Script;
 
-// How the window itself fares; tests read it.
+// Counters of the window itself. Tests read them.
 struct UiTimes {
     unsigned long frames = 0;
-    double slowest_frame_ms = 0;   // one turn of the loop, without its waiting
-    double slowest_answer_ms = 0;  // from a key's event to the end of the frame that took it in
+    double slowest_frame_ms = 0;   // longest turn of the loop, without its waiting
+    double slowest_answer_ms = 0;  // longest time from a key event to the end of the frame that handled it
 };
 
 class App {
@@ -28,7 +29,7 @@ class App {
     ~App();
     int run();
 
-    // For the script of a test.
+    // Access for a test's script.
     Session& session() { return *session_; }
     UiState& state() { return state_; }
     VolumeOverlay& overlay() { return *overlay_; }
@@ -38,14 +39,14 @@ class App {
     bool typing() const;
     void close() { window_->close(); }
     void drop(const std::vector<std::string>& files) { window_->drop(files); }
-    // The next frame is written there as PNG.
+    // Writes the next frame to `path` as PNG.
     void capture(const std::string& path) { capture_path_ = path; }
 
  private:
     void turn();
-    bool due() const;  // something to draw has come
+    bool due() const;  // whether a frame is to be drawn now
     double wait_seconds() const;
-    double longest_wait() const;  // to the next turn if nothing happens
+    double longest_wait() const;  // seconds until the next turn if nothing happens
     void take_keys();
     void act(const KeyBinding& binding);
     void press(const KeyBinding& binding);
@@ -57,8 +58,8 @@ class App {
     void upload_picture();
     void finish_frame();
 
-    std::atomic<bool> woken_{false};  // a thread has news
-    std::string folder_;              // of the preferences; empty: none
+    std::atomic<bool> woken_{false};  // set by threads which have news, cleared by turn()
+    std::string folder_;              // of the preferences; empty: there is none
     std::unique_ptr<GlWindow> window_;
     std::unique_ptr<PicturePane> pane_;
     std::unique_ptr<Session> session_;
@@ -71,9 +72,9 @@ class App {
     std::shared_ptr<const Picture> uploaded_;
     std::string capture_path_;
     size_t next_bookmark_ = 0;
-    double last_turn_s_ = 0;   // when it began
-    double oldest_key_s_ = 0;  // of the keys taken in since the last frame; 0: none
-    int settle_frames_ = 3;    // ImGui needs a few to settle after an event
+    double last_turn_s_ = 0;   // start of the last turn, in seconds of the steady clock
+    double oldest_key_s_ = 0;  // time of the oldest key event that the coming frame handles; 0: no key event
+    int settle_frames_ = 3;    // frames still to draw: ImGui needs a few to settle after an event
 };
 
 }  // namespace clarity::ui

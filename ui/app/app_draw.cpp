@@ -1,4 +1,4 @@
-// What App draws each frame: viewport at the left, panel at the right, status line at the bottom.
+// The parts of App which draw a frame: viewport at the left, panel at the right, status line at the bottom.
 #include <imgui.h>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #include "ui/app/gl_window.hpp"
 
 #include <epoxy/gl.h>
-// Before GLFW, which would include the system's own GL header.
+// Defined before GLFW is included, which would otherwise include the system's own GL header.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -33,7 +33,7 @@ bool names_display(const char* variable) {
 
 }  // namespace
 
-// GLFW's callbacks, set before ImGui's, which then call these first.
+// GLFW's callbacks. They are set before ImGui's, and ImGui's callbacks call them first.
 struct Callbacks {
     static GlWindow& of(GLFWwindow* window) { return *static_cast<GlWindow*>(glfwGetWindowUserPointer(window)); }
 
@@ -68,7 +68,7 @@ double KeyEvent::age_s() const {
 }
 
 GlWindow::GlWindow(const std::string& title, int width, int height, const std::string& ini_path) : ini_path_(ini_path) {
-    // glfwInit without a display fails late or hangs on some systems: ask first.
+    // Without a display, glfwInit fails late or hangs on some systems. So check for one first.
     if (!names_display("DISPLAY") && !names_display("WAYLAND_DISPLAY"))
         no_window("there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set)");
     glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
@@ -166,7 +166,7 @@ void GlWindow::drop(const std::vector<std::string>& files) {
 double GlWindow::content_scale() const {
     float x = 1, y = 1;
     glfwGetWindowContentScale(window_, &x, &y);
-    // Where the framebuffer is finer than the window's coordinates (Wayland), ImGui scales by itself.
+    // Where the framebuffer has more pixels than the window has coordinates (Wayland), ImGui scales by itself.
     int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
     glfwGetWindowSize(window_, &width, &height);
     glfwGetFramebufferSize(window_, &pixels_x, &pixels_y);
@@ -211,7 +211,7 @@ ByteImage GlWindow::end_frame_and_read() {
     glfwSwapBuffers(window_);
     for (size_t i = 3; i < rows.size(); i += 4) rows[i] = 255;
     pixels.reserve(rows.size());
-    for (auto row = rows.end(); row != rows.begin();) {  // GL's first row is the lowest
+    for (auto row = rows.end(); row != rows.begin();) {  // OpenGL stores the lowest row first
         row -= static_cast<std::ptrdiff_t>(row_bytes);
         pixels.insert(pixels.end(), row, row + static_cast<std::ptrdiff_t>(row_bytes));
     }

@@ -6,7 +6,7 @@
 namespace clarity::ui {
 namespace {
 
-// Bindings that every preset has.
+// Adds the bindings which all presets share.
 void add_common(KeyMap& map) {
     const char* levels = "show that level of the bounding volumes; again: hide";
     static const char* const digits[] = {"1", "2", "3", "4", "5", "6", "7", "8", "9"};

@@ -1,4 +1,4 @@
-// key_map.hpp -- what the keys do, as data: presets of bindings, and the keys that are down.
+// key_map.hpp -- key bindings as data: presets of bindings, and the set of keys that are down.
 #pragma once
 #include <set>
 #include <string>
@@ -7,7 +7,7 @@
 namespace clarity::ui {
 
 enum class Action {
-    // Held: they act for as long as the key is down.
+    // Held actions: they last while the key is down.
     camera_left,
     camera_right,
     camera_forward,
@@ -24,9 +24,9 @@ enum class Action {
     light_back,
     light_up,
     light_down,
-    // Once a press.
+    // Single actions: once for each press.
     print_frame_rate,
-    show_level,  // argument: level of the bounding volumes, 0 the root
+    show_level,  // argument: level of the bounding volumes, 0 is the root
     show_bottom_level,
     reset_camera,
     cancel_work,
@@ -41,42 +41,42 @@ enum class Action {
     toggle_inspector,
     toggle_lights,
     add_bookmark,
-    next_bookmark,  // also the scene's own cameras
-    frame_scene,    // all of it, or what is selected
+    next_bookmark,  // bookmarks and the scene's own cameras
+    frame_scene,    // the selection, or the whole scene if nothing is selected
 };
 inline bool is_held(Action action) {
     return action < Action::print_frame_rate;
 }
 
 struct KeyBinding {
-    int key;  // GLFW's code, a place on the keyboard
+    int key;  // GLFW's key code: a position on the keyboard
     const char* name;
     Action action;
     int argument;
-    const char* help;   // neighbours with the same text are shown as one line
-    bool ctrl = false;  // only with Ctrl; the others only without
+    const char* help;   // the help lists neighbouring bindings with equal text in one line
+    bool ctrl = false;  // true: only with Ctrl; false: only without
 };
 
 struct KeyMap {
     const char* id;
     const char* name;
-    bool mouse_look;  // dragging turns the camera about itself; else it orbits the target
+    bool mouse_look;  // true: dragging turns the camera about itself; false: dragging orbits the target
     std::vector<KeyBinding> bindings;
     const KeyBinding* find(int key, bool ctrl = false) const;
 };
 
 const std::vector<KeyMap>& key_maps();  // "thesis" first
-// nullptr if there is none.
+// Returns nullptr if no key map has this id.
 const KeyMap* find_key_map(const std::string& id);
 
-// Keys that are down. Presses made while a text field has the keyboard never come here; releases always do.
+// The keys that are down. Presses are not added while a text field has the keyboard; releases always count.
 class HeldKeys {
  public:
     void press(int key) { keys_.insert(key); }
     void release(int key) { keys_.erase(key); }
     void clear() { keys_.clear(); }
     bool any_held(const KeyMap& map) const;
-    // 1 while a key of this action is down.
+    // 1 while a key of this action is down, otherwise 0.
     float value(const KeyMap& map, Action action) const;
 
  private:

@@ -21,7 +21,7 @@ std::string preferences_folder() {
     };
     if (!variable("CLARITY_UI_NO_SAVE").empty()) return {};
     fs::path folder = variable("XDG_CONFIG_HOME");
-    if (!folder.is_absolute()) {  // the XDG specification: a relative one is to be ignored
+    if (!folder.is_absolute()) {  // the XDG specification says that a relative path is to be ignored
         const fs::path home = variable("HOME");
         if (!home.is_absolute()) return {};
         folder = home / ".config";
@@ -38,7 +38,7 @@ std::string preferences_folder() {
 
 namespace {
 
-// The first name that is free: window.damaged-1.json.
+// Returns the first name which no file has yet: window.damaged-1.json, window.damaged-2.json, and so on.
 fs::path name_for_damaged(const fs::path& path) {
     for (int number = 1;; ++number) {
         fs::path name = path;
@@ -48,7 +48,7 @@ fs::path name_for_damaged(const fs::path& path) {
     }
 }
 
-// What becomes of the damaged file, as the end of a message.
+// Renames the damaged file. Returns the end of the message about it: where the file is now, or why it could not be kept.
 std::string keep_aside(const fs::path& path) {
     const fs::path aside = name_for_damaged(path);
     std::error_code error;
@@ -65,7 +65,7 @@ Preferences load_preferences(const std::string& folder, std::string* notice) {
     const fs::path path = fs::path(folder) / "window.json";
     std::error_code error;
     if (!fs::exists(path, error)) return p;
-    bool some = false;  // entries could be read
+    bool some = false;  // whether any entry could be read
     std::string content, why = try_read_file(path.string(), kMaxTextFileBytes, content);
     if (why.empty()) try {
             std::vector<std::string> problems;
@@ -79,7 +79,7 @@ Preferences load_preferences(const std::string& folder, std::string* notice) {
         }
     const std::string text =
         path.string() + ": " + why + (some ? "; the rest is used, " : "; the defaults are used, ") + "and " + keep_aside(path);
-    // So that a window that ends by force loses nothing more.
+    // Save at once, so that the readable entries survive even if this window crashes.
     if (some) save_preferences(folder, p);
     if (notice)
         *notice = text;

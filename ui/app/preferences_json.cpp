@@ -20,7 +20,7 @@ bool finite(const std::array<float, 3>& v) {
     return std::all_of(v.begin(), v.end(), [](float x) { return std::isfinite(x); });
 }
 
-// Whether it is a camera that can be looked through.
+// Reads a camera. Returns whether the result is usable as a view.
 bool read_camera(const Json& json, Camera& camera) {
     camera.name = json.value("name", "");
     camera.eye = json.at("eye").get<std::array<float, 3>>();
@@ -43,7 +43,7 @@ Json bookmarks_json(const Preferences& p) {
     return scenes;
 }
 
-// Reads entry by entry. A failure is thrown, or with `problems` named there, and then the other entries still count.
+// Reads single entries. With `problems`, a failure is appended there and the other entries still count. Otherwise it is thrown.
 class Reader {
  public:
     explicit Reader(std::vector<std::string>* problems) : problems_(problems) {}

@@ -52,7 +52,7 @@ void PreferencesSync::begin(const std::string& folder, const Preferences& prefer
 void PreferencesSync::follow(const Session& session, UiState& state) {
     const auto files = session.files();
     if (files != files_) change_scene(files, state);
-    // Not while a name is being typed.
+    // Do not write while a text field is active: the user may still be typing a bookmark's name.
     if (!key_.empty() && !ImGui::IsAnyItemActive() && !same(state.bookmarks, seen_)) keep_bookmarks(state);
 }
 
@@ -73,7 +73,7 @@ void PreferencesSync::change_scene(const std::vector<std::string>& files, UiStat
 
 void PreferencesSync::keep_bookmarks(const UiState& state) {
     seen_ = state.bookmarks;
-    // Another window may have added some to other scenes.
+    // Load first: another window may have added bookmarks of other scenes.
     Preferences now = folder_.empty() ? kept_ : load_preferences(folder_);
     now.bookmarks[key_] = state.bookmarks;
     to_front(now.bookmarked, key_, kBookmarkedScenes);

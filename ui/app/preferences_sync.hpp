@@ -1,4 +1,4 @@
-// memory.hpp -- what of a running window goes into its preferences, and comes from them.
+// preferences_sync.hpp -- copies values between the running window and its preferences.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,17 +9,17 @@
 
 namespace clarity::ui {
 
-// "/a/b.obj": the files of a scene as a key, one a line.
+// A key for a scene: the absolute paths of its files, one a line ("/a/b.obj").
 std::string scene_key(const std::vector<std::string>& files);
 
 class PreferencesSync {
  public:
-    // At the start. folder: of the preferences; empty: nothing is written.
+    // Called at the start: applies `preferences` to the window. folder: that of the preferences; empty: nothing is written.
     void begin(const std::string& folder, const Preferences& preferences, UiState& state, DesiredState& desired);
-    // Once a frame: the bookmarks of the scene that is open, and the files opened last. What changed of them is written at
-    // once, so that it outlives a crash.
+    // Called once a frame: follows the open scene's bookmarks and the recent files. Changes are written at once, so that they
+    // survive a crash.
     void follow(const Session& session, UiState& state);
-    // At the end.
+    // Called at the end: copies the window's values into `preferences`.
     void note(Preferences& preferences, const UiState& state, const DesiredState& desired) const;
 
  private:
@@ -28,7 +28,7 @@ class PreferencesSync {
 
     std::string folder_, key_;
     std::vector<std::string> files_;
-    Preferences kept_;  // recent files and bookmarks
+    Preferences kept_;  // as last loaded or saved; only its recent files and bookmarks are used
     std::vector<Bookmark> seen_;
 };
 

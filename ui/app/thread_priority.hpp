@@ -1,4 +1,4 @@
-// thread_priority.hpp -- the window answers first: threads that compute step back where cores are scarce.
+// thread_priority.hpp -- lowers the priority of computing threads, so that the window stays responsive when cores are scarce.
 #pragma once
 #include <sys/resource.h>
 #include <sys/syscall.h>
@@ -6,8 +6,8 @@
 
 namespace clarity::ui {
 
-// Lowers the calling thread's share, and that of the threads it starts (drivers' and builders' pools among them): Linux keeps
-// the nice value by thread. Costs nothing on an idle machine.
+// Lowers the priority of the calling thread and of the threads that it starts later (pools of drivers and builders among them).
+// Linux keeps the nice value per thread. On an idle machine this costs nothing.
 inline void yield_to_window() {
     setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), 5);
 }

@@ -1,4 +1,4 @@
-// ui_state.hpp -- what the window remembers by itself, besides the session.
+// ui_state.hpp -- the state of the window itself, apart from the session.
 #pragma once
 #include <string>
 #include <vector>
@@ -12,7 +12,7 @@ enum class Tab { render, scene, inspect, statistics, log, plugins, help };
 inline constexpr const char* kTabNames[] = {"Render", "Scene", "Inspect", "Stats", "Log", "Plugins", "Help"};
 inline constexpr int kTabCount = 7;
 
-// How two sides are shown.
+// How the two sides of a comparison are shown.
 enum class CompareMode { wipe, side_by_side, difference };
 inline constexpr const char* kCompareNames[] = {"Wipe", "Side by side", "Difference"};
 
@@ -21,37 +21,37 @@ struct Bookmark {
     Camera camera;
 };
 
-// What the file browser was opened for.
+// What the file browser is open for.
 enum class BrowseFor { scene, preset, folder_of_pictures };
 
 struct UiState {
     const KeyMap* key_map = &key_maps().front();
-    float text_scale = 1;  // on top of the screen's own
+    float text_scale = 1;  // factor on top of the screen's own scale
     float camera_speed = 1, light_speed = 1;
     bool panel_visible = true;
     Tab tab = Tab::render;
-    bool tab_asked = false;         // bring `tab` to the front
-    bool focus_path_asked = false;  // put the keyboard into the field for a file's path
-    std::string path;               // in that field
+    bool tab_asked = false;         // `tab` is to be brought to the front
+    bool focus_path_asked = false;  // the field for a file's path is to get the keyboard
+    std::string path;               // text of that field
     CompareMode compare_mode = CompareMode::wipe;
-    float wipe = 0.5f;           // of the picture's width: `main` is left of it
+    float wipe = 0.5f;           // position of the divider as a share of the picture's width; `main` is to the left of it
     bool inspect_hover = false;  // the inspector follows the mouse
-    bool show_lights = false;    // as handles in the picture, to be dragged
-    bool show_rays = true;       // of the inspected pixel, drawn in the scene
-    bool browser_open = false;   // the file browser
+    bool show_lights = false;    // lights have handles in the picture, which can be dragged
+    bool show_rays = true;       // the rays of the inspected pixel are drawn in the scene
+    bool browser_open = false;   // whether the file browser is shown
     BrowseFor browse_for = BrowseFor::scene;
-    bool keys_open = false;                    // the list of keys over the picture
-    std::string pictures_folder = ".";         // where pictures are saved
-    int selected_ray = -1;                     // of the inspected pixel's, marked in the scene
-    std::string browser_folder;                // where it is
+    bool keys_open = false;             // whether the list of keys is shown over the picture
+    std::string pictures_folder = ".";  // folder into which pictures are saved
+    int selected_ray = -1;       // index of the ray that is marked in the scene, among those of the inspected pixel; -1: none
+    std::string browser_folder;  // the folder that the file browser shows
     std::vector<std::string> recent_files;     // newest first
-    std::vector<Bookmark> bookmarks;           // of the scene that is open
-    float panel_width = 400;                   // at scale 1
+    std::vector<Bookmark> bookmarks;           // of the open scene
+    float panel_width = 400;                   // in pixels at text scale 1
     std::string presets_folder;                // empty: there is none
-    std::string notice;                        // a short word on what was just done, for some seconds
-    uint64_t notices = 0;                      // how many there were
-    rt_u32 last_level = 2;                     // of the volumes that were shown last
-    bool log_jump = false;                     // the log scrolls to its last error
+    std::string notice;                        // short text about the last action, shown for a few seconds
+    uint64_t notices = 0;                      // number of notices so far
+    rt_u32 last_level = 2;                     // level of the bounding volumes that were shown last
+    bool log_jump = false;                     // the log is to scroll to its last error
     int room_width = 1024, room_height = 768;  // pixels of the screen that a picture could fill
     void notify(const std::string& text) {
         notice = text;

@@ -1,4 +1,4 @@
-// window_main.hpp -- the way into the window for the command line; nothing of GL, GLFW or ImGui shows here.
+// window_main.hpp -- entry point of the window for the command line. It exposes nothing of GL, GLFW or ImGui.
 #pragma once
 #include <string>
 #include <vector>
@@ -10,23 +10,24 @@
 
 namespace clarity::ui {
 
-// Samples a pixel that add up while nothing changes, unless the user asks for another number: with one, edges are jagged.
+// Samples a pixel which accumulate while nothing changes, unless the user asks for another number. With one sample, edges are
+// jagged.
 inline constexpr int kSamplesAtRest = 16;
 
 struct ViewOptions {
-    const PluginRegistry* plugins = nullptr;  // outlives ui_main
-    std::vector<std::string> scenes;          // files that become one scene; empty: the window opens without one
+    const PluginRegistry* plugins = nullptr;  // must outlive ui_main()
+    std::vector<std::string> scenes;          // files that together are one scene; empty: the window opens without a scene
     Settings settings;                        // with accel and accel_params as --accel chose them
-    std::string device;                       // as --device: "", numbers, names, several with commas
-    std::string camera;                       // as --camera: "", a name or "ex,ey,ez,tx,ty,tz[,fov_deg]"
-    std::string light;                        // as --light: "" or "x,y,z"
-    std::vector<Word> edits;                  // of the first scene's view
+    std::string device;                       // as for --device: "", numbers or names, several separated by commas
+    std::string camera;                       // as for --camera: "", a name or "ex,ey,ez,tx,ty,tz[,fov_deg]"
+    std::string light;                        // as for --light: "" or "x,y,z"
+    std::vector<Word> edits;                  // changes to the view of the first scene
     import::ImportOptions import;
-    std::string key_map;  // "thesis", "viewer"; "": as remembered, at first "thesis"
+    std::string key_map;  // "thesis" or "viewer"; "": the remembered one, at first "thesis"
 };
 
-// Opens the window and returns when it is closed: the program's exit code. Throws Error(usage) where there is no display or no
-// OpenGL 3.3; its message says how to render without a window. Every later failure is a message in the window.
+// Opens the window and returns the program's exit code when it is closed. Throws Error(usage) if there is no display or no
+// OpenGL 3.3; the message says how to render without a window. Every later failure is shown as a message in the window.
 int ui_main(const ViewOptions& options);
 
 }  // namespace clarity::ui

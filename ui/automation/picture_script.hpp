@@ -1,4 +1,4 @@
-// picture_script.hpp -- the part of the window's script that is about the picture.
+// picture_script.hpp -- the commands of the window's script which concern the picture.
 //   mode wipe|side|difference   how two sides are shown        wipe SHARE        where, of the picture's width
 //   follow 0|1   the inspector follows the mouse               rays 0|1          the inspected rays are drawn
 //   lights 0|1   as handles                                    behind 0|1        volumes behind surfaces are drawn
@@ -10,7 +10,7 @@ namespace clarity::ui {
 
 class App;
 
-// False: it is no such command. Throws Error(usage).
+// Runs one command. Returns false if it is none of the commands above. Throws Error(usage).
 bool run_picture_command(App& app, const std::string& command, const std::string& text);
 
 }  // namespace clarity::ui

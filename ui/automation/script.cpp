@@ -49,7 +49,7 @@ long resident_kilobytes() {
     return resident * (sysconf(_SC_PAGESIZE) / 1024);
 }
 
-// "background 1,0,0": a change of the view, as edit.hpp has it.
+// Applies a change of the view in the words of edit.hpp: "background 1,0,0".
 void edit(Session& session, const std::string& text) {
     if (!session.ready()) throw Error(Exit::usage, "no scene yet");
     const size_t space = text.find(' ');
@@ -97,7 +97,7 @@ void choose_map(UiState& state, const std::string& id) {
 std::unique_ptr<Script> Script::from_environment() {
     const char* path = std::getenv("CLARITY_UI_SCRIPT");
     if (!path || !*path) return nullptr;
-    // A pipe would block until its writer comes.
+    // Opening a pipe would block until it has a writer.
     const int file = open(path, O_RDONLY | O_NONBLOCK | O_CLOEXEC);
     if (file < 0)
         throw Error(Exit::usage, std::string(path) + ": cannot be read as the window's script: " + std::strerror(errno));
@@ -138,7 +138,7 @@ void Script::step(App& app) {
         lines_.pop_front();
         std::printf("%s\n", answer.c_str());
         std::fflush(stdout);
-        return;  // one a frame: its effect shows before the next
+        return;  // one command a frame, so that its effect is drawn before the next command
     }
 }
 
@@ -243,7 +243,7 @@ bool Script::run(App& app, const std::string& line) {
         std::printf("%s\n", state_text(app).c_str());
     } else if (command == "find") {
         const Rect* place = drawn_place(text);
-        // What is scrolled out of sight comes with one of the next frames.
+        // A rectangle that is scrolled out of sight is scrolled into view within the next frames.
         if (!place && waiting_since_ == 0) {
             waiting_since_ = ImGui::GetTime();
             frames_left_ = 4;

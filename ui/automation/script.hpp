@@ -1,7 +1,7 @@
-// script.hpp -- lines that drive the window in tests, from the file or pipe that CLARITY_UI_SCRIPT names.
+// script.hpp -- commands that drive the window in tests, from the file or pipe that CLARITY_UI_SCRIPT names.
 //
-// One command a line, run between two frames on the window's thread; each answers on stdout with `ok COMMAND`, or
-// `error COMMAND: why`. Keys and mouse are not among them: tests send real events.
+// One command a line. Each runs between two frames on the window's thread and answers on stdout with `ok COMMAND` or `error
+// COMMAND: why`. There are no commands for keys and mouse: tests send real events.
 //   set KEY VALUE      a setting, as on the command line      accel ID[,key=value...]    device CHOICE
 //   open FILE          as the Scene tab does                   tab NAME                   map thesis|viewer
 //   drop ["FILE",...]  as if they were dropped onto the window  moving_fps N              while something moves; 0: all pixels
@@ -12,7 +12,7 @@
 //   state              one line of JSON: what is shown, and how the window fares; `state reset` starts its maxima anew
 //   find LABEL         where that row's widget, or that entry of a list, was drawn last: JSON x, y, w, h
 //   scale FACTOR       of the text                             level N|bottom|off         quit
-// And what picture_script.hpp has.
+// The commands of picture_script.hpp work as well.
 #pragma once
 #include <deque>
 #include <memory>
@@ -24,21 +24,22 @@ class App;
 
 class Script {
  public:
-    // nullptr if there is none; Throws Error(usage) if it cannot be read.
+    // Opens the script that CLARITY_UI_SCRIPT names. Returns nullptr if it is not set. Throws Error(usage) if it cannot be
+    // read.
     static std::unique_ptr<Script> from_environment();
     explicit Script(int file) : file_(file) {}
     ~Script();
     Script(const Script&) = delete;
     Script& operator=(const Script&) = delete;
 
-    // Reads what came; whether there are lines to run.
+    // Reads new lines. Returns whether there are lines to run.
     bool has_lines();
-    // Runs the lines that came, up to the first that waits.
+    // Runs the next line. A line that waits stays the next one.
     void step(App& app);
 
  private:
     void read_lines();
-    // False: it waits, try again next frame.
+    // Runs one line. Returns false if it has to wait; it is then tried again in the next frame.
     bool run(App& app, const std::string& line);
     bool wait(App& app, const std::string& what);
     std::string state_text(App& app) const;
@@ -47,7 +48,7 @@ class Script {
     std::string partial_;
     std::deque<std::string> lines_;
     double waiting_since_ = 0;
-    int frames_left_ = 0;  // frames to draw before a wait may end: what it waited for is on the screen then
+    int frames_left_ = 0;  // frames to draw before a wait may end, so that its result is on the screen
 };
 
 }  // namespace clarity::ui

@@ -16,7 +16,7 @@ std::unordered_map<std::string, Place>& widget_rects() {
     static std::unordered_map<std::string, Place> all;
     return all;
 }
-std::string wanted;  // to be scrolled to
+std::string wanted;  // label of the rectangle that is to be scrolled into view
 
 }  // namespace
 
@@ -26,7 +26,7 @@ void note_place(const std::string& label, const Rect& rect) {
     const float middle = rect.y + rect.height / 2;
     const bool inside = middle > low.y && middle < high.y && rect.x < high.x && rect.x + rect.width > low.x;
     Place& place = widget_rects()[label];
-    // Of two with one name in a frame, the one that is seen.
+    // If two rectangles of one frame have the same label, the visible one is kept.
     if (inside || !place.inside || place.frame != ImGui::GetFrameCount()) place = {rect, ImGui::GetFrameCount(), inside};
     if (wanted != label) return;
     wanted.clear();
@@ -40,7 +40,7 @@ void note_place(const std::string& label) {
 
 const Rect* drawn_place(const std::string& label) {
     const auto found = widget_rects().find(label);
-    // A script asks between frames, before the next one is counted.
+    // A script asks between two frames, before ImGui counts the next one.
     if (found == widget_rects().end() || found->second.frame < ImGui::GetFrameCount() - 1) return nullptr;
     if (found->second.inside) return &found->second.rect;
     wanted = label;

@@ -1,4 +1,4 @@
-// widget_rects.hpp -- where rows, buttons and entries of lists were drawn: tests click there.
+// widget_rects.hpp -- the rectangles in which rows, buttons and list entries were drawn. Tests click there.
 #pragma once
 #include <string>
 
@@ -6,10 +6,10 @@
 
 namespace clarity::ui {
 
-// Of the last item, or of a rectangle; within the clip rectangle of the window that is being drawn.
+// Notes the rectangle of the last item, or the given one. It counts as visible inside the clip rectangle of the current window.
 void note_place(const std::string& label);
 void note_place(const std::string& label, const Rect& place);
-// nullptr if nothing of that label is on the screen now. What is scrolled out of sight is brought into it by the next frame:
+// Returns nullptr if nothing with this label is visible. If it is scrolled out of sight, the next frame scrolls it into view:
 // ask again then.
 const Rect* drawn_place(const std::string& label);
 

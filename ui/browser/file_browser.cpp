@@ -23,10 +23,10 @@ struct Browser {
     FolderReader reader;
     bool was_open = false, all_files = false, moved = false;
     std::string text, failure;
-    std::string listed;        // folder and word that `rows` are of
-    std::vector<size_t> rows;  // of the listing
+    std::string listed;        // folder and word for which `rows` was made
+    std::vector<size_t> rows;  // indices into the listing
     std::shared_ptr<const Listing> listing;
-    int highlighted = 0;           // of rows
+    int highlighted = 0;           // index into `rows`
     std::set<std::string> marked;  // paths chosen with Ctrl
 };
 Browser& browser() {
@@ -68,7 +68,7 @@ void finish(Session& session, UiState& state, std::vector<std::string> paths) {
     state.browser_open = false;
 }
 
-// What Enter, a double click or the button does.
+// Accepts the choice, for Enter, a double click or the button.
 void accept(Session& session, UiState& state) {
     Browser& b = browser();
     if (!b.marked.empty()) return finish(session, state, {b.marked.begin(), b.marked.end()});
@@ -138,7 +138,7 @@ void head_row(Session& session, UiState& state) {
     tooltip(folder);
 }
 
-// The field has the keyboard whenever nothing else does, so that keys never move the camera meanwhile.
+// Whenever nothing else has the keyboard, the path field takes it, so that keys do not move the camera.
 void field_row(Session& session, UiState& state) {
     Browser& b = browser();
     const bool was_empty = b.text.empty();
@@ -235,7 +235,7 @@ void list_rows(Session& session, UiState& state, float height) {
         }
         ImGuiListClipper clipper;
         clipper.Begin(static_cast<int>(b.rows.size()), line);
-        const auto listing = b.listing;  // a click may go elsewhere
+        const auto listing = b.listing;  // keeps the listing: a click may change to another folder
         while (clipper.Step())
             for (int i = clipper.DisplayStart; i < clipper.DisplayEnd && static_cast<size_t>(i) < b.rows.size(); ++i)
                 entry_row(session, state, i);

@@ -1,4 +1,4 @@
-// file_browser.hpp -- choosing files within the window: with the mouse, or by typing with completion.
+// file_browser.hpp -- the file browser in the window: choose with the mouse, or type with completion.
 #pragma once
 #include "ui/app/ui_state.hpp"
 #include "ui/session/session.hpp"
@@ -6,7 +6,8 @@
 
 namespace clarity::ui {
 
-// While UiState::browser_open. Folders are read on a thread of their own: a slow disk does not hold the window up.
+// Draws the browser while UiState::browser_open. Folders are read on a separate thread, so that a slow disk does not block the
+// window.
 void draw_file_browser(const Rect& area, Session& session, UiState& state);
 
 }  // namespace clarity::ui

@@ -71,7 +71,7 @@ Listing list_folder(const DesiredListing& desired) {
         FileEntry entry;
         entry.name = found->d_name;
         struct stat about {};
-        if (fstatat(dirfd(folder.get()), found->d_name, &about, 0) != 0) continue;  // gone, or a link to nothing
+        if (fstatat(dirfd(folder.get()), found->d_name, &about, 0) != 0) continue;  // deleted meanwhile, or a broken link
         entry.folder = S_ISDIR(about.st_mode);
         if (!entry.folder && !S_ISREG(about.st_mode)) continue;
         entry.bytes = static_cast<uint64_t>(about.st_size);
@@ -137,7 +137,7 @@ std::string complete(const Listing& listing, const std::string& text) {
         common.erase(differs.first, common.end());
     }
     if (count == 0 || common.size() < word.size()) return text;
-    // Whole UTF-8 characters.
+    // Cut at a whole UTF-8 character.
     if (count > 1)
         while (common.size() > word.size() && (static_cast<unsigned char>(common.back()) & 0x80)) common.pop_back();
     return text.substr(0, begin) + common + (count == 1 && folder ? "/" : "");

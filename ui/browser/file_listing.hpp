@@ -1,4 +1,4 @@
-// file_listing.hpp -- what the file browser knows of folders. No window.
+// file_listing.hpp -- folder listings and path completion for the file browser. Needs no window.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,24 +10,25 @@ struct FileEntry {
     std::string name;
     bool folder = false;
     uint64_t bytes = 0;
-    int64_t modified_s = 0;  // since 1970; 0: not known
+    int64_t modified_s = 0;  // seconds since 1970; 0: not known
 };
 
 struct Listing {
     std::string folder;              // absolute
-    std::vector<FileEntry> entries;  // folders first, then by name, whatever its case; no hidden ones
-    std::string failure;             // why it could not be read
+    std::vector<FileEntry> entries;  // folders first, then by name without regard to case; without hidden ones
+    std::string failure;             // why the folder could not be read; empty: it was
 };
 
 struct DesiredListing {
     std::string folder;
-    std::vector<std::string> extensions;  // lower case, without dot, "ply.gz" allowed; empty: all
-    bool files = true;                    // else folders only
+    std::vector<std::string> extensions;  // lower case, without the dot, "ply.gz" allowed; empty: all files
+    bool files = true;                    // false: folders only
 };
-// Never throws; may take a while.
+// Reads a folder. Never throws; may block on a slow disk.
 Listing list_folder(const DesiredListing& desired);
 
-// What is typed: "models/dra" looks for "dra" in the folder "models"; "~" is the home folder; a bare word looks in `folder`.
+// The parts of typed text: "models/dra" searches for "dra" in the folder "models"; "~" is the home folder; a single word
+// searches in `folder`.
 struct Typed {
     std::string folder, word;
 };
@@ -37,9 +38,9 @@ std::string parent_folder(const std::string& folder);
 std::string home_folder();
 std::string absolute_folder(const std::string& folder);  // without a slash at its end
 
-// Entries whose name has the word in it, those that begin with it first: indices into the listing.
+// Returns the indices of the entries whose names contain `word`; names that begin with it come first.
 std::vector<size_t> matching(const Listing& listing, const std::string& word);
-// The text as far as it is certain: extended by what all entries that begin so have in common, and by "/" for a single folder.
+// Completes the text: appends what all entries that begin with it have in common, and "/" for a single folder.
 std::string complete(const Listing& listing, const std::string& text);
 
 }  // namespace clarity::ui

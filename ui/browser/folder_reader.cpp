@@ -26,7 +26,7 @@ std::shared_ptr<const Listing> FolderReader::get(const DesiredListing& desired) 
             auto listing = std::make_shared<const Listing>(list_folder(desired));
             {
                 const std::lock_guard<std::mutex> hold(shared->mutex);
-                if (shared->asked != number) return;  // somebody is elsewhere by now
+                if (shared->asked != number) return;  // another folder was requested meanwhile
                 shared->latest = std::move(listing);
                 shared->done = number;
             }

@@ -1,4 +1,4 @@
-// folder_reader.hpp -- reads folders on threads that nobody waits for: one that hangs is left behind.
+// folder_reader.hpp -- reads folders on detached threads. A read that hangs is abandoned.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,10 +9,10 @@ namespace clarity::ui {
 
 class FolderReader {
  public:
-    // The newest listing there is, which may be of another folder while `reading`; nullptr at first.
+    // Returns the newest listing, which may be of another folder while reading(). nullptr until the first.
     std::shared_ptr<const Listing> get(const DesiredListing& desired);
     bool reading() const;
-    // The next get() reads anew.
+    // The next get() reads the folder again.
     void refresh() { stale_ = true; }
 
  private:

@@ -33,9 +33,10 @@ void end_card() {
     ImGui::PopStyleColor();
 }
 
-// Text on the status line, then a gap.
+// Draws text on the status line, then a gap.
 void status_item(const std::string& text, const ImVec4& color, const std::string& help = {}) {
-    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x) return;  // what comes first matters more
+    if (ImGui::CalcTextSize(text.c_str()).x > ImGui::GetContentRegionAvail().x)
+        return;  // omitted if it does not fit: earlier items matter more
     ImGui::PushStyleColor(ImGuiCol_Text, color);
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
@@ -45,7 +46,7 @@ void status_item(const std::string& text, const ImVec4& color, const std::string
 
 constexpr double kNoticeSeconds = 6;
 
-// What was just done: a word of the window's own, or the log's last line. Empty: it is long ago.
+// The text about the last action: the window's own notice, or the last line of the log. Empty if it is too old.
 std::string current_notice(Session& session, const UiState& state) {
     static uint64_t seen = 0;
     static double at_s = -1e9;
@@ -64,7 +65,7 @@ std::string current_notice(Session& session, const UiState& state) {
 }  // namespace
 
 void draw_progress_card(const Rect& viewport, Session& session) {
-    // Work that is done at once would only flash.
+    // Short work shows no card, which would only flash.
     static double busy_since = -1;
     const Activity activity = session.activity();
     if (!activity.busy) {
@@ -85,7 +86,7 @@ void draw_progress_card(const Rect& viewport, Session& session) {
     const ImVec2 bar(-FLT_MIN, 6 * scale);
     if (activity.fraction >= 0) {
         ImGui::ProgressBar(activity.fraction, bar, "");
-    } else {  // of unknown length: a piece that wanders
+    } else {  // unknown progress: a piece that moves to and fro
         const ImVec2 from = ImGui::GetCursorScreenPos();
         ImGui::ProgressBar(0, bar, "");
         const float piece = inner * 0.25f,
@@ -96,7 +97,7 @@ void draw_progress_card(const Rect& viewport, Session& session) {
     end_card();
 }
 
-// A compiler's or a builder's failure is read in the log, at its place in the source: the first one opens it.
+// Opens the Log tab at the first failure of a compiler or builder, since the log shows it with its place in the source.
 void open_log_at_failure(const Session& session, UiState& state) {
     static bool failing = false;
     const WindowMessage& message = session.message();
@@ -115,14 +116,14 @@ void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
     begin_card("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    list.PushClipRectFullScreen();  // the padding is clipped else
+    list.PushClipRectFullScreen();  // otherwise the padding would be clipped
     list.AddRectFilled(corner, {corner.x + 5 * scale, corner.y + size.y}, ImGui::GetColorU32(colors::kRed), 5 * scale,
                        ImDrawFlags_RoundCornersLeft);
     list.PopClipRect();
     ImGui::Indent(6 * scale);
     ImGui::PushTextWrapPos(0);
     const std::string& text = session.message().text;
-    constexpr size_t kMost = 700;  // bytes; the rest is in the log
+    constexpr size_t kMost = 700;  // bytes; the log has the whole text
     ImGui::TextUnformatted(text.size() <= kMost ? text.c_str() : (text.substr(0, kMost) + "\u2026").c_str());
     ImGui::PopTextWrapPos();
     ImGui::Dummy({0, 2 * scale});

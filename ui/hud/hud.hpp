@@ -1,4 +1,4 @@
-// hud.hpp -- what lies over and under the picture: progress with its cancel button, the last failure, the status line.
+// hud.hpp -- HUD over and under the picture: progress with a cancel button, the last failure, the status line.
 #pragma once
 #include "ui/app/ui_state.hpp"
 #include "ui/overlay/overlay.hpp"

@@ -10,7 +10,8 @@
 namespace clarity::ui {
 namespace {
 
-// Held actions of one kind are told by their help: "move the camera in X and Z".
+// The keys of a map for the bindings with this help text: held actions of one kind share theirs ("move the camera in X
+// and Z").
 std::string keys_for(const KeyMap& map, const std::string& help) {
     std::vector<std::string> names;
     for (const KeyBinding& binding : map.bindings)
@@ -47,7 +48,7 @@ std::vector<KeyLine> key_lines() {
             for (const KeyMap& each : key_maps()) line.keys.push_back(keys_for(each, binding.help));
             lines.push_back(line);
         }
-    // What only some maps have stands with its like: moving first.
+    // Lines with different keys in different maps come first: these are the motions.
     std::stable_partition(lines.begin(), lines.end(), [](const KeyLine& line) {
         return std::any_of(line.keys.begin(), line.keys.end(),
                            [&](const std::string& keys) { return keys != line.keys.front(); });

@@ -20,7 +20,7 @@ struct Piece {
     ImVec2 at, size;
 };
 
-// Where each line goes, from the card's inner corner; `total` is what they take.
+// Lays out the lines from the card's inner corner. Returns the pieces; `total` receives the size of all.
 std::vector<Piece> flow(const std::vector<HudText>& lines, float room, ImVec2& total) {
     std::vector<Piece> pieces;
     const float gap = std::round(8 * ui_scale()), leading = std::round(3 * ui_scale());

@@ -1,4 +1,4 @@
-// picture_hud.hpp -- small cards over a picture: lines of text, bars of colours.
+// picture_hud.hpp -- small HUD cards over a picture: lines of text, colour bars.
 #pragma once
 #include <imgui.h>
 
@@ -16,20 +16,20 @@ struct HudText {
     std::string text;
     ImVec4 color;
     bool bold = false;
-    bool same_line = false;  // after the one before, where there is room
+    bool same_line = false;  // on the line of the text before it, if there is room
 };
 
-// The size of lines in a card no wider than that, wrapped where they are longer.
+// The size of a card with these lines. Lines which are longer than max_width are wrapped.
 ImVec2 card_size(const std::vector<HudText>& lines, float max_width);
 void draw_hud_card(ImDrawList& list, const Rect& card, const std::vector<HudText>& lines);
-// The card's ground alone.
+// Draws only the background of a card.
 void draw_card_ground(ImDrawList& list, const Rect& card);
 float card_padding();
 
-// A bar of colours with numbers, unit and, if known, a mark at a value.
+// A colour bar with numbers and unit, and a mark at `value` if there is one.
 ImVec2 color_bar_size(const FalseColorScale& scale, float max_width);
 void draw_color_bar(ImDrawList& list, const Rect& card, const FalseColorScale& scale, std::optional<float> value);
-// As the bar writes it: "12", "0.42", "1.2 k".
+// A number as the bar shows it: "12", "0.42", "1.2 k".
 std::string scale_number(const FalseColorScale& scale, float value);
 
 }  // namespace clarity::ui

@@ -13,8 +13,8 @@ namespace {
 constexpr size_t kManyLines = 40000;
 
 const char* const kVertexShader = R"(#version 330 core
-layout(location = 0) in vec2 place;   // pixels from the upper left
-layout(location = 1) in vec3 along;   // 1 / depth, pixels from the middle, half the width
+layout(location = 0) in vec2 place;  // pixels from the upper left
+layout(location = 1) in vec3 along;  // 1 / depth, pixels from the middle of the line, half its width
 layout(location = 2) in vec4 color;
 uniform vec2 size;
 noperspective out vec3 line;
@@ -48,7 +48,7 @@ void main() {
 }
 )";
 
-// 0, or the compiler's words in `failure`.
+// Compiles a shader. Returns 0 on failure, with the compiler's log in `failure`.
 GLuint compile(GLenum kind, const char* text, std::string& failure) {
     const GLuint shader = glCreateShader(kind);
     glShaderSource(shader, 1, &text, nullptr);
@@ -91,7 +91,7 @@ bool LineLayer::make_program() {
             failure_ = words;
         }
     }
-    glDeleteShader(vertex);  // 0 is ignored
+    glDeleteShader(vertex);  // OpenGL ignores 0
     glDeleteShader(fragment);
     if (!failure_.empty()) {
         log(LogLevel::warning, "lines over the picture: this OpenGL does not take their shader: " + failure_);
@@ -129,7 +129,7 @@ bool LineLayer::resize(int width, int height) {
         glGenFramebuffers(1, &frame_buffer_);
     }
     glBindTexture(GL_TEXTURE_2D, texture_);
-    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // it is shown texel by pixel
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // shown with one texel for each pixel
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);

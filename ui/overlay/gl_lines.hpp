@@ -1,6 +1,6 @@
-// gl_lines.hpp -- lines of the world drawn over a picture: each point of them in full colour where it lies in front of what the
-// picture shows, faint where it lies behind. They go into a texture of their own, which is drawn anew only when something
-// changed, so that thousands of volumes do not slow the window's other frames.
+// gl_lines.hpp -- draws lines of the world over a picture. Parts in front of the picture's surfaces have full colour, parts
+// behind them are faint. The lines are drawn into a texture of their own, and only when something changed, so that thousands of
+// volumes do not slow the window's other frames.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,15 +10,15 @@
 
 namespace clarity::ui {
 
-// What hides lines: the distances of the picture's camera rays, +inf where they met nothing, as a texture and as numbers.
-// Without them all is in front.
+// The picture's surfaces, which hide lines: distances of the camera rays, +inf for a miss, as a texture and as numbers. Without
+// them every line is in front.
 struct LinesBehind {
     const PictureTexture* distance = nullptr;
     const FloatImage* values = nullptr;
-    float opacity = 1;  // of what lies behind
+    float opacity = 1;  // of parts behind a surface
 };
 
-// Needs the GL context current, for all of its life.
+// Draws line lists into a texture. Its GL context must be current during its whole life.
 class LineLayer {
  public:
     LineLayer() = default;
@@ -26,15 +26,15 @@ class LineLayer {
     LineLayer(const LineLayer&) = delete;
     LineLayer& operator=(const LineLayer&) = delete;
 
-    // Draws the lists, one after the other, as `projection` sees them. scale: pixels to a unit of the window. Long lists, whose
-    // lines could not be told apart anyway, are drawn thin. Changes the GL state of framebuffer, viewport, program, blending
+    // Draws the lists in order, as `projection` sees them. scale: pixels for each unit of the window. Long lists are drawn
+    // thin, since their lines could not be told apart anyway. Changes the GL state of framebuffer, viewport, program, blending
     // and vertex array.
     void draw(const std::vector<const LineList*>& lists, const Projection& projection, float scale, const LinesBehind& behind);
-    // Empty, or the shader compiler's words: there will be no lines.
+    // Empty, or the shader compiler's log; then no lines are drawn.
     const std::string& failure() const { return failure_; }
-    // RGBA8, premultiplied, the first row the lowest.
+    // RGBA8, premultiplied, lowest row first.
     unsigned texture() const { return texture_; }
-    size_t drawn() const { return drawn_; }  // lines, last time
+    size_t drawn() const { return drawn_; }  // number of lines drawn last time
 
  private:
     bool make_program();

@@ -20,7 +20,7 @@ glm::vec2 middle(const Rect& area) {
     return {area.x + area.width / 2, area.y + area.height / 2};
 }
 
-// Of a direction in camera space: where its line leaves the area, a little inside.
+// The point, a little inside the area's border, in direction `away` from its centre.
 glm::vec2 at_border(const Rect& area, glm::vec2 away) {
     if (glm::length(away) < 1e-6f) away = {0, 1};
     constexpr float kInside = 0.95f;

@@ -42,7 +42,7 @@ void LineList::box(const std::array<std::array<float, 3>, 8>& corners, uint32_t 
 
 void LineList::circle(const glm::vec3& center, const glm::vec3& a, const glm::vec3& b, int segments, uint32_t color,
                       float width) {
-    // The next point of a rotation by the same angle each time: two products instead of a sine and a cosine.
+    // Each point is the last one rotated by a constant angle: two products instead of a sine and a cosine.
     const float step = kTwoPi / static_cast<float>(segments), turn_c = std::cos(step), turn_s = std::sin(step);
     float c = 1, s = 0;
     glm::vec3 last = center + a;
@@ -60,7 +60,8 @@ void LineList::outline(const glm::vec3& center, float radius, const glm::vec3& e
     const glm::vec3 to_eye = eye - center;
     const float distance = glm::length(to_eye);
     if (!(distance > radius * 1.001f)) return;
-    // Where tangent planes hold the eye: a circle nearer to the eye than the centre by r^2 / d, of radius r sqrt(1 - (r/d)^2).
+    // The tangent planes through the eye touch the sphere in a circle. It is nearer to the eye than the centre by r^2 / d, and
+    // its radius is r sqrt(1 - (r/d)^2).
     const glm::vec3 axis = to_eye / distance;
     const auto [side, other] = axes_across(axis);
     const float sine = radius / distance, across = radius * std::sqrt(1 - sine * sine);

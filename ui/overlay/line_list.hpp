@@ -1,4 +1,4 @@
-// line_list.hpp -- shapes in the world as lines: boxes, spheres, circles, arrows. What gl_lines draws. Pure arithmetic.
+// line_list.hpp -- world-space shapes as lines (boxes, spheres, circles, arrows), for gl_lines to draw. Pure arithmetic.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,8 +9,8 @@ namespace clarity::ui {
 
 struct Line {
     glm::vec3 a{}, b{};
-    uint32_t color = 0;  // RGBA8, R in the low byte, as IM_COL32 packs it
-    float width = 1;     // units of the window
+    uint32_t color = 0;  // RGBA8, R in the low byte, like IM_COL32
+    float width = 1;     // in units of the window
 };
 
 class LineList {
@@ -23,15 +23,15 @@ class LineList {
 
     bool operator==(const LineList& other) const;
     void line(const glm::vec3& a, const glm::vec3& b, uint32_t color, float width) { lines_.push_back({a, b, color, width}); }
-    // Corners whose numbers differ in one bit share an edge.
+    // Corners whose indices differ in one bit share an edge.
     void box(const std::array<std::array<float, 3>, 8>& corners, uint32_t color, float width);
-    // Points center + a cos + b sin.
+    // The points center + a cos(t) + b sin(t).
     void circle(const glm::vec3& center, const glm::vec3& a, const glm::vec3& b, int segments, uint32_t color, float width);
-    // The circle of points that `eye` sees as the sphere's outline; nothing from within.
+    // The circle which is the outline of the sphere as seen from `eye`; nothing if the eye is inside.
     void outline(const glm::vec3& center, float radius, const glm::vec3& eye, int segments, uint32_t color, float width);
-    // Three great circles along the axes.
+    // Three great circles, one about each axis.
     void great_circles(const glm::vec3& center, float radius, int segments, uint32_t color, float width);
-    // Four strokes back from `tip`, which lies in `direction` (unit).
+    // Four strokes which end in `tip`. direction: unit vector that the arrow points to.
     void arrow_head(const glm::vec3& tip, const glm::vec3& direction, float length, uint32_t color, float width);
     // A small octahedron.
     void dot(const glm::vec3& center, float radius, uint32_t color, float width);
@@ -40,9 +40,9 @@ class LineList {
     std::vector<Line> lines_;
 };
 
-// Two axes across a unit vector.
+// Two axes perpendicular to a unit vector and to each other.
 std::array<glm::vec3, 2> axes_across(const glm::vec3& unit);
-// The color with its opacity multiplied.
+// The colour with its opacity multiplied by `factor`.
 uint32_t with_opacity(uint32_t color, float factor);
 
 }  // namespace clarity::ui

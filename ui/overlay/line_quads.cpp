@@ -7,7 +7,7 @@
 namespace clarity::ui {
 namespace {
 
-constexpr float kShortest = 0.25f;  // pixels
+constexpr float kShortest = 0.25f;  // pixels; shorter lines are omitted
 
 struct Place {
     float x, y, inv_depth;
@@ -17,7 +17,7 @@ Place mix(const Place& a, const Place& b, float t) {
     return {a.x + (b.x - a.x) * t, a.y + (b.y - a.y) * t, a.inv_depth + (b.inv_depth - a.inv_depth) * t};
 }
 
-// Liang and Barsky 1984: the part of a line within 0..width, 0..height, widened by `margin`. False: none.
+// Clips a line to 0..width, 0..height, widened by `margin` (Liang and Barsky 1984). Returns false if nothing is left.
 bool clip(Place& a, Place& b, float width, float height, float margin) {
     float from = 0, to = 1;
     const float dx = b.x - a.x, dy = b.y - a.y;
@@ -39,7 +39,7 @@ bool clip(Place& a, Place& b, float width, float height, float margin) {
     return true;
 }
 
-// The screen's part of a projection, in pixels.
+// The part of a projection which maps to pixels of the screen.
 class Screen {
  public:
     Screen(const Projection& projection, float scale)
@@ -50,7 +50,7 @@ class Screen {
     float width() const { return width_; }
     float height() const { return height_; }
 
-    // The part of a line that shows, widened by `margin`. False: none.
+    // Projects and clips a line to the screen, widened by `margin`. Returns false if nothing is left.
     bool place(const Line& line, float margin, Place& p, Place& q) const {
         const float near = projection_.near();
         glm::vec3 a = projection_.to_camera(line.a), b = projection_.to_camera(line.b);
@@ -107,7 +107,7 @@ void append_quads(const LineList& lines, const Projection& projection, float sca
 
 void append_thin(const LineList& lines, const Projection& projection, float scale, const ThinLines& thin,
                  std::vector<LineVertex>& vertices) {
-    constexpr float kShort = 24;  // pixels; a longer line is likely in front somewhere
+    constexpr float kShort = 24;  // pixels; a longer line is probably in front of the surface somewhere
     const Screen screen(projection, scale);
     const bool tested = thin.distance && !thin.distance->pixels.empty();
     vertices.reserve(vertices.size() + lines.size() * 2);

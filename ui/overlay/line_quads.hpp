@@ -1,5 +1,5 @@
-// line_quads.hpp -- lines of the world as quads on the screen, clipped at the eye and at the picture's border. Core profiles
-// draw lines one pixel wide and no wider, and clipping here keeps coordinates exact where a line passes close by the eye.
+// line_quads.hpp -- turns lines of the world into quads on the screen, clipped at the eye and at the picture's border. OpenGL
+// core profiles only draw lines one pixel wide. Clipping here keeps coordinates exact if a line passes close to the eye.
 #pragma once
 #include <cstdint>
 #include <vector>
@@ -10,27 +10,27 @@
 
 namespace clarity::ui {
 
-// 24 bytes, as gl_lines' shader reads it.
+// A vertex of 24 bytes, in the layout which gl_lines' shader reads.
 struct LineVertex {
     float x, y;        // pixels from the picture's upper left corner
-    float inv_depth;   // 1 / distance along the line of sight: linear on the screen
-    float across;      // pixels from the line's middle, to one side negative
+    float inv_depth;   // 1 / distance along the line of sight, which is linear on the screen
+    float across;      // pixels from the line's middle, negative on one side
     float half_width;  // pixels
-    uint32_t color;    // as Line has it
+    uint32_t color;    // as in Line
 };
 
-// A surface that a line lies on shall not hide it, though its distance is that of the pixel's middle: hence a little play, in
-// parts of the distance.
+// Tolerance of the depth test, as a share of the distance. A surface must not hide a line that lies on it, although its
+// distance is that of the pixel's centre.
 inline constexpr float kDistancePlay = 0.003f;
 
-// How thousands of lines are drawn for less: one pixel wide, with two vertices each; short ones that lie behind what the
-// picture shows are left out, as faint as they would be.
+// Options for drawing thousands of lines cheaply: one pixel wide, with two vertices each. Short lines behind the picture's
+// surfaces are omitted, because they would be faint.
 struct ThinLines {
-    const FloatImage* distance = nullptr;  // of the picture, as LineLayer has it; nullptr: all are drawn
+    const FloatImage* distance = nullptr;  // of the picture, as in LinesBehind; nullptr: no line is omitted
 };
 
-// Appends four vertices for each line that shows, in the order of two triangles 0 1 2, 2 1 3; or, thin, its two ends. scale:
-// pixels to a unit of the window. Lines shorter than a quarter of a pixel are left out.
+// Append the visible lines. append_quads adds four vertices for each line, for the triangles 0 1 2 and 2 1 3; append_thin adds
+// the two ends. scale: pixels for each unit of the window. Lines shorter than a quarter of a pixel are omitted.
 void append_quads(const LineList& lines, const Projection& projection, float scale, std::vector<LineVertex>& vertices);
 void append_thin(const LineList& lines, const Projection& projection, float scale, const ThinLines& thin,
                  std::vector<LineVertex>& vertices);

@@ -15,7 +15,7 @@ std::string level_name(rt_u32 level) {
     return level == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(level + 1);
 }
 
-// Neighbouring levels differ in hue by the golden ratio of a turn, so that no two near ones look alike.
+// Hues of neighbouring levels differ by the golden ratio of a full turn, so that levels close to each other look different.
 uint32_t level_color(rt_u32 level) {
     if (level == RT_LEVEL_BOTTOM) return IM_COL32(244, 180, 80, 255);
     const float hue = std::fmod(0.11f + 0.618034f * static_cast<float>(level % 64), 1.0f);
@@ -62,7 +62,7 @@ void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const AccelDat
     side.fetched = level_;
     side.fetching = std::async(std::launch::async, [accel = side.accel, level = *level_, wake = wake_] {
         auto found = std::make_shared<Level>();
-        // One more than is drawn tells whether there are more.
+        // Ask for one volume more than is drawn, to know whether there are more.
         static_cast<Volumes&>(*found) = accel_volumes(*accel, level, kLimit + 1);
         found->more = found->boxes.size() + found->spheres.size() > kLimit;
         if (found->more && found->spheres.empty())
@@ -77,13 +77,13 @@ void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const AccelDat
 void VolumeOverlay::append_lines(unsigned index, const glm::vec3& eye, float scale, unsigned stride, LineList& lines) const {
     const Side& side = sides_[index];
     if (!side.volumes || !side.fetched) return;
-    // The more there are, the fainter and the plainer.
+    // The more volumes there are, the fainter and simpler they are drawn.
     const size_t shown = std::max<size_t>(count(index), 1);
     const float strength = std::clamp(8.0f / std::sqrt(static_cast<float>(shown)), 0.3f, 1.0f);
     const float width = (shown < 64 ? 1.8f : shown < 1000 ? 1.4f : 1.0f) * scale;
     const uint32_t color = with_opacity(level_color(*side.fetched), strength), faint = with_opacity(color, 0.4f);
     const int segments = std::clamp(static_cast<int>(16000 / shown), 12, 64);
-    const bool circles = shown <= 200;  // beyond, outlines say as much
+    const bool circles = shown <= 200;  // with more, the outlines show as much
     const auto& boxes = side.volumes->boxes;
     const auto& spheres = side.volumes->spheres;
     lines.reserve(lines.size() +

@@ -1,4 +1,4 @@
-// overlay.hpp -- bounding volumes to be drawn over the pictures: which level, and what there is of it.
+// overlay.hpp -- the bounding volumes to draw over the pictures: which level, and its boxes and spheres.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -13,29 +13,29 @@
 
 namespace clarity::ui {
 
-// The volumes of each side's structure, fetched on a thread of their own: a large tree takes a while to walk.
+// The volumes of each side's structure. They are fetched on a separate thread, because to walk a large tree takes a while.
 class VolumeOverlay {
  public:
     explicit VolumeOverlay(std::function<void()> wake) : wake_(std::move(wake)) {}
 
-    // As the keys do: the level that is shown already is hidden.
+    // Shows a level, or hides it if it is shown already. The keys do this.
     void toggle(rt_u32 level);
     void show(std::optional<rt_u32> level) { level_ = level; }
     std::optional<rt_u32> level() const { return level_; }
-    // Whether parts behind the picture's surfaces are left out; else they are faint.
+    // Whether parts behind the picture's surfaces are omitted; otherwise they are faint.
     bool hides_behind() const { return hides_behind_; }
     void hide_behind(bool hidden) { hides_behind_ = hidden; }
     bool ready() const { return !sides_[0].fetching.valid() && !sides_[1].fetching.valid(); }
-    // Volumes drawn of a side, and whether there are more than are drawn.
+    // The number of volumes drawn for a side, and whether the level has more than that.
     size_t count(unsigned side = 0) const;
     bool more(unsigned side = 0) const { return sides_[side].volumes && sides_[side].volumes->more; }
     static constexpr size_t kLimit = 20000;
 
-    // Fetches what is missing; once a frame. other: of the side that is compared with, or nullptr.
+    // Fetches missing volumes; call once a frame. other: structure of the compared side, or nullptr.
     void update(const std::shared_ptr<const AccelData>& main, const std::shared_ptr<const AccelData>& other = nullptr);
-    // Changes whenever the lines of a side would.
+    // A number which changes whenever the lines of a side do.
     uint64_t revision(unsigned side) const { return sides_[side].revision; }
-    // Appends every stride-th of a side's volumes as lines; `eye` sees spheres' outlines.
+    // Appends every stride-th volume of a side as lines. eye: where the outlines of spheres are seen from.
     void append_lines(unsigned side, const glm::vec3& eye, float scale, unsigned stride, LineList& lines) const;
     bool has_spheres(unsigned side) const { return sides_[side].volumes && !sides_[side].volumes->spheres.empty(); }
 
@@ -45,7 +45,7 @@ class VolumeOverlay {
     };
     using Result = std::shared_ptr<const Level>;
     struct Side {
-        // What `volumes` and `fetching` are of.
+        // The structure and level of `volumes` and `fetching`.
         std::shared_ptr<const AccelData> accel;
         std::optional<rt_u32> fetched;
         Result volumes;
@@ -60,9 +60,9 @@ class VolumeOverlay {
     std::array<Side, 2> sides_;
 };
 
-// "level 4", "bottom level": as the keys count.
+// "level 4" or "bottom level", counted as the keys do.
 std::string level_name(rt_u32 level);
-// The colour of a level's volumes, opaque.
+// The opaque colour of a level's volumes.
 uint32_t level_color(rt_u32 level);
 
 }  // namespace clarity::ui

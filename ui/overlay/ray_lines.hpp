@@ -1,4 +1,4 @@
-// ray_lines.hpp -- the rays behind a pixel as lines in the scene.
+// ray_lines.hpp -- draws the rays of a pixel as lines in the scene.
 #pragma once
 #include <string>
 #include <vector>
@@ -9,18 +9,20 @@
 
 namespace clarity::ui {
 
-// What the legend says of a kind of ray, in the order that it lists them.
+// The legend's name and colour for a kind of ray.
 struct RayKind {
     const char* name;
     uint32_t color;
 };
-// Camera, mirror, refracted, light, shadow: the last two are shadow rays that reach their light, and those that do not.
+// The kinds in the order of the legend: camera, mirror, refracted, light, shadow. "light" is a shadow ray that reaches its
+// light, "shadow" one that does not.
 const std::vector<RayKind>& ray_kinds();
-// Index into ray_kinds().
+// Returns an index into ray_kinds().
 size_t kind_of(const RayRecord& ray);
 
-// Rays that were traced, up to what they met, or for `far` where they met nothing; stubs of those that were not followed. Dots
-// at hits. `seen` sizes dots and heads, which look the same from anywhere. selected: index of a ray that stands out; -1: none.
+// Appends the traced rays up to their hits, or with length `far` for a miss; short stubs for rays that were not traced; dots at
+// hits. seen: view that dots and arrow heads are sized for, so that they look the same from anywhere. selected: index of the
+// highlighted ray; -1: none.
 void append_ray_lines(const RayTree& tree, const Projection& seen, float far, float scale, int selected, LineList& lines);
 
 }  // namespace clarity::ui

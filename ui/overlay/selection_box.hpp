@@ -1,4 +1,4 @@
-// selection_box.hpp -- the box about what was picked, in world space.
+// selection_box.hpp -- the box around the selected object, in world space.
 #pragma once
 #include <array>
 #include <optional>
@@ -7,8 +7,8 @@
 
 namespace clarity::ui {
 
-// Corners as Volumes has them. An instance's box lies along its own axes. nullopt: nothing that has bounds. Linear in the
-// mesh's vertices.
+// Returns the corners in the order of Volumes. The box of an instance lies along its own axes. nullopt: the selection has no
+// bounds. Takes time linear in the mesh's vertices.
 std::optional<std::array<std::array<float, 3>, 8>> selection_box(const Scene& scene, const Selection& selection);
 
 }  // namespace clarity::ui

@@ -11,9 +11,9 @@
 namespace clarity::ui {
 namespace {
 
-constexpr float kNarrowest = 320, kGrip = 5;  // at scale 1
+constexpr float kNarrowest = 320, kGrip = 5;  // at text scale 1
 
-// The panel's left edge can be dragged.
+// Draws the panel's left edge, which can be dragged.
 void draw_edge(const Rect& area, UiState& state) {
     const float scale = ui_scale();
     ImGui::SetCursorScreenPos({area.x, area.y});
@@ -27,7 +27,7 @@ void draw_edge(const Rect& area, UiState& state) {
     if (held) state.panel_width = std::max(kNarrowest, (area.x + area.width - ImGui::GetIO().MousePos.x) / scale);
 }
 
-// Tabs share the line; where they do not fit on it, there are two.
+// Draws the tabs on one line, or on two if they do not fit.
 void draw_tabs(UiState& state) {
     const float room = ImGui::GetContentRegionAvail().x, scale = ui_scale();
     float widths[kTabCount], words = 0;

@@ -1,4 +1,5 @@
-// panel.hpp -- the tabs beside the picture. Each draws from tables and statistics, and changes the session's wish.
+// panel.hpp -- the tabs beside the picture. Each draws its rows from tables and statistics, and changes the session's desired
+// state.
 #pragma once
 #include "ui/app/ui_state.hpp"
 #include "ui/overlay/overlay.hpp"
@@ -10,7 +11,7 @@ void draw_panel(const Rect& area, Session& session, VolumeOverlay& overlay, UiSt
 
 void draw_toolbar(Session& session, VolumeOverlay& overlay, UiState& state);
 void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state);
-void draw_output_rows(Session& session, UiState& state);  // of the Render tab: presets, pictures, sequences
+void draw_output_rows(Session& session, UiState& state);  // in the Render tab: presets, pictures, sequences
 void draw_scene_tab(Session& session, UiState& state);
 void draw_scene_tree(Session& session, UiState& state);
 void draw_material_rows(Session& session);

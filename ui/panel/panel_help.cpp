@@ -1,4 +1,4 @@
-// The tab of first steps and keys, and of how the window itself looks.
+// The Help tab: first steps, keys, and the look of the window.
 #include <imgui.h>
 
 #include "ui/hud/keys_hud.hpp"
@@ -41,7 +41,7 @@ void draw_help_tab(UiState& state, const std::string& gl_text) {
     draw_key_table(state);
     section("THIS WINDOW");
     row_label("Text size", "on top of what the screen asks for");
-    // In force once let go: the slider would grow under the mouse.
+    // The scale applies when the slider is released. Otherwise the slider would grow under the mouse.
     static float shown = 0;
     if (shown == 0) shown = state.text_scale;
     slider("##scale", shown, 0.8f, 2.0f, "%.2f");

@@ -1,4 +1,4 @@
-// The tab of one pixel's rays: the tree of them, what each met, and what it adds to the pixel.
+// The Inspect tab: the tree of one pixel's rays, what each hit, and what it adds to the pixel.
 #include <imgui.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Rows of the lights, and of the bookmarks of the camera.
+// The rows of the lights and of the camera's bookmarks.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -17,7 +17,8 @@ void make_unit(float* v) {
     for (int i = 0; i < 3; ++i) v[i] = length > 0 ? v[i] / length : (i == 1 ? 1.0f : 0.0f);
 }
 
-// A lamp stands above the target, a sun shines from where the camera is.
+// Changes the kind of a light. A new point light stands above the target; a new directional light shines from the camera's
+// side.
 void change_kind(Session& session, rt_light& light, rt_u32 kind) {
     if (light.kind == kind) return;
     light.kind = kind;

@@ -1,4 +1,4 @@
-// The tab of the log. Rows are laid out once, and only those in sight are drawn.
+// The Log tab. Rows are laid out once, and only the visible ones are drawn.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -29,7 +29,7 @@ const ImVec4& level_color(LogLevel level) {
 struct View {
     LogFilter filter;
     std::vector<LogRow> rows;
-    std::vector<float> tops;  // of the rows, and the end
+    std::vector<float> tops;  // of the rows; the last entry is the end
     uint64_t revision = 0;
     float width = 0, scale = 0;
     LogFilter of;
@@ -41,7 +41,7 @@ float indent_of(const LogRow& row) {
     return (row.inside ? 14.0f : 0.0f) * ui_scale();
 }
 
-// Returns whether lines came.
+// Lays out the rows. Returns whether new lines came.
 bool lay_out(Session& session, float width) {
     const uint64_t revision = session.log_lines().revision();
     const bool same_filter = view.of.least == view.filter.least && view.of.words == view.filter.words;
@@ -154,7 +154,7 @@ void draw_log_tab(Session& session, UiState& state) {
     ImGui::BeginChild("lines", {0, 0}, false,
                       ImGuiWindowFlags_AlwaysUseWindowPadding | ImGuiWindowFlags_AlwaysVerticalScrollbar);
     ImGui::PushFont(fonts().mono);
-    // What is read at the end goes on there; a reader further up is not moved.
+    // At the end of the log, the view follows new lines. Further up, it stays where it is.
     const bool at_end = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;
     const bool news = lay_out(session, ImGui::GetContentRegionAvail().x);
     if (view.rows.empty()) dim_text(view.filter.words.empty() ? "nothing yet" : "no line has these words");

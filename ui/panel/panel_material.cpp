@@ -1,4 +1,4 @@
-// Rows of the material of what is selected.
+// The rows of the selected object's material.
 #include <imgui.h>
 
 #include <cstring>

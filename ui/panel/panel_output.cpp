@@ -1,4 +1,4 @@
-// The part of the Render tab that keeps things: presets, pictures, the command line, sequences of pictures.
+// The part of the Render tab for output: presets, pictures, the command line, sequences of pictures.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What is asked of the file system at most once a second.
+// A value read from the file system, at most once a second.
 template <class Value>
 struct Remembered {
     Value value{};

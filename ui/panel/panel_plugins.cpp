@@ -1,4 +1,4 @@
-// The tab of what the program found to work with: devices, plugins, kernels; and why something is missing.
+// The Plugins tab: the devices, plugins and kernels that the program found, and why others are missing.
 #include <imgui.h>
 
 #include <map>
@@ -18,7 +18,7 @@ void name_text(const std::string& name, const std::string& what) {
     dim_text(what);
 }
 
-// Paths are cut at their front, where they say least.
+// Draws a path. If it is too long, it is cut at the front, which says least.
 void path_text(const std::string& path) {
     ImGui::PushStyleColor(ImGuiCol_Text, colors::kDim);
     ImGui::TextUnformatted(cut_front_to(path, ImGui::GetContentRegionAvail().x).c_str());

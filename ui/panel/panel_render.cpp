@@ -1,5 +1,5 @@
-// The tab that tunes the picture. Rows come from the settings table and from the plugins' parameters; what is named here only
-// gives them an order, and a row that is not named appears at the end.
+// The Render tab: the settings of the picture. Rows come from the settings table and from the plugins' parameters. The names in
+// this file only give an order; rows which are not named here appear at the end.
 #include <imgui.h>
 
 #include <algorithm>
@@ -24,7 +24,7 @@ const std::vector<Group>& groups() {
     return all;
 }
 
-// Which of two sides the rows below are of, and how both are shown.
+// Draws the rows that choose which side the rows below edit, and how both sides are shown.
 void compare_rows(Session& session, UiState& state) {
     if (!session.desired.other) return;
     section("COMPARE");
@@ -59,7 +59,7 @@ const ReadySide* edited_ready(const Session& session) {
     return &ready->main;
 }
 
-// What `--device` would read: the devices in use and this one, or without it.
+// A choice for --device: the devices in use plus this one, or without it if it is in use.
 std::string with_or_without(const ReadySide& ready, const DeviceInfo& device) {
     std::string text;
     for (const DeviceInfo& used : ready.devices)
@@ -71,7 +71,7 @@ std::string with_or_without(const ReadySide& ready, const DeviceInfo& device) {
 void device_row(Session& session) {
     row_label("Device", "what computes the picture, one or several together; all OpenCL devices of all platforms, best first");
     const auto devices = session.devices();
-    const auto keep = session.ready();  // what `ready` points into
+    const auto keep = session.ready();  // keeps what `ready` points into
     const ReadySide* ready = edited_ready(session);
     std::string name = "looking for devices\u2026";
     if (devices && devices->empty()) name = "none found";
@@ -110,7 +110,7 @@ void accel_rows(Session& session) {
         }
         ImGui::EndCombo();
     }
-    current = session.plugins().accel(settings.accel);  // it may just have been chosen
+    current = session.plugins().accel(settings.accel);  // the structure may have changed above
     if (!current) return;
     if (settings.accel_params.size() != current->param_count) session.set_accel(current->id);
     ImGui::PushID(current->id);
@@ -118,7 +118,7 @@ void accel_rows(Session& session) {
     ImGui::PopID();
 }
 
-// "Level 3" counts from 1, the root, as the keys do.
+// Levels count from 1, the root, like the keys: "Level 3".
 void level_rows(VolumeOverlay& overlay) {
     row_label("Show volumes", "bounding volumes of one level, drawn over the picture; keys 1 to 9, and 0 for the bottom level");
     const auto name = [](std::optional<rt_u32> level) {
@@ -184,7 +184,7 @@ void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
     if (session.behind() && !session.activity().busy)
         wrapped_text("Not in force: the picture shows the last settings that worked.", colors::kAmber);
     compare_rows(session, state);
-    // The two sides' widgets are not the same ones: an edit that is under way stays with its side.
+    // The two sides have different widget ids, so that an unfinished edit stays with its side.
     ImGui::PushID(session.editing_other ? "b" : "a");
     section("STRUCTURE");
     accel_rows(session);

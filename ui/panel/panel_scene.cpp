@@ -1,4 +1,4 @@
-// The tab of what is traced: files, tree, materials, camera, lights, background.
+// The Scene tab: files, tree, materials, camera, lights, background.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 

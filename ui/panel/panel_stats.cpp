@@ -1,4 +1,4 @@
-// The tab of numbers: frames, rays, structure, times; of both sides where two are compared.
+// The Stats tab: frames, rays, structure, times; for both sides of a comparison.
 #include <imgui.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ const ImVec4& side_color(unsigned side) {
     return side == 0 ? colors::kAccent : colors::kAmber;
 }
 
-// One value a side: "81.2 ms" or "81.2 ms | 40.1 ms".
+// The text of a value for each side: "81.2 ms", or "81.2 ms | 40.1 ms" in a comparison.
 struct Sides {
     std::string text;
     void add(const std::string& value) { text += (text.empty() ? "" : "   |   ") + value; }
@@ -97,7 +97,7 @@ void kernel_bars(const PictureSide& side, unsigned which) {
     }
 }
 
-// What each device of several had of the picture.
+// Draws each device's share of the picture, if several take part.
 void share_rows(const PictureSide& side) {
     for (const DeviceShare& share : side.stats.devices) {
         char text[96];

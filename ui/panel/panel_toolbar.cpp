@@ -1,4 +1,5 @@
-// What a newcomer looks for first, above the tabs: a file, the picture, the volumes, a comparison, the rays of a pixel.
+// The toolbar above the tabs: what a newcomer looks for first. Open a file, save the picture, volumes, comparison, rays of a
+// pixel.
 #include <imgui.h>
 
 #include "ui/panel/panel.hpp"
@@ -53,7 +54,7 @@ void draw_toolbar(Session& session, VolumeOverlay& overlay, UiState& state) {
                       "a second picture with settings of its own, beside or over the first (C): another structure, say",
                       width(3))) {
         session.compare(!session.desired.other);
-        session.editing_other = session.desired.other.has_value();  // what is changed next is to differ
+        session.editing_other = session.desired.other.has_value();  // the next changes are to be on the second side
         if (session.desired.other) state.show_tab(Tab::render);
     }
     ImGui::SameLine();

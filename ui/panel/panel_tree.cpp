@@ -1,4 +1,4 @@
-// The tree of the scene. Only the rows in sight are drawn, so that it is as quick with 100 000 instances as with ten.
+// The tree of the scene. Only visible rows are drawn, so that 100 000 instances cost no more than ten.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -18,7 +18,7 @@ struct Tree {
     std::array<bool, kRowKinds> open{true, true, true, true, false, false, false, false};
     std::shared_ptr<const Scene> scene;
     std::vector<uint64_t> first_prim;
-    Selection shown;  // what the list was scrolled to last
+    Selection shown;  // selection that the list was scrolled to last
 };
 Tree tree;
 
@@ -51,7 +51,7 @@ rt_u32 material_of(const Scene& scene, const SceneRow& row) {
     }
 }
 
-// Number that a sphere, polygon or plane has among all prims; -1 for the rest.
+// The index of a sphere, polygon or plane among all primitives of the scene; -1 for other rows.
 rt_i32 prim_of(const Scene& scene, const SceneRow& row) {
     uint64_t prim = tree.first_prim.back() + static_cast<uint64_t>(row.index);
     if (row.kind == RowKind::polygon || row.kind == RowKind::plane) prim += scene.spheres.size();
@@ -159,7 +159,7 @@ void item_row(Session& session, const Scene& scene, const SceneRow& row) {
     ImGui::PopID();
 }
 
-// What was picked in the picture comes into sight.
+// Scrolls to what was picked in the picture.
 void scroll_to_selection(const Session& session, const Scene& scene, const std::vector<SceneRow>& rows, float line) {
     const Selection &now = session.selection, &was = tree.shown;
     if (now.instance == was.instance && now.prim == was.prim && now.material == was.material) return;

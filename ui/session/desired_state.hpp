@@ -1,4 +1,4 @@
-// desired_state.hpp -- what a user wishes to see: plain values, which the window's parts change as they like.
+// desired_state.hpp -- the state that the user has asked for, as plain values. Any part of the window may change them.
 #pragma once
 #include <optional>
 #include <string>
@@ -15,7 +15,7 @@ struct DesiredLight {
     bool on = true;
 };
 
-// How a picture is traced, and on what.
+// The device and the settings that one picture is traced with.
 struct Side {
     std::string device;
     Settings settings;
@@ -23,16 +23,17 @@ struct Side {
 
 struct DesiredState {
     Side main;
-    // A second picture of the same view to compare with. Size, samples, what is shown and tone mapping follow `main`.
+    // A second picture of the same view, for comparison. Size, samples, AOV and tone mapping follow `main`.
     std::optional<Side> other;
     Camera camera;
     std::vector<DesiredLight> lights;
     std::array<float, 3> background{}, ambient{};
-    std::vector<rt_material> materials;  // edited ones; empty: as the scene has them
-    std::vector<rt_u32> hidden;          // instances, ascending
-    bool continuous = false;             // trace on and on, for measuring
-    float resolution_scale = 1;          // of the picture's size, each way
-    float moving_fps = 30;               // frames a second while something moves, at the cost of pixels; 0: always all of them
+    std::vector<rt_material> materials;  // the edited materials; empty: those of the scene
+    std::vector<rt_u32> hidden;          // indices of instances, ascending
+    bool continuous = false;             // trace again and again, to measure
+    float resolution_scale = 1;          // factor for the picture's width and height
+    float moving_fps =
+        30;  // target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels
 };
 
 EditedView edited_view(const DesiredState& desired);

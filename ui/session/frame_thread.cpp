@@ -24,7 +24,7 @@ Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
 
 namespace {
 
-// Without the times of showing, which read_display() adds anew.
+// Removes the times of the display kernels, because read_display() adds them again.
 FrameStats traced_part(FrameStats stats) {
     const auto shown = std::find_if(stats.kernels.begin(), stats.kernels.end(),
                                     [](const KernelTime& time) { return time.name != "trace" && time.name != "counters"; });
@@ -32,7 +32,7 @@ FrameStats traced_part(FrameStats stats) {
     return stats;
 }
 
-// Two pictures of amounts can be compared only if a colour means the same in both: the longer scale serves.
+// Two heat maps can only be compared if a colour means the same in both. So both get the larger of the two scales.
 void share_scale(PictureSide& a, PictureSide& b) {
     const bool amounts = a.scale.map == FalseColorScale::Map::heat && b.scale.map == a.scale.map && a.values && b.values;
     if (!amounts || a.settings.aov != b.settings.aov || a.scale.max == b.scale.max) return;
@@ -58,8 +58,8 @@ FrameThread::~FrameThread() {
 void FrameThread::post(FrameJob job) {
     {
         const std::lock_guard<std::mutex> lock(mutex_);
-        // The first sample of a view is always finished, so that a slow picture still follows a moving camera; later samples
-        // are refinement, and give way at once.
+        // The first sample of a view is always finished, so that a slow picture still follows a moving camera. Later samples
+        // only refine the picture, so they are cancelled at once.
         if (running_ && job.revision != job_.revision && samples_ > 0) running_->cancel();
         job_ = std::move(job);
         failed_ = false;
@@ -130,16 +130,16 @@ std::vector<FrameThread::Saved> FrameThread::take_saved() {
     return std::exchange(saved_, {});
 }
 
-// With the lock held: whether there is something to do, which sample, and whether it needs tracing at all.
+// Whether there is something to do, which sample is next, and whether it must be traced. The caller holds the lock.
 bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     retrace = false;
     if (!job_.ready || failed_ || released_ || job_.ready->withdrawn()) return false;
     const bool sharpen = traced_reduced_ && job_.moving_fps <= 0;
     const bool fresh = job_.revision != traced_revision_ || sharpen;
     sample = fresh ? 0 : samples_;
-    // What moves is shown once; its samples would be gone with the next step.
+    // A reduced picture gets one sample only: while the view moves, the next step would discard the others.
     retrace = fresh || (!traced_reduced_ && samples_ < static_cast<unsigned>(job_.settings.spp));
-    // A comparison is worth a few frames more: the first ones of a program are slower.
+    // A comparison gets a few more frames, because the first frames of a program are slower.
     constexpr size_t kFairFrames = 5;
     const bool comparing = job_.other_settings && job_.ready->other && !traced_reduced_;
     const bool unfair = comparing && std::min(times_[0].ms.size(), times_[1].ms.size()) < kFairFrames;
@@ -151,7 +151,7 @@ bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     return retrace || distance || job_.display_revision != shown_revision_ || has_saving();
 }
 
-// With the lock held: the picture in the films is the one to be written.
+// Whether a save is waiting and the films hold the finished picture for it. The caller holds the lock.
 bool FrameThread::has_saving() const {
     return !to_save_.empty() && latest_ && !failed_ && job_.revision == traced_revision_ && !traced_reduced_ &&
            samples_ >= static_cast<unsigned>(job_.settings.spp) && job_.display_revision == shown_revision_;
@@ -169,7 +169,7 @@ void FrameThread::run() {
             if (stop_) return;
             job = job_;
             save = has_saving();
-            settle = traced_ && (save || !retrace);  // there is nothing to trace meanwhile
+            settle = traced_ && (save || !retrace);  // there is nothing to trace while the images are copied
             tracing_ = true;
             running_ = std::make_shared<StopProgress>();
             if (sample == 0 && retrace && !save) samples_ = 0;
@@ -224,13 +224,13 @@ void FrameThread::save_waiting() {
     }
 }
 
-// Each way, of the pixels asked for, so that what moves keeps its pace.
+// The factor for width and height at which the expected frame time meets job.moving_fps.
 float FrameThread::moving_scale(const FrameJob& job) const {
     if (job.moving_fps <= 0 || ms_per_pixel_ <= 0 || paced_ != job.ready) return 1;
     const double pixels = double(job.settings.width) * job.settings.height * job.resolution_scale * job.resolution_scale;
     const double expected = ms_per_pixel_ * pixels, budget = 1000.0 / job.moving_fps;
     if (expected <= budget) return 1;
-    // Few steps, so that pictures do not breathe.
+    // The factor has 16 steps, so that the picture's resolution does not change in every frame.
     const double steps = std::floor(std::sqrt(budget / expected) * 16);
     return static_cast<float>(std::clamp(steps, 2.0, 16.0) / 16);
 }
@@ -266,8 +266,8 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
     return side;
 }
 
-// Waits for what is still on its way of the picture traced last, and leaves that as the newest; false: it is already. held_up:
-// nothing else is done meanwhile.
+// Waits for the images of the picture that was traced last, then publishes it as latest_. Returns false if there is none.
+// held_up: this thread does nothing else while it waits, so the time counts as frame time.
 bool FrameThread::finish(bool held_up) {
     Traced traced;
     {
@@ -305,7 +305,8 @@ bool FrameThread::finish(bool held_up) {
     return true;
 }
 
-// One sample would be jagged, and to see it between finished ones is worse than either.
+// Replaces the image of a side by that of the finished picture. The picture is being traced again for its times, and its first
+// samples are jagged: to show them between finished pictures would flicker.
 void FrameThread::keep_image(PictureSide& side, const PictureSide& finished) {
     side.image = finished.image;
     side.scale = finished.scale;
@@ -313,7 +314,8 @@ void FrameThread::keep_image(PictureSide& side, const PictureSide& finished) {
     side.stats.samples = finished.stats.samples;
 }
 
-// The film has kernels of its own. If edited ones do not compile, the last good ones go on.
+// Creates the tracer's renderer if the devices or the kernels changed, since the film has kernels of its own. If edited kernels
+// do not compile, the last good renderer stays in use.
 void FrameThread::fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision) {
     if (tracer.devices != devices) {
         tracer = {};
@@ -344,8 +346,8 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     }
     const bool two = job.other_settings && job.ready->other;
     const auto on_main = job.ready->main.loan->get(), on_other = two ? job.ready->other->loan->get() : nullptr;
-    if (!on_main || (two && !on_other)) return;  // withdrawn: its devices are about to be opened anew
-    // What is only shown anew keeps the size that its film has.
+    if (!on_main || (two && !on_other)) return;  // withdrawn: its devices are about to be reopened
+    // A picture that is only displayed again keeps the size of its film.
     float scale = job.resolution_scale;
     if (retrace) {
         const float moving = moving_scale(job);
@@ -396,7 +398,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         }
     }
     if (retrace) {
-        // The first frame of a program is slower than those that follow.
+        // The first frame of a program is slower than the later ones, so it does not count.
         const double pixels = double(picture->main.settings.width) * picture->main.settings.height;
         ms_per_pixel_ = paced_ == job.ready ? ms / pixels : 0;
         paced_ = job.ready;
@@ -404,7 +406,8 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     if (!pending) finish(false);
 }
 
-// Times of another program say nothing of this one, nor does its first frame: drivers compile the last bit then.
+// Adds a frame time. Times of another program are dropped, and so is the first frame of this one: drivers finish compiling in
+// it.
 void FrameThread::note_time(Times& times, const std::shared_ptr<const Ready>& of, double ms) {
     constexpr size_t kTimes = 240;
     if (times.of != of) {

@@ -1,7 +1,7 @@
-// frame_thread.hpp -- the thread that traces: takes the newest wish, leaves the newest picture.
+// frame_thread.hpp -- the thread that traces pictures: it takes the newest job and publishes the newest picture.
 //
-// Where a device copies beside its tracing, the next picture is begun before the last one is copied, if there is a next one to
-// trace: pictures come as soon as they would otherwise, and more of them.
+// Some devices copy while they trace. There, the thread starts the next picture before it copies the last one, if there is a
+// next one to trace. Each picture arrives as soon as it would otherwise, and there are more pictures in the same time.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -21,33 +21,35 @@ namespace clarity::ui {
 
 struct FrameJob {
     std::shared_ptr<const Ready> ready;
-    Settings settings;                       // as wished; what `ready` was not prepared for is ignored
-    std::optional<Settings> other_settings;  // traced too, if `ready` has that side
+    Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
+    std::optional<Settings> other_settings;  // of the second side, which is traced if `ready` has it
     View view;
-    uint64_t revision = 0;          // a new number: the films start anew
-    uint64_t display_revision = 0;  // a new number: the films are shown anew
-    bool continuous = false;        // trace on and on, for measuring
-    float resolution_scale = 1;     // of the settings' size, each way
-    float moving_fps = 0;           // > 0: so many frames a second matter more than pixels now
+    uint64_t revision = 0;          // the films start anew when it changes
+    uint64_t display_revision = 0;  // the films are displayed anew when it changes
+    bool continuous = false;        // trace again and again, to measure
+    float resolution_scale = 1;     // factor for the settings' width and height
+    float moving_fps = 0;           // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
 };
 
 // One side of a picture.
 struct PictureSide {
     ByteImage image;
-    FalseColorScale scale;  // of an AOV; without a unit for colours
+    FalseColorScale scale;  // the scale of an AOV; without a map for colours
     Settings settings;      // as traced
     FrameStats stats;
-    double frame_ms = 0;                         // what it took of the thread: tracing, and reading back if that held it up
-    std::shared_ptr<const FloatImage> distance;  // of the camera rays of sample 0, +inf: nothing; nullptr if not asked for,
-                                                 // empty where it is not known
-    std::shared_ptr<const FloatImage> values;    // what a picture with a scale shows; else nullptr
+    // Milliseconds that this thread spent on the frame: tracing, and the readback if the thread had to wait for it.
+    double frame_ms = 0;
+    // Distances of the camera rays of sample 0, +inf for a miss. nullptr if not asked for; an empty image if they are not
+    // known.
+    std::shared_ptr<const FloatImage> distance;
+    std::shared_ptr<const FloatImage> values;  // the values behind a false-color picture; otherwise nullptr
 };
 
-// How two images differ.
+// How much two images differ.
 struct PictureDifference {
-    ByteImage image;               // |a - b| in each channel, eight times as bright
+    ByteImage image;               // |a - b| in each channel, times eight
     double mean = 0, largest = 0;  // of 255
-    double share = 0;              // of pixels that differ by more than 1 of 255
+    double share = 0;              // share of the pixels which differ by more than 1 of 255
 };
 
 struct Picture {
@@ -55,7 +57,7 @@ struct Picture {
     PictureSide main;
     std::optional<PictureSide> other;
     std::optional<PictureDifference> difference;
-    bool reduced = false;  // fewer pixels than asked for, because something moves
+    bool reduced = false;  // has fewer pixels than asked for, because something moves
 };
 
 class FrameThread {
@@ -65,51 +67,53 @@ class FrameThread {
 
     void post(FrameJob job);
     std::shared_ptr<const Picture> latest() const;
-    // Nothing left to trace of what was posted.
+    // Whether everything that was posted is traced.
     bool idle() const;
-    // Empty, or why frames stopped; once.
+    // Returns why tracing stopped, and forgets it. Empty: it did not.
     std::string take_failure();
-    // Milliseconds of a side's last frames, oldest first.
+    // The last frame times of a side in milliseconds, oldest first.
     std::vector<float> times(unsigned side = 0) const;
-    // From now on pictures bring their distances, or do not.
+    // Whether pictures carry the distances of their camera rays from now on.
     void want_distance(bool wanted);
-    // Writes the main picture once all its samples are in. Returns a number that take_saved() names the outcome by.
+    // Writes the main picture once all of its samples are traced. Returns the number of the save, which take_saved() repeats.
     uint64_t save(const std::string& path);
-    // Forgets that picture, unless it is being written already.
+    // Drops the save with this number, unless it is being written already.
     void cancel_save(uint64_t number);
-    // Ends the frame in hand and lets go of all that is on a device, until resume(): so that devices can be closed.
+    // Stops the frame in progress and releases everything this thread holds on a device, so that devices can be closed. Returns
+    // when that is done. Nothing is traced until resume().
     void release();
     void resume();
     struct Saved {
         uint64_t number = 0;
-        std::string path, failure;  // empty failure: it is there
+        std::string path, failure;  // failure is empty if the picture was written
     };
     std::vector<Saved> take_saved();
 
  private:
     class StopProgress;
-    // What traces one side; of the thread alone.
+    // Traces one side. Only this thread uses it.
     struct Tracer {
         Devices devices;
         std::unique_ptr<MultiFrameRenderer> frames;
-        uint64_t kernel_revision = 0;  // that the film's kernels are of
+        uint64_t kernel_revision = 0;  // revision of the film's kernels
     };
     struct Times {
         std::vector<float> ms;
         std::shared_ptr<const Ready> of;
-        bool cold = false;  // only its first frame is in
+        bool cold = false;  // holds only the time of the program's first frame
     };
-    // A picture whose images may still be on their way.
+    // A traced picture, the images of which may still be in flight to the host.
     struct Traced {
         std::shared_ptr<Picture> picture;
-        AsyncReadback images[2];  // of its sides
-        bool fresh = false;       // not only shown anew
-        // The finished picture that is traced again for its times: its images are shown until all samples are in again.
+        AsyncReadback images[2];  // one for each side
+        bool fresh = false;       // was traced; false: it was only displayed again
+        // The finished picture, if this one is traced again for its times. Its images are shown until all samples are traced
+        // again.
         std::shared_ptr<const Picture> finished;
     };
     void run();
     void trace(const FrameJob& job, unsigned sample, bool retrace);
-    struct Order {  // what of a side is to be done
+    struct Order {  // what is to be done for a side
         unsigned sample = 0;
         bool retrace = false, distance = false;
     };
@@ -128,7 +132,7 @@ class FrameThread {
     const std::function<void()> wake_;
     Tracer tracers_[2];
     double ms_per_pixel_ = 0;             // of the last picture; 0: not known
-    std::shared_ptr<const Ready> paced_;  // what it is of
+    std::shared_ptr<const Ready> paced_;  // what ms_per_pixel_ was measured with
 
     mutable std::mutex mutex_;
     std::condition_variable changed_, stopped_;
@@ -136,18 +140,18 @@ class FrameThread {
     FrameJob job_;
     uint64_t traced_revision_ = 0, shown_revision_ = 0;
     bool traced_reduced_ = false;  // the films hold fewer pixels than asked for
-    unsigned samples_ = 0;         // in the films
+    unsigned samples_ = 0;         // number of samples in the films
     std::shared_ptr<StopProgress> running_;
-    std::optional<Traced> traced_;  // newer than latest_, which it becomes when its images are here
+    std::optional<Traced> traced_;  // newer than latest_, and replaces it when its images have arrived
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
     Times times_[2];
-    std::vector<Saved> to_save_, saved_;  // without an outcome yet; with one that nobody took
-    uint64_t last_save_ = 0;              // number of it
-    std::thread thread_;                  // last: it sees the rest complete
+    std::vector<Saved> to_save_, saved_;  // saves that wait; finished saves which take_saved() has not returned yet
+    uint64_t last_save_ = 0;              // number of the last save
+    std::thread thread_;                  // last member: the thread starts when all others exist
 };
 
-// The settings to trace with: those of `wished` that apply at once, the others as prepared.
+// The settings to trace with: those of `desired_now` that apply to the next frame at once, and all others as prepared.
 Settings frame_settings(const Settings& prepared, const Settings& desired_now);
 
 }  // namespace clarity::ui

@@ -41,7 +41,7 @@ std::vector<std::string> differences(const DesiredState& a, const DesiredState& 
     return names;
 }
 
-// Everything but the camera, and what is only for measuring.
+// Restores all but the camera and the flag `continuous`, which is only for measuring.
 void restore(DesiredState& desired, const DesiredState& from) {
     const Camera camera = desired.camera;
     const bool continuous = desired.continuous;
@@ -86,7 +86,7 @@ std::string History::redo_name() const {
 }
 
 void History::undo(DesiredState& desired) {
-    observe(desired, false);  // what has not been seen yet is a step too
+    observe(desired, false);  // a change that observe() has not seen yet is a step too
     if (undo_.empty()) return;
     redo_.push_back(settled_);
     settled_ = undo_.back();

@@ -1,4 +1,4 @@
-// history.hpp -- undo and redo of the wish, all but the camera, which bookmarks keep.
+// history.hpp -- undo and redo of the desired state, except for the camera, which bookmarks keep.
 #pragma once
 #include <vector>
 
@@ -8,13 +8,13 @@ namespace clarity::ui {
 
 class History {
  public:
-    // Once a frame. While a gesture lasts (a slider is dragged, a key is down) its steps are one.
+    // Called once a frame. All changes during one gesture (a slider is dragged, a key is down) are one step.
     void observe(const DesiredState& desired, bool gesture);
-    // A new scene: nothing before it can be taken back.
+    // Called for a new scene: earlier steps cannot be undone any more.
     void forget();
     bool can_undo() const { return !undo_.empty(); }
     bool can_redo() const { return !redo_.empty(); }
-    // What the next step would take back: "Depth", "Structure", "light 1"; empty: nothing.
+    // The name of the next step to undo: "Depth", "Structure", "light 1". Empty: there is none.
     std::string undo_name() const;
     std::string redo_name() const;
     void undo(DesiredState& desired);
@@ -27,7 +27,8 @@ class History {
     std::vector<DesiredState> undo_, redo_;
 };
 
-// What of a wish differs, for a person: "Depth", "3 changes". Empty: nothing that counts.
+// What differs between two desired states, as a text for the user: "Depth", "3 changes". Empty: nothing that undo would
+// restore.
 std::string difference_name(const DesiredState& a, const DesiredState& b);
 
 }  // namespace clarity::ui

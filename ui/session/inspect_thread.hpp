@@ -1,4 +1,5 @@
-// inspect_thread.hpp -- the thread that follows one pixel's rays, beside the one that traces pictures. The newest wish wins.
+// inspect_thread.hpp -- the thread that traces the rays of one pixel, independent of the thread that traces pictures. Only the
+// newest request is answered.
 #pragma once
 #include <condition_variable>
 #include <functional>
@@ -14,11 +15,11 @@
 namespace clarity::ui {
 
 struct Inspection {
-    FrameJob job;           // of the picture that was looked at
-    unsigned x = 0, y = 0;  // pixel of it
+    FrameJob job;           // of the inspected picture
+    unsigned x = 0, y = 0;  // pixel of that picture
     RayTree result;
-    std::string failure;   // empty, or why there are no rays
-    uint64_t request = 0;  // number that ask() gave
+    std::string failure;   // why there are no rays; empty: there are
+    uint64_t request = 0;  // the number which ask() returned
 };
 
 class InspectThread {
@@ -26,9 +27,9 @@ class InspectThread {
     explicit InspectThread(std::function<void()> wake);
     ~InspectThread();
     uint64_t ask(FrameJob job, unsigned x, unsigned y);
-    std::shared_ptr<const Inspection> latest() const;  // nullptr at first
+    std::shared_ptr<const Inspection> latest() const;  // nullptr until the first answer
     bool busy() const;
-    // As FrameThread has them.
+    // As in FrameThread.
     void release();
     void resume();
 
@@ -42,7 +43,7 @@ class InspectThread {
     void follow(const Request& request, Inspection& answer);
 
     const std::function<void()> wake_;
-    std::shared_ptr<Device> device_;  // of the thread alone, as is
+    std::shared_ptr<Device> device_;  // used by the thread only, like inspector_
     std::unique_ptr<Inspector> inspector_;
     mutable std::mutex mutex_;
     std::condition_variable changed_, stopped_;
@@ -50,7 +51,7 @@ class InspectThread {
     uint64_t last_number_ = 0;
     std::unique_ptr<Request> waiting_;
     std::shared_ptr<const Inspection> latest_;
-    std::thread thread_;  // last: it sees the rest complete
+    std::thread thread_;  // last member: the thread starts when all others exist
 };
 
 }  // namespace clarity::ui

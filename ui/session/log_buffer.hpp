@@ -1,4 +1,4 @@
-// log_buffer.hpp -- the last lines of the program's log, for the window.
+// log_buffer.hpp -- the last 2000 entries of the program's log, for the window.
 #pragma once
 #include <cstdint>
 #include <deque>
@@ -14,11 +14,11 @@ namespace clarity::ui {
 
 struct LogLine {
     LogLevel level;
-    std::string text;  // may hold several lines: a compiler's log, say
-    double at_s = 0;   // by the steady clock
+    std::string text;  // may have several lines, such as a compiler's log
+    double at_s = 0;   // seconds of the steady clock
 };
 
-// Listens to the program's log from its making to its end. Thread-safe.
+// Collects the program's log while it exists. Thread-safe.
 class LogBuffer {
  public:
     explicit LogBuffer(std::function<void()> wake);
@@ -26,7 +26,7 @@ class LogBuffer {
     LogBuffer(const LogBuffer&) = delete;
     LogBuffer& operator=(const LogBuffer&) = delete;
 
-    // Changes with every line.
+    // A number which changes with every new entry.
     uint64_t revision() const;
     std::vector<LogLine> lines() const;
     std::optional<LogLine> last() const;

@@ -1,10 +1,10 @@
-// picture_difference.hpp -- two pictures of the same view, compared pixel by pixel.
+// picture_difference.hpp -- compares two pictures of the same view pixel by pixel.
 #pragma once
 #include "ui/session/frame_thread.hpp"
 
 namespace clarity::ui {
 
-// Of the same size; else everything differs, and the image is empty.
+// Compares two images of the same size. If the sizes differ, every pixel counts as different and the image is empty.
 PictureDifference compare_pictures(const ByteImage& a, const ByteImage& b);
 
 }  // namespace clarity::ui

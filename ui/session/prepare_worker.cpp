@@ -12,7 +12,7 @@ namespace clarity::ui {
 
 using Clock = std::chrono::steady_clock;
 
-// Keeps the stage for the window, and wakes it, though not more than thirty times a second.
+// Keeps the current stage for the window, and wakes the window at most 30 times a second.
 class PrepareWorker::StageProgress : public Progress {
  public:
     explicit StageProgress(const std::function<void()>& wake) : wake_(wake) {}
@@ -71,7 +71,7 @@ PrepareWorker::~PrepareWorker() {
 void PrepareWorker::request(PrepareRequest request) {
     {
         const std::lock_guard<std::mutex> lock(mutex_);
-        // An import goes on if only settings changed: they are used once it is done.
+        // If only settings changed, a running import goes on, and the new settings are used when it is done.
         const bool importing = files_revision_ != running_request_.files_revision;
         const bool same_source =
             request.files_revision == running_request_.files_revision && request.main.device == running_request_.main.device;
@@ -143,7 +143,7 @@ void PrepareWorker::run() {
             publish({Outcome::Kind::cancelled, nullptr, "", "", false, false});
         } catch (const Error& error) {
             publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
-        } catch (const std::exception& error) {  // bad_alloc, an OpenCL call of a driver that gave up
+        } catch (const std::exception& error) {  // bad_alloc, or an OpenCL call that failed in the driver
             publish({Outcome::Kind::failed, nullptr, std::string("preparing the picture failed: ") + error.what(), "", false,
                      false});
         }
@@ -158,7 +158,7 @@ void PrepareWorker::run() {
 void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progress) {
     progress.stage("looking for devices");
     if (!devices()) list_all_devices();
-    // A scene that cannot be read must not keep the old one from new settings, nor a missing device the scene from loading.
+    // If the scene cannot be read, new settings still apply to the old scene. If a device is missing, the scene still loads.
     bool whole = true;
     const auto open = [&](const Side& side, SideState& shop, const SideState& neighbour) {
         try {
@@ -175,7 +175,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
         other_ = {};
     try {
         import_files(request, progress);
-    } catch (const Cancelled&) {  // superseded: the next request imports them
+    } catch (const Cancelled&) {  // superseded: the next request imports the files
         throw;
     } catch (const Error& error) {
         whole = false;
@@ -193,7 +193,7 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     ready->loaded = loaded_;
     prepare_sides(request, *ready, whole, progress);
     if (needs_reopen()) {
-        // It works; now the same on devices opened anew, from the compiler's cache.
+        // Preparation worked. Now repeat it on reopened devices; the compiler's cache has the programs.
         renew_devices();
         prepare_sides(request, *ready, whole, progress);
     }
@@ -205,7 +205,7 @@ void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, b
     ready.other.reset();
     if (!request.other || !other_.preparer) return;
     ready.request.other->device = other_.choice;
-    // What the second side cannot have must not keep the first from changing.
+    // If the second side cannot be prepared, the first side still changes.
     try {
         ready.other = lend(other_.devices, other_.preparer->prepare(visible_, request.other->settings, progress));
     } catch (const Cancelled&) {
@@ -235,7 +235,7 @@ void PrepareWorker::withdraw_loans() {
     loans_.clear();
 }
 
-// Closes the devices of both sides before it opens any anew: PoCL frees memory only with the last context of a process.
+// Closes the devices of both sides before it reopens any, because PoCL frees memory only with the last context of a process.
 void PrepareWorker::renew_devices() {
     tracers_.release();
     const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
@@ -251,7 +251,8 @@ void PrepareWorker::renew_devices() {
     other_.preparer->open_devices(other_.devices);
 }
 
-// The scene that is built: without what is hidden. Kept while neither changes, since a new one is built anew.
+// Makes visible_, the scene without its hidden instances. It is kept while scene and hidden instances stay the same, because
+// the structures are built anew for every new Scene object.
 void PrepareWorker::hide(const PrepareRequest& request) {
     const bool same_files = request.files_revision == loaded_->files_revision;
     const std::vector<rt_u32>& hidden = same_files ? request.hidden : hidden_;

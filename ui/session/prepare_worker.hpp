@@ -1,4 +1,4 @@
-// prepare_worker.hpp -- the thread that does what is slow: listing and opening devices, import, build, upload, compile.
+// prepare_worker.hpp -- the thread for slow work: listing and opening devices, import, building, upload, compilation.
 #pragma once
 #include <condition_variable>
 #include <cstdint>
@@ -20,8 +20,8 @@ struct Outcome {
     Kind kind = Kind::ready;
     std::shared_ptr<const Ready> ready;
     std::string message, details;  // of a failure
-    bool files_failed = false;     // it was the import
-    bool whole = false;            // ready, and nothing of the request failed on the way
+    bool files_failed = false;     // the import failed
+    bool whole = false;            // `ready`, and no part of the request failed
 };
 
 struct Activity {
@@ -41,19 +41,19 @@ class PrepareWorker {
     PrepareWorker(const PluginRegistry& plugins, import::ImportOptions import, Tracers tracers, std::function<void()> wake);
     ~PrepareWorker();
 
-    // The newest request wins; work that it makes useless is cancelled.
+    // Replaces the waiting request. Running work is cancelled if the new request makes it useless.
     void request(PrepareRequest request);
-    // Drops what is running and what is waiting.
+    // Cancels the running request and drops the waiting one.
     void cancel();
     std::vector<Outcome> take();
     Activity activity() const;
-    std::shared_ptr<const std::vector<DeviceInfo>> devices() const;  // nullptr until they are listed
+    std::shared_ptr<const std::vector<DeviceInfo>> devices() const;  // nullptr until the devices are listed
 
  private:
     class StageProgress;
     void run();
     void handle(const PrepareRequest& request, StageProgress& progress);
-    // One side's devices and what was prepared on them.
+    // One side's devices and its preparer.
     struct SideState {
         Devices devices;
         std::string choice;
@@ -68,7 +68,7 @@ class PrepareWorker {
     void import_files(const PrepareRequest& request, StageProgress& progress);
     void hide(const PrepareRequest& request);
     void list_all_devices();
-    void tried(uint64_t files_revision);  // whatever came of it, it is not imported again
+    void tried(uint64_t files_revision);  // notes that these files need no further import, even if this one failed
     void publish(Outcome outcome);
 
     const PluginRegistry& plugins_;
@@ -76,14 +76,14 @@ class PrepareWorker {
     const Tracers tracers_;
     const std::function<void()> wake_;
 
-    // Of the worker thread alone.
+    // Used by the worker thread only.
     SideState main_, other_;
     std::vector<std::weak_ptr<DeviceLoan>> loans_;  // of every side that may still be traced
     std::shared_ptr<const ImportedScene> loaded_;
-    std::shared_ptr<const Scene> visible_;  // visible_of_ without what is hidden
+    std::shared_ptr<const Scene> visible_;  // visible_of_ without its hidden instances
     std::shared_ptr<const ImportedScene> visible_of_;
     std::vector<rt_u32> hidden_;
-    uint64_t files_revision_ = 0;  // last one tried
+    uint64_t files_revision_ = 0;  // of the last files that were imported, even if that failed
 
     mutable std::mutex mutex_;
     std::condition_variable changed_;
@@ -93,7 +93,7 @@ class PrepareWorker {
     std::shared_ptr<StageProgress> running_;
     std::vector<Outcome> outcomes_;
     std::shared_ptr<const std::vector<DeviceInfo>> devices_;
-    std::thread thread_;  // last: it sees the rest complete
+    std::thread thread_;  // last member: the thread starts when all others exist
 };
 
 }  // namespace clarity::ui

@@ -17,7 +17,7 @@ bool DeviceLoan::withdrawn() const {
 }
 
 void DeviceLoan::withdraw() {
-    std::shared_ptr<const OnDevices> last;  // destroyed without the lock: drivers take their time
+    std::shared_ptr<const OnDevices> last;  // destroyed after the lock is released, because drivers take their time
     const std::lock_guard<std::mutex> lock(mutex_);
     last.swap(lent_);
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kTurn = 6.2831853f;
 
-// Catmull-Rom through b and c, at u = 0..1.
+// Catmull-Rom spline from b (u = 0) to c (u = 1).
 template <size_t N>
 std::array<float, N> between(const std::array<float, N>& a, const std::array<float, N>& b, const std::array<float, N>& c,
                              const std::array<float, N>& d, float u) {
@@ -71,7 +71,7 @@ void Sequence::start(Session& session, const std::string& pattern, std::vector<C
     next_ = 0;
 }
 
-// A save that still waits for samples would get those of the camera that comes now.
+// Cancels the save of the current frame if it still waits: its samples would be those of the next camera.
 void Sequence::drop_frame(Session& session) {
     if (save_ != 0) session.cancel_save(save_);
     save_ = 0;

@@ -1,4 +1,4 @@
-// sequence.hpp -- numbered pictures along a path of the camera: once around the target, or from bookmark to bookmark.
+// sequence.hpp -- numbered pictures along a camera path: a turntable about the target, or a path through the bookmarks.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,8 +11,8 @@ class Session;
 
 class Sequence {
  public:
-    // pattern: "turn_####.png". Throws Error(usage) where that cannot be written; then what runs goes on. Else the new sequence
-    // replaces one that runs. At its end the camera comes back to where it was.
+    // Start a sequence, which replaces a running one. The camera returns to its place at the end. pattern: file name with # for
+    // digits, "turn_####.png". Throw Error(usage) if the pattern cannot be written; a running sequence then goes on.
     void start_turntable(Session& session, const std::string& pattern, int frames);
     void start_path(Session& session, const std::string& pattern, int frames, const std::vector<Camera>& through);
     void stop(Session& session);
@@ -21,7 +21,7 @@ class Sequence {
     int count() const { return static_cast<int>(cameras_.size()); }
     const std::string& pattern() const { return pattern_; }
 
-    // For the session: before it posts the frame's job, after it did, and when a picture is written.
+    // Called by the session: before it posts the frame's job, after that, and when a picture was saved.
     void update(Session& session);
     void posted(Session& session);
     void saved(Session& session, uint64_t number, bool worked);
@@ -31,14 +31,14 @@ class Sequence {
     void drop_frame(Session& session);
 
     std::vector<Camera> cameras_;
-    Camera before_;  // while it runs: the camera to come back to
+    Camera before_;  // the camera to return to, while a sequence runs
     std::string pattern_;
-    bool wished_ = false;  // the camera of frame next_ is in the session's wish
-    uint64_t save_ = 0;    // number of that frame's save; 0: not asked for yet
+    bool wished_ = false;  // the session's desired state has the camera of frame next_
+    uint64_t save_ = 0;    // number of that frame's save; 0: not requested yet
     int next_ = 0;
 };
 
-// "FOLDER/clarity_0001.png": the first such name that is free.
+// Returns the first name "FOLDER/clarity_0001.png" which no file has yet. Throws Error(failed) if all 9999 are taken.
 std::string next_picture_path(const std::string& folder);
 
 }  // namespace clarity::ui

@@ -34,15 +34,15 @@ double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-constexpr double kMovingSeconds = 0.25;  // after the last change of the view, pictures are sharp again
+constexpr double kMovingSeconds = 0.25;  // pictures are sharp again this long after the last change of the view
 
-// Exposure, tone map and colour scale show what is in the film already; every other setting of a frame, but for the count of
-// samples, traces it anew.
+// Exposure, tone map and colour scale apply to a film that is already traced. Every other setting of a frame needs a new trace,
+// except for the number of samples.
 bool only_displays(const std::string& key) {
     return key == "exposure" || key == "tone" || key == "scale_max";
 }
 
-// What two sides of a comparison have in common: without it pictures could not be compared.
+// Settings which both sides of a comparison share; otherwise the pictures could not be compared.
 bool is_shared(const std::string& key) {
     return key == "size" || key == "spp" || key == "aov" || only_displays(key);
 }
@@ -131,7 +131,7 @@ void Session::cancel() {
     if (!ready_) return;
     const PrepareRequest& was = ready_->request;
     const bool was_withdrawn = ready_->withdrawn();
-    // What only concerns frames stays as it is wished.
+    // Settings that only concern frames keep their desired values.
     const auto back = [](Side& side, const Side& to) {
         side.device = to.device;
         side.settings = frame_settings(to.settings, side.settings);
@@ -144,7 +144,7 @@ void Session::cancel() {
     desired.hidden = was.hidden;
     files_ = was.files;
     files_revision_ = was.files_revision;
-    // It is what we have: nothing to ask for, unless its devices were closed meanwhile.
+    // The prepared scene already has these settings, so there is nothing to request, unless its devices were closed meanwhile.
     posted_key_ = was_withdrawn ? std::string() : prepare_key(desired_request());
 }
 
@@ -165,7 +165,7 @@ void Session::follow_main() {
 PrepareRequest Session::desired_request() const {
     PrepareRequest request{files_, files_revision_, first_camera_, first_light_, desired.main, desired.other,
                            {},     seen_kernels_};
-    // Numbers of instances mean nothing in another scene.
+    // Indices of instances are only valid in the scene that they were chosen in.
     if (files_revision_ == viewed_files_revision_) request.hidden = desired.hidden;
     return request;
 }
@@ -183,7 +183,7 @@ void Session::post_frame() {
     FrameJob job = posted_job_;
     job.ready = ready_;
     job.settings = desired.main.settings;
-    // A sample of anything but colours replaces the one before: sixteen would only make it tremble.
+    // For every AOV but colours, a new sample replaces the last one. Sixteen samples would only make the picture tremble.
     if (ready_->main.settings.aov != "color") job.settings.spp = 1;
     job.other_settings.reset();
     if (desired.other) job.other_settings = desired.other->settings;
@@ -240,7 +240,7 @@ void Session::take_outcomes() {
             case Outcome::Kind::failed:
                 report(outcome.message, outcome.details);
                 if (outcome.files_failed && ready_) {
-                    // The worker goes on with the old files by itself: asking again would take the message away.
+                    // The worker keeps the old files by itself. A new request would remove the message.
                     const bool asked = posted_key_ == prepare_key(desired_request());
                     files_ = ready_->loaded->files;
                     files_revision_ = ready_->loaded->files_revision;
@@ -294,7 +294,7 @@ bool Session::idle() const {
 float Session::scene_size() const {
     const float diagonal = ready_ ? ready_->loaded->bounds.diagonal() : 0.0f;
     if (diagonal > 0) return diagonal;
-    float squared = 0;  // planes only, or nothing: the distance looked at
+    float squared = 0;  // no finite bounds (only planes, or nothing): use the distance to the target
     for (int i = 0; i < 3; ++i)
         squared += (desired.camera.target[i] - desired.camera.eye[i]) * (desired.camera.target[i] - desired.camera.eye[i]);
     return std::max(std::sqrt(squared), 1e-3f);

@@ -1,7 +1,8 @@
-// session.hpp -- what the window works on: the state a user wishes for, and the newest that the threads made of it.
+// session.hpp -- the session: the state that the user desires, and the newest results of the threads.
 //
-// The window's parts change `wish` as they like; update(), once a frame, compares it with what was asked for last and posts the
-// difference: to the preparing worker what must be rebuilt or recompiled, to the frame thread the rest. Nothing here waits.
+// The window's parts change `desired` freely. Once a frame, update() compares it with the last requests and posts the
+// differences: what must be rebuilt or recompiled goes to the preparing worker, the rest to the frame thread. Nothing here
+// waits.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -22,12 +23,12 @@
 
 namespace clarity::ui {
 
-// What stands over the picture until it is dismissed or mended.
+// A message over the picture. It stays until it is dismissed or its cause is gone.
 struct WindowMessage {
     std::string text, details;
 };
 
-// What was picked in the picture or in the scene's tree.
+// The object selected in the picture or in the scene's tree.
 struct Selection {
     rt_i32 instance = -1, prim = -1, material = -1;  // -1: none
     bool any() const { return instance >= 0 || prim >= 0 || material >= 0; }
@@ -40,23 +41,24 @@ class Session {
     DesiredState desired;
     unsigned selected_light = 0;
     Selection selection;
-    bool editing_other = false;  // the panel's rows are of wish.other
+    bool editing_other = false;  // the rows of the panel edit desired.other
 
     const PluginRegistry& plugins() const { return plugins_; }
     LogBuffer& log_lines() { return log_; }
     std::shared_ptr<const std::vector<DeviceInfo>> devices() const { return worker_.devices(); }
 
-    // Replaces the scene once the files are imported; until then, and if that fails, the old one stays.
+    // Replaces the scene once the files are imported. Until then, and if the import fails, the old scene stays.
     void open(std::vector<std::string> files);
-    // Drops what is being prepared and wishes for what is on the screen again.
+    // Cancels preparation and sets the desired state back to what is on the screen.
     void cancel();
     void reset_view();
     void adopt_view(const EditedView& edited);
-    void set_accel(const std::string& id);  // with its parameters' defaults, of the side that is edited
-    // The settings that a row changes: of the edited side, but what both share is the main one's.
+    void set_accel(const std::string& id);  // of the edited side, with the default parameters
+    // The settings that a row of the panel changes: those of the edited side, or of the main side if both sides share this
+    // setting.
     Settings& settings_for(const std::string& key);
     Side& edited() { return editing_other && desired.other ? *desired.other : desired.main; }
-    // Starts or ends the comparison; the second side begins as a copy of the first.
+    // Starts or ends the comparison. The second side begins as a copy of the first.
     void compare(bool on);
     void swap_sides();
 
@@ -64,61 +66,61 @@ class Session {
     void redo() { history_.redo(desired); }
     const History& history() const { return history_; }
 
-    // Throw Error; what was wished stays as it was.
+    // Throw Error; the desired state then stays as it was.
     void save_preset(const std::string& path) const;
     void load_preset(const std::string& path);
-    // `clarity render ...` that makes the main picture as it is wished, on the device that it has.
+    // Returns the `clarity render ...` command which makes the main picture as desired, on its device.
     std::string render_command(const std::string& output) const;
-    // The picture as it is now, when its samples are in: .png as shown, .exr or .pfm with the film's values. The outcome is a
-    // line in the log, or a message. Returns a number for cancel_save().
+    // Saves the current picture once its samples are traced: .png as shown, .exr or .pfm with the film's values. Success is a
+    // line in the log, failure a message. Returns a number for cancel_save().
     uint64_t save_picture(const std::string& path);
     void cancel_save(uint64_t number) { frames_.cancel_save(number); }
     Sequence& sequence() { return sequence_; }
 
-    // Follows the rays of a pixel of the newest picture.
+    // Traces the rays of a pixel of the newest picture for the inspector.
     void inspect(unsigned x, unsigned y);
-    // The same, and then selects what its camera ray met.
+    // Like inspect(), then selects the object that the camera ray hit.
     void pick(unsigned x, unsigned y);
     std::shared_ptr<const Inspection> inspection() const { return inspector_.latest(); }
     bool inspecting() const { return inspector_.busy(); }
-    // Moves the camera's target, and the eye with `nearer` < 1 towards it.
+    // Moves the camera's target to `point`. The eye's distance to it is multiplied by `nearer`.
     void focus_on(const std::array<float, 3>& point, float nearer = 1);
     void focus_on_instance(rt_u32 instance);
-    void frame_selection();  // or all of the scene
+    void frame_selection();  // frames the selection, or the whole scene if nothing is selected
     float picture_aspect() const;
-    // The materials to edit: the wish's own, copied from the scene at the first edit.
+    // The materials to edit. They are copied from the scene to `desired` at the first edit.
     rt_material& edited_material(rt_u32 index);
     const rt_material& material(rt_u32 index) const;
     bool hidden(rt_u32 instance) const;
     void hide(rt_u32 instance, bool hidden);
 
-    // Once a frame of the window. gesture: a slider is being dragged, a key is down.
+    // Called once a frame of the window. gesture: a slider is being dragged or a key is down.
     void update(bool gesture);
 
     std::shared_ptr<const Ready> ready() const { return ready_; }        // nullptr until something is prepared
-    std::shared_ptr<const Picture> picture() const { return picture_; }  // newest; nullptr at first
+    std::shared_ptr<const Picture> picture() const { return picture_; }  // the newest; nullptr until the first
     std::vector<std::string> files() const;                              // of the scene on the screen
     Activity activity() const { return worker_.activity(); }
     std::vector<float> frame_times(unsigned side = 0) const { return frames_.times(side); }
-    // The camera or a light moved a moment ago: pictures may be coarse.
+    // Whether the camera or a light moved a moment ago, so that pictures may have fewer pixels.
     bool moving() const { return moving_; }
-    // Whose files are watched; a saved change is compiled and swapped in by itself.
+    // Watches the kernel files. A saved change is compiled and used at once.
     const KernelWatch& kernels() const { return kernels_; }
-    // The window needs the distances of pictures, or no longer does.
+    // Whether the window needs the distances of pictures from now on.
     void want_distance(bool wanted) { frames_.want_distance(wanted); }
-    // Nothing is being prepared or traced, and the newest picture is here.
+    // Whether nothing is being prepared or traced and the newest picture has arrived.
     bool idle() const;
-    // Whether the wish differs from what the picture was prepared with: something is under way, or failed.
+    // Whether the desired state differs from what the picture was prepared with: work is under way, or it failed.
     bool behind() const;
     double frames_per_second(unsigned side = 0) const;
     double mrays_per_second(unsigned side = 0) const;
     std::string frame_rate_line() const;
-    // Length that steps are measured by: the scene's diagonal.
+    // Unit for steps of camera and lights: the diagonal of the scene.
     float scene_size() const;
 
     const WindowMessage& message() const { return message_; }
     void dismiss_message() { message_ = {}; }
-    void report(const std::string& text, const std::string& details = {});  // a failure: message and log
+    void report(const std::string& text, const std::string& details = {});  // reports a failure as message and in the log
     uint64_t message_count() const { return message_count_; }
 
  private:
@@ -126,7 +128,7 @@ class Session {
     void adopt(const std::shared_ptr<const Ready>& ready);
     void post_request();
     void post_frame();
-    void follow_main();  // what of the other side is always the main one's
+    void follow_main();  // copies the shared settings of the main side to the other side
     void take_saved();
     void take_pick();
     PrepareRequest desired_request() const;
@@ -135,11 +137,11 @@ class Session {
     const PluginRegistry& plugins_;
     std::string first_camera_, first_light_;  // from the command line, for the first scene
     std::vector<Word> first_edits_;
-    std::vector<std::string> files_;  // asked for
+    std::vector<std::string> files_;  // of the scene that was asked for
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
     std::string posted_key_;
     std::string ready_key_;
-    uint64_t viewed_files_revision_ = 0;  // whose camera and lights are in the wish
+    uint64_t viewed_files_revision_ = 0;  // the scene whose camera and lights are in `desired`
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;
@@ -155,7 +157,7 @@ class Session {
     uint64_t seen_kernels_ = 0;
     FrameThread frames_;
     InspectThread inspector_;
-    PrepareWorker worker_;  // after those that it asks to let go
+    PrepareWorker worker_;  // after the threads that it asks to release the devices
 };
 
 }  // namespace clarity::ui

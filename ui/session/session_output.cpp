@@ -1,4 +1,4 @@
-// What leaves the session: pictures, presets, command lines.
+// The session's output: pictures, presets, command lines.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -27,7 +27,7 @@ uint64_t Session::save_picture(const std::string& path) {
 
 Preset Session::desired_preset(const View& base) const {
     Preset preset{desired.main.device, desired.main.settings, {}};
-    if (preset.settings.aov != "color") preset.settings.spp = 1;  // as post_frame() has it
+    if (preset.settings.aov != "color") preset.settings.spp = 1;  // as in post_frame()
     if (ready_) preset.edits = edits_between(*ready_->loaded->scene, base, edited_view(desired));
     return preset;
 }
@@ -52,7 +52,7 @@ void Session::load_preset(const std::string& path) {
 
 std::string Session::render_command(const std::string& output) const {
     if (!ready_) throw Error(Exit::usage, "there is no scene yet to render");
-    // Exactly what the command line begins with, whatever this window was started with.
+    // Starts from the defaults of the command line, whatever options this window was started with.
     Preset preset;
     const Settings& s = desired.main.settings;
     const auto scaled = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * desired.resolution_scale))); };

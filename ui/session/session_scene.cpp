@@ -1,4 +1,4 @@
-// The session's hands on the scene: pixels followed and picked, what is selected, looked at, edited and hidden.
+// The parts of Session which work on the scene: inspecting and picking pixels, selecting, focusing, editing and hiding objects.
 #include <algorithm>
 
 #include "ui/session/session.hpp"
@@ -16,7 +16,7 @@ void Session::pick(unsigned x, unsigned y) {
     pick_request_ = inspector_.ask(picture_->job, x, y);
 }
 
-// What the camera ray of the picked pixel met becomes the selection.
+// Selects the object that the camera ray of the picked pixel hit.
 void Session::take_pick() {
     const auto inspection = inspector_.latest();
     if (!inspection || inspection->request < pick_request_ || pick_request_ == picked_request_) return;

@@ -19,13 +19,13 @@ glm::vec3 unit_or(const glm::vec3& a, const glm::vec3& otherwise) {
     return length > 1e-20f && std::isfinite(length) ? a / length : otherwise;
 }
 
-// Some axis across `a`.
+// Returns a unit vector perpendicular to `a`.
 glm::vec3 across(const glm::vec3& a) {
     const glm::vec3 other = std::abs(a.x) < 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
     return glm::normalize(glm::cross(a, other));
 }
 
-// Rodrigues' rotation of a about the unit axis k.
+// Rotates a about the unit axis k (Rodrigues' formula).
 glm::vec3 rotate(const glm::vec3& a, const glm::vec3& k, float rad) {
     const float c = std::cos(rad), s = std::sin(rad);
     return a * c + glm::cross(k, a) * s + k * (glm::dot(k, a) * (1 - c));
@@ -55,7 +55,7 @@ void shift(Camera& camera, const glm::vec3& offset) {
     camera.target = arr(vec(camera.target) + offset);
 }
 
-// The direction after yaw about the vertical and pitch, kept two degrees off the poles.
+// The viewing direction after yaw about the vertical and pitch. It stays two degrees away from the poles.
 glm::vec3 turned(const Axes& axes, float yaw_rad, float pitch_rad) {
     constexpr float limit = 1.5359f;
     const float height = std::asin(glm::clamp(glm::dot(axes.forward, axes.vertical), -1.0f, 1.0f));

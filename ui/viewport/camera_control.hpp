@@ -1,4 +1,4 @@
-// camera_control.hpp -- how keys and mouse move a camera and a light. Pure arithmetic, no window.
+// camera_control.hpp -- motions of a camera and of a light, for keys and mouse. Pure arithmetic, no window.
 #pragma once
 #include <array>
 
@@ -9,35 +9,35 @@ namespace clarity::ui {
 
 using Vec3 = std::array<float, 3>;
 
-// Orthonormal axes of a camera (DESIGN: w = forward, u = right, v = its own up).
+// Orthonormal axes of a camera (in DESIGN.md: forward is w, right is u, up is v).
 struct CameraAxes {
     Vec3 right, up, forward;
 };
 CameraAxes camera_axes(const Camera& camera);
 
-// Amounts along the camera's axes laid onto the ground (the plane across camera.up), and along camera.up; world units. For a
-// camera that looks along -Z this is the world's X and Z.
+// A step in world units: `right` and `forward` along the camera's axes projected to the ground (the plane perpendicular to
+// camera.up), `up` along camera.up. For a camera that looks along -Z, the ground axes are X and Z of the world.
 struct Step {
     float right = 0, up = 0, forward = 0;
     bool none() const { return right == 0 && up == 0 && forward == 0; }
 };
 void move_camera(Camera& camera, const Step& step);
-// Along the line of sight itself, as one walks in a viewer.
+// Moves along the line of sight itself, as other viewers do.
 void fly_camera(Camera& camera, const Step& step);
-// About the eye; pitch stops short of straight up and down.
+// Turns the camera about its eye. The pitch stays short of straight up and down.
 void turn_camera(Camera& camera, float yaw_rad, float pitch_rad);
-// About the target.
+// Turns the camera about its target.
 void orbit_camera(Camera& camera, float yaw_rad, float pitch_rad);
-// Eye and target shift together across the view.
+// Moves eye and target together, perpendicular to the line of sight.
 void pan_camera(Camera& camera, float right, float up);
-// Towards the target: factor < 1 nears it.
+// Multiplies the eye's distance from the target by `factor`.
 void zoom_camera(Camera& camera, float factor);
 
-// All of the box comes into view, along the line of sight that the camera has.
+// Moves the camera until all of the box is in view. The viewing direction stays.
 void frame_bounds(Camera& camera, const Bounds& bounds, float aspect);
 
-// A point light moves like the camera, in the camera's ground axes; a directional one swings: its direction is moved and
-// brought back to unit length, `size` being the length that stands for one unit.
+// A point light moves by `step` along the camera's ground axes. A directional light turns: the step is added to its direction,
+// which is then normalised. size: length of a step that counts as 1 for a direction.
 void move_light(rt_light& light, const Camera& camera, const Step& step, float size);
 
 }  // namespace clarity::ui

@@ -18,7 +18,7 @@ std::string joined(const std::vector<std::string>& words) {
     return text;
 }
 
-// "Max leaf size" stands within a sentence; "SAH bins" keeps its capitals.
+// Turns a label into the form used within a sentence: "max leaf size", but "SAH bins" keeps its capitals.
 std::string in_a_sentence(std::string label) {
     if (label.size() > 1 && std::islower(static_cast<unsigned char>(label[1])))
         label[0] = static_cast<char>(std::tolower(static_cast<unsigned char>(label[0])));
@@ -67,7 +67,7 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
     Caption caption;
     caption.title = std::string(side == 0 ? "A  " : "B  ") + picture_side(picture, side).settings.accel;
     caption.details = joined(differing_settings(picture).of[side]);
-    // The last thirty: with more, an older camera's pictures would still count.
+    // Only the last 30 times count. With more, frames of an earlier view would count too.
     const auto recent = [&](unsigned of) {
         std::vector<float> times = session.frame_times(of);
         if (times.size() > 30) times.erase(times.begin(), times.end() - 30);

@@ -1,4 +1,4 @@
-// picture_captions.hpp -- what stands beside pictures that are compared: which is which, how they were made, how fast.
+// picture_captions.hpp -- captions of compared pictures: which side it is, how it was made, how fast it is.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace clarity::ui {
 
-// What differs between the two sides besides the structure, as a person says it: {"packet 4x4", "lanes 8"} of the first,
-// {"packet 8x8", "lanes 16"} of the second.
+// The settings which differ between the two sides, apart from the structure, in words: {"packet 4x4", "lanes 8"} for the first
+// side, {"packet 8x8", "lanes 16"} for the second.
 struct Differences {
     std::vector<std::string> of[2];
 };
@@ -17,10 +17,10 @@ Differences differing_settings(const Picture& picture);
 
 struct Caption {
     std::string title;    // "A  bvh2"
-    std::string details;  // "packet 4x4, lanes 8"; empty where nothing else differs
+    std::string details;  // "packet 4x4, lanes 8"; empty if nothing else differs
     std::string speed;    // "12.3 ms, 48.1 Mrays/s"
     std::string verdict;  // see speed_verdict()
-    bool faster = false;  // the verdict says so
+    bool faster = false;  // whether the verdict says "faster"
 };
 Caption caption_of(const Session& session, const Picture& picture, unsigned side);
 std::vector<HudText> caption_lines(const Caption& caption);

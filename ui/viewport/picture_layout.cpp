@@ -6,7 +6,7 @@
 namespace clarity::ui {
 namespace {
 
-// Whole units: what is drawn over a picture meets it pixel by pixel.
+// Rounds the size to whole units, so that overlays match the picture's pixels.
 Rect whole(const Rect& area) {
     return {area.x, area.y, std::max(1.0f, std::floor(area.width)), std::max(1.0f, std::floor(area.height))};
 }

@@ -1,4 +1,4 @@
-// picture_layout.hpp -- where pictures lie in the room that they have: one, two that are wiped, two side by side. Pure
+// picture_layout.hpp -- places the pictures in the room that they have: one picture, two with a wipe, or two side by side. Pure
 // arithmetic.
 #pragma once
 #include <glm/vec2.hpp>
@@ -13,17 +13,17 @@ struct PicturePlace {
     enum class What { main, other, difference };
     What what = What::main;
     Rect area;   // the whole picture
-    Rect shown;  // the part of it that is shown
-    // The side of the picture whose camera rays' distances go with it.
+    Rect shown;  // the visible part of it
+    // The side whose distances belong to this picture.
     unsigned side() const { return what == What::other ? 1 : 0; }
 };
 
-// head: height of the captions, which stand above pictures that lie side by side and over the others. foot: what shall be free
-// below those, if it can be without making them smaller.
+// head: height of the captions. They are above pictures which lie side by side, and over the picture in the other modes. foot:
+// height to keep free below pictures side by side, if they need not become smaller for it.
 std::vector<PicturePlace> lay_out_pictures(const Rect& room, float aspect, bool compared, CompareMode mode, float wipe,
                                            float head, float foot);
 
-// The pixel of a picture of width x height at a place of its area; false outside.
+// Finds the pixel at `place` in a picture of width x height. Returns false if `place` is outside of `area`.
 bool pixel_at(const Rect& area, const glm::vec2& place, unsigned width, unsigned height, unsigned& x, unsigned& y);
 
 }  // namespace clarity::ui

@@ -1,4 +1,4 @@
-// What PicturePane draws over its pictures besides lines of the world: cards in the corners, handles, marks at pixels.
+// The parts of PicturePane which draw over the pictures, except for lines of the world: HUD cards, handles, marks at pixels.
 #include <imgui.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ ImVec2 at(const glm::vec2& place) {
     return {place.x, place.y};
 }
 
-// In the light's own hue, as bright as can be.
+// The hue of the light at full brightness.
 ImU32 light_color(const rt_light& light) {
     const float most = std::max({light.color[0], light.color[1], light.color[2], 1e-6f});
     return ImGui::GetColorU32(ImVec4(light.color[0] / most, light.color[1] / most, light.color[2] / most, 1));
@@ -39,7 +39,7 @@ ImU32 light_color(const rt_light& light) {
 void PicturePane::draw_hud(ImDrawList& list, const Session& session, VolumeOverlay& overlay) {
     const bool compared = picture_->other.has_value();
     if (compared && places_.front().what == What::difference) {
-        // One picture of two sides: both captions over it, the numbers below.
+        // One picture for both sides: both captions over it, the difference in numbers below.
         draw_caption(list, session, 0);
         draw_caption(list, session, 1);
         if (picture_->difference) {
@@ -61,7 +61,7 @@ void PicturePane::draw_hud(ImDrawList& list, const Session& session, VolumeOverl
 
 void PicturePane::draw_caption(ImDrawList& list, const Session& session, size_t side) {
     const std::vector<HudText> lines = caption_lines(caption_of(session, *picture_, static_cast<unsigned>(side)));
-    if (side_by_side()) {  // above the picture
+    if (side_by_side()) {  // the caption is above the picture
         const Rect& area = places_[side].area;
         const ImVec2 size = card_size(lines, area.width);
         draw_hud_card(list, {area.x, area.y - size.y - 6, size.x, size.y}, lines);
@@ -151,7 +151,7 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
         const ImU32 color = with_opacity(light_color(light.values), opacity), halo = with_opacity(kHalo, opacity);
         const ImVec2 p = at(handle.place);
         if (handle.kind == LightHandle::Kind::sun) {
-            // Rays about the disc, and an arrow the way its light goes.
+            // A sun with rays around its disc, and an arrow in the direction of its light.
             const glm::vec2 middle(area_.x + area_.width / 2, area_.y + area_.height / 2);
             const glm::vec2 way = (middle - handle.place) / std::max(glm::length(middle - handle.place), 1e-3f);
             const ImVec2 tip(p.x + way.x * 30 * scale, p.y + way.y * 30 * scale);
@@ -159,7 +159,7 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
             list.AddLine(p, tip, color, 2 * scale);
             cards_.push_back({std::min(p.x, tip.x) - 4 * scale, std::min(p.y, tip.y) - 4 * scale,
                               std::abs(tip.x - p.x) + 8 * scale,
-                              std::abs(tip.y - p.y) + 8 * scale});  // its name keeps clear of the arrow
+                              std::abs(tip.y - p.y) + 8 * scale});  // keeps the label away from the arrow
             const glm::vec2 side(-way.y, way.x);
             list.AddTriangleFilled({tip.x + way.x * 7 * scale, tip.y + way.y * 7 * scale},
                                    {tip.x + side.x * 5 * scale, tip.y + side.y * 5 * scale},
@@ -178,7 +178,7 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
         if (chosen) list.AddCircle(p, r + 3.5f * scale, ImGui::GetColorU32(colors::kAccent), 0, 2 * scale);
         const std::string name = light.name + (light.on ? "" : " (off)");
         const ImVec2 size = ImGui::CalcTextSize(name.c_str());
-        // Below, above, right, left: the first place that is free.
+        // The label takes the first free place: below, above, right, left.
         const float gap = r + 6 * scale, w = size.x + 6 * scale;
         const Rect places[] = {{p.x - w / 2, p.y + gap, w, size.y},
                                {p.x - w / 2, p.y - gap - size.y, w, size.y},
@@ -198,7 +198,7 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
     list.PopClipRect();
 }
 
-// A square about a pixel, or about its neighbourhood where pixels are too small to be seen.
+// Draws a square around a pixel. Pixels that are too small to see get a larger one.
 void PicturePane::draw_pixel_marks(ImDrawList& list, const Session& session, const UiState& state) {
     const auto mark = [&](const PicturePlace& place, float fx, float fy, unsigned columns, ImU32 color) {
         const float half = std::max(place.area.width / static_cast<float>(columns) / 2, 4 * ui_scale());

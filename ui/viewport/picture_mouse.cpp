@@ -12,8 +12,8 @@
 namespace clarity::ui {
 namespace {
 
-constexpr float kClickSlack = 4;      // units that a mouse may move within a click
-constexpr float kFocusNearer = 0.7f;  // what a double click leaves of the distance
+constexpr float kClickSlack = 4;      // units of the window that the mouse may move within a click
+constexpr float kFocusNearer = 0.7f;  // a double click multiplies the distance by this
 
 glm::vec2 vec(const ImVec2& a) {
     return {a.x, a.y};
@@ -75,7 +75,7 @@ void PictureMouse::press(const Target& target, Session& session, const glm::vec2
 void PictureMouse::drag_camera(const Rect& area, Camera& camera, bool look, const glm::vec2& moved) const {
     const float height = std::max(area.height, 1.0f);
     if (button_ != ImGuiMouseButton_Left) {
-        // What lies in the target's plane follows the mouse.
+        // A point in the target's plane follows the mouse.
         float squared = 0;
         for (int i = 0; i < 3; ++i) squared += (camera.target[i] - camera.eye[i]) * (camera.target[i] - camera.eye[i]);
         const float unit = 2 * std::tan(camera.fov_y_rad / 2) * std::sqrt(squared) / height;
@@ -149,7 +149,7 @@ void PictureMouse::focus_when_known(Session& session) {
     const auto inspection = session.inspection();
     if (!inspection || inspection->request <= focus_after_) return;
     if (inspection->x != focus_on_->x || inspection->y != focus_on_->y) {
-        if (!session.inspecting()) focus_on_.reset();  // another pixel was asked for meanwhile
+        if (!session.inspecting()) focus_on_.reset();  // another pixel was requested meanwhile
         return;
     }
     focus_on_.reset();

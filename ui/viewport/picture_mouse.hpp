@@ -1,11 +1,11 @@
-// picture_mouse.hpp -- what the mouse does on the picture.
+// picture_mouse.hpp -- mouse input on the picture.
 //
 //   left drag      orbits, or looks around; on a handle, drags the wipe or a light (Shift: along the line of sight)
 //   middle, right drag   shifts the view          wheel     nears the target
 //   left click     selects what is there          double    looks at it
 //   right click, Shift + left click               follows that pixel's rays
 //
-// A drag never clicks: it begins once the mouse has moved a few pixels with the button down.
+// A drag is never a click: it begins when the mouse has moved more than a few pixels while the button is down.
 #pragma once
 #include <glm/vec2.hpp>
 #include <memory>
@@ -20,25 +20,25 @@ namespace clarity::ui {
 
 class PictureMouse {
  public:
-    // What there is to be taken hold of, this frame.
+    // What the mouse can act on in this frame.
     struct Target {
         const Picture& picture;
         const std::vector<PicturePlace>& places;
-        const std::vector<LightHandle>& handles;  // in the first place
+        const std::vector<LightHandle>& handles;  // in places[0]
         float handle_radius;
-        bool wipe;  // between the places is a handle
+        bool wipe;  // whether there is a handle between the places
     };
     struct Hover {
         size_t place = 0;
         unsigned x = 0, y = 0;  // pixel of the picture
     };
 
-    // The last item is the button that the pictures are.
+    // Handles the mouse for this frame. The last ImGui item must be the button that covers the pictures.
     void update(const Target& target, Session& session, UiState& state);
     std::optional<Hover> hover() const { return hover_; }
     int hovered_light() const { return hovered_light_; }  // -1: none
     bool wipe_hovered() const { return wipe_hovered_; }
-    // The last click asked for a pixel's rays, rather than for a selection.
+    // Whether the last click asked for a pixel's rays and not for a selection.
     bool rays_asked() const { return rays_asked_; }
 
  private:
@@ -59,7 +59,7 @@ class PictureMouse {
     std::optional<Hover> hover_;
     uint64_t hover_revision_ = 0;
     std::optional<Hover> inspected_hover_;
-    // A double click on a pixel whose distance is not known yet: its rays are on their way.
+    // Pixel of a double click, while its distance is not known yet and its rays are being traced.
     std::optional<Hover> focus_on_;
     uint64_t focus_after_ = 0;
 };

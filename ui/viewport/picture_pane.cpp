@@ -19,15 +19,16 @@ namespace {
 
 using What = PicturePlace::What;
 
-constexpr float kBehind = 0.15f;  // opacity of what lies behind a surface
+constexpr float kBehind = 0.15f;  // opacity of lines behind a surface
 
 bool same(const Camera& a, const Camera& b) {
     return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
 }
 
-constexpr size_t kMovingVolumes = 4000;  // while the camera moves, every n-th is drawn: a frame of the window has no more time
+// While the camera moves, at most this many volumes are drawn (every n-th one), so that a frame of the window stays short.
+constexpr size_t kMovingVolumes = 4000;
 
-// The shown part of a texture that covers `area`, its first row at the top or at the bottom.
+// Draws the visible part of a texture that covers `area`. top_first: whether the texture's first row is the top one.
 void add_part(ImDrawList& list, unsigned texture, const Rect& area, const Rect& shown, bool top_first) {
     if (shown.width <= 0 || shown.height <= 0) return;
     const float left = (shown.x - area.x) / area.width, right = left + shown.width / area.width;
@@ -93,7 +94,7 @@ std::optional<Rect> PicturePane::take_card(size_t place, Corner corner, const Im
     return card;
 }
 
-// By a card that lies over a picture, or by another label.
+// Whether a card over a picture, or another label, covers this label.
 bool PicturePane::covered(const Rect& label) const {
     return std::any_of(cards_.begin(), cards_.end(), [&](const Rect& card) {
         return label.x < card.x + card.width && card.x < label.x + label.width && label.y < card.y + card.height &&
@@ -111,7 +112,7 @@ void PicturePane::draw_pictures(ImDrawList& list) {
     }
 }
 
-// Rays and what is selected, as lines of the world.
+// Collects the rays and the selection as lines of the world.
 void PicturePane::collect_marks(const Session& session, const UiState& state) {
     const float scale = ui_scale();
     const Camera& camera = picture_->job.view.camera;
@@ -147,7 +148,7 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     const Camera& camera = picture_->job.view.camera;
     const Scene* scene = picture_->job.ready->loaded->scene.get();
     auto distance = side_of(place).distance;
-    // Heat maps bring no distances: those of an earlier picture of the same view serve as well.
+    // Heat maps have no distances. Those of an earlier picture of the same view are used instead.
     if (distance && !distance->pixels.empty()) {
         lines.seen = distance;
         lines.seen_by = camera;
@@ -232,7 +233,7 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe}, session, state);
         if (wipe) draw_wipe(list);
         draw_pixel_marks(list, session, state);
-        list.ChannelsSplit(2);  // cards lie over handles, whose names keep clear of them
+        list.ChannelsSplit(2);  // cards are drawn over handles; the handles' labels avoid the cards
         list.ChannelsSetCurrent(1);
         draw_hud(list, session, overlay);
         list.ChannelsSetCurrent(0);

@@ -1,5 +1,5 @@
-// picture_pane.hpp -- the room that pictures have in the window: one picture, or two that are compared, with what is drawn over
-// them and what the mouse does there.
+// picture_pane.hpp -- the part of the window with the pictures: one picture, or two that are compared, with overlays and mouse
+// input.
 #pragma once
 #include <array>
 #include <memory>
@@ -17,23 +17,25 @@
 
 namespace clarity::ui {
 
-// Needs the GL context current, for all of its life.
+// Draws the pictures. Its GL context must be current during its whole life.
 class PicturePane {
  public:
-    // Empty, or why the picture cannot be shown.
+    // Sets the picture to draw. Returns why it cannot be shown, or an empty text.
     std::string upload(const std::shared_ptr<const Picture>& picture);
     void draw(const Rect& area, Session& session, VolumeOverlay& overlay, UiState& state);
 
-    // For tests. Where the main picture lies, letter-boxed; the other one too where they are wiped.
+    // For tests. area() is that of the main picture, letter-boxed; with a wipe, the other picture has the same area.
     const Rect& area() const { return area_; }
     const std::vector<PicturePlace>& places() const { return places_; }
     const std::vector<LightHandle>& handles() const { return handles_; }
     size_t lines_drawn(unsigned side) const { return lines_[side].any ? lines_[side].layer.drawn() : 0; }
-    double lines_ms() const { return lines_ms_; }  // that drawing lines anew took last, waiting for OpenGL left aside
+    double lines_ms() const {
+        return lines_ms_;
+    }  // milliseconds that the last update of lines took, without waiting for OpenGL
     bool rays_shown() const { return rays_shown_; }
 
  private:
-    // Lines of one side, and what they were drawn of: drawn anew where it differs.
+    // The lines of one side, and the inputs they were drawn from. They are drawn again when an input changes.
     struct Lines {
         LineLayer layer;
         LineList volumes;
@@ -42,7 +44,7 @@ class PicturePane {
         Rect area;
         float pixels = 0, scale = 0;
         const FloatImage* distance = nullptr;
-        std::shared_ptr<const FloatImage> seen;  // the last distances that were known, and of what
+        std::shared_ptr<const FloatImage> seen;  // the last known distances; seen_by and seen_scene say for which view
         Camera seen_by;
         const Scene* seen_scene = nullptr;
         unsigned stride = 1;
@@ -69,7 +71,8 @@ class PicturePane {
     void draw_wipe(ImDrawList& list) const;
     const PictureSide& side_of(const PicturePlace& place) const;
     bool side_by_side() const { return places_.size() == 2 && places_[0].area.x != places_[1].area.x; }
-    // Room for a card at a place: its corner, or below it if pictures lie side by side and leave enough there.
+    // Takes room for a card at a picture: in its corner, or below the picture if pictures lie side by side and there is enough
+    // room.
     std::optional<Rect> take_card(size_t place, Corner corner, const ImVec2& size);
     bool covered(const Rect& label) const;
     float card_width(size_t place) const { return stacks_[side_by_side() ? place : 0].max_width(); }
@@ -77,7 +80,7 @@ class PicturePane {
     std::shared_ptr<const Picture> picture_;
     std::array<PictureTexture, 2> textures_, distances_;
     PictureTexture difference_;
-    std::array<std::shared_ptr<const FloatImage>, 2> distances_of_;  // what distances_ hold
+    std::array<std::shared_ptr<const FloatImage>, 2> distances_of_;  // the images in distances_
     std::array<Lines, 2> lines_;
     LineList marks_;  // rays and selection, the same on both sides
     uint64_t marks_revision_ = 0;
@@ -88,9 +91,9 @@ class PicturePane {
     Rect area_;
     std::vector<PicturePlace> places_;
     std::vector<LightHandle> handles_;
-    std::array<HudStack, 2> stacks_, below_;  // over the pictures, and under those that lie side by side
-    std::vector<Rect> cards_;                 // taken this frame
-    float foot_ = 0;                          // room that cards wanted below pictures, last frame
+    std::array<HudStack, 2> stacks_, below_;  // over the pictures; under pictures which lie side by side
+    std::vector<Rect> cards_;                 // rectangles taken in this frame
+    float foot_ = 0;                          // height that cards wanted below the pictures in the last frame
     PictureMouse mouse_;
 };
 

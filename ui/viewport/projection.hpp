@@ -1,4 +1,4 @@
-// projection.hpp -- world space to the window's coordinates and back, as a camera sees it. Pure arithmetic.
+// projection.hpp -- converts between world space and window coordinates for a camera. Pure arithmetic.
 #pragma once
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -14,21 +14,21 @@ class Projection {
     Projection(const Rect& area, const Camera& camera);
     const Rect& area() const { return area_; }
     const glm::vec3& eye() const { return eye_; }
-    // Nothing nearer than this, along the line of sight, is placed.
+    // The smallest depth along the line of sight that place() accepts.
     float near() const { return near_; }
 
-    // Right, up, and depth along the line of sight.
+    // Camera space: right, up, and depth along the line of sight.
     glm::vec3 to_camera(const glm::vec3& world) const;
     glm::vec3 to_world(const glm::vec3& camera) const;
-    // Of a point in camera space whose depth is positive.
+    // Window coordinates of a point in camera space. Its depth must be positive.
     glm::vec2 to_window(const glm::vec3& camera) const;
-    // nullopt: behind the eye.
+    // Window coordinates of a point of the world; nullopt if it is behind the eye.
     std::optional<glm::vec2> place(const glm::vec3& world) const;
-    // Unit direction of the ray through a place of the window.
+    // The unit direction of the ray through a point of the window.
     glm::vec3 ray(const glm::vec2& window) const;
-    // What one unit of the window is worth in the world, at that depth.
+    // The length in the world of one window unit at this depth.
     float unit_at(float depth) const;
-    // tan of half the angle of view, to the side and upwards.
+    // The tangents of half the angle of view, horizontally and vertically.
     const glm::vec2& half_size() const { return half_; }
 
  private:

@@ -18,8 +18,8 @@ double median_of(std::vector<float> values) {
 std::string speed_verdict(const std::vector<float>& mine, const std::vector<float>& others) {
     constexpr size_t kFewest = 5;
     if (std::min(mine.size(), others.size()) < kFewest) return {};
-    // The spread is nine tenths of the times, so that one frame that another program held up changes nothing: the slow ones of
-    // the faster side must still be faster than the fast ones of the slower side.
+    // The 90th percentile of the faster side must be below the 10th percentile of the slower side. A single frame that another
+    // program delayed then changes nothing.
     const auto beats = [](const std::vector<float>& a, const std::vector<float>& b) {
         return percentile(a, 0.9) < percentile(b, 0.1);
     };

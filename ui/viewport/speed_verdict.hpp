@@ -1,4 +1,4 @@
-// speed_verdict.hpp -- which of two sides is faster, as far as the measured times can tell.
+// speed_verdict.hpp -- decides from measured frame times which of two sides is faster.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,11 +7,12 @@ namespace clarity::ui {
 
 inline constexpr const char* kAboutTheSame = "about the same";
 
-// "1.80x faster" than `others`, kAboutTheSame where the difference is within the spread of the times; empty for the slower
-// side, and as long as a side has fewer than five times. In milliseconds, of frames that the two sides trace in turns.
+// Returns "1.80x faster" if `mine` is faster than `others`, and kAboutTheSame if the difference is within the spread of the
+// times. Returns an empty text for the slower side, and if a side has fewer than five times. Times are milliseconds of frames
+// that the two sides trace alternately.
 std::string speed_verdict(const std::vector<float>& mine, const std::vector<float>& others);
 
-// The middle one of the values; 0 of none.
+// The median of the values; 0 if there are none.
 double median_of(std::vector<float> values);
 
 }  // namespace clarity::ui

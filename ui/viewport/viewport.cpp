@@ -20,7 +20,7 @@ std::string PictureTexture::upload(const FloatImage& image) {
     return stream(image.pixels.data(), image.width, image.height, GL_R32F, GL_RED, GL_FLOAT);
 }
 
-// Both kinds of texel have four bytes.
+// Uploads texels of four bytes, which both formats have.
 std::string PictureTexture::stream(const void* pixels, unsigned width, unsigned height, int store, unsigned format,
                                    unsigned type) {
     if (width == 0 || height == 0) return {};
@@ -36,7 +36,7 @@ std::string PictureTexture::stream(const void* pixels, unsigned width, unsigned 
     }
     glBindTexture(GL_TEXTURE_2D, texture_);
     if (fresh) {
-        // Distances of neighbours have no meaningful mean.
+        // A mean of neighbouring distances has no meaning.
         const GLint filter = store == GL_R32F ? GL_NEAREST : GL_LINEAR;
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, filter);
         glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, filter);
@@ -49,7 +49,7 @@ std::string PictureTexture::stream(const void* pixels, unsigned width, unsigned 
         width_ = width;
         height_ = height;
     }
-    // A fresh store each time: the driver may still read the last one.
+    // Allocate new storage each time, because the driver may still read the old one.
     glBindBuffer(GL_PIXEL_UNPACK_BUFFER, buffer_);
     const auto bytes = static_cast<GLsizeiptr>(size_t{4} * width * height);
     glBufferData(GL_PIXEL_UNPACK_BUFFER, bytes, nullptr, GL_STREAM_DRAW);

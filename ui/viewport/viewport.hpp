@@ -1,4 +1,4 @@
-// viewport.hpp -- pictures as textures, fed through a pixel buffer object; rectangles of the window.
+// viewport.hpp -- pictures as textures, uploaded through a pixel buffer object, and rectangles of the window.
 #pragma once
 #include <string>
 
@@ -6,7 +6,7 @@
 
 namespace clarity::ui {
 
-// Needs the GL context current, for all of its life.
+// A texture with a picture. Its GL context must be current during its whole life.
 class PictureTexture {
  public:
     PictureTexture() = default;
@@ -14,11 +14,11 @@ class PictureTexture {
     PictureTexture(const PictureTexture&) = delete;
     PictureTexture& operator=(const PictureTexture&) = delete;
 
-    // Empty, or why the picture cannot be shown: this OpenGL's textures are not that large.
+    // Uploads a picture. Returns an empty text, or why it cannot be shown: it is larger than this OpenGL's textures can be.
     std::string upload(const ByteImage& image);
-    // Of one channel, as R32F.
+    // Uploads one channel as R32F.
     std::string upload(const FloatImage& image);
-    // Nearest texel where the picture is shown larger than it is, so that pixels can be told apart.
+    // true: show the nearest texel, so that the pixels of an enlarged picture can be told apart.
     void set_magnified(bool magnified);
     unsigned name() const { return texture_; }
     unsigned width() const { return width_; }
@@ -35,7 +35,7 @@ struct Rect {
     float x = 0, y = 0, width = 0, height = 0;
     bool holds(float px, float py) const { return px >= x && py >= y && px < x + width && py < y + height; }
 };
-// The largest of that aspect inside the area, centred.
+// Returns the largest rectangle of this aspect inside the area, centred.
 Rect letter_box(const Rect& area, float aspect);
 
 }  // namespace clarity::ui

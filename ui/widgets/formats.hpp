@@ -1,10 +1,10 @@
-// formats.hpp -- numbers and names as the panel shows them.
+// formats.hpp -- numbers and names as text for the panel.
 #pragma once
 #include <string>
 
 namespace clarity::ui {
 
-// "1.2 M", "871 k", "12": for counts. "3.4 MiB": for bytes. "0.42 ms", "81.2 ms", "3.1 s": for milliseconds.
+// Counts: "1.2 M", "871 k", "12". Bytes: "3.4 MiB". Milliseconds: "0.42 ms", "81.2 ms", "3.1 s".
 std::string count_text(double count);
 std::string bytes_text(double bytes);
 std::string time_text(double ms);
@@ -13,7 +13,7 @@ std::string number_text(double value);
 std::string plural(size_t count, const std::string& noun);
 // The file's name without its folders.
 std::string file_name(const std::string& path);
-// Whether every word of `filter` is somewhere in `text`, whatever its case (of ASCII).
+// Whether `text` contains every word of `filter`. Case is ignored for ASCII letters.
 bool matches(const std::string& text, const std::string& filter);
 
 }  // namespace clarity::ui

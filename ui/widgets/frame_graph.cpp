@@ -37,7 +37,7 @@ void draw_axis(ImDrawList& list, const Plot& plot, float left, float target_ms) 
         list.AddLine({x, y}, {std::min(x + dash, plot.high.x), y}, ImGui::GetColorU32(colors::kGreen));
 }
 
-// The newest frame stands at the right edge.
+// Draws a series with its newest frame at the right edge.
 void draw_series(ImDrawList& list, const Plot& plot, const FrameSeries& series, size_t slots) {
     std::vector<ImVec2> points;
     const float step = (plot.high.x - plot.low.x) / static_cast<float>(std::max<size_t>(slots, 2) - 1);
@@ -70,7 +70,8 @@ void draw_frame_graph(const std::vector<FrameSeries>& series, float target_ms, f
     const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
     ImGui::InvisibleButton("frame times", {width, height});
     note_place("frame times");
-    // One slow frame does not flatten the rest: the axis holds 98 of 100, unless what it leaves out is near.
+    // The axis covers 98 % of the times, so that one slow frame does not flatten the rest. It covers all of them if the largest
+    // is not much higher.
     float most = 0, largest = 0;
     size_t slots = 60;
     for (const FrameSeries& s : series) {

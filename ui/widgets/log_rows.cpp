@@ -31,7 +31,7 @@ std::optional<SourcePlace> find_source_place(const std::string& text) {
         while (begin > 0 && of_a_name(text[begin - 1])) --begin;
         const std::string file = text.substr(begin, colon - begin);
         const size_t dot = file.rfind('.');
-        // "0:0" is a device, "12.5:1" a ratio.
+        // The name needs an extension with a letter: "0:0" is a device, "12.5:1" is a ratio.
         if (dot == std::string::npos || dot + 1 >= file.size() || !std::isalpha(static_cast<unsigned char>(file[dot + 1])))
             continue;
         SourcePlace place{begin, after_digits(text, colon + 1), file, 0};

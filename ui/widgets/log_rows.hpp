@@ -1,4 +1,4 @@
-// log_rows.hpp -- the log as rows to draw: filtered, with the places in source files found.
+// log_rows.hpp -- the log as rows to draw: filtered, with places in source files marked.
 #pragma once
 #include <optional>
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace clarity::ui {
 
-// "file.cl:12" or "file.cl:12:3" within a line.
+// A place in a source file within a line: "file.cl:12" or "file.cl:12:3".
 struct SourcePlace {
     size_t begin = 0, end = 0;
-    std::string file;  // as it stands there
+    std::string file;  // as written in the line
     int line = 0;
 };
-// The first one; none where nothing looks like one: a name with an extension, a colon and a number.
+// Returns the first place in the text: a name with an extension, a colon and a number. nullopt if there is none.
 std::optional<SourcePlace> find_source_place(const std::string& text);
 
 struct LogFilter {
@@ -25,11 +25,12 @@ struct LogFilter {
 struct LogRow {
     LogLevel level = LogLevel::info;
     std::string text;
-    bool place = false;   // it is "file:line", which a click copies
-    bool inside = false;  // it belongs to the row before
-    bool first = false;   // of its entry
+    bool place = false;   // the row is a "file:line", which a click copies
+    bool inside = false;  // the row continues the row before it
+    bool first = false;   // the first row of its entry
 };
-// A line that begins with a place becomes two rows, the place and what is said of it.
+// Makes the rows of the lines that pass the filter. A line that begins with a place becomes two rows: the place and the
+// message.
 std::vector<LogRow> log_rows(const std::vector<LogLine>& lines, const LogFilter& filter);
 
 }  // namespace clarity::ui

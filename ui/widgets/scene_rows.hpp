@@ -1,4 +1,4 @@
-// scene_rows.hpp -- the scene as a flat list of rows: what the tree shows, filtered, however large the scene is.
+// scene_rows.hpp -- the scene as a flat list of filtered rows for the tree.
 #pragma once
 #include <array>
 #include <memory>
@@ -14,22 +14,22 @@ inline constexpr int kRowKinds = 8;
 
 struct SceneRow {
     RowKind kind = RowKind::instance;
-    int index = -1;    // -1: the title of its kind
-    size_t count = 0;  // of a title: how many match
+    int index = -1;    // -1: the title row of its kind
+    size_t count = 0;  // in a title row: how many objects match
 };
 
 std::string row_name(const Scene& scene, RowKind kind, size_t index);
 const char* kind_title(RowKind kind);
 size_t row_count(const Scene& scene, RowKind kind);
-// Material that an instance shows first; RT_NONE: it has no triangle.
+// The material of the instance's first triangle; RT_NONE if it has no triangle.
 rt_u32 instance_material(const Scene& scene, rt_u32 instance);
-// Number of the first triangle of each instance among all of the world, then that of the first sphere.
+// The index of each instance's first triangle among all primitives of the scene, followed by that of the first sphere.
 std::vector<uint64_t> first_prims(const Scene& scene);
 
-// Made anew only when what it is of changes.
+// A list of rows which is only made again when its inputs change.
 class SceneRows {
  public:
-    // open: kinds whose rows are listed; with a filter, all are.
+    // open: the kinds whose rows are listed. With a filter, all kinds are listed.
     const std::vector<SceneRow>& update(const std::shared_ptr<const Scene>& scene, const std::string& filter,
                                         const std::array<bool, kRowKinds>& open);
 

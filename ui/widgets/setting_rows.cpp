@@ -19,14 +19,14 @@
 namespace clarity::ui {
 namespace {
 
-// The one widget whose value is being edited but not in force yet.
+// The value of the one widget that is being edited and does not apply yet.
 struct PendingEdit {
     ImGuiID id = 0;
     int whole = 0;
     float real = 0;
 } pending;
 
-// After a slider: applies at once, or once it is let go.
+// For the widget just drawn: whether its value applies now. It applies at once, or when the mouse button is released.
 template <class Value>
 bool settled(ImGuiID id, bool edited, bool at_once, Value shown, Value& value, Value PendingEdit::*member) {
     const bool done = ImGui::IsItemDeactivatedAfterEdit();
@@ -83,7 +83,7 @@ bool choice_combo(const char* id_text, int& index, const std::vector<std::string
     return changed;
 }
 
-// Sizes that people choose, by how large they may be.
+// Common sizes to choose from, for the largest value that is allowed.
 const std::vector<std::string>& common_sizes(double max) {
     static const std::vector<std::string> packets = {"auto", "1x1", "2x2", "4x4", "8x2", "8x4", "8x8", "16x16"};
     static const std::vector<std::string> pictures = {"320x240",  "640x480",   "800x600",  "1024x768",
@@ -101,7 +101,7 @@ bool accepts(const Setting& row, const Settings& settings, const std::string& te
     }
 }
 
-// "WxH" typed, or chosen from a list. Edited text lives here until Enter or until the field is left.
+// A field for "WxH", typed or chosen from a list. Typed text stays here until Enter is pressed or the field is left.
 bool size_field(const Setting& row, const Settings& settings, std::string& chosen) {
     static std::map<std::string, std::string> edited;
     const std::string now = row.get(settings);
@@ -127,7 +127,7 @@ bool size_field(const Setting& row, const Settings& settings, std::string& chose
     return (typed || picked) && chosen != now;
 }
 
-// What a row said last to a value that it does not take; gone with the next good one.
+// The last error of each row whose value was refused. The next valid value removes it.
 std::map<std::string, std::string>& refusals() {
     static std::map<std::string, std::string> texts;
     return texts;

@@ -11,7 +11,7 @@ namespace clarity::ui {
 
 void draw_slider_bar(double value, double min, double max, bool logarithmic) {
     double share = max > min ? (value - min) / (max - min) : 0;
-    if (logarithmic) {  // as ImGui maps it: zero is taken as the smallest number shown
+    if (logarithmic) {  // like ImGui: zero counts as the smallest number shown
         const double least = min > 0 ? min : 1e-3;
         share = std::log(std::max(value, least) / least) / std::log(max / least);
     }

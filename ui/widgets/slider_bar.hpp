@@ -1,12 +1,12 @@
-// slider_bar.hpp -- a slider's value as a bar from its left edge, under the number, instead of ImGui's grab, which covers it.
+// slider_bar.hpp -- draws a slider's value as a bar from the left edge, behind the number. ImGui's grab would cover the number.
 #pragma once
 
 namespace clarity::ui {
 
-// Call before the slider, which is then drawn with its frame's colours off.
+// Call it before the slider, and draw the slider with BareFrames.
 void draw_slider_bar(double value, double min, double max, bool logarithmic);
 
-// Hides the frames of the sliders drawn while it lives.
+// Hides the frames of sliders while it exists.
 struct BareFrames {
     BareFrames();
     ~BareFrames();

@@ -21,11 +21,11 @@ ImVec4 lighter(const ImVec4& color, float by) {
     return {color.x + by, color.y + by, color.z + by, color.w};
 }
 
-// Debian's fonts-dejavu-core and where other systems keep the same files; else ImGui's own bitmap font.
+// Loads a font from where Debian's fonts-dejavu-core and other systems keep DejaVu; otherwise ImGui's own bitmap font.
 ImFont* load_font(const char* file, float pixels) {
     static const char* const folders[] = {"/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/dejavu/",
                                           "/usr/share/fonts/TTF/", "/usr/share/fonts/dejavu-sans-fonts/"};
-    // Latin, Greek, Cyrillic (names in files), punctuation, arrows, mathematical and geometric signs.
+    // Latin, Greek and Cyrillic (for file names), punctuation, arrows, mathematical and geometric symbols.
     static const ImWchar ranges[] = {0x20,   0x17F,  0x370,  0x3FF,  0x400,  0x52F,  0x2010, 0x2044,
                                      0x2190, 0x21FF, 0x2200, 0x22FF, 0x25A0, 0x25FF, 0};
     ImGuiIO& io = ImGui::GetIO();
@@ -120,7 +120,7 @@ void apply_theme(float scale) {
     the_fonts.text = load_font("DejaVuSans.ttf", pixels);
     the_fonts.bold = load_font("DejaVuSans-Bold.ttf", pixels);
     the_fonts.mono = load_font("DejaVuSansMono.ttf", std::round(13.0f * scale));
-    if (!first) {  // the backend makes its first texture by itself
+    if (!first) {  // the backend creates its first texture by itself
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
     }

@@ -1,4 +1,4 @@
-// theme.hpp -- how the window looks: colours, spacing and fonts, at any scale.
+// theme.hpp -- the look of the window: colours, spacing and fonts at any scale.
 #pragma once
 #include <imgui.h>
 
@@ -22,10 +22,10 @@ struct Fonts {
     ImFont* mono = nullptr;
 };
 
-// Sets the style anew and builds the fonts for this scale (1: 96 dpi). Outside of a frame.
+// Sets the style and builds the fonts for this scale (1: 96 dpi). Call it outside of a frame.
 void apply_theme(float scale);
 const Fonts& fonts();
-// The scale that is applied: multiply lengths by it.
+// The current scale. Multiply lengths by it.
 float ui_scale();
 
 }  // namespace clarity::ui

@@ -33,7 +33,7 @@ void title_text(const char* title) {
 
 std::string cut_to(const std::string& text, float width) {
     if (text_width(text) <= width) return text;
-    size_t low = 0, high = text.size();  // `low` bytes fit
+    size_t low = 0, high = text.size();  // the first `low` bytes fit
     while (low + 1 < high) {
         const size_t middle = (low + high) / 2;
         (text_width(text.substr(0, middle) + "\u2026") <= width ? low : high) = middle;
@@ -44,7 +44,7 @@ std::string cut_to(const std::string& text, float width) {
 
 std::string cut_front_to(const std::string& text, float width) {
     if (text_width(text) <= width) return text;
-    size_t low = 0, high = text.size();  // from `high` on it fits
+    size_t low = 0, high = text.size();  // the bytes from `high` on fit
     while (low + 1 < high) {
         const size_t middle = (low + high) / 2;
         (text_width("\u2026" + text.substr(middle)) <= width ? high : low) = middle;

@@ -1,4 +1,4 @@
-// widgets.hpp -- what the panel is made of: sections, rows of label and widget, buttons.
+// widgets.hpp -- the building blocks of the panel: sections, rows of label and widget, buttons.
 #pragma once
 #include <functional>
 #include <string>
@@ -15,37 +15,37 @@ class Session;
 
 // Starts a section with its title.
 void section(const char* title);
-// The same, and a click on the title folds it. Returns whether it is open; `open`: at first.
+// Like section(), but a click on the title folds it. Returns whether it is open. open: its state at first.
 bool folding_section(const char* title, bool open = true);
-// A label at the left with its help as tooltip; the next item fills the rest of the line.
+// Draws a label at the left, with its help as tooltip. The next item fills the rest of the line.
 void row_label(const char* label, const std::string& help = {});
-// Label and a value that is only read. Coloured where it warns.
+// Draws a label and a read-only value. A colour marks warnings.
 void row_text(const char* label, const std::string& value, const std::string& help = {}, const ImVec4& color = colors::kText);
-void tooltip(const std::string& text);  // of the last item
-// An entry of an open list. Returns whether it was chosen anew.
+void tooltip(const std::string& text);  // for the last item
+// An entry of an open list. Returns whether the user chose it now.
 bool option(const std::string& label, bool chosen);
-// A slider whose value applies while it is dragged.
+// A slider. Its value applies while it is dragged.
 bool slider(const char* id, float& value, float min, float max, const char* format, bool logarithmic = false);
-// A colour of linear light, values above 1 allowed.
+// A field for a colour in linear light. Values above 1 are allowed.
 bool color_field(const char* id, float* rgb);
-// Text in a colour, on as many lines as it needs.
+// Draws coloured text, wrapped to as many lines as it needs.
 void wrapped_text(const std::string& text, const ImVec4& color = colors::kText);
-// The same in the dimmed colour.
+// Like wrapped_text(), in the dimmed colour.
 void dim_text(const std::string& text);
 
-// width: as ImGui takes it, or 0. Its place is noted under the label, up to "##".
+// A button. width: as in ImGui, 0 for the text's width. Its rectangle is noted under the label up to "##".
 bool button(const char* label, const std::string& help = {}, float width = 0);
 bool toggle_button(const char* label, bool on, const std::string& help = {}, float width = 0);
-// The widths of `count` equal buttons in what is left of the line.
+// The width of each of `count` equal buttons in the rest of the line.
 float share_of_line(int count);
-// Starts the next button on this line if it fits there, else on the next.
+// Puts the next button on this line if it fits, otherwise on the next line.
 void same_line_if_fits(const char* next_label);
 
-// The beginning of a text that fits, or its end: a path keeps its file's name.
+// Cut a text to the width: keeps its beginning, or its end (for a path, whose end is the file's name).
 std::string cut_to(const std::string& text, float width);
 std::string cut_front_to(const std::string& text, float width);
 
-// Does it; an Error becomes the session's message.
+// Runs `what`. An Error becomes the session's message.
 void attempt(Session& session, const std::function<void()>& what);
 
 }  // namespace clarity::ui

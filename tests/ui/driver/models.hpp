@@ -1,4 +1,4 @@
-// models.hpp -- models that take a while to import and to build.
+// models.hpp -- models that take a while to import and build.
 #pragma once
 #include <cmath>
 #include <cstdlib>
@@ -9,7 +9,7 @@
 
 namespace clarity::ui {
 
-// A wavy sheet of 2 n^2 triangles.
+// Writes a wavy sheet of 2 n^2 triangles.
 inline void write_sheet(const std::string& path, int n) {
     std::ofstream out(path);
     for (int y = 0; y <= n; ++y)
@@ -23,7 +23,7 @@ inline void write_sheet(const std::string& path, int n) {
         }
 }
 
-// The 871 k-triangle dragon where it is, else a sheet of about as many.
+// Returns the dragon of 871 k triangles if it is there, otherwise a sheet with about as many.
 inline std::string large_model(const TemporaryFolder& folder) {
     const std::string packed = shared_path("scenes/models/dragon_871k.ply.gz"), path = folder.path() + "/dragon.ply";
     if (!packed.empty() && std::system(("gzip -dc '" + packed + "' > '" + path + "'").c_str()) == 0) return path;

@@ -103,7 +103,7 @@ VirtualScreen::VirtualScreen() {
         _exit(127);
     }
     close(ends[1]);
-    std::string text;  // Xvfb writes the number that it found free, once it is ready
+    std::string text;  // Xvfb writes the number of a free display here once it is ready
     char c = 0;
     while (read(ends[0], &c, 1) == 1 && c != '\n') text += c;
     close(ends[0]);
@@ -272,7 +272,7 @@ Pixels WindowDriver::picture() {
 Pixels WindowDriver::screenshot() {
     const std::string path = folder() + "/screen" + std::to_string(pictures_++) + ".png";
     EXPECT_EQ(command("screenshot " + path), "");
-    EXPECT_EQ(command("wait ready"), "");  // it is written at the end of that frame
+    EXPECT_EQ(command("wait ready"), "");  // the screenshot is written at the end of that frame
     return read_png(path);
 }
 

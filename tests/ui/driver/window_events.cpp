@@ -1,4 +1,4 @@
-// The part of the driver that a user's hands would do: keys and mouse, by xdotool.
+// The part of the driver that stands for a user's hands: key and mouse events through xdotool.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -43,9 +43,9 @@ void WindowDriver::type(const std::string& text) {
     xdotool("type --delay 20 '" + text + "'");
 }
 
-// Dear ImGui 1.86 looks at the mouse once a frame, and a busy machine draws few: what one event did is drawn before the next
-// one comes. A line of the script is run in each turn of the window's loop, before its frame: after the third, a whole turn has
-// passed that began after the event.
+// Waits until the window has drawn the effect of the last event. Dear ImGui 1.86 reads the mouse once a frame, and a busy
+// machine draws few frames. Each turn of the window's loop runs one script line before its frame. So after the third line, one
+// whole turn began and ended after the event.
 void WindowDriver::pass_frame() {
     for (int i = 0; i < 3; ++i) EXPECT_EQ(command("# next"), "");
 }
@@ -69,7 +69,7 @@ void WindowDriver::click(const Place& place, Button button) {
     mouse("mouseup " + number(button));
 }
 
-// In one go: a double click has a time limit.
+// Both clicks in one xdotool call, because a double click has a time limit.
 void WindowDriver::double_click(const Place& place) {
     move(place);
     const std::string press = "mousedown 1 sleep 0.04 mouseup 1 ";
@@ -96,7 +96,7 @@ void WindowDriver::click_on(const std::string& label, double at) {
     click(place_of(label, at));
 }
 
-// A row that a list has scrolled away is brought into view by being asked for.
+// A row that is scrolled out of sight is scrolled into view when a test asks for it.
 Place WindowDriver::place_of(const std::string& label, double at) {
     std::string error;
     for (int i = 0; i < 5; ++i) {

@@ -1,4 +1,4 @@
-// window_fixture.hpp -- tests of an open window: skipped, loudly, where nothing can show one.
+// window_fixture.hpp -- base class of tests with an open window. They are skipped with a notice if nothing can show a window.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ class WindowTest : public ::testing::Test {
         if (const std::string& missing = VirtualScreen::instance().missing(); !missing.empty())
             GTEST_SKIP() << "NOT TESTED: the window needs " << missing;
     }
-    // A small window on a sample scene, at rest.
+    // Opens a small window on a sample scene and waits until it is idle.
     std::unique_ptr<WindowDriver> open(std::map<std::string, std::string> environment = {}) {
         return open_scene(source_path("scenes/primitives.scene"), "320x240", std::move(environment));
     }
@@ -30,7 +30,7 @@ class WindowTest : public ::testing::Test {
         window->settle();
         return window;
     }
-    // The line that the window gives, run as it is but for the program's path.
+    // Returns the command line that the window gives. run_command_line() runs it with the path of the program under test.
     static std::string command_line(WindowDriver& window, const std::string& output) {
         return window.query("command_line " + output)["command"];
     }
@@ -39,7 +39,7 @@ class WindowTest : public ::testing::Test {
         if (line.rfind(program, 0) != 0) return -1;
         return std::system(("'" + program_path() + "' " + line.substr(program.size())).c_str());
     }
-    // All that the window's wish is, in words: what two states have in common must be the same here.
+    // Describes the whole desired state in words, so that two states can be compared.
     static std::string desired(WindowDriver& window) { return command_line(window, "x.png"); }
     // `save`, and waits for the file.
     static void save(WindowDriver& window, const std::string& path) {
