@@ -72,10 +72,10 @@ Preferences load_preferences(const std::string& folder, std::string* notice) {
             p = preferences_from(nlohmann::json::parse(content), &problems);
             if (problems.empty()) return p;
             some = true;
-            why = "cannot be understood in part (" + problems.front() +
+            why = "some entries cannot be read (" + problems.front() +
                   (problems.size() > 1 ? ", and " + std::to_string(problems.size() - 1) + " more)" : ")");
         } catch (const nlohmann::json::exception& failure) {
-            why = std::string("cannot be understood: ") + failure.what();
+            why = std::string("cannot be read as preferences: ") + failure.what();
         }
     const std::string text =
         path.string() + ": " + why + (some ? "; the rest is used, " : "; the defaults are used, ") + "and " + keep_aside(path);

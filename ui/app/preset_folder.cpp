@@ -22,15 +22,15 @@ std::string preset_path(const std::string& folder, const std::string& name) {
     if (fs::path(name).extension() == ".json" && fs::path(name).has_parent_path()) return name;
     if (name.empty() || name.front() == '.' || name.find('/') != std::string::npos)
         throw Error(Exit::usage, "`" + name +
-                                     "` cannot be a preset's name: it is to have no slash and no dot in front; for a file "
-                                     "of your own, give a path that ends in .json");
+                                     "` cannot be the name of a preset: a name has no slash and does not begin with a dot; "
+                                     "for a file in another folder, give a path that ends in .json");
     if (folder.empty())
         throw Error(Exit::usage, "the preset " + name +
-                                     " has no folder to be in, as the window keeps no preferences: give a path "
+                                     " has no folder, because the window keeps no preferences: give a path "
                                      "that ends in .json");
     std::error_code error;
     fs::create_directories(folder, error);
-    if (error) throw Error(Exit::failed, folder + ": cannot be made for presets: " + error.message());
+    if (error) throw Error(Exit::failed, folder + ": cannot create this folder for presets: " + error.message());
     return (fs::path(folder) / (fs::path(name).extension() == ".json" ? name : name + ".json")).string();
 }
 

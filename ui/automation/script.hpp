@@ -2,16 +2,35 @@
 //
 // One command a line. Each runs between two frames on the window's thread and answers on stdout with `ok COMMAND` or `error
 // COMMAND: why`. There are no commands for keys and mouse: tests send real events.
-//   set KEY VALUE      a setting, as on the command line      accel ID[,key=value...]    device CHOICE
-//   open FILE          as the Scene tab does                   tab NAME                   map thesis|viewer
-//   drop ["FILE",...]  as if they were dropped onto the window  moving_fps N              while something moves; 0: all pixels
-//   wait idle [S]      until all is prepared and traced, at most S seconds (60)
-//   wait busy|ready    until something is being prepared; until nothing is (tracing may go on)
-//   focus path         the keyboard into the path field        continuous 0|1             cancel
-//   screenshot FILE    the window as PNG                       picture FILE               the traced picture as PNG
-//   state              one line of JSON: what is shown, and how the window fares; `state reset` starts its maxima anew
-//   find LABEL         where that row's widget, or that entry of a list, was drawn last: JSON x, y, w, h
-//   scale FACTOR       of the text                             level N|bottom|off         quit
+//   set KEY VALUE               a setting, as on the command line
+//   accel ID[,key=value...]     the structure
+//   device CHOICE               the device, as for --device
+//   open FILE                   opens a file, like the Scene tab
+//   drop ["FILE",...]           opens files as if they were dropped onto the window
+//   tab NAME                    the panel's tab
+//   map thesis|viewer           the key map
+//   moving_fps N                frame rate to hold while something moves; 0: all pixels
+//   continuous 0|1              trace again and again, to measure
+//   cancel                      cancels what is being prepared
+//   quit                        closes the window
+//   wait idle [S]               until everything is prepared and traced, at most S seconds (60)
+//   wait busy|ready             until something is being prepared; until nothing is (tracing may go on)
+//   focus path                  the path field gets the keyboard
+//   scale FACTOR                of the text
+//   level N|bottom|off          level of the bounding volumes
+//   screenshot FILE             the window as PNG
+//   picture FILE                the traced picture as PNG
+//   state                       one line of JSON: the state of the window and its times; `state reset` resets the maxima
+//   edit KEY VALUE              changes the view, in the words of edit.hpp: `edit background 1,0,0`
+//   compare a|b|off             starts or ends the comparison; a, b: the side that later commands change
+//   swap, undo, redo            as the buttons do
+//   save FILE                   saves the picture once its samples are traced
+//   save_preset FILE            and `load_preset FILE`
+//   command_line FILE           the `clarity render` command for this picture: JSON command
+//   turntable N FILE            a sequence of N pictures; FILE has #### for the number
+//   inspect X Y, pick X Y       traces a pixel's rays; pick also selects what the camera ray hit
+//   inspection                  the traced rays as JSON
+//   find LABEL                  rectangle of this row's widget or list entry, as last drawn: JSON x, y, w, h
 // The commands of picture_script.hpp work as well.
 #pragma once
 #include <deque>

@@ -129,7 +129,7 @@ void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
     ImGui::Dummy({0, 2 * scale});
     const bool dismissed = button("Dismiss");
     ImGui::SameLine();
-    if (button("Show log", "with all that was said about it")) {
+    if (button("Show log", "open the log, which has the whole message")) {
         state.show_tab(Tab::log);
         state.log_jump = true;
     }
@@ -174,13 +174,13 @@ void draw_status_line(const Rect& area, Session& session, const VolumeOverlay& o
         std::snprintf(text, sizeof text, "%.1f fps", session.frames_per_second());
         status_item(text, colors::kText, "frames a second, mean of the last ten");
         std::snprintf(text, sizeof text, "%.1f Mrays/s", session.mrays_per_second());
-        status_item(text, colors::kText, "rays of all kinds by the time of the kernels");
+        status_item(text, colors::kText, "rays of all kinds, divided by the time of the kernels");
         std::snprintf(text, sizeof text, "%d\u00d7%d", s.width, s.height);
         status_item(
             text, colors::kDim,
             picture->reduced ? "pixels of the picture, fewer than asked for while something moves" : "pixels of the picture");
         std::snprintf(text, sizeof text, "sample %u/%d", std::max(1u, picture->main.stats.samples), s.spp);
-        status_item(text, colors::kDim, "samples a pixel so far; they add up while the camera rests");
+        status_item(text, colors::kDim, "samples a pixel so far; more are added while the camera rests");
         if (picture->main.stats.dropped > 0)
             status_item(count_text(static_cast<double>(picture->main.stats.dropped)) + " rays dropped", colors::kAmber,
                         "they found no slot in their pixel's arrays: raise `Ray slots` in the Render tab");

@@ -23,9 +23,9 @@ void step(const char* what, const char* how) {
 void draw_help_tab(UiState& state, const std::string& gl_text) {
     if (folding_section("FIRST STEPS")) {
         step("Open a file", "Open\u2026 above the tabs, or drop files onto the window.");
-        step("Change the structure", "Render > Structure; its own parameters stand below it.");
+        step("Change the structure", "Render > Structure; its own parameters are below it.");
         step("See the volumes", "Volumes above the tabs; keys 1 to 9 choose the level, 0 the bottom one.");
-        step("Compare two structures", "Compare above the tabs, then choose another Structure: the rows are of B now.");
+        step("Compare two structures", "Compare above the tabs, then choose another Structure: the rows now change side B.");
         step("See the rays of a pixel", "Inspect above the tabs, then move over the picture.");
         step("Save the picture", "Save above the tabs, or Render > Save for PNG, EXR and a path of your own.");
     }
@@ -40,7 +40,7 @@ void draw_help_tab(UiState& state, const std::string& gl_text) {
     if (button("All keys over the picture", "F1", -FLT_MIN)) state.keys_open = true;
     draw_key_table(state);
     section("THIS WINDOW");
-    row_label("Text size", "on top of what the screen asks for");
+    row_label("Text size", "factor on top of the screen's own scale");
     // The scale applies when the slider is released. Otherwise the slider would grow under the mouse.
     static float shown = 0;
     if (shown == 0) shown = state.text_scale;

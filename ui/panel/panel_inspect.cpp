@@ -24,7 +24,7 @@ void pixel_rows(const Inspection& inspection) {
     row_text("Pixel", std::to_string(inspection.x) + ", " + std::to_string(inspection.y),
              "from the picture's upper left corner");
     const std::array<float, 3>& color = inspection.result.color;
-    row_text("Colour", triple_text(color), "of its first sample: linear light before exposure and tone mapping");
+    row_text("Colour", triple_text(color), "colour of the pixel's first sample: linear light before exposure and tone mapping");
     ImGui::SameLine();
     swatch(color, ImGui::GetTextLineHeight());
     const RayTotals totals = totals_of(inspection.result);
@@ -115,7 +115,8 @@ void draw_inspect_tab(Session& session, UiState& state) {
                       half))
         state.inspect_hover = !state.inspect_hover;
     ImGui::SameLine();
-    if (toggle_button("Draw the rays", state.show_rays, "as lines in the scene, over the picture", half))
+    if (toggle_button("Draw the rays", state.show_rays, "draw the inspected rays as lines in the scene, over the picture",
+                      half))
         state.show_rays = !state.show_rays;
     const auto inspection = session.inspection();
     if (!inspection) {

@@ -53,7 +53,7 @@ void light_list(Session& session) {
             ImGui::PushID(i);
             ImGui::Checkbox("##on", &light.on);
             note_place("on " + light.name);
-            tooltip("whether it shines");
+            tooltip("switch this light on or off");
             ImGui::SameLine();
             const float swatch = ImGui::GetFrameHeight();
             ImGui::AlignTextToFramePadding();
@@ -61,7 +61,7 @@ void light_list(Session& session) {
             const bool chosen = session.selected_light == static_cast<unsigned>(i);
             if (ImGui::Selectable(cut_to(light.name, size.x).c_str(), chosen, 0, size)) session.selected_light = unsigned(i);
             note_place(light.name);
-            tooltip("the keys move the chosen one");
+            tooltip("select this light: the keys move the selected light");
             ImGui::SameLine();
             const float* c = light.values.color;
             const float most = std::max({c[0], c[1], c[2], 1e-6f});
@@ -88,7 +88,7 @@ void draw_light_rows(Session& session, UiState& state) {
     light_list(session);
     session.selected_light = std::min<unsigned>(session.selected_light, static_cast<unsigned>(lights.size()) - 1);
     DesiredLight& light = lights[session.selected_light];
-    row_label("Kind", "lamp: at a place, the same everywhere, however far; sun: from one direction");
+    row_label("Kind", "lamp: a point light, equally bright at any distance; sun: a directional light");
     const char* const kinds[] = {"lamp", "sun"};
     const bool sun = light.values.kind == RT_LIGHT_DIRECTIONAL;
     if (ImGui::BeginCombo("##kind", kinds[sun])) {
@@ -123,7 +123,7 @@ void draw_bookmark_rows(Session& session, UiState& state) {
         if (button("Go", "to this view", go)) session.desired.camera = bookmark.camera;
         note_place("go to " + bookmark.name);
         ImGui::SameLine();
-        if (button("\u00d7", "forget it", cross)) gone = i;
+        if (button("\u00d7", "delete this bookmark", cross)) gone = i;
         note_place("forget " + bookmark.name);
         ImGui::PopID();
     }

@@ -40,14 +40,14 @@ bool value_rows(rt_material& values) {
     row_label("Colour", "diffuse reflectance, linear; also tints what is refracted");
     bool changed = color_field("##color", values.color);
     changed |= share("Mirror", "share of the light that is mirrored", values.reflect, 1, "%.3f");
-    changed |= share("Refraction", "share handed to Fresnel's equations: partly mirrored, partly let through", values.refract,
-                     1, "%.3f");
+    changed |= share("Refraction", "share of the light that Fresnel's equations split into a mirrored and a refracted part",
+                     values.refract, 1, "%.3f");
     changed |=
-        share("Index", "of refraction of the inside: water 1.33, glass 1.5, diamond 2.42", values.ior, 3, "%.3f", false, 1);
+        share("Index", "index of refraction inside: water 1.33, glass 1.5, diamond 2.42", values.ior, 3, "%.3f", false, 1);
     row_label("Highlight", "colour of the Blinn-Phong highlight, linear");
     changed |= color_field("##specular", values.specular);
-    changed |=
-        share("Shininess", "exponent of the highlight: the larger, the smaller", values.shininess, 2000, "%.1f", true, 1);
+    changed |= share("Shininess", "exponent of the highlight: a larger one makes a smaller highlight", values.shininess, 2000,
+                     "%.1f", true, 1);
     row_label("Emission", "light of its own, linear; it lights nothing else");
     changed |= color_field("##emission", values.emission);
     return changed;

@@ -46,7 +46,7 @@ void preset_rows(Session& session, UiState& state) {
     const bool entered = ImGui::InputTextWithHint("##preset", "name", &name, ImGuiInputTextFlags_EnterReturnsTrue);
     ImGui::SameLine();
     ImGui::BeginDisabled(name.empty());
-    const bool pressed = button("Save##preset", "save what is set now under this name", width);
+    const bool pressed = button("Save##preset", "save the current settings under this name", width);
     note_place("Save preset");
     ImGui::EndDisabled();
     if ((entered || pressed) && !name.empty())
@@ -107,7 +107,7 @@ void picture_rows(Session& session, UiState& state) {
             return state.pictures_folder + "/picture.png";
         }
     });
-    row_label("Folder", "where pictures go if their name says nothing else");
+    row_label("Folder", "folder of pictures whose file name has no folder");
     if (button((cut_front_to(absolute_folder(state.pictures_folder), ImGui::GetContentRegionAvail().x - 16 * ui_scale()) +
                 "##folder")
                    .c_str(),

@@ -28,7 +28,7 @@ const std::vector<Group>& groups() {
 void compare_rows(Session& session, UiState& state) {
     if (!session.desired.other) return;
     section("COMPARE");
-    row_label("Rows below are of", "a click changes the side that structure, device and tracing below belong to");
+    row_label("Rows below are of", "the side that the rows for structure, device and tracing below change");
     const float half = share_of_line(2);
     const std::string names[2] = {"A  " + session.desired.main.settings.accel, "B  " + session.desired.other->settings.accel};
     for (int side = 0; side < 2; ++side) {
@@ -101,7 +101,7 @@ void device_row(Session& session) {
 void accel_rows(Session& session) {
     Settings& settings = session.edited().settings;
     const rt_plugin* current = session.plugins().accel(settings.accel);
-    row_label("Structure", "how the scene is held for tracing; each is a plugin");
+    row_label("Structure", "the acceleration structure, in which rays search the scene; each is a plugin");
     if (ImGui::BeginCombo("##accel", current ? current->name : settings.accel.c_str(), ImGuiComboFlags_HeightLarge)) {
         for (const rt_plugin* plugin : session.plugins().accels()) {
             const bool chosen = plugin == current;
@@ -150,12 +150,13 @@ void size_rows(Session& session, const UiState& state) {
         settings.width = state.room_width;
         settings.height = state.room_height;
     }
-    row_label("Resolution", "of the size above, each way: below 100 % is faster, above is finer than the screen");
+    row_label("Resolution",
+              "factor for width and height of the size above: less than 100 % is faster, more is finer than the screen");
     float percent = session.desired.resolution_scale * 100;
     if (slider("##scale", percent, 10, 200, "%.0f %%", true)) session.desired.resolution_scale = percent / 100;
-    row_label("While moving",
-              "frames a second to keep up while the camera or a light moves, with fewer pixels if need be; 0: all "
-              "pixels, always");
+    row_label(
+        "While moving",
+        "frames a second to hold while the camera or a light moves, with fewer pixels if necessary; 0: always all pixels");
     float fps = session.desired.moving_fps;
     if (slider("##fps", fps, 0, 120, fps < 0.5f ? "all pixels" : "%.0f frames/s"))
         session.desired.moving_fps = fps < 0.5f ? 0 : fps;

@@ -46,7 +46,7 @@ void fact_rows(const Ready& ready) {
         row_text("Analytic", plural(scene.spheres.size(), "sphere") + ", " + plural(scene.polygons.size(), "polygon") + ", " +
                                  plural(scene.planes.size(), "plane"));
     row_text("Materials", std::to_string(scene.materials.size()) + ", " + plural(scene.textures.size(), "texture"));
-    row_text("Up axis", std::string(1, "XYZ"[scene.up_axis % 3]), "as the file says it; nothing is turned");
+    row_text("Up axis", std::string(1, "XYZ"[scene.up_axis % 3]), "as the file states it; the scene is not rotated");
     row_text("Unit", scene.unit_scale > 0 ? number_text(scene.unit_scale) + " m" : "not said", "metres per unit of the file");
     row_text("Diagonal", number_text(ready.loaded->bounds.diagonal()), "of the box around it, in units of the file");
     if (!scene.warnings.empty()) {
@@ -112,7 +112,7 @@ void draw_scene_tab(Session& session, UiState& state) {
     if (folding_section("CAMERA")) camera_rows(session, state);
     if (folding_section("BOOKMARKS")) draw_bookmark_rows(session, state);
     if (folding_section("SURROUNDINGS")) {
-        row_label("Background", "what rays see that hit nothing; linear");
+        row_label("Background", "colour of rays that hit nothing; linear");
         color_field("##background", session.desired.background.data());
         row_label("Ambient", "light that comes from everywhere; linear");
         color_field("##ambient", session.desired.ambient.data());

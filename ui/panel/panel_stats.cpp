@@ -59,7 +59,7 @@ void frame_rows(Session& session) {
     graph_legend(series);
     const float target = session.desired.moving_fps > 0 ? 1000 / session.desired.moving_fps : 0;
     draw_frame_graph(series, target, 110 * ui_scale());
-    tooltip("milliseconds of the last frames, tracing and reading back; dashed: what `While moving` asks for");
+    tooltip("milliseconds of the last frames, tracing and reading back; dashed line: the time that `While moving` asks for");
     if (sides.empty()) return;
     row_text("Frames/s", rate.text, "mean of the last ten");
     row_text("p50", median.text, "the median: half of the frames were faster");
@@ -110,7 +110,7 @@ void kernel_rows(const std::vector<const PictureSide*>& sides) {
     for (unsigned i = 0; i < sides.size(); ++i) {
         if (sides.size() > 1) wrapped_text(std::string(1, "AB"[i]) + "  " + sides[i]->settings.accel, side_color(i));
         kernel_bars(*sides[i], i);
-        row_text("Sum", time_text(sum_of(sides[i]->stats.kernels)), "of what is above");
+        row_text("Sum", time_text(sum_of(sides[i]->stats.kernels)), "sum of the times above");
         share_rows(*sides[i]);
     }
 }
@@ -131,13 +131,13 @@ void ray_rows(const Session& session, const std::vector<const PictureSide*>& sid
         lost |= stats.dropped > 0;
         full |= stats.overflowed > 0;
     }
-    row_text("Rate", rate.text, "rays of all kinds by the time of the kernels");
+    row_text("Rate", rate.text, "rays of all kinds, divided by the time of the kernels");
     row_text("Primary", primary.text);
     row_text("Shadow", shadow.text);
     row_text("Secondary", secondary.text, "mirrored and refracted");
     row_text("Dropped", dropped.text, "found no slot in their pixel's arrays: raise `Ray slots`",
              lost ? colors::kAmber : colors::kText);
-    if (full) row_text("Stacks full", overflowed.text, "of traversal", colors::kAmber);
+    if (full) row_text("Stacks full", overflowed.text, "rays whose traversal stack was full", colors::kAmber);
 }
 
 void structure_rows(const ReadySide& side, const ImportedScene& loaded) {

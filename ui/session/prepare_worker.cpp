@@ -160,9 +160,9 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     if (!devices()) list_all_devices();
     // If the scene cannot be read, new settings still apply to the old scene. If a device is missing, the scene still loads.
     bool whole = true;
-    const auto open = [&](const Side& side, SideState& shop, const SideState& neighbour) {
+    const auto open = [&](const Side& side, SideState& state, const SideState& neighbour) {
         try {
-            open_side(side.device, shop, neighbour, progress);
+            open_side(side.device, state, neighbour, progress);
         } catch (const Error& error) {
             whole = false;
             publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), false, false});
@@ -262,13 +262,14 @@ void PrepareWorker::hide(const PrepareRequest& request) {
     visible_ = hidden_.empty() ? loaded_->scene : std::make_shared<const Scene>(without_instances(*loaded_->scene, hidden_));
 }
 
-void PrepareWorker::open_side(const std::string& choice, SideState& shop, const SideState& neighbour, StageProgress& progress) {
-    if (!shop.devices.empty() && choice == shop.choice) return;
+void PrepareWorker::open_side(const std::string& choice, SideState& state, const SideState& neighbour,
+                              StageProgress& progress) {
+    if (!state.devices.empty() && choice == state.choice) return;
     progress.stage("opening the device");
     Devices devices = open_devices(choose_devices(choice), neighbour.devices);
-    shop.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
-    shop.devices = std::move(devices);
-    shop.choice = choice;
+    state.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
+    state.devices = std::move(devices);
+    state.choice = choice;
 }
 
 void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& progress) {

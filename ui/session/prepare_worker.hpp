@@ -64,7 +64,7 @@ class PrepareWorker {
     void renew_devices();
     void withdraw_loans();
     ReadySide lend(const Devices& devices, std::shared_ptr<const MultiPrepared> prepared);
-    void open_side(const std::string& choice, SideState& shop, const SideState& neighbour, StageProgress& progress);
+    void open_side(const std::string& choice, SideState& state, const SideState& neighbour, StageProgress& progress);
     void import_files(const PrepareRequest& request, StageProgress& progress);
     void hide(const PrepareRequest& request);
     void list_all_devices();

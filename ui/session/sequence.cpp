@@ -60,7 +60,8 @@ void Sequence::start_path(Session& session, const std::string& pattern, int fram
 }
 
 void Sequence::start(Session& session, const std::string& pattern, std::vector<Camera> cameras) {
-    if (!session.ready()) throw Error(Exit::usage, "there is no picture yet to make a sequence of");
+    if (!session.ready())
+        throw Error(Exit::usage, "cannot start a sequence, because there is no picture yet; open a scene first");
     if (cameras.size() > 1 && frame_path(pattern, 1) == frame_path(pattern, 2))
         throw Error(Exit::usage, pattern + ": put #### into its name, for the frame's number");
     check_output_path(frame_path(pattern, 1));

@@ -21,7 +21,7 @@ void Session::take_saved() {
 
 uint64_t Session::save_picture(const std::string& path) {
     check_output_path(path);
-    if (!ready_) throw Error(Exit::usage, path + ": there is no picture yet to save");
+    if (!ready_) throw Error(Exit::usage, path + ": cannot save, because there is no picture yet; open a scene first");
     return frames_.save(path);
 }
 
@@ -39,7 +39,8 @@ void Session::save_preset(const std::string& path) const {
 void Session::load_preset(const std::string& path) {
     const Preset preset = clarity::load_preset(plugins_, path);
     if (!ready_ && !preset.edits.empty())
-        throw Error(Exit::usage, path + ": it changes a scene's view, and no scene is open yet");
+        throw Error(Exit::usage,
+                    path + ": this preset changes the view of a scene, but no scene is open; open the scene first");
     EditedView edited;
     if (ready_) {
         edited.view = ready_->loaded->first_view;
@@ -51,7 +52,7 @@ void Session::load_preset(const std::string& path) {
 }
 
 std::string Session::render_command(const std::string& output) const {
-    if (!ready_) throw Error(Exit::usage, "there is no scene yet to render");
+    if (!ready_) throw Error(Exit::usage, "there is no command line, because no scene is open; open a scene first");
     // Starts from the defaults of the command line, whatever options this window was started with.
     Preset preset;
     const Settings& s = desired.main.settings;

@@ -29,9 +29,8 @@ class PicturePane {
     const std::vector<PicturePlace>& places() const { return places_; }
     const std::vector<LightHandle>& handles() const { return handles_; }
     size_t lines_drawn(unsigned side) const { return lines_[side].any ? lines_[side].layer.drawn() : 0; }
-    double lines_ms() const {
-        return lines_ms_;
-    }  // milliseconds that the last update of lines took, without waiting for OpenGL
+    // Milliseconds that the last update of lines took, without waiting for OpenGL.
+    double lines_ms() const { return lines_ms_; }
     bool rays_shown() const { return rays_shown_; }
 
  private:
