@@ -23,10 +23,12 @@ struct UiTimes {
     double slowest_answer_ms = 0;  // longest time from a key event to the end of the frame that handled it
 };
 
+// The window and everything in it. All members are called on the main thread, which owns the GL context.
 class App {
  public:
     explicit App(const ViewOptions& options);
     ~App();
+    // Runs the window's loop until the window is closed. Returns the program's exit code.
     int run();
 
     // Access for a test's script.

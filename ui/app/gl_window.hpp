@@ -9,15 +9,18 @@ struct GLFWwindow;
 
 namespace clarity::ui {
 
+// A key that was pressed or released, or the loss of the keyboard focus.
 struct KeyEvent {
     int key = 0;
     enum class Kind { press, release, lost_focus } kind = Kind::press;
     bool ctrl = false;
     bool other_modifier = false;  // Alt or Super
     double time_s = 0;            // time of the event, as glfwGetTime() counts
+    // Seconds since the event.
     double age_s() const;
 };
 
+// A window. Used on the main thread only, except for wake().
 class GlWindow {
  public:
     // Throws Error(usage) if there is no display or no OpenGL 3.3. The message says what failed and how to render without a
@@ -36,6 +39,7 @@ class GlWindow {
     bool wait_events(double seconds);
     static void wake();  // ends wait_events(); from any thread, while a GlWindow exists
 
+    // Return the events since the last call, oldest first, and forget them.
     std::vector<KeyEvent> take_keys();
     std::vector<std::string> take_dropped_files();
     void drop(const std::vector<std::string>& files);  // calls the drop callback, as if a user had dropped the files

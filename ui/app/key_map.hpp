@@ -48,6 +48,7 @@ inline bool is_held(Action action) {
     return action < Action::print_frame_rate;
 }
 
+// What one key does in one key map.
 struct KeyBinding {
     int key;  // GLFW's key code: a position on the keyboard
     const char* name;
@@ -57,6 +58,7 @@ struct KeyBinding {
     bool ctrl = false;  // true: only with Ctrl; false: only without
 };
 
+// A preset of bindings.
 struct KeyMap {
     const char* id;
     const char* name;

@@ -12,6 +12,7 @@ namespace clarity::ui {
 // A key for a scene: the absolute paths of its files, one a line ("/a/b.obj").
 std::string scene_key(const std::vector<std::string>& files);
 
+// Keeps the recent files and the bookmarks of each scene in the preferences while the window runs.
 class PreferencesSync {
  public:
     // Called at the start: applies `preferences` to the window. folder: that of the preferences; empty: nothing is written.

@@ -16,6 +16,7 @@ inline constexpr int kTabCount = 7;
 enum class CompareMode { wipe, side_by_side, difference };
 inline constexpr const char* kCompareNames[] = {"Wipe", "Side by side", "Difference"};
 
+// A named view of a scene.
 struct Bookmark {
     std::string name;
     Camera camera;

@@ -41,6 +41,7 @@ namespace clarity::ui {
 
 class App;
 
+// Reads the commands and runs them. Used on the window's thread.
 class Script {
  public:
     // Opens the script that CLARITY_UI_SCRIPT names. Returns nullptr if it is not set. Throws Error(usage) if it cannot be

@@ -13,12 +13,14 @@ struct FileEntry {
     int64_t modified_s = 0;  // seconds since 1970; 0: not known
 };
 
+// The contents of a folder.
 struct Listing {
     std::string folder;              // absolute
     std::vector<FileEntry> entries;  // folders first, then by name without regard to case; without hidden ones
     std::string failure;             // why the folder could not be read; empty: it was
 };
 
+// Which folder to list, and which of its entries.
 struct DesiredListing {
     std::string folder;
     std::vector<std::string> extensions;  // lower case, without the dot, "ply.gz" allowed; empty: all files

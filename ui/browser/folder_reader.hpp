@@ -7,6 +7,7 @@
 
 namespace clarity::ui {
 
+// Keeps the listing of the folder that was requested last. Used on the window's thread; get() never waits for a disk.
 class FolderReader {
  public:
     // Returns the newest listing, which may be of another folder while reading(). nullptr until the first.

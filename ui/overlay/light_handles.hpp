@@ -12,6 +12,7 @@
 
 namespace clarity::ui {
 
+// A light's handle. `place` is in window coordinates.
 struct LightHandle {
     enum class Kind {
         point,

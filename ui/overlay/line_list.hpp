@@ -13,6 +13,7 @@ struct Line {
     float width = 1;     // in units of the window
 };
 
+// A list of lines in world space.
 class LineList {
  public:
     void clear() { lines_.clear(); }

@@ -9,6 +9,7 @@
 
 namespace clarity::ui {
 
+// A light of the scene or of the user. It is traced while `on`.
 struct DesiredLight {
     std::string name;
     rt_light values{};
@@ -36,6 +37,7 @@ struct DesiredState {
         30;  // target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels
 };
 
+// The view of the desired state, with the lights and instances that are switched off in it.
 EditedView edited_view(const DesiredState& desired);
 
 }  // namespace clarity::ui

@@ -19,6 +19,7 @@
 
 namespace clarity::ui {
 
+// Everything that the frame thread needs to trace and display a picture.
 struct FrameJob {
     std::shared_ptr<const Ready> ready;
     Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
@@ -52,6 +53,7 @@ struct PictureDifference {
     double share = 0;              // share of the pixels which differ by more than 1 of 255
 };
 
+// A traced picture. It does not change after latest() has returned it.
 struct Picture {
     FrameJob job;
     PictureSide main;
@@ -60,12 +62,16 @@ struct Picture {
     bool reduced = false;  // has fewer pixels than asked for, because something moves
 };
 
+// The thread that traces pictures. All public members may be called from any thread; only release() waits.
 class FrameThread {
  public:
+    // wake: called from the tracing thread when latest(), take_failure() or take_saved() may have news.
     explicit FrameThread(std::function<void()> wake);
     ~FrameThread();
 
+    // Replaces the job. A running sample is cancelled if the revision changed and the view has a sample already.
     void post(FrameJob job);
+    // Returns the newest picture; nullptr until the first.
     std::shared_ptr<const Picture> latest() const;
     // Whether everything that was posted is traced.
     bool idle() const;
@@ -87,6 +93,7 @@ class FrameThread {
         uint64_t number = 0;
         std::string path, failure;  // failure is empty if the picture was written
     };
+    // Returns the outcomes of saves since the last call.
     std::vector<Saved> take_saved();
 
  private:

@@ -6,6 +6,7 @@
 
 namespace clarity::ui {
 
+// The steps of undo and redo, at most 200.
 class History {
  public:
     // Called once a frame. All changes during one gesture (a slider is dragged, a key is down) are one step.

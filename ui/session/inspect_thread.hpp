@@ -14,6 +14,7 @@
 
 namespace clarity::ui {
 
+// The answer to a request: the rays of one pixel.
 struct Inspection {
     FrameJob job;           // of the inspected picture
     unsigned x = 0, y = 0;  // pixel of that picture
@@ -22,10 +23,12 @@ struct Inspection {
     uint64_t request = 0;  // the number which ask() returned
 };
 
+// The thread. All public members may be called from any thread; only release() waits.
 class InspectThread {
  public:
     explicit InspectThread(std::function<void()> wake);
     ~InspectThread();
+    // Requests the rays of pixel (x, y) of the job's picture. Replaces a waiting request. Returns the request's number.
     uint64_t ask(FrameJob job, unsigned x, unsigned y);
     std::shared_ptr<const Inspection> latest() const;  // nullptr until the first answer
     bool busy() const;

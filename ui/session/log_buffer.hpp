@@ -12,6 +12,7 @@
 
 namespace clarity::ui {
 
+// One entry of the log.
 struct LogLine {
     LogLevel level;
     std::string text;  // may have several lines, such as a compiler's log

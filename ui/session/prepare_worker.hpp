@@ -15,6 +15,7 @@
 
 namespace clarity::ui {
 
+// The result of a request.
 struct Outcome {
     enum class Kind { ready, failed, cancelled };
     Kind kind = Kind::ready;
@@ -24,12 +25,14 @@ struct Outcome {
     bool whole = false;            // `ready`, and no part of the request failed
 };
 
+// What the worker does now.
 struct Activity {
     bool busy = false;
     std::string stage;
     float fraction = -1;  // negative: unknown
 };
 
+// The thread. All public members may be called from any thread, and none waits.
 class PrepareWorker {
  public:
     // Callbacks to the threads that trace on our devices: `release` returns when they hold nothing on a device, `resume` lets
@@ -45,6 +48,7 @@ class PrepareWorker {
     void request(PrepareRequest request);
     // Cancels the running request and drops the waiting one.
     void cancel();
+    // Returns the outcomes since the last call, oldest first.
     std::vector<Outcome> take();
     Activity activity() const;
     std::shared_ptr<const std::vector<DeviceInfo>> devices() const;  // nullptr until the devices are listed

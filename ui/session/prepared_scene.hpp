@@ -78,6 +78,7 @@ struct ReadySide {
     std::string device_name() const { return devices_name(devices); }
 };
 
+// A prepared scene: what was asked for, and what came of it.
 struct Ready {
     PrepareRequest request;
     std::shared_ptr<const ImportedScene> loaded;

@@ -9,6 +9,7 @@ namespace clarity::ui {
 
 class Session;
 
+// A sequence in progress. Used on the window's thread.
 class Sequence {
  public:
     // Start a sequence, which replaces a running one. The camera returns to its place at the end. pattern: file name with # for

@@ -34,6 +34,7 @@ struct Selection {
     bool any() const { return instance >= 0 || prim >= 0 || material >= 0; }
 };
 
+// The session of one window. Used on the window's thread.
 class Session {
  public:
     Session(const ViewOptions& options, std::function<void()> wake);

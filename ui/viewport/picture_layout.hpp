@@ -9,6 +9,7 @@
 
 namespace clarity::ui {
 
+// A picture and its place in the window.
 struct PicturePlace {
     enum class What { main, other, difference };
     What what = What::main;

@@ -18,6 +18,7 @@
 
 namespace clarity::ui {
 
+// Turns mouse events into changes of camera, lights, selection and wipe.
 class PictureMouse {
  public:
     // What the mouse can act on in this frame.

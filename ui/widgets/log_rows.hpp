@@ -17,6 +17,7 @@ struct SourcePlace {
 // Returns the first place in the text: a name with an extension, a colon and a number. nullopt if there is none.
 std::optional<SourcePlace> find_source_place(const std::string& text);
 
+// Which entries to show: those of at least this level which contain all words.
 struct LogFilter {
     LogLevel least = LogLevel::info;
     std::string words;

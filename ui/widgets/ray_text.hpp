@@ -12,6 +12,7 @@ namespace clarity::ui {
 
 class Session;
 
+// Sums over all rays of a pixel. steps counts visited nodes.
 struct RayTotals {
     size_t traced = 0, shadow = 0, dropped = 0;
     size_t steps = 0, leaf_tests = 0;

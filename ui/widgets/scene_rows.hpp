@@ -12,6 +12,7 @@ namespace clarity::ui {
 enum class RowKind { instance, sphere, polygon, plane, mesh, material, light, camera };
 inline constexpr int kRowKinds = 8;
 
+// A row of the tree: an object, or the title of a kind of objects.
 struct SceneRow {
     RowKind kind = RowKind::instance;
     int index = -1;    // -1: the title row of its kind
