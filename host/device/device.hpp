@@ -1,4 +1,4 @@
-// device.hpp -- OpenCL devices: listing, ranking, choosing, and one open device with its queue.
+// device.hpp -- OpenCL devices: listing, ranking and choosing them, and one open device with its queue.
 #pragma once
 #include <CL/opencl.hpp>
 #include <memory>
@@ -7,12 +7,14 @@
 
 namespace clarity {
 
+// A device that may be opened, or one part of it.
 struct DeviceInfo {
-    unsigned platform_index = 0, device_index = 0;  // as clinfo -l counts them
-    unsigned part = 0, parts = 0;                   // of a CPU that is parted, counted from 0; 0 parts: it is whole
+    unsigned platform_index = 0, device_index = 0;  // as `clinfo -l` counts them
+    unsigned part = 0,
+             parts = 0;  // of a CPU that is split: index of this part, and number of parts; parts = 0: the whole device
     std::string platform, name, vendor, version, driver;
     bool cpu = false, gpu = false;
-    unsigned compute_units = 0, clock_mhz = 0, float_width = 1;  // native_vector_width_float
+    unsigned compute_units = 0, clock_mhz = 0, float_width = 1;  // float_width: native_vector_width_float
     uint64_t global_bytes = 0, max_allocation_bytes = 0;
     bool pocl = false, nvidia = false;
     cl::Platform cl_platform;
@@ -20,31 +22,33 @@ struct DeviceInfo {
     std::string id() const;  // "0:0"; the second of four parts: "0:0/4.1"
 };
 
-// All devices of all platforms, best first (GPU before CPU before others, then compute units x clock). A platform without
-// devices or with a failing driver is skipped with a warning in `warnings`.
+// Returns all devices of all platforms, best first: GPUs, then CPUs, then others, each ordered by compute units x clock. A
+// platform that has no devices or whose driver fails is skipped; `warnings` gets a line about it.
 std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings = nullptr);
 
-// choice: "" (CLARITY_DEVICE, else the best), or words with commas between them, each device once:
-//   2, P:D, cpu, gpu, part of a name   one: by its place in the list, by its id, the first that fits
-//   cpus, gpus, all                    every one
-//   WORD/4, WORD/4.1                   in four parts (sub-devices), or the second of these
-// Throws Error(no_device) that lists what there is.
+// Returns the devices that `choice` names, each once. "": CLARITY_DEVICE, or else the best device. Otherwise words with commas
+// between them:
+//   2, P:D, cpu, gpu, part of a name   one device: by its place in the list, by its id, the first CPU or GPU, the first match
+//   cpus, gpus, all                    every such device
+//   WORD/4, WORD/4.1                   four parts of the device (sub-devices), or the second of these
+// Throws Error(no_device), which lists the devices.
 std::vector<DeviceInfo> choose_devices(const std::string& choice);
-// The first of them.
+// Returns the first of choose_devices().
 DeviceInfo choose_device(const std::string& choice);
-// As choose_devices() reads it: ids with commas.
+// Returns the ids with commas between them, as choose_devices() reads them.
 std::string device_list_text(const std::vector<DeviceInfo>& devices);
 
-// An open device. Not thread-safe per object, except that programs may be built from other threads.
+// An open device. Use each object from one thread at a time; only programs may be built from other threads.
 class Device {
  public:
+    // Throws Error(no_device).
     explicit Device(DeviceInfo info);
     const DeviceInfo& info() const { return info_; }
     cl::Context& context() { return context_; }
     cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
-    // The same device and context with a queue of its own, so that kernels of both may run side by side.
+    // Returns the same device and context with a queue of its own, so that kernels of both queues may run at the same time.
     std::shared_ptr<Device> with_own_queue() const;
-    // Lanes that suit it: 1 on a GPU, the native float width on a CPU.
+    // Lanes that suit the device: 1 on a GPU, the native float width on a CPU.
     unsigned preferred_lanes() const;
 
  private:

@@ -1,4 +1,4 @@
-// device_choice.cpp -- which devices a user means.
+// device_choice.cpp -- finds the devices that a user names.
 #include <algorithm>
 #include <cstdlib>
 #include <functional>
@@ -25,21 +25,22 @@ std::string table_of(const std::vector<DeviceInfo>& devices) {
     return text;
 }
 
-// A list of so many devices is nobody's.
+// Larger numbers of parts are mistakes.
 constexpr unsigned kMostParts = 4096;
 
-// "cpu/2.1" -> "cpu", 2 parts, the second of them.
+// A word of the user's choice. "cpu/2.1": device "cpu", 2 parts, part 1 (the second).
 struct Word {
     std::string device;
-    unsigned parts = 0;  // 0: it is not parted
-    int part = -1;       // -1: all of them
+    unsigned parts = 0;  // 0: the whole device
+    int part = -1;       // -1: all parts
 };
 
 Word read_word(const std::string& text) {
     const size_t slash = text.rfind('/');
     if (slash == std::string::npos) return {text};
     const std::string tail = text.substr(slash + 1);
-    if (tail.empty() || tail.find_first_not_of("0123456789.") != std::string::npos) return {text};  // of a name
+    if (tail.empty() || tail.find_first_not_of("0123456789.") != std::string::npos)
+        return {text};  // the slash belongs to a name
     Word word{text.substr(0, slash)};
     const size_t dot = tail.find('.');
     unsigned part = 0;
@@ -47,7 +48,7 @@ Word read_word(const std::string& text) {
                       (dot == std::string::npos || (read_number(tail.substr(dot + 1), part) && part < word.parts));
     if (!good)
         throw Error(Exit::no_device, "`" + text +
-                                         "`: after the slash stands how many parts, as in cpu/4, or which of them, "
+                                         "`: after the slash, write the number of parts, as in cpu/4, or also one of them, "
                                          "counted from 0, as in cpu/4.3");
     if (dot != std::string::npos) word.part = static_cast<int>(part);
     return word;
@@ -76,11 +77,11 @@ std::vector<DeviceInfo> named(const std::vector<DeviceInfo>& devices, const std:
     return found;
 }
 
-// The device in so many parts, as even as its units allow.
+// Splits a device into `count` parts of nearly the same number of compute units.
 std::vector<DeviceInfo> parts_of(const DeviceInfo& whole, unsigned count) {
     const auto cannot = [&](const std::string& why) {
         return Error(Exit::no_device,
-                     whole.id() + " (" + whole.name + ") cannot be parted into " + std::to_string(count) + ": " + why);
+                     whole.id() + " (" + whole.name + ") cannot be split into " + std::to_string(count) + " parts: " + why);
     };
     if (count == 1) return {whole};
     if (count > whole.compute_units)
@@ -100,7 +101,7 @@ std::vector<DeviceInfo> parts_of(const DeviceInfo& whole, unsigned count) {
                 how.push_back(whole.compute_units * (i + 1) / count - whole.compute_units * i / count);
             how.insert(how.end(), {CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0});
         } else {
-            throw cannot("its driver does not offer that; CPUs can be parted, GPUs hardly ever");
+            throw cannot("its driver does not support this; CPUs can be split, most GPUs cannot");
         }
         std::vector<cl::Device> handles;
         cl::Device(whole.cl_device).createSubDevices(how.data(), &handles);

@@ -1,7 +1,7 @@
-// device_list.cpp -- which OpenCL devices there are, and which is the best.
+// device_list.cpp -- lists the OpenCL devices, best first.
 //
-// A machine may have platforms without devices (Mesa's rusticl without a GPU), drivers that fail, or no driver at all: each of
-// them is one line of warning, never the end.
+// Some machines have platforms without devices (Mesa's rusticl without a GPU), drivers that fail, or no driver. Each of these
+// causes one warning and never an error.
 #include <sched.h>
 #include <unistd.h>
 
@@ -27,9 +27,10 @@ bool says(const std::string& text, const std::string& part) {
 
 namespace {
 
-// Two of PoCL's threads on one core halve the speed of a frame of a few milliseconds: the system's scheduler takes longer than
-// that to part them. PoCL pins thread i to core i if it is told before it starts, and aborts where that core is not to be had,
-// so only a process that may use all cores asks for it. A user's own choice stands.
+// Lets PoCL pin its threads to cores. Otherwise two of its threads may share a core, which halves the speed of a frame of a few
+// milliseconds, because the system's scheduler needs longer than that to separate them. PoCL pins thread i to core i if it is
+// told before it starts. It aborts if it cannot use that core, so only a process that may use all cores asks for pinning. A
+// value set by the user is kept.
 void pin_pocl_threads() {
     cpu_set_t allowed;
     if (sched_getaffinity(0, sizeof allowed, &allowed) != 0) return;
@@ -39,7 +40,7 @@ void pin_pocl_threads() {
     setenv("POCL_AFFINITY", "1", 0);
 }
 
-// Drivers pad their names with blanks and zero bytes.
+// Removes the blanks and zero bytes with which drivers pad names.
 std::string trimmed(std::string text) {
     while (!text.empty() && (text.back() == '\0' || text.back() == ' ')) text.pop_back();
     text.erase(0, std::min(text.find_first_not_of(' '), text.size()));
@@ -93,7 +94,7 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, unsi
     return info;
 }
 
-// Why a device cannot serve; empty if it can.
+// Returns why a device cannot be used; empty if it can.
 std::string why_unusable(const cl::Device& device) {
     if (!ask<cl_bool>(device, CL_DEVICE_AVAILABLE)) return "its driver says that it is not available";
     if (!ask<cl_bool>(device, CL_DEVICE_COMPILER_AVAILABLE)) return "its driver has no compiler";
@@ -102,14 +103,14 @@ std::string why_unusable(const cl::Device& device) {
 
 void list_platform(const cl::Platform& platform, unsigned index, std::vector<DeviceInfo>& found,
                    const std::function<void(const std::string&)>& warn) {
-    std::string who = "platform " + std::to_string(index);
+    std::string name = "platform " + std::to_string(index);
     std::vector<cl::Device> devices;
     try {
-        who += " (" + trimmed(platform.getInfo<CL_PLATFORM_NAME>()) + ")";
+        name += " (" + trimmed(platform.getInfo<CL_PLATFORM_NAME>()) + ")";
         platform.getDevices(CL_DEVICE_TYPE_ALL, &devices);
         if (devices.empty()) throw cl::Error(CL_DEVICE_NOT_FOUND, "clGetDeviceIDs");
     } catch (const cl::Error& e) {
-        warn(who + " is skipped: " + error_name(e.err()));
+        warn(name + " is skipped: " + error_name(e.err()));
         return;
     }
     for (unsigned i = 0; i < devices.size(); ++i) {
@@ -121,7 +122,7 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
             why = error_name(e.err());
         }
         if (!why.empty())
-            warn("device " + std::to_string(index) + ":" + std::to_string(i) + " of " + who + " is skipped: " + why);
+            warn("device " + std::to_string(index) + ":" + std::to_string(i) + " of " + name + " is skipped: " + why);
     }
 }
 
@@ -138,7 +139,7 @@ std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
     try {
         cl::Platform::get(&platforms);
     } catch (const cl::Error& e) {
-        // The loader's own answer where no driver is installed (CL_PLATFORM_NOT_FOUND_KHR) is no failure.
+        // Without any driver, the loader returns CL_PLATFORM_NOT_FOUND_KHR. This is not a failure.
         constexpr int kPlatformNotFound = -1001;
         if (e.err() != kPlatformNotFound)
             warn("the OpenCL loader answers clGetPlatformIDs with error " + std::to_string(e.err()));
@@ -146,7 +147,7 @@ std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
     if (platforms.empty()) warn(std::string("there is no OpenCL platform; ") + kInstallDriver);
     for (unsigned i = 0; i < platforms.size(); ++i) list_platform(platforms[i], i, found, warn);
 
-    // A driver that does not know its clock (virtual machines) still counts its units.
+    // Some drivers do not know their clock (virtual machines), but still report compute units.
     const auto rank = [](const DeviceInfo& d) {
         return std::make_tuple(d.gpu ? 2 : d.cpu ? 1 : 0, uint64_t(d.compute_units) * std::max(1u, d.clock_mhz));
     };

@@ -1,4 +1,4 @@
-// device_list.hpp -- what listing and choosing devices share.
+// device_list.hpp -- functions that listing and choosing devices share.
 #pragma once
 #include "device/device.hpp"
 
@@ -9,7 +9,7 @@ inline constexpr const char* kInstallDriver =
     "(`clinfo -l` shows what is found)";
 
 std::string lower(std::string text);
-// Whatever the case.
+// Whether `text` contains `part`, ignoring case.
 bool says(const std::string& text, const std::string& part);
 
 }  // namespace clarity

@@ -23,7 +23,7 @@ const Embedded kEmbedded[] = {
 #include "kernels.inc"
 };
 
-// False if there is no such file. Throws Error(kernel_build_failed) if there is one that cannot be read.
+// Returns false if there is no such file. Throws Error(kernel_build_failed) if the file cannot be read.
 bool read_if_present(const fs::path& path, std::string& text) {
     std::error_code ignored;
     if (!fs::is_regular_file(path, ignored)) return false;
@@ -31,7 +31,8 @@ bool read_if_present(const fs::path& path, std::string& text) {
     return true;
 }
 
-// <checkout>/cl, or empty. A build folder has a CMakeCache.txt; an installed program has none beside it.
+// Returns <checkout>/cl if the program is in a build folder of a checkout; else an empty path. A build folder has a
+// CMakeCache.txt, the folder of an installed program does not.
 fs::path checkout_kernels() {
     std::error_code error;
     const fs::path program = fs::read_symlink("/proc/self/exe", error);
@@ -45,8 +46,9 @@ fs::path checkout_kernels() {
     return {};
 }
 
+// Where kernel files may be on disk.
 struct Places {
-    fs::path kernels;  // a folder laid out as cl/; empty: embedded text
+    fs::path kernels;  // a folder with the layout of cl/; empty: use the embedded text
     bool beside_libraries = true;
     fs::path plugin(const std::string& id) const { return kernels.parent_path() / "plugins" / "accel" / id; }
 };
@@ -68,7 +70,7 @@ fs::path library_folder(const rt_plugin& plugin) {
     return fs::absolute(info.dli_fname).lexically_normal().parent_path();
 }
 
-// In the order of precedence.
+// Returns where a plugin's file may be, in order of precedence.
 std::vector<fs::path> plugin_places(const rt_plugin& plugin, const char* name) {
     std::vector<fs::path> all;
     const Places where = places();
@@ -78,7 +80,7 @@ std::vector<fs::path> plugin_places(const rt_plugin& plugin, const char* name) {
     return all;
 }
 
-// Texts as they were read last, by the name that the compiler is told.
+// The last text of each file, by the name that the compiler sees.
 struct Texts {
     struct Last {
         std::string path;  // "": embedded
@@ -89,10 +91,11 @@ struct Texts {
     uint64_t revision = 0;
 };
 Texts& texts() {
-    static Texts* const all = new Texts;  // threads that outlive main may still compile
+    static Texts* const all = new Texts;  // never freed: threads that outlive main() may still compile
     return *all;
 }
 
+// Records a text. The revision grows if it differs from the last one of that name.
 std::string remember(const std::string& shown_name, const fs::path& path, std::string text) {
     Texts& all = texts();
     const std::lock_guard<std::mutex> lock(all.mutex);
@@ -125,7 +128,7 @@ std::string kernel_text(const std::string& name) {
     if (std::error_code error; !where.kernels.empty() && !fs::is_directory(where.kernels, error))
         throw Error(Exit::kernel_build_failed,
                     "CLARITY_KERNEL_PATH: " + where.kernels.string() +
-                        " is no folder: name one laid out as cl/ in the sources, or `embedded` for the "
+                        " is not a folder: name one with the layout of cl/ in the sources, or `embedded` for the "
                         "kernels inside the program");
     const char* embedded = embedded_text(name);
     std::string text;

@@ -1,17 +1,17 @@
 // kernel_files.hpp -- where the text of kernels comes from.
 //
-// The first place that has a file of that name:
-//   1. CLARITY_KERNEL_PATH, a folder laid out as cl/, with plugins/accel/<id>/ beside it; alone, 2 and 3 are then not looked
-//   at.
-//      "embedded" names no folder but the text inside the program.
-//   2. the checkout, if the program stands in a build folder inside it (<checkout>/build/bin, <checkout>/build/release/bin), so
-//      that an edit counts without a build
-//   3. for a plugin's file: beside the plugin's library
+// The first of these places that has a file of that name is used:
+//   1. CLARITY_KERNEL_PATH: a folder with the layout of cl/, with plugins/accel/<id>/ beside it. If it is set, places 2 and 3
+//      are not used. The value "embedded" means place 4.
+//   2. the checkout, if the program is in a build folder inside it (<checkout>/build/bin, <checkout>/build/release/bin), so
+//      that an edit takes effect without a build
+//   3. for a plugin's file: the folder of the plugin's library
 //   4. the text inside the program or plugin
-// A header that host and kernels share must be what the program was compiled with, or nothing is taken from disk: structs that
-// differ would be traced as garbage.
+// A header that host and kernels share must be equal to the one that the program was compiled with. If it is not, this is an
+// error, because kernels would read wrong structs.
 //
-// Messages name files as the compiler is told them: "cl/tracers/iterative.cl", "plugins/accel/bvh2/bvh2.cl".
+// Messages name files as the compiler does: "cl/tracers/iterative.cl", "plugins/accel/bvh2/bvh2.cl". All functions are
+// thread-safe.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -21,22 +21,24 @@
 
 namespace clarity {
 
-// `name` is relative to cl/ ("tracers/iterative.cl"). Throws Error(kernel_build_failed) if there is no such text, or if
-// rt_types.h on disk is not the program's.
+// Returns the text of a file; `name` is relative to cl/ ("tracers/iterative.cl"). Throws Error(kernel_build_failed) if there is
+// no such text, or if rt_types.h on disk differs from the program's.
 std::string kernel_text(const std::string& name);
 
-// A plugin's own file. Throws Error(kernel_build_failed) if its types on disk are not those that it was compiled with.
+// Returns the text of a plugin's file. Throws Error(kernel_build_failed) if its types on disk differ from those that it was
+// compiled with.
 std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file);
 // What the compiler is told that file is called.
 std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file);
 
-// The path behind a name in a compiler's message, once its text was read from disk; else "".
+// Returns the path of a name in a compiler's message if its text was read from disk; else "".
 std::string kernel_path(const std::string& shown_name);
 
-// Grows whenever a text differs from the one read before under that name: programs made earlier are of older texts.
+// A number that grows whenever a text differs from the last one read under that name. Programs made before are then out of
+// date.
 uint64_t kernel_text_revision();
 
-// Every path on disk that decides a text now or would if it came into being; for FileWatch. Empty if only embedded text counts.
+// Returns every path that provides a text now, or would if the file existed; for FileWatch. Empty if only embedded text counts.
 std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& accels);
 
 }  // namespace clarity

@@ -1,4 +1,4 @@
-// kernel_watch.hpp -- notices when the text of a kernel changes on disk: a new revision() is a reason to prepare again.
+// kernel_watch.hpp -- notices changes of kernel files on disk. After a change of revision(), call prepare() again.
 #pragma once
 #include <functional>
 #include <utility>
@@ -9,9 +9,10 @@
 
 namespace clarity {
 
+// Calls `changed` after a change: see FileWatch.
 class KernelWatch : public FileWatch {
  public:
-    // accels: whose files are watched besides cl/. No file at all where only the text inside the program counts.
+    // accels: plugins whose files are watched in addition to cl/. No file is watched if only embedded text counts.
     KernelWatch(const std::vector<const rt_plugin*>& accels, std::function<void()> changed)
         : FileWatch(kernel_candidates(accels), std::move(changed)) {}
 };

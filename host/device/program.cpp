@@ -12,7 +12,7 @@ namespace {
 
 const char* const kCompilerIsSilent = "the compiler gave no reason";
 
-// Errors before warnings, both with their place, whichever way round the compiler says it.
+// One error or warning of a compiler's log.
 struct Diagnostic {
     std::string severity, file, message;
     unsigned line = 0, column = 0;
@@ -28,7 +28,7 @@ bool read_diagnostic(const std::string& line, Diagnostic& found) {
         "(?:(fatal error|error|warning|note): )?(.*)$"),
         bare("^(fatal error|error|warning|note): (.*)$");
     std::smatch part;
-    if (line.size() > 2000) return false;  // std::regex recurses
+    if (line.size() > 2000) return false;  // std::regex recurses for every character
     if (std::regex_match(line, part, placed) && (part[1].matched || part[5].matched)) {
         const std::string path = kernel_path(part[2]);
         found = {part[1].matched ? part[1] : part[5], path.empty() ? part[2].str() : path, part[6], number(part[3]),
@@ -87,7 +87,7 @@ BuildResult build_program(Device& device, const std::string& source, const std::
             } catch (const cl::Error&) {
             }
         }
-        const CompilerLog log = read_compiler_log(raw.c_str());  // some drivers count the final 0 in
+        const CompilerLog log = read_compiler_log(raw.c_str());  // c_str(): some drivers include the final 0 in the length
         const SourceLocation& first = log.first;
         std::string message = first.file.empty() ? "" : place(first.file, first.line, first.column);
         message += log.text.empty() ? "OpenCL error " + std::to_string(e.err()) : first.message;

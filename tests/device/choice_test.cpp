@@ -1,4 +1,4 @@
-// choice_test.cpp -- words for devices.
+// choice_test.cpp -- the words that name devices.
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
@@ -57,20 +57,20 @@ TEST_F(DeviceChoice, PartsOfACpu) {
     ASSERT_EQ(parts.size(), 2u);
     EXPECT_EQ(parts[0].id(), cpu.id() + "/2.0");
     EXPECT_EQ(parts[1].id(), cpu.id() + "/2.1");
-    EXPECT_NE(parts[0].name, parts[1].name) << "messages say which";
+    EXPECT_NE(parts[0].name, parts[1].name) << "names tell the parts apart";
     EXPECT_EQ(parts[0].compute_units + parts[1].compute_units, cpu.compute_units);
-    EXPECT_EQ(ids(parts[1].id()), parts[1].id()) << "what is printed can be typed";
+    EXPECT_EQ(ids(parts[1].id()), parts[1].id()) << "a printed id can be used as a choice";
     EXPECT_EQ(ids(device_list_text(parts)), device_list_text(parts));
     EXPECT_EQ(ids("cpu/1"), cpu.id());
     EXPECT_NE(refusal("cpu/4000").find("compute units"), std::string::npos) << refusal("cpu/4000");
 }
 
 TEST_F(DeviceChoice, NobodyIsNamedAndToldWhoThereIs) {
-    for (const char* nobody : {"9:9", "0:", "999", "no such device", "0,99", "", "0,,0", ",", "0,no such device"}) {
-        if (!*nobody) continue;  // the best
-        const std::string why = refusal(nobody);
-        EXPECT_NE(why.find(all_[0].id()), std::string::npos) << nobody << ": " << why;
-        EXPECT_EQ(why.find(std::string("--device ") + nobody), 0u) << why;
+    for (const char* wrong : {"9:9", "0:", "999", "no such device", "0,99", "", "0,,0", ",", "0,no such device"}) {
+        if (!*wrong) continue;  // an empty choice means the best device
+        const std::string why = refusal(wrong);
+        EXPECT_NE(why.find(all_[0].id()), std::string::npos) << wrong << ": " << why;
+        EXPECT_EQ(why.find(std::string("--device ") + wrong), 0u) << why;
     }
     for (const char* odd : {"cpu/0", "cpu/", "cpu/2.2", "cpu/2.", "cpu/99999999999", "cpu/.1"})
         EXPECT_NE(refusal(odd).find("`cpu/"), std::string::npos) << odd << ": " << refusal(odd);

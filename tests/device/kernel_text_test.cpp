@@ -1,4 +1,4 @@
-// kernel_text_test.cpp -- which text a kernel is compiled from, and what is made of a compiler's words.
+// kernel_text_test.cpp -- which text a kernel is compiled from, and how a compiler's log is read.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// A plugin that is this test program, so that files beside its library are files beside the test.
+// A plugin that is this test program. Files beside its library are then files beside the test.
 const rt_accel kAccel = {sizeof(rt_accel),
                          0,
                          nullptr,

@@ -30,7 +30,7 @@ bool refused(std::atomic<int>& left) {
     return false;
 }
 
-// An event that comes by itself.
+// Returns an event that completes after `ms`.
 cl_event later(cl_command_queue queue, unsigned ms) {
     cl_context context = nullptr;
     clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof context, &context, nullptr);

@@ -162,7 +162,8 @@ ScenePtr rubble() {
             if (i % 7 == 0) std::copy_n(corner[0], 3, corner[1]);
             if (i % 11 == 0)
                 for (int k = 0; k < 3; ++k) corner[2][k] = corner[0][k] + 1e-6 * at(random);
-            if (i % 5 == 0) corner[0][i % 3] = corner[1][i % 3] = corner[2][i % 3] = 0.25;  // in a plane across an axis
+            if (i % 5 == 0)
+                corner[0][i % 3] = corner[1][i % 3] = corner[2][i % 3] = 0.25;  // in a plane perpendicular to an axis
             for (int copies = i % 13 == 0 ? 6 : 1; copies > 0; --copies) {
                 rt_u32 v[3];
                 for (int c = 0; c < 3; ++c) v[c] = mesh.add_vertex(corner[c][0], corner[c][1], corner[c][2]);

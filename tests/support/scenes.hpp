@@ -1,4 +1,4 @@
-// scenes.hpp -- scenes from files: the project's own, and the larger shared ones where they are.
+// scenes.hpp -- scenes from files: the project's own, and the larger shared ones if they are there.
 #pragma once
 #include <string>
 
@@ -6,19 +6,19 @@
 
 namespace clarity::test {
 
-// A file of this checkout, by its path in it.
+// Path of a file of this checkout, given its path inside it.
 std::string source_file(const std::string& name);
-// A file of the shared models (CLARITY_SHARED, else ../shared beside the checkout); empty if it is not there.
+// Path of a file of the shared models (folder CLARITY_SHARED, else ../shared beside the checkout). Empty if it is missing.
 std::string shared_file(const std::string& name);
 
-// Imported once in a process. Throws what import_scene throws.
+// Imports a scene, once in each process. Throws what import_scene() throws.
 ScenePtr load_scene(const std::string& path);
 
-// What rays can meet and nothing else: without normals, texture coordinates and textures, scenes of different make need the
-// same kernel, which is then compiled once.
+// A copy without normals, texture coordinates and textures. Scenes from different sources then need the same kernel, which is
+// compiled once.
 ScenePtr geometry_of(const ScenePtr& scene);
 
-// For tests that need a shared model: skips the test, and says so, where it is missing.
+// Skips the test with a message if a shared model is missing.
 #define CLARITY_SHARED_OR_SKIP(path, name)                       \
     const std::string path = ::clarity::test::shared_file(name); \
     if (path.empty()) GTEST_SKIP() << "SKIPPED: no shared model " << (name) << "; CLARITY_SHARED names their folder"

@@ -1,4 +1,4 @@
-// scratch.hpp -- a folder and environment variables that are as before once the test is over.
+// scratch.hpp -- a temporary folder, and environment variables that are restored after the test.
 #pragma once
 #include <stdlib.h>
 
@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+// A temporary folder, deleted by the destructor.
 class Scratch {
  public:
     Scratch() {
@@ -40,6 +41,7 @@ class Scratch {
     std::filesystem::path folder_;
 };
 
+// Restores every variable that it has set.
 class Environment {
  public:
     Environment() = default;

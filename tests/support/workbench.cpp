@@ -15,7 +15,7 @@ Workbench::Workbench()
       frames_(device_) {}
 
 Workbench& Workbench::get() {
-    // Never destroyed: an OpenCL driver may be gone before static objects are.
+    // Never destroyed: at exit, an OpenCL driver may be unloaded before static objects are destroyed.
     static Workbench* const workbench = new Workbench;
     return *workbench;
 }

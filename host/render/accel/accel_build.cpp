@@ -1,4 +1,4 @@
-// accel_build.cpp -- running a builder, and distrusting what it wrote.
+// accel_build.cpp -- runs a builder, then checks and packs what it wrote.
 #include "render/accel/accel_build.hpp"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint64_t kSlotLimit = uint64_t(1) << 40;
 
-// What the plugin's calls write into.
+// Receives what the plugin's builder writes. Its functions are thread-safe.
 struct Output {
     const rt_accel& accel;
     AccelData& data;
@@ -78,6 +78,7 @@ struct Output {
         data.roots[group] = node;
     }
 
+    // Fails the build. Returns nullptr for alloc() and leaves().
     void* refuse(const std::string& why) {
         services.fail("the builder " + why);
         return nullptr;
@@ -91,7 +92,7 @@ Output& output(void* ctx) {
 }
 
 constexpr uint64_t kLeafChunk = 1u << 10;  // leaves that one task copies
-constexpr uint64_t kLeavesAhead = 24;      // that are fetched before their turn
+constexpr uint64_t kLeavesAhead = 24;      // how many leaves ahead triangles are prefetched
 
 bool is_known(rt_u32 ref, const BuildScene& scene) {
     const rt_u32 index = RT_REF_INDEX(ref);
@@ -108,7 +109,7 @@ bool is_known(rt_u32 ref, const BuildScene& scene) {
     return false;
 }
 
-// What a builder may get wrong, but for refs, said in its terms.
+// Returns how the builder broke its contract, in its terms; empty: it did not. Refs are checked by pack_leaves().
 std::string contract_breach(const Output& out) {
     for (rt_u32 s = 0; s < out.accel.slot_count; ++s)
         if (!out.allocated[s]) return std::string("never allocated slot ") + out.accel.slots[s].name;
@@ -122,7 +123,7 @@ std::string contract_breach(const Output& out) {
     return {};
 }
 
-// In leaf order. Returns what is wrong with the refs; empty: nothing.
+// Copies the primitives in leaf order. Returns what is wrong with the refs; empty: nothing.
 std::string pack_leaves(const Output& out, AccelData& data) {
     data.leaves = AlignedBytes((data.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), false);
     const rt_u32* refs = static_cast<const rt_u32*>(out.refs.data());
@@ -134,7 +135,7 @@ std::string pack_leaves(const Output& out, AccelData& data) {
     parallel_for(static_cast<uint32_t>((data.leaf_count + kLeafChunk - 1) / kLeafChunk), [&](uint32_t c) {
         const uint64_t end = std::min<uint64_t>(data.leaf_count, (c + 1) * kLeafChunk);
         for (uint64_t i = c * kLeafChunk; i < end; ++i) {
-            // Leaves lie next to each other in the scene, and anywhere in memory.
+            // Neighbouring leaves are close in the scene, but may be anywhere in memory.
             const rt_u32 ahead = refs[std::min(i + kLeavesAhead, end - 1)];
             if (RT_REF_KIND(ahead) == RT_REF_TRIANGLE) __builtin_prefetch(triangles + RT_REF_INDEX(ahead));
             if (!is_known(refs[i], data.scene)) {
@@ -193,7 +194,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
         const std::lock_guard<std::mutex> lock(output(ctx).mutex);
         if (is_identifier(name))
             output(ctx).data.defines[name] = value;
-        else  // it would become a line of the kernel's source
+        else  // the name becomes a line of the kernel's source
             output(ctx).refuse(std::string("gave a define the name '") + (name ? name : "NULL") + "', which is no identifier");
     };
     output_table.stat = [](void* ctx, const char* label, double value) {
@@ -209,7 +210,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
         return plugin.accel->build(services.host(), &input, &output_table);
     });
     data.build_ms = ms_since(start);
-    data.scene.prims = {};  // what is no longer needed goes as soon as may be: large scenes fill memory with it
+    data.scene.prims = {};  // frees what is no longer needed at once: large scenes fill the memory with it
 
     start = std::chrono::steady_clock::now();
     std::string why = contract_breach(out);

@@ -1,4 +1,4 @@
-// accel_volumes.cpp -- bounding volumes of a level, brought to world space.
+// accel_volumes.cpp -- bounding volumes of a tree level, transformed to world space.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +15,7 @@ struct Sink {
     bool full() const { return volumes.boxes.size() + volumes.spheres.size() >= limit; }
 };
 
-// How much a transform lengthens at most, bounded by its largest column: exact for rotations with uniform scale.
+// Upper bound of a transform's scale: the length of its largest column. Exact for rotations with uniform scale.
 float scale_of(const Affine& m) {
     float largest = 0;
     for (int column = 0; column < 3; ++column) largest = std::max(largest, std::hypot(m[column], m[4 + column], m[8 + column]));

@@ -1,4 +1,4 @@
-// build_scene.cpp -- from a Scene to boxes in groups.
+// build_scene.cpp -- converts a Scene to boxes in groups.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -13,7 +13,7 @@ namespace clarity {
 namespace {
 
 constexpr uint32_t kChunk = 1u << 10;  // triangles that one task copies
-constexpr uint32_t kAhead = 32;        // places that are fetched before they are written
+constexpr uint32_t kAhead = 32;        // how many elements ahead memory is prefetched for writing
 
 rt_prim empty_prim(rt_u32 ref, rt_u32 mesh) {
     rt_prim prim;
@@ -38,7 +38,7 @@ void grow(rt_prim& prim, const float* p) {
     }
 }
 
-// Room for the rounding of whoever computes with the box's contents in another order.
+// Enlarges a box by a relative margin for rounding, since kernels compute with its contents in another order.
 void widen(rt_prim& prim, float relative) {
     for (int k = 0; k < 3; ++k) {
         const float room = relative * std::max(std::fabs(prim.lo[k]), std::fabs(prim.hi[k]));
@@ -47,14 +47,14 @@ void widen(rt_prim& prim, float relative) {
     }
 }
 
-// Four numbers of a leaf or prim, in a register: three coordinates, and bits that name something.
+// Four numbers of a leaf or prim in one register: three coordinates, and the bits of an integer.
 using Row = float __attribute__((vector_size(16)));
 using Bits = rt_u32 __attribute__((vector_size(16)));
 Row named(Row point, rt_u32 name) {
     return reinterpret_cast<Row>(reinterpret_cast<Bits>(point) | Bits{0, 0, 0, name});
 }
 
-// Writes the triangles of one mesh as refs first.., transformed unless world is nullptr. Returns their bounds.
+// Writes the triangles of one mesh as refs from first_ref on, transformed unless `world` is nullptr. Returns their bounds.
 Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim,
                      rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
     const uint32_t chunks = (mesh.triangle_count + kChunk - 1) / kChunk;
@@ -72,7 +72,7 @@ Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, 
         for (rt_u32 i = 0; i < end - begin; ++i) {
             __builtin_prefetch(leaves + i + kAhead, 1);
             __builtin_prefetch(prims + i + kAhead, 1);
-            // Made here and stored whole: what is written could change what is read, as far as a compiler knows.
+            // Made in registers and stored as a whole. The compiler cannot know that stores do not change the input.
             const rt_u32 meta[3] = {RT_REF_TRIANGLE | (first_ref + begin + i), material != RT_NONE ? material : materials[i],
                                     first_prim + begin + i};
             Row corner[3];
@@ -130,7 +130,7 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
     for (size_t i = 0; i < scene.polygons.size(); ++i) {
         const Polygon& polygon = scene.polygons[i];
         const float* corners = &scene.polygon_corners[3 * size_t(polygon.first_corner)];
-        // Newell's normal and the centroid: the plane that suits slightly unflat corners best.
+        // Newell's normal and the centroid give the plane that fits best if the corners are not exactly in a plane.
         double normal[3] = {}, centroid[3] = {};
         for (rt_u32 c = 0; c < polygon.corner_count; ++c) {
             const float *p = corners + 3 * c, *q = corners + 3 * ((c + 1) % polygon.corner_count);
@@ -160,13 +160,14 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
     }
 }
 
+// Whether a transform contains a reflection (negative determinant).
 bool mirrors(const Affine& m) {
     const double x = double(m[5]) * m[10] - double(m[6]) * m[9], y = double(m[6]) * m[8] - double(m[4]) * m[10],
                  z = double(m[4]) * m[9] - double(m[5]) * m[8];
     return m[0] * x + m[1] * y + m[2] * z < 0;
 }
 
-// The float at or below a number, and at or above it.
+// The largest float that is not above a number; below, the smallest that is not below it.
 float round_down(double value) {
     const auto nearest = static_cast<float>(value);
     return nearest <= value ? nearest : std::nextafter(nearest, -INFINITY);
@@ -175,13 +176,14 @@ float round_up(double value) {
     return -round_down(-value);
 }
 
-// The box of a mesh's group in the world. It holds the triangles where rays meet them. Kernels transform each ray with
-// object_from_world, in float: where large coordinates cancel, triangles seem to be moved by that rounding, so the box grows by
-// a bound on it (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section 3.9): gamma(n) = n u / (1 - n u) of the sum
-// of the absolute terms, u = 2^-24 and n = 8: one rounding in the inverse, three in the origin, three in the direction, one in
-// the difference between corner and origin. The terms are those of a ray that starts no farther from the world's origin than
-// the box reaches. A ray that starts at a greater distance d is off by a few u d, which is no more than the rounding of its
-// direction.
+// Returns the world-space box of a mesh's group as kernels see it.
+//
+// Kernels transform each ray with object_from_world, in float. Where large coordinates cancel, this rounding seems to move the
+// triangles. So the box grows by a bound on the rounding (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section
+// 3.9): gamma(n) = n u / (1 - n u) times the sum of the absolute terms, with u = 2^-24 and n = 8. There is one rounding in the
+// inverse, three in the origin, three in the direction, and one in the difference of corner and origin. The terms are those of
+// a ray that starts no farther from the world's origin than the box reaches. A ray that starts at a larger distance d has an
+// error of a few u d, which is no more than the rounding of its direction.
 rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, const Affine& object_from_world,
                       rt_u32 index) {
     constexpr double kRounding = 8 * 0x1p-24, kGamma = kRounding / (1 - kRounding);
@@ -217,11 +219,11 @@ rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world
     return prim;
 }
 
-// Where each mesh will stand. One that is placed once is flattened into the world: a tree of its own would only lengthen the
-// way of each ray. One that is mirrored is not, since its triangles would turn their outsides in.
+// How each mesh is placed. A mesh that is placed once is flattened into the world, because rays would only take longer
+// through a tree of its own. A reflected mesh is not flattened, because that would turn its triangles inside out.
 struct Placement {
-    std::vector<Affine> inverse;  // of instances
-    std::vector<bool> flat;       // instances
+    std::vector<Affine> inverse;  // of each instance
+    std::vector<bool> flat;       // for each instance: it is flattened
     std::vector<rt_u32> group_of_mesh;
     rt_u32 group_count = 1;
     uint64_t world_prims = 0, refs = 0;
@@ -294,7 +296,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     out.triangles.resize(refs);
     out.attribute_triangle.resize(refs);
 
-    // Meshes of their own first: instances need their boxes.
+    // Instanced meshes come first, because instances need their boxes.
     rt_u32 next_ref = 0;
     for (size_t m = 0; m < scene.meshes.size(); ++m)
         if (group_of_mesh[m]) {
@@ -309,7 +311,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
         if (!instance.visible) {
-            // Only its numbers are kept free.
+            // It only keeps its range of primitive numbers.
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
             if (!identity) out.flattened.push_back(static_cast<rt_u32>(i));

@@ -19,7 +19,7 @@ AsyncReadback& AsyncReadback::operator=(AsyncReadback&& other) noexcept {
     return *this;
 }
 
-// Memory that a device may still write to is not given back. What became of the picture is of no interest.
+// A device may still be writing to the memory, so wait before giving it back. Whether the picture succeeded no longer matters.
 void AsyncReadback::settle() {
     const cl::Event& last = copied_() ? copied_ : mapped_;
     if (memory_ && last()) clWaitForEvents(1, &last());

@@ -1,4 +1,4 @@
-// async_readback.hpp -- a picture on its way from a device to the host.
+// async_readback.hpp -- a picture that is being copied from a device to the host.
 #pragma once
 #include <CL/opencl.hpp>
 #include <memory>
@@ -11,14 +11,15 @@ namespace clarity {
 
 struct KernelTime;
 
-// May outlive who made it, though not the device's being open.
+// The result of DisplayReadback. It may outlive the DisplayReadback, but not the device's being open. Used from one thread.
 class AsyncReadback {
  public:
     AsyncReadback() = default;
     AsyncReadback(AsyncReadback&& other) = default;
     AsyncReadback& operator=(AsyncReadback&& other) noexcept;
     ~AsyncReadback() { settle(); }
-    // Waits for it; once. Throws Error(failed). times: where given, gains those of tones and copy.
+    // Waits for the picture and returns it. Call it once. Throws Error(failed). If given, `times` gets those of tone mapping
+    // and copy.
     ByteImage wait(std::vector<KernelTime>* times = nullptr);
     explicit operator bool() const { return memory_ != nullptr; }
 
@@ -28,8 +29,8 @@ class AsyncReadback {
     size_t bytes() const { return size_t(width_) * height_ * 4; }
 
     std::shared_ptr<Device> device_;
-    std::shared_ptr<uint8_t> memory_;  // that the device writes to
-    cl::Buffer in_place_;              // a CPU's display, which is that memory
+    std::shared_ptr<uint8_t> memory_;  // the device writes to it
+    cl::Buffer in_place_;              // on a CPU: the display buffer, which uses memory_
     unsigned width_ = 0, height_ = 0;
     cl::Event mapped_, copied_;
 };

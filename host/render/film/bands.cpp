@@ -26,15 +26,16 @@ std::vector<Band> GroupRows::bands() const {
 
 namespace {
 
-// Bands of the first one's height, `step` rows of pixels from one to the next.
+// Bands of equal height at equal distances, in rows of pixels; `band` is the first one.
 struct Row {
     Band band;
     unsigned step = 0;
 };
 
-constexpr unsigned kMostSteps = 16;  // bands between two of a row: devices share pictures by turns of about that length
+// How many bands ahead we look for the second band of a row. Devices that share a picture alternate with about this period.
+constexpr unsigned kMostSteps = 16;
 
-// The longest row that begins with bands[first] and has none that is taken; `in_row`: which are in it.
+// Finds the longest row that begins with bands[first] and uses no taken band. `in_row` gets the indices of its bands.
 Row longest_row(const std::vector<Band>& bands, const std::vector<bool>& taken, size_t first, std::vector<size_t>& in_row) {
     Row best{bands[first]};
     in_row = {first};
@@ -67,7 +68,7 @@ void read_bands(cl::CommandQueue& queue, const cl::Buffer& from, const std::vect
         if (taken[first]) continue;
         const Row row = longest_row(bands, taken, first, in_row);
         const size_t at = row.band.first * row_bytes, bytes = row.band.count * row_bytes, pitch = row.step * row_bytes;
-        // Some drivers want whole rows of the pitch within the buffer.
+        // Some drivers require that every pitch of the region lies completely inside the buffer.
         while (in_row.size() > 1 && (at % pitch + bytes > pitch || (at / pitch + in_row.size()) * pitch > all_bytes))
             in_row.pop_back();
         for (const size_t i : in_row) taken[i] = true;

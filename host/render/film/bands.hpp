@@ -1,4 +1,4 @@
-// bands.hpp -- rows of work-groups as rows of pixels.
+// bands.hpp -- converts rows of work-groups to rows of pixels, and copies these.
 #pragma once
 #include <CL/opencl.hpp>
 #include <vector>
@@ -8,25 +8,26 @@
 
 namespace clarity {
 
+// Consecutive rows of pixels.
 struct Band {
-    unsigned first = 0, count = 0;  // rows of pixels
+    unsigned first = 0, count = 0;  // in rows of pixels
 };
 
-// Those rows of work-groups of a picture that one device has.
+// The rows of work-groups of a picture that one device traces.
 struct GroupRows {
     unsigned width, height;           // of the whole picture, pixels
     unsigned row_height;              // of one row of work-groups, pixels
-    const std::vector<rt_u32>& rows;  // their numbers, in any order
-    // Pixels of a row of work-groups that the picture does not cut off.
+    const std::vector<rt_u32>& rows;  // numbers of the rows, in any order
+    // Pixels in one row of work-groups, including those beyond the bottom of the picture.
     size_t row_pixels() const { return size_t(width) * row_height; }
-    // Pixels of the picture in rows[first] and those after it.
+    // Pixels inside the picture in rows[first] and all entries after it.
     uint64_t pixels(size_t first = 0) const;
-    // The same as rows of pixels, from the top down. Neighbours become one band.
+    // The same rows as rows of pixels, from the top down. Adjacent rows form one band.
     std::vector<Band> bands() const;
 };
 
-// Enqueues copies of these rows of a picture, each from and to its place: bands at even distances together, since a copy costs
-// a GPU's driver 6 us. events: what was enqueued.
+// Enqueues copies of these bands of a picture; each keeps its position. `row_bytes` is the size of a row of pixels. Bands at
+// equal distances share one copy, because each copy costs a GPU's driver 6 us. If given, `events` gets the event of each copy.
 void read_bands(cl::CommandQueue& queue, const cl::Buffer& from, const std::vector<Band>& bands, size_t row_bytes, void* to,
                 std::vector<cl::Event>* events = nullptr);
 

@@ -1,4 +1,4 @@
-// byte_image.hpp -- a picture as a screen shows it, in whoever's memory.
+// byte_image.hpp -- a picture as a screen shows it.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace clarity {
 
-// Bytes that nobody changes any more: copies are the same bytes, and the last one gives their memory back.
+// Immutable bytes of any owner. Copies share the same bytes; the last copy frees them.
 class SharedBytes {
  public:
     SharedBytes() = default;
@@ -32,7 +32,8 @@ class SharedBytes {
     size_t size_ = 0;
 };
 
-struct ByteImage {  // RGBA8, top row first
+// RGBA8, top row first.
+struct ByteImage {
     unsigned width = 0, height = 0;
     SharedBytes pixels;
 };

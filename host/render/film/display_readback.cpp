@@ -19,7 +19,8 @@ cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings
         image.mapped_ = kernels_.map_tones(film.sums, image.in_place_, pixels, settings);
     } else {
         Display& display = displays_[turn_ ^= 1u];
-        if (display.copied()) clWaitForEvents(1, &display.copied());  // long done; if it failed, that is another's affair
+        if (display.copied())
+            clWaitForEvents(1, &display.copied());  // complete since long; its own reader has reported any failure
         const cl::Buffer& tones = display.buffer.fit(device_->context(), room);
         image.mapped_ = kernels_.map_tones(film.sums, tones, pixels, settings);
         const std::vector<cl::Event> after = {image.mapped_};
@@ -27,7 +28,7 @@ cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings
         cl::CommandQueue& copies = aside ? copies_->queue() : device_->queue();
         copies.enqueueReadBuffer(tones, CL_FALSE, 0, image.bytes(), image.memory_.get(), &after, &image.copied_);
         display.copied = image.copied_;
-        device_->queue().flush();  // or the other queue may wait for what is not on its way
+        device_->queue().flush();  // otherwise the other queue waits for commands that are not submitted
         copies.flush();
     }
     tones_ = Tones(settings);

@@ -1,7 +1,8 @@
-// display_readback.hpp -- pictures from a film to the host, one by one or each copied while the next one is traced.
+// display_readback.hpp -- copies pictures from a film to the host.
 //
-// A queue does one thing after the other, so copies beside it have one of their own, which waits for a picture's tones by an
-// event. Displays are double; the memory of the host that they are copied to goes with the picture.
+// A picture may be copied while the next one is traced. A command queue runs one command after the other, so these copies have
+// a queue of their own, which waits for the end of tone mapping by an event. There are two display buffers, used alternately.
+// The host memory of the copy belongs to the picture.
 #pragma once
 #include <memory>
 
@@ -12,22 +13,23 @@
 
 namespace clarity {
 
-// A film of colours.
+// A film of colours. `sums` holds the sums of samples: FilmKernels::room(pixels) float4.
 struct ColorFilm {
-    const cl::Buffer& sums;  // of samples: room(pixels) float4
+    const cl::Buffer& sums;
     unsigned width, height;
 };
 
+// Tone-maps a film and copies the result. Used from one thread.
 class DisplayReadback {
  public:
     DisplayReadback(std::shared_ptr<Device> device, FilmKernels& kernels)
         : device_(std::move(device)), kernels_(kernels), memory_(device_) {}
-    // The film's picture. aside: its copy holds up nothing that is queued later.
+    // Returns the film's picture, which may still be on its way. aside: the copy does not delay work that is queued later.
     AsyncReadback take(const ColorFilm& film, const Settings& settings, bool aside);
-    // Begins with that, behind what is queued: take() of the same film with the same settings then finds it under way. Returns
-    // the last event in the device's own queue.
+    // Starts this work behind the commands that are queued. A later take() of the same film with the same settings returns the
+    // picture begun here. Returns the last event in the device's own queue.
     cl::Event begin(const ColorFilm& film, const Settings& settings, bool aside);
-    // The film is about to be another.
+    // Call this when the film is about to change: take() then starts anew.
     void forget_begun() { begun_ = {}; }
 
  private:
@@ -35,13 +37,14 @@ class DisplayReadback {
         GrowingBuffer buffer{CL_MEM_WRITE_ONLY};
         cl::Event copied;
     };
-    std::shared_ptr<Device> device_, copies_;  // the same by a queue of its own
+    std::shared_ptr<Device> device_, copies_;  // copies_: the same device with a queue of its own
     FilmKernels& kernels_;
     PinnedMemoryPool memory_;
     Display displays_[2];
+    // Index of the display buffer that was used last.
     unsigned turn_ = 0;
     AsyncReadback begun_;
-    Tones tones_;  // of what is begun
+    Tones tones_;  // of begun_
 };
 
 }  // namespace clarity

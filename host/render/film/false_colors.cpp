@@ -10,14 +10,14 @@ namespace clarity {
 namespace {
 
 using Rgb = std::array<uint8_t, 3>;
-using Table = std::array<std::array<uint8_t, 4>, 257>;  // the last: nothing was hit
+using Table = std::array<std::array<uint8_t, 4>, 257>;  // the last entry: nothing was hit
 using Rgb3 = std::array<double, 3>;
 
 uint8_t byte_of(double x) {
     return static_cast<uint8_t>(std::clamp(x, 0.0, 1.0) * 255 + 0.5);
 }
 
-// Ottosson 2020, A perceptual color space for image processing (Oklab), from lightness, chroma and hue to linear RGB.
+// From lightness, chroma and hue to linear RGB: Ottosson 2020, A perceptual color space for image processing (Oklab).
 Rgb3 linear_from_oklch(double lightness, double chroma, double hue) {
     const double a = chroma * std::cos(hue), b = chroma * std::sin(hue);
     const double l = std::pow(lightness + 0.3963377774 * a + 0.2158037573 * b, 3),
@@ -31,9 +31,9 @@ double srgb_from_linear(double x) {
     return x <= 0.0031308 ? 12.92 * x : 1.055 * std::pow(x, 1 / 2.4) - 0.055;
 }
 
-// Dark blue, violet, red, orange, pale yellow: lightness rises in even steps, so equal differences of value look equally far
-// apart, with or without colour vision (Kovesi 2015, Good Colour Maps: How to Design Them); the hue only helps to name them.
-// The chroma is most of what sRGB has for that lightness and hue.
+// Dark blue, violet, red, orange, pale yellow. Lightness rises in even steps, so that equal differences in value look equal,
+// with or without colour vision (Kovesi 2015, Good Colour Maps: How to Design Them). The hue only helps to name the colours.
+// The chroma is nearly the largest that sRGB has for this lightness and hue.
 Table make_heat() {
     Table map;
     constexpr double kDegree = 3.14159265358979 / 180;
@@ -52,7 +52,7 @@ Table make_heat() {
     return map;
 }
 
-// Near is bright, and what is hit is never quite black.
+// Near surfaces are bright. A hit is never completely black.
 Table make_gray() {
     Table map;
     for (int i = 0; i < 256; ++i) map[i].fill(byte_of(1 - 0.9 * i / 255.0));
@@ -69,7 +69,7 @@ const Table& entries(FalseColorScale::Map map) {
     return map == FalseColorScale::Map::gray ? gray : heat;
 }
 
-// lowbias32 (Wellons 2018): neighbouring numbers get unlike colours.
+// lowbias32 (Wellons 2018): adjacent numbers get different colours.
 uint32_t hash(uint32_t x) {
     x ^= x >> 16;
     x *= 0x7feb352du;
@@ -103,7 +103,7 @@ void paint(const FloatImage& values, uint8_t* rgba, Color&& color) {
 }  // namespace
 
 std::array<uint8_t, 3> color_at(const FalseColorScale& scale, float position) {
-    // Written so that NaN, too, has a colour.
+    // A NaN fails the comparison and gets the colour of 0.
     const auto& entry = entries(scale.map)[position > 0 ? static_cast<size_t>(std::min(position, 1.0f) * 255 + 0.5f) : 0];
     return {entry[0], entry[1], entry[2]};
 }
@@ -114,7 +114,7 @@ FalseColorScale scale_of(const FloatImage& values, const std::string& name, floa
     const bool share = aov.range == Aov::Range::share;
     if (scale.map == FalseColorScale::Map::none || (share && !(most > 0))) return scale;
     float low = INFINITY, high = -INFINITY;
-    for (const float value : values.pixels) {  // no branch, so that it runs on vectors; NaN and infinity drop out
+    for (const float value : values.pixels) {  // no branch, so that it vectorises; NaN and infinity do not count
         low = value < low ? value : low;
         const float finite = value < INFINITY ? value : -INFINITY;
         high = finite > high ? finite : high;

@@ -1,4 +1,4 @@
-// false_colors.hpp -- pictures of quantities that are no colours.
+// false_colors.hpp -- paints AOVs that are not colours.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,14 +9,14 @@
 
 namespace clarity {
 
-// sRGB of the bar at a position, 0 = min to 1 = max.
+// Returns the sRGB colour of the scale at `position`, 0 = min to 1 = max.
 std::array<uint8_t, 3> color_at(const FalseColorScale& scale, float position);
 
-// The scale that false_colors() would choose. most: value at the upper end; 0: the largest of the picture.
+// Returns the scale that suits these values. most: value at the upper end; 0: the picture's largest.
 FalseColorScale scale_of(const FloatImage& values, const std::string& aov, float most = 0);
 
-// t: near is bright; prim, instance: a colour a number; normal: xyz to rgb; uv: to red and green; counts and shares: dark blue
-// to yellow. What was not hit is black.
+// Paints the values. t: near is bright. prim, instance: one colour for each number. normal: xyz to rgb. uv: to red and green.
+// Counts and shares: dark blue to yellow. Pixels without a hit are black.
 ByteImage false_colors(const FloatImage& values, const std::string& aov, const FalseColorScale& scale);
 
 }  // namespace clarity

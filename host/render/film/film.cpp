@@ -14,16 +14,16 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kSumBytes = 4 * sizeof(uint64_t);  // each as two uints, the low half first
-constexpr unsigned kSummersPerUnit = 2048;          // work-items that a GPU's unit has at a time
+constexpr size_t kSumBytes = 4 * sizeof(uint64_t);  // four sums of two uints each, low half first
+constexpr unsigned kSummersPerUnit = 2048;          // work-items that run on a GPU's compute unit at the same time
 
-// As film.cl numbers them.
+// The numbers that film.cl uses.
 cl_uint number_of_tone(const std::string& tone) {
     static const std::map<std::string, cl_uint> numbers = {{"linear", 0}, {"reinhard", 1}, {"aces", 2}, {"agx", 3}};
     return numbers.at(tone);
 }
 
-// Vectors of pixels that a row of work-groups touches at most. A row that is no whole number of vectors begins within one.
+// Upper bound of the vectors of pixels in a row of work-groups. A row that is no whole number of vectors may begin inside one.
 size_t quads_touched(size_t row_pixels) {
     constexpr size_t each = FilmKernels::kPixelsAtOnce;
     return row_pixels % each == 0 ? row_pixels / each : (row_pixels + 2 * (each - 1)) / each;
@@ -60,7 +60,7 @@ FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), memo
     });
 }
 
-// Sums may be on their way hither.
+// An asynchronous read of the sums may still be writing to our memory: wait for it.
 FilmKernels::~FilmKernels() {
     if (sums_read_()) clWaitForEvents(1, &sums_read_());
 }

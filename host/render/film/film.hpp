@@ -1,4 +1,4 @@
-// film.hpp -- kernels after tracing: sums over counters, tones for a screen.
+// film.hpp -- kernels that run after tracing: sums of ray counters, tone mapping, sums of layers.
 #pragma once
 #include <functional>
 #include <memory>
@@ -10,11 +10,11 @@
 
 namespace clarity {
 
-// Reads what is no colour and paints it in false ones. stats, scale: where given, gain the times and what the colours mean.
+// Calls `read` and paints the result in false colours. If given, `stats` gets the times and `scale` the meaning of the colours.
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
                       FrameStats* stats, FalseColorScale* scale);
 
-// What a film of colours is shown with.
+// The settings that tone mapping depends on.
 struct Tones {
     double exposure = 0;
     std::string tone;
@@ -23,37 +23,40 @@ struct Tones {
     bool operator==(const Tones& other) const { return exposure == other.exposure && tone == other.tone; }
 };
 
+// Sums over all work-items.
 struct RayCounts {
     uint64_t shadow = 0, secondary = 0, dropped = 0, overflowed = 0;
 };
 
+// Owns these kernels and their buffers on one device. Used from one thread; the functions below may throw cl::Error.
 class FilmKernels {
  public:
-    // The film is read and the display written by whole vectors of this many pixels, so both have room for them.
+    // Kernels read the film and write the display in vectors of this many pixels, so both buffers are padded to whole vectors.
     static constexpr size_t kPixelsAtOnce = 4;
     static size_t room(size_t pixels) { return (pixels + kPixelsAtOnce - 1) / kPixelsAtOnce * kPixelsAtOnce; }
 
     // Throws Error(kernel_build_failed).
     explicit FilmKernels(std::shared_ptr<Device> device);
     ~FilmKernels();
-    // The width of each of the four numbers that are counted: 32 bits of a packet (trace_iterative), 64 bits of all that a
-    // work-group has traced (trace_wavefront).
+    // The width of each of the four counters: 32 bits for a packet (trace_iterative), 64 bits for everything that a work-group
+    // has traced (trace_wavefront).
     enum class CounterWidth { bits32, bits64 };
-    // Enqueues sums over so many counters of four numbers each; returns the last event. The sums have 64 bits.
+    // Enqueues 64-bit sums over `count` counters of four numbers each. Returns the last event.
     cl::Event begin_sum(const cl::Buffer& counters, unsigned count, CounterWidth width);
-    // Waits for them.
+    // Waits for the sums and returns them; `time` becomes that of the kernel.
     RayCounts end_sum(KernelTime& time);
-    // Enqueues the tones of a film, room(pixels) float4, sums of samples, into a display of room(pixels) * 4 bytes.
+    // Enqueues tone mapping of a film (room(pixels) float4, sums of samples) into a display of room(pixels) * 4 bytes.
     cl::Event map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings);
-    // Enqueues adding layers (rt_types.h) to these rows of the film. adds: 0: anew.
+    // Enqueues adding `count` layers (rt_types.h) to these rows of the film. adds: false starts the film anew.
     cl::Event add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds, const GroupRows& rows);
-    // Enqueues the tones of these rows alone, each to its place in the picture: rgba, 4 * pixels bytes. Returns the last event.
+    // Enqueues tone mapping of these rows and their copy into the whole picture: rgba, 4 * pixels bytes. Returns the last
+    // event.
     cl::Event begin_rows(const cl::Buffer& film, const GroupRows& rows, const Settings& settings, uint8_t* rgba);
-    // Waits for them and adds what they took.
+    // Waits for the rows and appends their times.
     void end_rows(std::vector<KernelTime>& times);
 
  private:
-    // Arguments that both kernels have.
+    // Sets the arguments that both tone-mapping kernels share.
     static void set_map(cl::Kernel& kernel, const cl::Buffer& film, const cl::Buffer& display, size_t pixels,
                         const Settings& settings);
     cl::Event run(const cl::Kernel& kernel, size_t items);

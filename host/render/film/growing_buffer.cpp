@@ -16,15 +16,15 @@ bool is_cpu(const cl::Context& context) {
     return !devices.empty() && devices[0].getInfo<CL_DEVICE_TYPE>() == CL_DEVICE_TYPE_CPU;
 }
 
-// A CPU's buffers are memory of the host in large pages, which goes back when the device is done with them. A driver's own come
-// in small ones: views of which little is hit do not much more than read rays and write hits or pixels, and a seventh of their
-// time was looking up where those lie.
+// Large buffers of a CPU are host memory in large pages, which is freed when the device has released the buffer. A driver's own
+// memory has small pages. Views with few hits mostly read rays and write hits or pixels, and spent a seventh of their time on
+// page-table look-ups.
 cl::Buffer make_buffer(const cl::Context& context, cl_mem_flags flags, size_t bytes) {
     if (bytes < kLarge || !is_cpu(context)) return {context, flags, bytes};
     std::unique_ptr<AlignedBytes> memory;
     try {
         memory = std::make_unique<AlignedBytes>(bytes, false);
-    } catch (const std::bad_alloc&) {  // the driver has the words for that
+    } catch (const std::bad_alloc&) {  // the driver reports this better
         return {context, flags, bytes};
     }
     flags = (flags & ~cl_mem_flags{CL_MEM_ALLOC_HOST_PTR}) | CL_MEM_USE_HOST_PTR;
@@ -39,7 +39,7 @@ cl::Buffer make_buffer(const cl::Context& context, cl_mem_flags flags, size_t by
 const cl::Buffer& GrowingBuffer::fit(const cl::Context& context, size_t bytes) {
     bytes = std::max<size_t>(bytes, 256);
     if (bytes > bytes_) {
-        buffer_ = cl::Buffer();  // first, so that both need not fit at once
+        buffer_ = cl::Buffer();  // first, so that both buffers need not fit at the same time
         bytes_ = 0;
         buffer_ = make_buffer(context, flags_, bytes);
         bytes_ = bytes;

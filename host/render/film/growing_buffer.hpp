@@ -1,13 +1,15 @@
-// growing_buffer.hpp -- device memory whose content need not outlive a change of size.
+// growing_buffer.hpp -- a device buffer that grows on demand and then loses its content.
 #pragma once
 #include <CL/opencl.hpp>
 
 namespace clarity {
 
+// Used from one thread.
 class GrowingBuffer {
  public:
     explicit GrowingBuffer(cl_mem_flags flags) : flags_(flags) {}
-    // At least so many bytes; what was in it is lost if they are more than before. Never empty: no device takes that.
+    // Returns a buffer of at least `bytes`, and at least 256, since OpenCL does not allow empty buffers. If the buffer must
+    // grow, its content is lost. Throws cl::Error.
     const cl::Buffer& fit(const cl::Context& context, size_t bytes);
     const cl::Buffer& get() const { return buffer_; }
 

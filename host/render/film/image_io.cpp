@@ -1,4 +1,4 @@
-// Codecs are the libraries' (stb, OpenEXR); PFM is a header and the floats themselves.
+// Libraries encode PNG (stb) and EXR (OpenEXR). PFM is a header followed by the floats.
 #include "render/film/image_io.hpp"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 #include "base/error.hpp"
 #include "base/output_file.hpp"
 
-// Static: the window links the stb library too.
+// Static, because the window links the stb library too.
 #define STB_IMAGE_WRITE_STATIC
 #define STB_IMAGE_WRITE_IMPLEMENTATION
 #define STBI_WRITE_NO_STDIO
@@ -43,30 +43,30 @@ Format format_of(const std::string& path) {
 void check_ending(const std::string& path) {
     const Format format = format_of(path);
     if (format == Format::unknown)
-        throw Error(Exit::usage, "`" + path + "`: its ending names no picture format; use .png, .exr or .pfm");
+        throw Error(Exit::usage, "`" + path + "`: its ending is not a picture format; use .png, .exr or .pfm");
 #ifndef CLARITY_HAVE_OPENEXR
     if (format == Format::exr)
         throw Error(Exit::usage, "`" + path +
-                                     "`: this build cannot write EXR: OpenEXR was not there when it was configured; "
+                                     "`: this build cannot write EXR: OpenEXR was missing when it was configured; "
                                      "install libopenexr-dev and build again, or write .pfm");
 #endif
 }
 
-// The caller's mistake, found before it becomes a read beyond the end.
+// Checks the caller's image, so that a wrong size does not become a read beyond its end.
 void check_size(const std::string& path, unsigned width, unsigned height, unsigned channels, size_t found) {
     const size_t expected = size_t(width) * height * channels;
     if (expected == 0 || found != expected)
         throw Error(Exit::failed, path + ": not written: a picture of " + std::to_string(width) + "x" + std::to_string(height) +
                                       " pixels with " + std::to_string(channels) + " channels has " + std::to_string(expected) +
-                                      " values, and " + std::to_string(found) + " came");
+                                      " values, but " + std::to_string(found) + " were given");
 }
 
 void write_png(const std::string& path, const ByteImage& image) {
     check_size(path, image.width, image.height, 4, image.pixels.size());
     const size_t pixels = size_t(image.width) * image.height;
     if (pixels > kPngMaxPixels)
-        throw Error(Exit::failed, path + ": a PNG of more than " + std::to_string(kPngMaxPixels) +
-                                      " pixels is beyond its encoder; write .exr or .pfm");
+        throw Error(Exit::failed, path + ": not written: the PNG encoder cannot write more than " +
+                                      std::to_string(kPngMaxPixels) + " pixels; write .exr or .pfm");
     bool opaque = true;
     for (size_t i = 0; i < pixels && opaque; ++i) opaque = image.pixels[4 * i + 3] == 255;
     const int channels = opaque ? 3 : 4;
@@ -78,7 +78,7 @@ void write_png(const std::string& path, const ByteImage& image) {
     OutputFile file(path);
     struct Sink {
         OutputFile& file;
-        std::exception_ptr failure;  // may not cross C
+        std::exception_ptr failure;  // an exception must not pass through the C library
     } sink{file, nullptr};
     const auto append = [](void* context, void* data, int bytes) {
         Sink& to = *static_cast<Sink*>(context);
@@ -101,7 +101,7 @@ void write_pfm(const std::string& path, const FloatImage& image) {
         throw Error(Exit::failed,
                     path + ": not written: PFM holds 1 or 3 channels, this picture has " + std::to_string(image.channels));
     OutputFile file(path);
-    // A negative scale says little endian.
+    // A negative scale means little endian.
     const std::string head = std::string(image.channels == 3 ? "PF" : "Pf") + "\n" + std::to_string(image.width) + " " +
                              std::to_string(image.height) + "\n-1.0\n";
     file.write(head.data(), head.size());
@@ -123,7 +123,7 @@ void write_pfm(const std::string& path, const FloatImage& image) {
 }
 
 #ifdef CLARITY_HAVE_OPENEXR
-// Into our file, so that a full disk is reported as for every other format.
+// Collects the file in memory. We then write it as every other format, so that a full disk is reported in the same way.
 class ExrStream : public Imf::OStream {
  public:
     ExrStream(const std::string& name, std::string& bytes) : Imf::OStream(name.c_str()), bytes_(bytes) {}
@@ -157,7 +157,7 @@ std::string encode_exr(const std::string& path, const FloatImage& image) {
     std::string bytes;
     ExrStream stream(path, bytes);
     {
-        Imf::OutputFile file(stream, header);  // writes its table of lines when it is destroyed
+        Imf::OutputFile file(stream, header);  // its destructor writes the line table
         file.setFrameBuffer(frame);
         file.writePixels(static_cast<int>(image.height));
     }

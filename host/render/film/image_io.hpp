@@ -1,4 +1,4 @@
-// image_io.hpp -- pictures to files: PNG (8 bit, sRGB), EXR and PFM (float). Files appear whole or not at all.
+// image_io.hpp -- writes pictures to files: PNG (8 bit, sRGB), EXR and PFM (float). A file appears completely or not at all.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace clarity {
 
-// width x height pixels of `channels` floats, top row first.
+// width x height pixels of `channels` floats each, top row first.
 struct FloatImage {
     unsigned width = 0, height = 0, channels = 0;
     std::vector<float> pixels;
@@ -17,15 +17,15 @@ struct FloatImage {
 // The PNG encoder counts bytes in an int.
 inline constexpr uint64_t kPngMaxPixels = 1u << 27;
 
-// By the ending of `path`: .png (written from `display`), .exr or .pfm (from `values`: 1 or 3 channels; +inf and -1 exact).
-// Writes to a temporary file in the same folder, then renames. Throws Error(failed) naming file and reason; Error(usage) for
-// another ending.
+// Writes a picture in the format of the path's ending: .png from `display`; .exr or .pfm from `values` (1 or 3 channels; +inf
+// and -1 are exact). Writes a temporary file in the same folder, then renames it. Throws Error(failed) with file and reason,
+// and Error(usage) for another ending.
 void write_image(const std::string& path, const FloatImage& values, const ByteImage& display);
-// Whether write_image takes this path's picture from `display`; the other one may then be empty.
+// Whether write_image() uses `display` for this path. The other image may then be empty.
 bool writes_display(const std::string& path);
-// Throws Error(usage) early, before any work: unknown ending, folder missing or not writable.
+// Throws Error(usage) if the ending is unknown or the folder is missing or not writable. Call it before any work.
 void check_output_path(const std::string& path);
-// "out_####.png", 12 -> "out_0012.png".
+// Inserts the frame's number: "out_####.png", 12 -> "out_0012.png".
 std::string frame_path(const std::string& pattern, int frame);
 
 }  // namespace clarity

@@ -9,14 +9,14 @@
 namespace clarity {
 namespace {
 
-// Pictures come back one by one as newer ones are shown; more at a time are left over from something else.
+// Blocks return one by one as newer pictures are displayed. If more are free, they are left over from an earlier use.
 constexpr size_t kShelved = 2;
 
 }  // namespace
 
 struct PinnedMemoryPool::Block {
     AlignedBytes plain;
-    cl::Buffer pinned;  // or this
+    cl::Buffer pinned;  // used instead of `plain` on devices other than CPUs
     cl::CommandQueue queue;
     uint8_t* bytes = nullptr;
     size_t room = 0;
@@ -27,7 +27,7 @@ struct PinnedMemoryPool::Block {
         if (!pinned() || !bytes) return;
         try {
             queue.enqueueUnmapMemObject(pinned, bytes);
-        } catch (const cl::Error&) {  // the device is lost, and the memory with it
+        } catch (const cl::Error&) {  // the device is lost, and this memory with it
         }
     }
 };
@@ -61,7 +61,7 @@ std::shared_ptr<uint8_t> PinnedMemoryPool::lend(size_t bytes) {
         const std::lock_guard<std::mutex> lock(shelf_->mutex);
         auto& blocks = shelf_->blocks;
         if (blocks.size() > kShelved) blocks.resize(kShelved);
-        if (!blocks.empty() && blocks.back()->room < bytes) blocks.clear();  // all are too small by and by
+        if (!blocks.empty() && blocks.back()->room < bytes) blocks.clear();  // the others are too small as well
         if (!blocks.empty()) {
             block = std::move(blocks.back());
             blocks.pop_back();

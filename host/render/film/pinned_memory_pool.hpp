@@ -1,4 +1,4 @@
-// pinned_memory_pool.hpp -- memory of the host that a device writes to without a detour.
+// pinned_memory_pool.hpp -- host memory that a device can write to directly.
 #pragma once
 #include <CL/opencl.hpp>
 #include <memory>
@@ -7,14 +7,14 @@
 
 namespace clarity {
 
-// A GPU copies into pinned memory at 55 GB/s over PCIe 5, into any other at 10 to 20: the driver then copies once more, and who
-// asks for it waits. To pin takes milliseconds, so memory that comes back is lent again. A CPU writes to any memory, and gets
-// plain one, which does not keep its context open.
+// A GPU copies into pinned memory at 55 GB/s over PCIe 5. Into other memory it copies at 10 to 20 GB/s, because the driver
+// copies a second time while the caller waits. Pinning takes milliseconds, so returned memory is lent again. A CPU can write to
+// any memory. It gets unpinned memory, which does not keep the device's context open.
 class PinnedMemoryPool {
  public:
-    explicit PinnedMemoryPool(std::shared_ptr<Device> device);  // nullptr: as for a CPU
-    // So many bytes at least, with anything in them. They come back with the last copy, of whatever thread, and may outlive
-    // this.
+    explicit PinnedMemoryPool(std::shared_ptr<Device> device);  // nullptr: unpinned memory, as for a CPU
+    // Returns at least `bytes` bytes with undefined content. The memory returns to the pool with its last copy, on any thread.
+    // It may outlive the pool.
     std::shared_ptr<uint8_t> lend(size_t bytes);
 
  private:
@@ -23,7 +23,7 @@ class PinnedMemoryPool {
     std::unique_ptr<Block> make(size_t bytes);
 
     std::shared_ptr<Device> device_;
-    std::shared_ptr<Shelf> shelf_;  // what is not lent
+    std::shared_ptr<Shelf> shelf_;  // blocks that are not lent
 };
 
 }  // namespace clarity

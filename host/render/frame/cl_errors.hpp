@@ -1,4 +1,4 @@
-// cl_errors.hpp -- an OpenCL failure as a sentence.
+// cl_errors.hpp -- turns OpenCL errors into messages, and events into times.
 #pragma once
 #include <CL/opencl.hpp>
 
@@ -7,7 +7,8 @@
 
 namespace clarity {
 
-// Does the work; a cl::Error becomes Error(failed) that says what was being done, and on which device.
+// Calls `work` and returns its result. A cl::Error becomes Error(failed), which names the action (`doing`), the device, the
+// failed OpenCL function and its code.
 template <class Work>
 auto wrap_cl_errors(const Device& device, const char* doing, Work&& work) {
     try {
@@ -19,8 +20,8 @@ auto wrap_cl_errors(const Device& device, const char* doing, Work&& work) {
     }
 }
 
-// From one event's start to the other's end, by the device's clock. NVIDIA's driver does not always know these times at once
-// where two queues of a device are in use, nor always at all: then it is `otherwise`.
+// Time in ms from the start of `first` to the end of `last`, by the device's clock. NVIDIA's driver does not always know these
+// times at once if two queues of a device are in use, and sometimes never: the result is then `otherwise`.
 inline double span_ms(const cl::Event& first, const cl::Event& last, double otherwise = 0) {
     cl_ulong begin = 0, end = 0;
     for (const bool waited : {false, true}) {
@@ -32,7 +33,7 @@ inline double span_ms(const cl::Event& first, const cl::Event& last, double othe
     return otherwise;
 }
 
-// How long the device worked on it.
+// Time in ms that the device spent on one event.
 inline double event_ms(const cl::Event& event, double otherwise = 0) {
     return span_ms(event, event, otherwise);
 }

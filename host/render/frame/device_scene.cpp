@@ -9,9 +9,9 @@
 namespace clarity {
 namespace {
 
-constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two looks at progress
+constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two progress reports
 
-// One buffer to be made, and what it is to hold.
+// A buffer to be made, and its content.
 struct Content {
     MemoryPiece piece;
     const void* data;
@@ -22,8 +22,8 @@ Content content(const char* what, const std::vector<T>& data) {
     return {{what, data.size() * sizeof(T)}, data.data()};
 }
 
-// Read-only buffers of a device. On a CPU they are the host's own memory; elsewhere they are filled piece by piece from it, for
-// a driver that is given all at once may copy all of it on the host first.
+// Makes read-only buffers. On a CPU they are the host's own memory. On other devices they are filled piece by piece, because a
+// driver that gets everything at once may first copy all of it on the host.
 class Uploader {
  public:
     Uploader(Device& device, const std::vector<Content>& contents, Progress& progress)
@@ -32,7 +32,7 @@ class Uploader {
     }
 
     cl::Buffer upload(const Content& content) {
-        static const char nothing[256] = {};  // no device takes empty buffers
+        static const char nothing[256] = {};  // OpenCL does not allow empty buffers
         const uint64_t bytes = content.piece.bytes;
         try {
             if (bytes == 0)
@@ -52,9 +52,9 @@ class Uploader {
         } catch (const cl::Error& e) {
             throw Error(Exit::failed, "no room on " + device_.info().name + " for the " + content.piece.what + " (" +
                                           memory_text(bytes) + " of " + memory_text(total_) +
-                                          " that the scene takes; the device has " + memory_text(device_.info().global_bytes) +
-                                          ", for everyone who uses it): OpenCL error " + std::to_string(e.err()) +
-                                          "; close what else uses it, or take fewer triangles");
+                                          " that the scene needs; the device has " + memory_text(device_.info().global_bytes) +
+                                          " in all, shared with other programs): OpenCL error " + std::to_string(e.err()) +
+                                          "; close other programs that use the device, or use a scene of fewer triangles");
         }
     }
 
@@ -63,12 +63,12 @@ class Uploader {
  private:
     Device& device_;
     Progress& progress_;
-    cl::CommandQueue queue_;  // its own: frames may go on in the device's
+    cl::CommandQueue queue_;  // its own, so that frames continue in the device's queue
     uint64_t total_ = 0, done_ = 0;
 };
 
-// Normals of vertices in the space where their triangles stand: those of flattened meshes go by the inverse transpose, as those
-// of instances do in the kernels, but for a factor that keeps their lengths near what they were, however large the scale.
+// Returns the vertex normals in the space of their triangles. Normals of flattened meshes are transformed by the inverse
+// transpose, as kernels do for instances. A factor keeps their lengths near the original for any scale.
 std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build) {
     std::vector<float> normals = scene.normals;
     for (const uint32_t i : build.flattened) {
@@ -135,7 +135,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         (i < before_lights ? before_lights_ : slots_).push_back(uploader.upload(contents[i]));
     bytes_ = uploader.total();
     if (device.info().cpu) return;
-    // Copies that only the upload needed.
+    // Only the upload needed these copies.
     attributes_ = {};
     normals_ = {};
 }

@@ -1,4 +1,4 @@
-// device_scene.hpp -- a scene in one structure as buffers of a device.
+// device_scene.hpp -- the device buffers of a scene in one structure.
 #pragma once
 #include <CL/opencl.hpp>
 #include <memory>
@@ -11,14 +11,15 @@
 
 namespace clarity {
 
-// Immutable once made. On a CPU the buffers are the host's own memory, which it keeps alive.
+// Immutable. On a CPU the buffers are the host's own memory, and this object keeps that memory alive.
 class DeviceScene {
  public:
-    // Uploads piece by piece. Throws Error(failed) with the numbers where it does not fit, Cancelled.
+    // Uploads piece by piece and reports progress. Throws Error(failed) with the sizes if the scene does not fit, and
+    // Cancelled.
     DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel, Progress& progress);
 
-    // Sets the context's arguments from `first` on (see kernel_source.cpp for their order); lights come from the frame, and
-    // materials where it brings its own.
+    // Sets the kernel's scene arguments from number `first` on (kernel_source.cpp has their order). `lights` comes from the
+    // frame. If given, `materials` replaces the scene's materials.
     void bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials = nullptr) const;
     uint64_t bytes() const { return bytes_; }
 
@@ -27,9 +28,9 @@ class DeviceScene {
     std::shared_ptr<const AccelData> accel_;
     std::vector<rt_material> materials_;
     std::vector<rt_triangle> attributes_;
-    std::vector<float> normals_;  // in place of the scene's, where meshes were moved
+    std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
     std::vector<cl::Buffer> before_lights_, slots_;
-    size_t materials_at_ = 0;  // in before_lights_
+    size_t materials_at_ = 0;  // index in before_lights_
     uint64_t bytes_ = 0;
 };
 

@@ -28,7 +28,7 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     if (!normalize(w)) w = {0, 0, -1};
     Vec3 up{camera.up[0], camera.up[1], camera.up[2]};
     Vec3 u = cross(w, up);
-    if (!normalize(u)) {  // looking straight along up: any horizontal right will do
+    if (!normalize(u)) {  // the camera looks along `up`: any perpendicular right will do
         u = cross(w, std::fabs(w[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 0, 1});
         normalize(u);
     }
@@ -58,8 +58,8 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     frame.sample = sample;
     frame.adds = sample > 0;
     frame.layers = 1;
-    // Sample 0 is the pixel's centre; the others follow the R2 sequence (Roberts 2018, The Unreasonable Effectiveness of
-    // Quasirandom Sequences), whose every beginning covers the pixel evenly.
+    // Sample 0 is the pixel's centre. The others follow the R2 sequence (Roberts 2018, The Unreasonable Effectiveness of
+    // Quasirandom Sequences); each prefix of it covers the pixel evenly.
     const double x = 0.5 + sample * 0.7548776662466927, y = 0.5 + sample * 0.5698402909980532;
     frame.within_x = static_cast<float>(x - std::floor(x));
     frame.within_y = static_cast<float>(y - std::floor(y));

@@ -1,4 +1,4 @@
-// frame_renderer.cpp -- the film, and tracing into it.
+// frame_renderer.cpp -- traces samples into the film of one device, and reads it.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -23,7 +23,7 @@
 namespace clarity {
 namespace {
 
-// A packet's distances, block by block, to where its first pixel is.
+// Copies a packet's distances, which are stored block by block, to its pixels in the image.
 void put_packet(const Layout& layout, const float* block, unsigned left, unsigned top, FloatImage& image) {
     const unsigned right = std::min(left + layout.packet_w, image.width),
                    bottom = std::min(top + layout.packet_h, image.height);
@@ -36,14 +36,14 @@ void put_packet(const Layout& layout, const float* block, unsigned left, unsigne
             for (unsigned row = 0; row < height; ++row, to += image.width) {
                 const float* from = block + row * layout.block_w;
                 if (width == 4)
-                    std::memcpy(to, from, 4 * sizeof(float));  // of a size that the compiler knows
+                    std::memcpy(to, from, 4 * sizeof(float));  // a size known at compile time
                 else
                     std::copy_n(from, width, to);
             }
         }
 }
 
-// Rays are stored by groups, packets, blocks and lanes, as rt_packet_origin() and rt_block_pixels() number them.
+// Rays are stored by group, packet, block and lane, in the order of rt_packet_origin() and rt_block_pixels().
 void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const float* stored, FloatImage& image) {
     const unsigned groups_x = layout.groups_x(image.width);
     for (const rt_u32 y : rows)
@@ -54,8 +54,8 @@ void put_in_order(const Layout& layout, const std::vector<rt_u32>& rows, const f
                                (y * layout.group_h + in_y) * layout.packet_h, image);
 }
 
-// Samples that one launch traces: a launch ends as slowly as its slowest rays, of one sample or of many; but it may be
-// cancelled only between launches, and layers take memory.
+// Limits of the number of samples in one launch. Each launch ends with its slowest rays, so fewer launches waste less time. But
+// a launch cannot be cancelled, and each of its samples takes a layer of memory.
 constexpr unsigned kMostAtOnce = 16, kShareOfMemory = 32;
 constexpr double kAtOnceMs = 50;
 
@@ -74,26 +74,29 @@ struct FrameRenderer::Impl {
     GrowingBuffer film{CL_MEM_READ_WRITE | CL_MEM_ALLOC_HOST_PTR}, layers{CL_MEM_READ_WRITE}, counters{CL_MEM_READ_WRITE},
         distances{CL_MEM_READ_WRITE};
     unsigned width = 0, height = 0;
-    const Aov* aov = &aov_table().front();        // what is in the film
-    Layout layout;                                // of the picture in the film
-    std::vector<rt_u32> rows;                     // of work-groups, that are traced; counters and distances are in this order
-    unsigned begun = 0;                           // work-groups of these rows that were traced before
-    std::shared_ptr<const TraceProgram> program;  // whose pace and kernel these are:
+    const Aov* aov = &aov_table().front();  // the quantity in the film
+    Layout layout;                          // of the picture in the film
+    std::vector<rt_u32> rows;               // work-group rows that are traced; counters and distances are stored in this order
+    unsigned begun = 0;                     // work-groups of these rows that earlier calls have traced
+    // The program and scene of `kernel` and of the launcher's pace.
+    std::shared_ptr<const TraceProgram> program;
     std::shared_ptr<const DeviceScene> bound;
     cl::Kernel kernel;
     bool debug = false;
-    OverflowCounter overflows;  // where counts_overflows()
+    OverflowCounter overflows;  // used if counts_overflows()
     Launcher launcher;
+    // Whether and how a picture was displayed: by read_display() or by begin_display().
     enum class Shown { no, read, begun };
-    Shown shown = Shown::no;     // the picture before: then this one will be
-    std::vector<float> scratch;  // kept: fresh pages cost more than what is done with them
+    // How the last picture was displayed. We expect the next one to be displayed in the same way.
+    Shown shown = Shown::no;
+    std::vector<float> scratch;  // kept, because fresh pages cost more than the work on them
 
-    // Waits for all that is queued.
+    // Waits for everything that is queued, then reads.
     void read(const cl::Buffer& buffer, void* out, size_t bytes) {
         device->queue().enqueueReadBuffer(buffer, CL_TRUE, 0, bytes, out);
     }
 
-    // What trace() is asked for.
+    // The arguments of trace().
     struct Picture {
         const Prepared& prepared;
         const Settings& settings;
@@ -127,7 +130,7 @@ struct FrameRenderer::Impl {
             distances.fit(device->context(), layout.packets(width, height) * layout.rays() * sizeof(float));
     }
 
-    // Of `left` samples, how many one launch traces.
+    // How many of the `left` samples the next launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
         const bool parting = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
         if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || !program->has_generations() ||
@@ -143,7 +146,7 @@ struct FrameRenderer::Impl {
         return (left + launches - 1) / launches;
     }
 
-    // Samples [sample, sample + at_once) into the film, or each into a layer.
+    // Traces samples [sample, sample + at_once) into the film, or each into its own layer if there are several.
     LaunchTimes launch(const Picture& picture, unsigned sample, unsigned at_once, const cl::Buffer& into,
                        const Beside& beside) {
         const auto& [prepared, settings, view_of, shared, progress] = picture;
@@ -158,7 +161,7 @@ struct FrameRenderer::Impl {
         std::vector<rt_u32> table;
         if (shared) {
             table = rows;
-            table.resize(layout.groups_y(height));  // so that the buffer does not grow row by row
+            table.resize(layout.groups_y(height));  // full size, so that the buffer does not grow row by row
         }
         view.write(queue, *prepared.scene, frames, view_of, table);
 
@@ -191,7 +194,7 @@ struct FrameRenderer::Impl {
 
     size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
     GroupRows group_rows() const { return {width, height, layout.row_height(), rows}; }
-    // That are traced.
+    // Pixels that this call traces.
     uint64_t pixels() const { return group_rows().pixels(begun / layout.groups_x(width)); }
     cl::Event begin_sum(unsigned samples = 1) {
         using Width = FilmKernels::CounterWidth;
@@ -207,7 +210,7 @@ struct FrameRenderer::Impl {
         stats.dropped = counts.dropped;
         stats.overflowed = counts.overflowed;
     }
-    // Debug programs that trace camera rays alone count nothing else, and that apart from the counters.
+    // Debug programs that trace only camera rays have no ray counters, so they count full stacks separately.
     bool counts_overflows() const { return debug && !program->has_generations(); }
     cl::Event begin_rows(const Settings& settings, uint8_t* rgba) {
         return film_kernels.begin_rows(film.get(), group_rows(), settings, rgba);
@@ -231,7 +234,8 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
     return wrap_cl_errors(*im.device, "tracing", [&] {
         const Impl::Picture picture{prepared, settings, view, shared, progress};
         im.begin(picture);
-        // Who was shown the last picture gets this one by a single wait, not by one for the trace and one for the copy.
+        // If the last picture was displayed, tone mapping and copy are queued right behind the trace, so that the host waits
+        // once instead of twice.
         im.relay.forget_begun();
         const Impl::Shown before = std::exchange(im.shown, Impl::Shown::no);
         const bool show = im.aov->is_color() && !shared && !im.device->info().cpu && before != Impl::Shown::no;
@@ -298,7 +302,7 @@ void FrameRenderer::read_values(FloatImage& image) {
     Impl& im = *impl_;
     wrap_cl_errors(*im.device, "reading the film", [&] {
         const bool color = im.aov->is_color();
-        const size_t stored = size_t(im.width) * im.aov->film_channels();  // floats of a row of pixels
+        const size_t stored = size_t(im.width) * im.aov->film_channels();  // floats in a row of pixels
         if (color) im.scratch.resize(stored * im.height);
         float* const film = color ? im.scratch.data() : image.pixels.data();
         const std::vector<Band> bands = im.group_rows().bands();

@@ -1,13 +1,14 @@
-// frame_stats.hpp -- figures of several samples, or of several devices, as one.
+// frame_stats.hpp -- combines the statistics of several samples or several devices.
 #pragma once
 #include "render/frame/renderer.hpp"
 
 namespace clarity {
 
+// Adds ray counts and launches only.
 void add_rays(FrameStats& sum, const FrameStats& more);
-// Adds up what was traced one after the other; times of kernels by their names.
+// Adds ray counts, launches and times of work that ran one after the other. Times of kernels are added by name.
 void add_stats(FrameStats& sum, const FrameStats& more);
-// Of devices side by side: the slowest's time.
+// Combines times of devices that ran side by side: the slowest device's time counts, by kernel name.
 void merge_times(std::vector<KernelTime>& all, const std::vector<KernelTime>& one);
 
 }  // namespace clarity

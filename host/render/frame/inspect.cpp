@@ -12,7 +12,7 @@
 namespace clarity {
 namespace {
 
-constexpr cl_uint kMostRays = 4096;    // 400 kB; a pixel of a usual picture has fewer than 100
+constexpr cl_uint kMostRays = 4096;    // 400 kB; a pixel of a typical picture has fewer than 100
 constexpr unsigned kSummaryWords = 5;  // as inspect.cl writes them
 
 std::array<float, 3> three(const rt_f32* v) {
@@ -52,7 +52,7 @@ struct Inspector::Impl {
 
     std::shared_ptr<Device> device;
     ProgramCache programs;
-    cl::CommandQueue queue;  // of its own: frames go on in the device's
+    cl::CommandQueue queue;  // its own, so that frames continue in the device's queue
     ViewBuffers view;
     GrowingBuffer records{CL_MEM_READ_WRITE}, summary{CL_MEM_WRITE_ONLY}, distances{CL_MEM_READ_WRITE};
 };

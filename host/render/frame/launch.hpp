@@ -1,4 +1,5 @@
-// launch.hpp -- running a kernel over work-groups in pieces short enough to be cancelled and not to trip a display driver.
+// launch.hpp -- runs a kernel over work-groups in pieces. A piece is short enough to cancel in time and not to trip a display
+// driver.
 #pragma once
 #include <CL/opencl.hpp>
 #include <functional>
@@ -7,35 +8,37 @@
 
 namespace clarity {
 
+// Times in ms by the device's and the host's clock, and the number of launches.
 struct LaunchTimes {
     double device_ms = 0, wall_ms = 0;
     unsigned launches = 0;
 };
 
-// What else is done about a picture that is traced; either may be missing.
+// Work beside the trace of a picture. Either function may be empty.
 struct Beside {
-    std::function<cl::Event()> behind;     // enqueues what is to be done after the last kernel, and returns its last event
-    std::function<void()> while_it_works;  // the host's, once, when the device has its first piece
+    std::function<cl::Event()> behind;     // enqueues work after the last kernel, and returns its last event
+    std::function<void()> while_it_works;  // host work: called once, when the device has its first piece
 };
 
-// Keeps the pace of one kernel, or of several that run one after the other, from launch to launch.
+// Runs one kernel, or several that belong together, and remembers from launch to launch how fast they are.
 class Launcher {
  public:
-    // What was enqueued for one piece: its first and its last kernel.
+    // The first and the last kernel that were enqueued for one piece.
     struct Piece {
         cl::Event first, last;
     };
-    // Runs groups [0, group_count) in pieces of `most` at most, each enqueued by `enqueue`. go_on is asked between pieces and
-    // stops by throwing. What is done behind is waited for with the last piece, and counts in none of the times.
+    // Runs groups [0, group_count) in pieces of at most `most`. `enqueue` enqueues one piece. `go_on` is called between pieces
+    // and stops the run by throwing. The call waits for beside.behind with the last piece; its time is in none of the returned
+    // times.
     LaunchTimes run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
                     const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
                     const Beside& beside = {});
-    // Runs groups [begin, begin + group_count) of `group_size` work-items; argument `first_argument` (a uint) is the number of
-    // a piece's first group. Global offsets stay zero: PoCL compiles a kernel anew for others.
+    // Runs groups [begin, begin + group_count) of `group_size` work-items. Argument `first_argument` (a uint) receives the
+    // number of a piece's first group. The global offset stays zero, because PoCL compiles a kernel again for another offset.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
                     unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0, const Beside& beside = {});
     void forget() { pace_.forget(); }
-    // How long so many groups take; infinite where nothing is known.
+    // Expected time of that many groups, in ms; infinite if nothing is known.
     double expected_ms(unsigned groups) const { return pace_.expected_ms(groups); }
 
  private:

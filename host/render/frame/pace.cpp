@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kPieceMs = 200, kFirstPieceMs = 50;
 constexpr unsigned kFirstGroups = 4, kGrowth = 4;
-constexpr double kTellingMs = 5;  // what takes less is mostly the launch itself
+constexpr double kTellingMs = 5;  // shorter pieces mostly measure the launch itself
 
 }  // namespace
 
@@ -24,12 +24,13 @@ unsigned Pace::next(unsigned left, unsigned most) const {
     if (known_ <= 0) groups = std::min(groups, double(last_ > 0 ? last_ * double(kGrowth) : kFirstGroups));
     const auto count = std::clamp(static_cast<unsigned>(std::min(groups, 4e9)), 1u, std::min(left, most));
     const unsigned rest = left - count;
-    return known_ > 0 && rest < count / 2 && count + rest <= most ? left : count;  // no crumbs
+    return known_ > 0 && rest < count / 2 && count + rest <= most ? left : count;  // no small rest
 }
 
 void Pace::took(unsigned groups, double ms) {
     const double at_least = std::max(ms, 1e-3);
-    // A very first launch may hold a compilation, so nothing is learned of it, and nothing is made of it if it was long.
+    // The very first launch may include a compilation, so its time is not used. If it was long, the next piece has the smallest
+    // size.
     const bool first = known_ <= 0 && pieces_++ == 0;
     last_ = first && ms > kFirstPieceMs ? 1 : groups;
     if (first) return;

@@ -1,25 +1,27 @@
-// pace.hpp -- how much of a picture to launch at once.
+// pace.hpp -- how many work-groups to launch at once.
 #pragma once
 
 namespace clarity {
 
-// Drivers that also draw the desktop kill kernels after a second or two, and a launch under way cannot be cancelled: pieces aim
-// at 200 ms, which leaves room for parts of a picture that take longer than others. Nothing is known of a first picture, so its
-// pieces begin small, grow by steps and aim at less; later ones go by the slowest piece of the picture before.
+// Pieces of a picture aim at 200 ms each. Drivers that also draw the desktop kill kernels after one or two seconds, and a
+// running launch cannot be cancelled; 200 ms leaves room for parts of a picture that take longer than others. Later pictures
+// use the pace of the slowest piece of the previous picture. For a first picture nothing is known, so its pieces begin small,
+// grow by a factor and aim at 50 ms.
 class Pace {
  public:
     void forget() { known_ = 0; }
     void begin_picture();
-    // Groups of the next piece: at least 1, at most `left` and `most`.
+    // Returns the number of groups of the next piece: at least 1, at most `left` and `most`.
     unsigned next(unsigned left, unsigned most) const;
+    // Records that a piece of so many groups took `ms`.
     void took(unsigned groups, double ms);
-    // Of so many groups, by what is known; infinite if nothing is.
+    // Expected time of that many groups, in ms; infinite if nothing is known.
     double expected_ms(unsigned groups) const;
     void end_picture();
 
  private:
-    double known_ = 0;  // groups per ms; 0: unknown
-    // Of this picture:
+    double known_ = 0;  // groups per ms, from the previous picture; 0: unknown
+    // Of the current picture: pace of the slowest piece (groups per ms), totals, size of the last piece, number of pieces.
     double slowest_ = 0, all_groups_ = 0, all_ms_ = 0;
     unsigned last_ = 0, pieces_ = 0;
 };

@@ -1,4 +1,4 @@
-// preparer.cpp -- what is slow between settings and frames, and what of it can be kept.
+// preparer.cpp -- the slow steps between settings and frames, and which of their results are kept.
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "render/accel/accel_choice.hpp"
@@ -21,8 +21,8 @@
 namespace clarity {
 namespace {
 
-// Where nothing refracts, no ray parts, and `wavefront` is one launch whose warps fetch pixels as they get free: 1.03 to 1.10
-// times as fast on a GPU. With glass either wins on some scenes: docs/performance.md.
+// Without refraction no ray splits. `wavefront` is then a single launch whose warps fetch new pixels as soon as they are free,
+// which is 1.03 to 1.10 times as fast on a GPU. With refraction it depends on the scene which tracer wins: docs/performance.md.
 std::string tracer_for(const Device& device, const Scene& scene) {
     return device.info().cpu || refracts(scene, {}) ? "iterative" : "wavefront";
 }
@@ -48,8 +48,8 @@ KernelKind kind_for(const Aov& aov) {
     return KernelKind::aov;
 }
 
-// PoCL compiles when a kernel first runs with a work-group size, so the first frame would wait for it: one pixel is traced
-// here, with a queue of its own, while frames go on elsewhere.
+// Runs the kernel on one pixel. PoCL compiles a kernel when it first runs with a work-group size, so the first frame would wait
+// for the compiler. A queue of its own lets frames continue meanwhile.
 void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program, const Prepared& prepared) {
     Device& device = *opened;
     Settings tiny = prepared.settings;
@@ -116,7 +116,7 @@ DeviceInfo Preparer::close_device() {
     programs_.reset();
     device_.reset();
 #ifdef __GLIBC__
-    malloc_trim(0);  // a compiler leaves tens of megabytes of holes
+    malloc_trim(0);  // PoCL's compiler leaves tens of megabytes of free memory in holes
 #endif
     return info_;
 }
@@ -144,7 +144,7 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     const SceneCounts counts = count_scene(*scene);
     check_fits(plan_memory(counts, *scene, *plugin.accel), info_,
                std::to_string(counts.references) + " primitives in " + plugin.id);
-    // A scene that nobody shows any more makes room for the next one.
+    // The last scene is no longer in use elsewhere: free it before the next one is built.
     if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
     progress.stage(std::string("building ") + plugin.id);
     return std::make_shared<AccelData>(build_accel(*scene, plugin, params, progress));
@@ -153,7 +153,7 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                   Progress& progress, std::shared_ptr<const AccelData> built) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose it anew");
+    if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose a device again");
     auto next = std::make_shared<Prepared>();
     next->scene = scene;
     next->settings = resolve(settings, *device_, *scene);

@@ -1,4 +1,4 @@
-// view.cpp -- where a picture is taken from, and what lights it.
+// view.cpp -- the camera and the lights of a picture.
 #include <charconv>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace clarity {
 namespace {
 
-// "1,2,3" -> numbers; empty if it is not a list of finite numbers.
+// "1,2,3" -> numbers; empty if the text is not a list of finite numbers.
 std::vector<float> numbers(const std::string& text) {
     std::vector<float> out;
     const char *at = text.data(), *end = at + text.size();
@@ -47,7 +47,7 @@ Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
                                  (known.empty() ? "it has none" : known) + ")");
 }
 
-// A key light from the upper left behind the camera, and a weaker one from the right: for scenes that bring none.
+// For scenes without lights: a key light from the upper left behind the camera, and a weaker one from the right.
 std::vector<rt_light> default_lights(const Scene& scene, const Camera& camera) {
     const Bounds bounds = scene.bounds();
     const float size = std::max(bounds.empty ? 1.0f : bounds.diagonal(), 1e-6f);

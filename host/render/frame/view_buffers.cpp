@@ -9,8 +9,8 @@ namespace {
 
 void check_materials(const Scene& scene, const std::vector<rt_material>& materials) {
     if (materials.size() != scene.materials.size())
-        throw Error(Exit::failed, "the view brings " + std::to_string(materials.size()) + " materials and the scene has " +
-                                      std::to_string(scene.materials.size()) + ": one for each is needed");
+        throw Error(Exit::failed, "the view has " + std::to_string(materials.size()) + " materials and the scene has " +
+                                      std::to_string(scene.materials.size()) + ": the view needs one for each, or none");
     for (size_t i = 0; i < materials.size(); ++i)
         if (materials[i].texture != RT_NONE && materials[i].texture >= scene.textures.size())
             throw Error(Exit::failed, "material " + std::to_string(i) + " of the view names texture " +
@@ -53,7 +53,7 @@ void ViewBuffers::Part::write(cl::CommandQueue& queue, const void* data, size_t 
 ViewBuffers::Part::~Part() {
     try {
         if (on_its_way_()) on_its_way_.wait();
-    } catch (const cl::Error&) {  // the device is lost: nobody reads any more
+    } catch (const cl::Error&) {  // the device is lost: nothing reads this memory any more
     }
 }
 

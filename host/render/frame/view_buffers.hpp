@@ -1,4 +1,4 @@
-// view_buffers.hpp -- what a view brings to a device with every frame: its numbers, lights and materials.
+// view_buffers.hpp -- device buffers with the data that changes with every frame: frame constants, lights and materials.
 #pragma once
 #include "render/film/growing_buffer.hpp"
 #include "render/frame/device_scene.hpp"
@@ -6,19 +6,24 @@
 
 namespace clarity {
 
+// Reused from frame to frame. Uploads only what has changed. Used from one thread.
 class ViewBuffers {
  public:
-    // Throws Error(failed) if the view's materials do not fit the scene's: kernels look them and their textures up by number.
-    // frames: of each sample that is to be traced at once. rows: of work-groups that a device has of a shared picture;
-    // row_count of them, or more.
+    // Uploads a view.
+    // frames: one for each sample that the next launch traces.
+    // rows: numbers of the work-group rows that a device traces of a shared picture; row_count entries are valid, the rest is
+    // padding.
+    // Throws Error(failed) if the view's materials do not match the scene's, since kernels index materials and textures by
+    // number.
     void write(cl::CommandQueue& queue, const Scene& scene, const std::vector<rt_frame>& frames, const View& view,
                const std::vector<rt_u32>& rows = {});
     const cl::Buffer& frame() const { return frame_.get(); }
-    // The context's arguments, from `first` on.
+    // Sets the scene's arguments of the kernel, from number `first` on.
     void bind(const DeviceScene& scene, cl::Kernel& kernel, cl_uint first) const;
 
  private:
-    // Sends only what has changed, and does not wait for it: either costs as much as a small frame's kernel.
+    // One buffer. Uploads only if the data has changed, and does not wait for the upload: either would cost as much as the
+    // kernel of a small frame.
     class Part {
      public:
         ~Part();
@@ -27,7 +32,7 @@ class ViewBuffers {
 
      private:
         GrowingBuffer buffer_{CL_MEM_READ_ONLY};
-        std::vector<unsigned char> written_;  // read by the device until:
+        std::vector<unsigned char> written_;  // last content; the device may read it until on_its_way_ is complete
         cl::Event on_its_way_;
     };
     Part frame_, lights_, materials_;

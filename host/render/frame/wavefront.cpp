@@ -7,17 +7,17 @@
 namespace clarity {
 namespace {
 
-// As wavefront.cl has them.
+// Sizes as wavefront.cl defines them.
 constexpr size_t kRayBytes = 48, kShareBytes = 24;
 constexpr size_t kControlBytes = 17 * 2 * sizeof(cl_uint);
-// Work-groups that run side by side on a compute unit, or are ready to: 32 warps of 32 on a GPU.
+// Work-groups that a compute unit of a GPU runs or keeps ready: 32 warps of 32.
 constexpr unsigned kGroupsPerUnit = 16;
-// Of a device's memory, what queues may take; on a CPU they should stay in its caches.
+// Queues may take 1 / kShareOfMemory of a device's memory. On a CPU they should stay in its caches.
 constexpr unsigned kShareOfMemory = 8;
 constexpr uint64_t kCpuBytes = 64 << 20;
-constexpr uint64_t kMostRays = 1u << 30;  // as a uint counts, with room for those that find none
+constexpr uint64_t kMostRays = 1u << 30;  // a uint counts them, including those that find no room
 
-// Arguments one after the other.
+// Sets a kernel's arguments one after the other.
 class Arguments {
  public:
     explicit Arguments(cl::Kernel& kernel) : kernel_(kernel) {}
@@ -42,8 +42,7 @@ bool refracts(const Scene& scene, const std::vector<rt_material>& materials) {
                        [&](const Material& material) { return clear(material.values); });
 }
 
-// A level holds as many rays as `ray_slots` says for each pixel, in the mean of all; pieces of the picture are so small that
-// there is room for them.
+// A level's queue holds `ray_slots` rays per pixel on average. A picture is traced in pieces so small that their rays fit.
 Wavefront::Room Wavefront::room_for(const WavefrontFrame& frame) const {
     const Layout& layout = frame.layout;
     if (!refracts(*frame.prepared.scene, frame.view.materials)) return {0, frame.groups, false};

@@ -1,4 +1,4 @@
-// wavefront.hpp -- the host's side of cl/tracers/wavefront.cl: queues on the device, and which kernel follows which.
+// wavefront.hpp -- the host's side of cl/tracers/wavefront.cl: ray queues on the device, and the order of its kernels.
 #pragma once
 #include <memory>
 
@@ -11,8 +11,8 @@
 
 namespace clarity {
 
-// One picture's, or of work-groups [begin, begin + groups) of it. The buffers are the caller's; film and distances are as
-// trace_iterative has them.
+// Work-groups [begin, begin + groups) of one sample of a picture. The caller owns the buffers. Film and distances have the
+// layout that trace_iterative uses.
 struct WavefrontFrame {
     const Prepared& prepared;
     const View& view;
@@ -22,24 +22,25 @@ struct WavefrontFrame {
     const cl::Buffer &film, &distances;
 };
 
-// Whether a ray may part in two: any of a view's materials, or of the scene's where the view has none, is transparent.
+// Whether a ray may split in two: some material of the view is transparent, or of the scene if the view has none.
 bool refracts(const Scene& scene, const std::vector<rt_material>& materials);
 
+// Traces samples with the wavefront tracer. Owns its queues; used from one thread.
 class Wavefront {
  public:
     explicit Wavefront(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // A sample of these pixels. go_on is asked between pieces and stops by throwing.
+    // Traces one sample of these pixels. `go_on` is called between pieces and stops the trace by throwing.
     LaunchTimes trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
                       const std::function<void()>& go_on, const Beside& beside = {});
-    // Of the last sample: shadow, secondary, dropped rays and full stacks of each work-group, 64 bits each.
+    // Counters of the last sample for each work-group: shadow rays, secondary rays, dropped rays, full stacks, 64 bits each.
     const cl::Buffer& counters() const { return counters_.get(); }
     unsigned counter_count() const { return work_groups_; }
 
  private:
-    // How many rays may be put aside at each level, and for how many groups of pixels that is meant.
+    // How many rays a level's queue holds, and for how many groups of pixels that is meant.
     struct Room {
         unsigned rays, groups;
-        bool parting;  // rays may part at all
+        bool parting;  // rays may split
     };
     Room room_for(const WavefrontFrame& frame) const;
     void bind(const WavefrontFrame& frame, const Room& room);
@@ -47,11 +48,11 @@ class Wavefront {
                             unsigned count);
 
     std::shared_ptr<Device> device_;
-    std::shared_ptr<const TraceProgram> program_;  // whose kernels these are
+    std::shared_ptr<const TraceProgram> program_;  // the program of trace_ and add_
     cl::Kernel trace_, add_;
     GrowingBuffer rays_[2] = {GrowingBuffer(CL_MEM_READ_WRITE), GrowingBuffer(CL_MEM_READ_WRITE)};
     GrowingBuffer sums_{CL_MEM_READ_WRITE}, shares_{CL_MEM_READ_WRITE}, counters_{CL_MEM_READ_WRITE};
-    cl::Buffer control_[2];  // a picture's first kernel clears the other one
+    cl::Buffer control_[2];  // a picture's first kernel clears the other one for the next picture
     PingPong turns_;         // of control_
     unsigned work_groups_ = 0;
 };

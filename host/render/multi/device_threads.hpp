@@ -1,4 +1,4 @@
-// device_threads.hpp -- a host thread for each device, so that none waits for another's.
+// device_threads.hpp -- one host thread for each device, so that no device waits for another one's host work.
 #pragma once
 #include <condition_variable>
 #include <exception>
@@ -9,15 +9,16 @@
 
 namespace clarity {
 
+// run() is called from one thread.
 class DeviceThreads {
  public:
-    // The first of `count` is whoever calls run().
+    // The thread that calls run() is the first of `count`; this starts the others.
     explicit DeviceThreads(size_t count);
     ~DeviceThreads();
     DeviceThreads(const DeviceThreads&) = delete;
     DeviceThreads& operator=(const DeviceThreads&) = delete;
 
-    // work(i) for each i below the count, side by side; returns when all are done, with what each threw, null where nothing.
+    // Calls work(i) for each i below the count, in parallel. Returns when all are done, with the exception of each; null: none.
     std::vector<std::exception_ptr> run(const std::function<void(size_t)>& work);
 
  private:
@@ -28,10 +29,10 @@ class DeviceThreads {
     std::vector<std::exception_ptr> thrown_;
     std::mutex mutex_;
     std::condition_variable begun_, done_;
-    unsigned round_ = 0;  // a new number: there is work
+    unsigned round_ = 0;  // a new number means that there is work
     size_t busy_ = 0;
     bool stop_ = false;
-    std::vector<std::thread> threads_;  // last: they see the rest complete
+    std::vector<std::thread> threads_;  // last, because the threads use all members above
 };
 
 }  // namespace clarity

@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr unsigned kMaxTiles = 256;  // about so many: enough to balance devices, and few to keep account of
+constexpr unsigned kMaxTiles = 256;  // approximate limit: enough to balance devices, and few to keep account of
 
 unsigned divided_up(unsigned a, unsigned b) {
     return (a + b - 1) / b;
@@ -52,7 +52,7 @@ bool MultiDeviceFilm::displayed(std::vector<std::vector<KernelTime>>& times) con
     try {
         for (size_t i = 0; i < members_.size(); ++i)
             if (!members_[i].tiles.empty()) members_[i].frames->add_display_times(times[i]);
-    } catch (const Error&) {  // a device is lost, which reading finds out
+    } catch (const Error&) {  // a device is lost; read() will report it
         return false;
     }
     return true;
@@ -75,7 +75,8 @@ void MultiDeviceFilm::fail(Member& member, const Error& error) {
                                    "; the other devices go on without it");
 }
 
-// work(i) on each device that takes part; one that fails is out. Throws Cancelled, and what is no device's failure.
+// Calls work(i) in parallel for each device that takes part. A device that fails takes no further part. Throws Cancelled, and
+// errors that are no failure of a device.
 void MultiDeviceFilm::on_all(const std::function<void(size_t)>& work) {
     const auto thrown = threads_->run([&](size_t i) {
         if (members_[i].works()) work(i);
@@ -101,8 +102,8 @@ void MultiDeviceFilm::on_all(const std::function<void(size_t)>& work) {
 
 void MultiDeviceFilm::read(const std::function<void(size_t, FrameRenderer&)>& work) {
     for (;;) {
-        Progress nobody_cancels;
-        recover(nobody_cancels);
+        Progress never_cancelled;
+        recover(never_cancelled);
         const size_t before = working();
         on_all([&](size_t i) {
             if (!members_[i].tiles.empty()) work(i, *members_[i].frames);
@@ -111,7 +112,7 @@ void MultiDeviceFilm::read(const std::function<void(size_t, FrameRenderer&)>& wo
     }
 }
 
-// A new picture's strips. They begin where every device's rows of work-groups do.
+// Cuts a new picture into tiles of rows. Each tile begins at a work-group row of every device.
 void MultiDeviceFilm::cut() {
     unsigned unit = 1;
     bool alike = true;
@@ -144,7 +145,7 @@ void MultiDeviceFilm::cut() {
     scheduler_->begin(tile_count_, takes_part, alike);
 }
 
-// Whether what is in the films is of such a picture. A device that takes no part any more loses its strips.
+// Whether the films hold samples of such a picture. A device that no longer takes part loses its tiles.
 bool MultiDeviceFilm::goes_on(const MultiPrepared& prepared, const Settings& settings) {
     if (settings.width != settings_.width || settings.height != settings_.height) return false;
     for (Member& member : members_) {
@@ -167,7 +168,7 @@ void MultiDeviceFilm::give(Member& member, const std::vector<unsigned>& tiles) {
     }
 }
 
-// Returns how long it took, ms.
+// Traces the rows that were given to a member. Returns the time, ms by the host's clock.
 double MultiDeviceFilm::trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress,
                                    uint8_t* display) {
     const auto begin = Clock::now();
@@ -178,18 +179,19 @@ double MultiDeviceFilm::trace_rows(Member& member, const Samples& samples, bool 
     return ms_since(begin);
 }
 
+// Runs on the member's thread.
 void MultiDeviceFilm::trace_part(size_t index, const Batch& batch, bool count_rays, Progress& progress) {
     const unsigned sample = batch.sample, end = batch.end;
     Member& member = members_[index];
     const auto woken = Clock::now();
     const auto complete = [&](unsigned done) {
         member.samples = done;
-        // Progress is told by one thread, the caller's.
+        // Only the caller's thread, which is device 0's, reports progress.
         return done == end ||
                (index == 0 ? progress.report(float(done - sample) / float(end - sample)) : !progress.cancelled());
     };
     unsigned first = sample;
-    auto since = batch.begin;  // of all devices: who gets to work late has to have less
+    auto since = batch.begin;  // start time shared by all devices: a device that starts late gets fewer tiles
     if (batch.fresh && scheduler_->dynamic()) {
         for (auto tiles = scheduler_->next(index); !tiles.empty(); tiles = scheduler_->next(index)) {
             give(member, tiles);
@@ -237,7 +239,7 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
     return gathered(ms_since(begin));
 }
 
-// Strips whose owner failed, shared out; all lists are empty if there are none.
+// Distributes the tiles whose owner failed. All lists are empty if there are none.
 std::vector<std::vector<unsigned>> MultiDeviceFilm::orphans() const {
     std::vector<bool> owned(tile_count_);
     for (const Member& member : members_)
@@ -255,7 +257,7 @@ std::vector<std::vector<unsigned>> MultiDeviceFilm::orphans() const {
     return more;
 }
 
-// Traces what failed devices had once more, all samples of it.
+// Traces the tiles of failed devices again, with all samples that are complete elsewhere.
 void MultiDeviceFilm::recover(Progress& progress) {
     for (unsigned complete = samples(); complete > 0;) {
         const std::vector<std::vector<unsigned>> more = orphans();

@@ -1,4 +1,5 @@
-// multi_device_film.hpp -- a picture in the films of several devices: whose strips are whose, and what to do if one fails.
+// multi_device_film.hpp -- a picture in the films of several devices: which device traces which tiles, and what happens if one
+// fails.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -12,21 +13,22 @@
 
 namespace clarity {
 
-// Used from one thread. Devices that fail are out for good; functions throw when none is left.
+// Used from one thread. A device that fails takes no further part. Functions throw its error when no device is left.
 class MultiDeviceFilm {
  public:
-    // Throws what Frames throws, if no device can hold a film.
+    // Throws what FrameRenderer's constructor throws if no device can hold a film.
     explicit MultiDeviceFilm(const Devices& devices);
 
-    // Samples [sample, end). See MultiFrameRenderer::trace(). display: where devices are to bring what is shown of them as soon
-    // as they have it.
+    // Traces samples [sample, end): see MultiFrameRenderer::trace(). display: RGBA8 of the whole picture; if not null, each
+    // device copies its displayed rows there as soon as it is done.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
                      unsigned sample, unsigned end, bool count_rays, Progress& progress, uint8_t* display = nullptr);
-    // Whether they did, with all of the picture; times: of each device, gain what that took.
+    // Whether every device has copied all of its rows to `display`. If so, each device's `times` get those of this work.
     bool displayed(std::vector<std::vector<KernelTime>>& times) const;
-    // That are complete everywhere.
+    // The number of samples that all devices have completed.
     unsigned samples() const;
-    // work(i, frames of device i) on each that has something of the picture, until all of it is done.
+    // Calls work(i, renderer of device i) in parallel for each device that has tiles. Repeats after a failure, until all tiles
+    // are read.
     void read(const std::function<void(size_t, FrameRenderer&)>& work);
 
     size_t size() const { return members_.size(); }
@@ -34,20 +36,21 @@ class MultiDeviceFilm {
     bool works(size_t i) const { return members_[i].works(); }
 
  private:
+    // One device and its part of the picture.
     struct Member {
         std::shared_ptr<Device> device;
-        std::unique_ptr<FrameRenderer> frames;     // null: it failed
-        std::shared_ptr<const Prepared> prepared;  // null: it takes no part
+        std::unique_ptr<FrameRenderer> frames;     // null: the device failed
+        std::shared_ptr<const Prepared> prepared;  // null: the device takes no part
         std::vector<unsigned> tiles;
-        SharedRows rows;  // of work-groups, of these strips
+        SharedRows rows;  // work-group rows of these tiles
         unsigned rows_in_tile = 1, rows_in_picture = 1;
-        unsigned samples = 0;  // complete, of all its strips
+        unsigned samples = 0;  // completed for all its tiles
         FrameStats stats;      // of the last trace()
         double wall_ms = 0;
         bool displayed = false;
         bool works() const { return frames && prepared; }
     };
-    // What trace() is to do, and since when.
+    // The arguments of trace(), and its start time.
     struct Batch {
         std::chrono::steady_clock::time_point begin;
         unsigned sample, end;
@@ -68,13 +71,13 @@ class MultiDeviceFilm {
 
     std::vector<Member> members_;
     std::unique_ptr<TileScheduler> scheduler_;
-    // What is in the films.
+    // The picture in the films.
     std::shared_ptr<const MultiPrepared> prepared_;
     Settings settings_;
     View view_;
     unsigned tile_count_ = 0;
     Error last_failure_{Exit::failed, "no device takes part"};
-    std::unique_ptr<DeviceThreads> threads_;  // last: they go first
+    std::unique_ptr<DeviceThreads> threads_;  // last, so that the threads end first
 };
 
 }  // namespace clarity

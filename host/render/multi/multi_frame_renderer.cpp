@@ -13,16 +13,16 @@
 namespace clarity {
 
 struct MultiFrameRenderer::Impl {
-    std::unique_ptr<FrameRenderer> alone;  // of the only device, which needs nothing of the rest
+    std::unique_ptr<FrameRenderer> alone;  // used if there is only one device; the rest is then unused
     std::unique_ptr<MultiDeviceFilm> shared;
-    // The picture traced last.
+    // The picture that was traced last.
     std::shared_ptr<const MultiPrepared> prepared;
     unsigned width = 0, height = 0;
     unsigned samples = 0;  // of `alone`
     std::unique_ptr<PinnedMemoryPool> memory;
     std::shared_ptr<Device> memory_of;
-    // Of several: who was shown the last picture will be shown this one, so each device brings what is its own as soon as it
-    // has it: to where, and with which tones.
+    // For several devices. If the last picture was displayed, we expect that of the next one too: each device then copies its
+    // displayed rows to `display` as soon as it has traced them, with these tones.
     bool shown = false;
     std::shared_ptr<uint8_t> display;
     Tones display_tones;
@@ -34,7 +34,7 @@ struct MultiFrameRenderer::Impl {
         return image;
     }
 
-    // Room that all devices write to; pinned by the first GPU.
+    // Returns memory that all devices write to. It is pinned by the first GPU that works.
     std::shared_ptr<uint8_t> room(size_t bytes) {
         std::shared_ptr<Device> gpu;
         for (size_t i = 0; i < shared->size() && !gpu; ++i)
@@ -44,13 +44,14 @@ struct MultiFrameRenderer::Impl {
         return gpu ? wrap_cl_errors(*gpu, "reading the picture", [&] { return memory->lend(bytes); }) : memory->lend(bytes);
     }
 
+    // Decides whether and where devices display the picture during trace(); null: they do not.
     uint8_t* place_for_display(const Settings& settings) {
         display = nullptr;
         display_tones = Tones(settings);
         if (!std::exchange(shown, false) || !aov().is_color()) return nullptr;
         try {
             display = room(size_t(width) * height * 4);
-        } catch (const Error&) {  // the device that was to lend it is lost, which tracing finds out
+        } catch (const Error&) {  // the GPU is lost; tracing will report it
         }
         return display.get();
     }

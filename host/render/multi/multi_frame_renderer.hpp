@@ -1,9 +1,9 @@
 // multi_frame_renderer.hpp -- pictures that several devices share.
 //
-// As Frames, and with one device nothing but that. Several trace strips of rows (tile_scheduler.hpp), each into a film of its
-// own, from a host thread of its own, and bring what is theirs into one picture of the host. A pixel is one device's for all
-// samples, so devices of one kind make the picture that one of them makes, bit for bit. One that fails is out, with a warning:
-// the others trace its strips again.
+// With one device this is just a FrameRenderer. Several devices trace tiles (tile_scheduler.hpp), each into a film of its own
+// and from a host thread of its own, and copy their rows into one picture in host memory. One device traces a pixel in all
+// samples. So devices of the same kind produce the picture that one of them would produce, bit for bit. If a device fails, a
+// warning is logged and the other devices trace its tiles again.
 #pragma once
 #include <memory>
 #include <vector>
@@ -12,27 +12,28 @@
 
 namespace clarity {
 
-// Used from one thread.
+// Has the functions of FrameRenderer, for one device or several. Used from one thread.
 class MultiFrameRenderer {
  public:
-    // A device that cannot hold a film is a warning, as long as another can. Throws what Frames throws.
+    // A device that cannot hold a film causes a warning, as long as another can. Throws what FrameRenderer's constructor
+    // throws.
     explicit MultiFrameRenderer(const Devices& devices);
     ~MultiFrameRenderer();
 
-    // Samples [sample, sample + samples) of the picture; the first anew if it is 0. See Frames::trace(); figures are sums over
-    // these samples. Devices wait for each other once, at the end, and GPUs trace many samples in one launch, so that many at a
-    // time, from the first on, are faster than one by one.
+    // Traces samples [sample, sample + samples) of the picture; sample 0 starts it anew. See FrameRenderer::trace(). The
+    // returned figures are sums over these samples. Many samples in one call, from sample 0 on, are faster than one by one:
+    // devices wait for each other once, at the end, and GPUs trace many samples in one launch.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
                      unsigned sample, bool count_rays, Progress& progress, unsigned samples = 1,
                      const std::function<void()>& meanwhile = {});
-    // That are complete, also after a trace() that was cancelled.
+    // The number of complete samples, also after a trace() that was cancelled.
     unsigned samples() const;
 
-    // As Frames has them.
+    // As in FrameRenderer.
     FloatImage read_values();
     FloatImage read_distance();
     ByteImage read_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
-    // Where copies_aside(), which several devices do not: they copy before they go on.
+    // Only if copies_aside(). Several devices do not support this: they copy before they continue.
     AsyncReadback begin_display(const Settings& settings);
     bool copies_aside() const;
 

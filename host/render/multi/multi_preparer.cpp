@@ -69,7 +69,7 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
         prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress)}};
         return prepared;
     }
-    // The roomiest decides whether the scene is built at all: one that it is too large for says so when its turn comes.
+    // The device with the most memory decides whether the scene is built at all. Devices that it is too large for fail below.
     const auto roomiest = std::max_element(
         infos_.begin(), infos_.end(), [](const DeviceInfo& a, const DeviceInfo& b) { return a.global_bytes < b.global_bytes; });
     const std::shared_ptr<const AccelData> built =

@@ -1,4 +1,4 @@
-// multi_preparer.hpp -- what several devices need for one picture: a structure, built once, and a program and buffers on each.
+// multi_preparer.hpp -- prepares a scene for several devices: builds the structure once, compiles and uploads for each device.
 #pragma once
 #include <memory>
 #include <vector>
@@ -9,15 +9,15 @@ namespace clarity {
 
 using Devices = std::vector<std::shared_ptr<Device>>;
 
-// One that cannot be opened is a warning, as long as another can. Throws Error(no_device) of the first if none can. open: those
-// among them are taken as they are, since one context a device is enough.
+// Opens devices. A device that cannot be opened causes a warning, as long as another can. If none can, throws the first
+// device's Error(no_device). open: devices that are already open; these are reused, so that each has only one context.
 Devices open_devices(const std::vector<DeviceInfo>& infos, const Devices& open = {});
 std::vector<DeviceInfo> infos_of(const Devices& devices);
 
-// "NVIDIA H200", or "2 x NVIDIA H200", "NVIDIA H200 + AMD EPYC"; parts of a CPU are not told apart.
+// "NVIDIA H200", "2 x NVIDIA H200" or "NVIDIA H200 + AMD EPYC". All parts of a CPU count as that CPU.
 std::string devices_name(const std::vector<DeviceInfo>& infos);
 
-// Of the devices that can take part, at least one; of the others a warning was given.
+// The results for the devices that can take part; at least one. The others have caused a warning.
 struct MultiPrepared {
     struct Part {
         std::shared_ptr<Device> device;
@@ -25,14 +25,16 @@ struct MultiPrepared {
     };
     std::vector<Part> parts;
     const std::shared_ptr<const Prepared>& first() const { return parts.front().prepared; }
-    const std::shared_ptr<const Prepared>* of(const std::shared_ptr<Device>& device) const;  // null: it takes no part
+    // Null if the device takes no part.
+    const std::shared_ptr<const Prepared>* of(const std::shared_ptr<Device>& device) const;
 };
 
-// As Preparer, for one device or several.
+// Has the functions of Preparer, for one device or several. Used from one thread.
 class MultiPreparer {
  public:
     MultiPreparer(const PluginRegistry& plugins, const Devices& devices);
-    // What is no fault of one device - a builder, a program that does not compile - is thrown, and so is a failure of all.
+    // As Preparer::prepare(). A device that fails causes a warning, as long as another succeeds. Throws if all devices fail,
+    // and for errors that do not concern a single device, such as a failed build or a program that does not compile.
     std::shared_ptr<const MultiPrepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                  Progress& progress);
     bool needs_reopen() const;
@@ -45,7 +47,7 @@ class MultiPreparer {
     const PluginRegistry& plugins_;
     std::vector<std::unique_ptr<Preparer>> preparers_;
     const std::vector<DeviceInfo> infos_;  // one for each preparer
-    Devices devices_;                      // the same; nullptr: closed
+    Devices devices_;                      // in the same order; nullptr: closed
 };
 
 }  // namespace clarity

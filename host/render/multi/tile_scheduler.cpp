@@ -6,7 +6,7 @@
 namespace clarity {
 namespace {
 
-constexpr double kNewest = 0.5;  // weight of the last picture in what is known of speeds
+constexpr double kNewest = 0.5;  // weight of the last picture in the known shares of speed
 
 }  // namespace
 
@@ -18,7 +18,8 @@ void TileScheduler::begin(unsigned tile_count, const std::vector<bool>& takes_pa
     set_aside_.assign(measured_.size(), {});
     left_.clear();
     const auto taking = static_cast<unsigned>(std::count(takes_part.begin(), takes_part.end(), true));
-    // What is dealt by turns costs a launch each, what is set aside the wait for who had too much.
+    // Each tile that is assigned dynamically costs one launch. Tiles assigned in advance cost nothing, but the slowest device
+    // then decides when the picture is done.
     const bool known = !shares_.empty();
     unsigned few = known ? taking : std::max(taking, alike ? tile_count / 16 : tile_count);
     if (taking < 2 || (known && alike)) few = 0;
@@ -26,11 +27,11 @@ void TileScheduler::begin(unsigned tile_count, const std::vector<bool>& takes_pa
     dynamic_ = !left_.empty();
 }
 
-// The speeds that the picture showed, as shares.
+// Updates the shares from the speeds that the last picture showed.
 void TileScheduler::learn() {
     double sum = 0;
     for (size_t i = 0; i < takes_part_.size(); ++i) {
-        if (takes_part_[i] && measured_[i].speed() <= 0) return;  // too few strips for all, or one failed
+        if (takes_part_[i] && measured_[i].speed() <= 0) return;  // there were too few tiles for all, or one failed
         sum += takes_part_[i] ? measured_[i].speed() : 0;
     }
     if (sum <= 0) return;
@@ -42,7 +43,8 @@ void TileScheduler::learn() {
     }
 }
 
-// Strips go by turns to whoever is furthest behind its share, so that each has some of every part of the picture.
+// Assigns tiles in advance. Each tile goes to the device that is furthest behind its share, so that every device gets tiles
+// from all parts of the picture.
 void TileScheduler::set_aside(unsigned tile_count, unsigned left_over) {
     const size_t nobody = measured_.size();
     std::vector<double> share(nobody + 1), owed(nobody + 1, 0.0);
@@ -85,9 +87,9 @@ std::vector<unsigned> TileScheduler::next(size_t device) {
         double fastest = 0;
         for (size_t i = 0; i < measured_.size(); ++i)
             if (takes_part_[i]) fastest = std::max(fastest, measured_[i].speed());
-        // A slow device would hold up the picture with a strip, when the fastest is done with all of them before.
+        // Give a slow device no tile if the fastest could finish all the rest earlier.
         if (1 / speed > double(left_.size() + 1) / fastest) return {};
-        // Large pieces while there is much, so that launches are few; small ones at the end, where devices must end together.
+        // Large pieces first, so that launches are few. Small pieces at the end, because the devices must end together.
         count = std::max<size_t>(1, size_t(0.5 * share_locked(device) * double(left_.size())));
     }
     std::vector<unsigned> tiles;

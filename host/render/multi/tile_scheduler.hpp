@@ -1,29 +1,31 @@
-// tile_scheduler.hpp -- who traces what of a picture that several devices share.
+// tile_scheduler.hpp -- which device traces which tiles of a shared picture.
 //
-// A picture is cut into strips of rows, and each strip has one owner from the first sample to the last, so that a pixel's
-// samples are added up by one device in their order. In the first sample every device has strips set aside, spread over the
-// picture in proportion to the speeds that the last picture showed; the few that are left go to whoever is free. Nothing is
-// left where devices are of one kind and their speeds known: a launch of a few strips lasts as long as its slowest ray.
+// A picture is cut into tiles, each some rows high and as wide as the picture. A tile has one owner from the first sample to
+// the last, so that one device adds up all samples of a pixel, in order. For the first sample, most tiles are assigned in
+// advance: each device gets tiles from all parts of the picture, in proportion to the speeds measured in earlier pictures. The
+// few remaining tiles are assigned dynamically, to the device that is free. None remain if the devices are of the same kind and
+// their speeds are known, because a launch of a few tiles takes as long as its slowest ray.
 #pragma once
 #include <mutex>
 #include <vector>
 
 namespace clarity {
 
+// next(), took() and share() are thread-safe.
 class TileScheduler {
  public:
     explicit TileScheduler(size_t device_count) : measured_(device_count) {}
 
-    // A new picture for these devices. alike: they are of one kind, so that nothing need be known of their speeds. Not while
-    // others call.
+    // Starts a new picture. takes_part: for each device. alike: these devices are of the same kind, so that most tiles can be
+    // assigned before their speeds are known. Must not run in parallel with other calls.
     void begin(unsigned tile_count, const std::vector<bool>& takes_part, bool alike);
-    // Whether some are left to deal when each device has what is set aside for it.
+    // Whether some tiles are assigned dynamically, after those assigned in advance.
     bool dynamic() const { return dynamic_; }
-    // More strips for a device; none: nothing is left that it would finish before the others do.
+    // Returns more tiles for a device. Empty if none are left that it would finish before the other devices do.
     std::vector<unsigned> next(size_t device);
-    // It took so long for so many strips of one sample.
+    // Reports that a device took `ms` for so many tiles of one sample.
     void took(size_t device, size_t tiles, double ms);
-    // Of the work that devices are given, by what is known; 0: it takes no part.
+    // A device's share of the work by the known speeds, 0 to 1. 0: it takes no part.
     double share(size_t device) const;
 
  private:
@@ -37,10 +39,10 @@ class TileScheduler {
 
     mutable std::mutex mutex_;
     std::vector<Measured> measured_;  // in this picture
-    std::vector<double> shares_;      // by the pictures before, of those that took part; empty: not known
+    std::vector<double> shares_;      // of speed, from earlier pictures of the same devices; empty: not known
     std::vector<bool> takes_part_;
     std::vector<std::vector<unsigned>> set_aside_;
-    std::vector<unsigned> left_;  // for whoever is free, the last first
+    std::vector<unsigned> left_;  // assigned dynamically, the last one first
     bool dynamic_ = false;
 };
 

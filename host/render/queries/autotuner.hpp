@@ -1,34 +1,35 @@
-// autotuner.hpp -- an autotuner: tries several ways to do the same work, then uses the fastest.
+// autotuner.hpp -- tries several variants of the same work, then uses the fastest.
 #pragma once
 #include <algorithm>
 #include <array>
 
 namespace clarity {
 
-// The caller asks way(), does the work that way, and reports its time to took().
+// The caller asks way() which variant to run, runs it, and reports its time to took(). Used from one thread.
 //
-// How the choice is made: all ways run in turns, three rounds. The first round is a warm-up (it may include a compilation, and
-// the launcher may cut it into small pieces). The lesser time of the other two rounds counts. A way that is 1.5 times slower
-// than the fastest after its second run is not tried a third time.
+// How the choice is made: all variants run one after the other, in three rounds. The first round is a warm-up (it may include a
+// compilation, and the launcher may cut it into small pieces). The minimum of the other two rounds counts. A variant that is
+// 1.5 times slower than the fastest after its second run is not tried a third time.
 //
-// When the choice is looked at again: the clock of a GPU rises for some tenths of a second once it has work. A choice that was
-// made meanwhile favours the ways that were tried last. So all ways are tried anew (two rounds, without the warm-up)
-// - when three runs one after the other took clearly more or less time (10 %) than the run that the choice was made by. Each
-//   time this happens, twice as many such runs are needed, so that a machine which is never steady does not tune for ever;
+// When the choice is reviewed: the clock of a GPU rises for some tenths of a second after it gets work. A choice that was made
+// meanwhile favours the variants that were tried last. So all variants are tried again (two rounds, without the warm-up)
+// - when three consecutive runs took clearly more or less time (10 %) than the run that decided the choice. Each time this
+//   happens, the number of runs needed doubles, so that a machine which is never steady does not tune for ever;
 // - after 16 uses, then after 64, 256 and so on: this finds a smaller drift, and costs less and less.
-// The present choice stays unless another way takes 3 % less time: smaller differences are noise.
+// The current choice stays unless another variant takes 3 % less time: smaller differences are noise.
 class Autotuner {
  public:
-    // ways: 1 to kMost.
+    // ways: the number of variants, 1 to kMost.
     explicit Autotuner(unsigned ways = 1) : ways_(ways) {
         if (ways_ > 1) try_all(0);
     }
+    // The variant to run next.
     unsigned way() const { return trying() ? at_ : best_; }
-    // True if the next run is a try, which may be of a slow way: a benchmark must not count its time.
+    // True if the next run is a trial, possibly of a slow variant. A benchmark must not count its time.
     bool trying() const { return round_ < kRounds; }
-    // True if a run of the chosen way has confirmed the time that it was chosen by.
+    // True if a run of the chosen variant has confirmed the time that decided the choice.
     bool settled() const { return ways_ == 1 || confirmed_; }
-    // ms: of the run that was done by way().
+    // Reports that the run of variant way() took `ms`.
     void took(double ms) {
         if (ways_ == 1) return;
         if (trying())
@@ -83,10 +84,10 @@ class Autotuner {
     unsigned fastest() const { return static_cast<unsigned>(std::min_element(ms_.begin(), ms_.begin() + ways_) - ms_.begin()); }
 
     unsigned ways_, round_ = kRounds, at_ = 0, best_ = 0;
-    unsigned uses_ = 0, look_again_ = 16;    // since the choice; and after how many it is looked at again
-    unsigned unlike_ = 0, most_unlike_ = 3;  // runs in a row that took another time than expected
+    unsigned uses_ = 0, look_again_ = 16;    // uses since the choice, and the number of uses after which it is reviewed
+    unsigned unlike_ = 0, most_unlike_ = 3;  // consecutive runs that took another time than expected, and their limit
     bool confirmed_ = false;
-    double worth_a_third_ = 0;  // ms; slower ways are not tried a third time
+    double worth_a_third_ = 0;  // ms; slower variants are not tried a third time
     std::array<double, kMost> ms_{};
 };
 

@@ -6,9 +6,9 @@ namespace clarity {
 namespace {
 
 constexpr unsigned kGroupSize = 64;
-constexpr unsigned kGroupsPerUnit = 14;  // that run side by side on a compute unit; an H200's take 14
-// Rays that a work-item draws at a time: two where there are so many that drawing, one atomic a warp, takes longer than the
-// last to be done makes the others wait.
+constexpr unsigned kGroupsPerUnit = 14;  // work-groups that run at the same time on a compute unit; an H200's runs 14
+// Rays that a work-item fetches at a time. A fetch costs a warp one atomic operation. With many rays these operations cost more
+// than the wait for the last rays at the end, so that a work-item then fetches two.
 constexpr unsigned kManyEach = 1024 / 32;
 
 }  // namespace

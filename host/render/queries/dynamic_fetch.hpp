@@ -1,5 +1,5 @@
-// dynamic_fetch.hpp -- nearest hits of the caller's own rays, which work-items draw as they get free
-// (cl/queries/dynamic_fetch.cl).
+// dynamic_fetch.hpp -- nearest hits of the caller's own rays. Persistent work-items fetch a new ray whenever they are free
+// (cl/queries/dynamic_fetch.cl; Aila, Laine 2009, Understanding the Efficiency of Ray Traversal on GPUs).
 #pragma once
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/launch.hpp"
@@ -10,12 +10,15 @@
 
 namespace clarity {
 
+// The host's side of these kernels. Used from one thread.
 class DynamicFetch {
  public:
     explicit DynamicFetch(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // program: of kind queued_rays. overflows: cleared, if it is a debug program.
+    // Traces `rays` rays of `in` and writes their answers, `fields` numbers a ray (RT_ANSWER_*), to `out`.
+    // program: of kind KernelKind::dynamic_fetch. overflows: already cleared if it is a debug program. Throws cl::Error.
     LaunchTimes trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
                       cl_uint fields, const cl::Buffer& in, const cl::Buffer& out, OverflowCounter& overflows);
+    // Call this when the program, the scene or the rays change: the pace is then no longer known.
     void forget() { launcher_.forget(); }
 
  private:

@@ -1,29 +1,29 @@
-// ping_pong.hpp -- two sets of counters on a device, which launches use in turn.
+// ping_pong.hpp -- two sets of counters on a device, used by alternate launches.
 #pragma once
 #include <CL/opencl.hpp>
 
 namespace clarity {
 
-// A launch counts in one set and clears the other for the next, which spares a command. One that could not be enqueued leaves
-// anything in them.
+// Each launch counts in one set and clears the other for the next launch, which saves a command. After a failed launch the
+// content of both sets is undefined.
 class PingPong {
  public:
-    // turn: 0 or 1, the set that enqueue(turn) uses; clear(turn), if need be before, makes it zeroes. Passes on what they
-    // throw.
+    // Calls enqueue(turn), where `turn` (0 or 1) is the set to use. If that set may not be zero, calls clear(turn) first.
+    // Passes on exceptions of both.
     template <class Clear, class Enqueue>
     void take(const Clear& clear, const Enqueue& enqueue) {
         if (!clean_) clear(turn_);
-        clean_ = false;  // unless all goes well
+        clean_ = false;  // stays false if enqueue() throws
         enqueue(turn_);
         turn_ ^= 1u;
         clean_ = true;
     }
-    // The sets are in another buffer now.
+    // Call this when the sets have moved to another buffer: their content is then undefined.
     void forget() { clean_ = false; }
 
  private:
     cl_uint turn_ = 0;
-    bool clean_ = false;  // the set of this turn is
+    bool clean_ = false;  // the set of this turn is zero
 };
 
 }  // namespace clarity

@@ -9,7 +9,7 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kChunk = 16384;  // rays of one task; a multiple of all lane counts
+constexpr size_t kChunk = 16384;  // rays in one task; a multiple of all lane counts
 static_assert(sizeof(rt_ray) == RT_RAY_FIELDS * sizeof(float) && sizeof(rt_hit) == RT_ANSWER_ALL * sizeof(float),
               "rays and hits are fields of four bytes");
 
@@ -25,7 +25,8 @@ RayBlocks::RayBlocks(const std::vector<rt_ray>& rays, unsigned lanes) : ray_coun
     static std::atomic<uint64_t> packings{0};
     packing_ = ++packings;
     floats_.resize(block_count() * lanes * RT_RAY_FIELDS);
-    // Places beyond the last ray repeat it, but see nothing: packets judge their rays by neighbours that are alike.
+    // Lanes behind the last ray repeat it, so that packets still find their rays similar, but with an empty interval that hits
+    // nothing.
     for_chunks(block_count() * lanes, [&](size_t first, size_t end) {
         for (size_t i = first; i < end; ++i) {
             rt_ray ray = rays[std::min(i, rays.size() - 1)];

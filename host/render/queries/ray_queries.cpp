@@ -7,7 +7,8 @@
 namespace clarity {
 namespace {
 
-// Whether a warp agrees by votes (cl/lanes/subgroup.h); tests without a GPU see what it would do.
+// Whether to use the kernels that trace the rays of a warp together (cl/lanes/subgroup.h). With `portable` each work-item runs
+// them alone, so that tests without a GPU cover these kernels too.
 bool votes(const DeviceInfo& info, const Settings& settings) {
     return (info.nvidia && !info.pocl) || settings.portable;
 }
@@ -54,7 +55,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const Layout& layout = prepared.layout;
         if (rays.lanes() != layout.lanes)
             throw Error(Exit::failed, "the rays are packed for " + std::to_string(rays.lanes()) +
-                                          " lanes and the program has " + std::to_string(layout.lanes) + ": pack them anew");
+                                          " lanes and the program has " + std::to_string(layout.lanes) + ": pack them again");
         const bool unplaced = layout.lanes == 1 && prepared.accel->scene.instances.empty();
         const cl_uint fields = query.count     ? RT_ANSWER_ALL
                                : query.any_hit ? RT_ANSWER_OCCLUSION
@@ -82,7 +83,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         view_.write(queue, *prepared.scene, {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
         const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));
         const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
-        // Before every run, though it be the same again: then a CPU's caches are as warm each time.
+        // We upload before every run, even if the rays are unchanged. A CPU's caches are then equally warm each time.
         queue.enqueueWriteBuffer(in, CL_TRUE, 0, rays.floats().size() * sizeof(float), rays.floats().data());
         const bool debug = prepared.settings.debug;
         if (debug) overflows_.clear(queue);

@@ -1,4 +1,4 @@
-// ray_queries.hpp -- rays of the caller's own through the traversals that pictures use.
+// ray_queries.hpp -- traces the caller's own rays with the traversals that pictures use.
 #pragma once
 #include <map>
 #include <tuple>
@@ -16,14 +16,16 @@
 
 namespace clarity {
 
+// Ray queries on one device, and the choice of the fastest kernel for them. Used from one thread.
 class RayQueries {
  public:
     explicit RayQueries(std::shared_ptr<Device> device)
         : device_(device), programs_(device), requeued_rays_(device), dynamic_fetch_(device) {}
-    // Returns what the kernel took, ms by the device's clock. hits: null: the answers stay on the device. Throws Error(failed)
-    // if the rays were packed for other lanes. A debug program whose traversal stacks were full is an error in the log.
+    // Traces the rays and returns the kernel's time, ms by the device's clock. If `hits` is null, the answers stay on the
+    // device. Throws Error(failed) if the rays were packed for another number of lanes. If traversal stacks of a debug program
+    // were full, this is logged as an error.
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
-    // How the last trace() was done.
+    // How the last trace() ran.
     RayTuning tuning() const { return tuning_; }
 
  private:
@@ -31,15 +33,15 @@ class RayQueries {
                               bool any_hit, cl_uint fields, const cl::Buffer& in, const cl::Buffer& out);
 
     std::shared_ptr<Device> device_;
-    ProgramCache programs_;  // counting and plain ones
+    ProgramCache programs_;  // of all kinds of kernels for ray queries
     ViewBuffers view_;
-    std::map<KernelKind, Launcher> launchers_;  // of ways that are one launch
+    std::map<KernelKind, Launcher> launchers_;  // for variants of one launch
     RequeuedRays requeued_rays_;
     DynamicFetch dynamic_fetch_;
-    // A pace is that of one program on one scene, with which what is short is one launch.
+    // What the launchers' pace depends on. If it stays the same, a short query is a single launch.
     struct Asked {
         std::shared_ptr<const DeviceScene> scene;
-        std::shared_ptr<const TraceProgram> program;  // of pictures: it goes with the settings
+        std::shared_ptr<const TraceProgram> program;  // the program of pictures: it changes with the settings
         size_t blocks = 0;
         bool any_hit = false, count = false, brief = false;
         bool operator==(const Asked& o) const {
@@ -48,12 +50,12 @@ class RayQueries {
         }
     };
     Asked last_;
-    // The fastest way is that of the same rays: mirrored ones may want another than diffuse ones.
+    // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.
     uint64_t packing_ = 0;
     std::vector<KernelKind> kinds_;
     Autotuner way_;
     RayTuning tuning_;
-    OverflowCounter overflows_;  // of debug programs
+    OverflowCounter overflows_;  // used for debug programs
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
 };
 

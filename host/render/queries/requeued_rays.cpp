@@ -7,8 +7,8 @@
 namespace clarity {
 namespace {
 
-constexpr unsigned kGroupSize = 64;          // of trace_short
-constexpr unsigned kLongGroupsPerUnit = 16;  // that run side by side on a compute unit, or are ready to
+constexpr unsigned kGroupSize = 64;          // of kernel trace_short
+constexpr unsigned kLongGroupsPerUnit = 16;  // work-groups that run at the same time on a compute unit, or are ready to
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// requeued_rays.hpp -- rays of the caller's own in two launches: those that take long in one of their own
-// (cl/queries/requeued_rays.cl).
+// requeued_rays.hpp -- traces the caller's own rays in two launches. The first stops rays that exceed a step budget
+// and lists them. The second traces each of these with several work-items side by side (cl/queries/requeued_rays.cl).
 #pragma once
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/launch.hpp"
@@ -10,12 +10,15 @@
 
 namespace clarity {
 
+// The host's side of these kernels. Used from one thread.
 class RequeuedRays {
  public:
     explicit RequeuedRays(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // program: of kind long_rays. overflows: cleared, if it is a debug program.
+    // Traces `rays` rays of `in` and writes their answers, `fields` numbers a ray (RT_ANSWER_*), to `out`.
+    // program: of kind KernelKind::requeued_rays. overflows: already cleared if it is a debug program. Throws cl::Error.
     LaunchTimes trace(const Prepared& prepared, const TraceProgram& program, const ViewBuffers& view, unsigned rays,
                       bool any_hit, cl_uint fields, const cl::Buffer& in, const cl::Buffer& out, OverflowCounter& overflows);
+    // Call this when the program, the scene or the rays change: the pace is then no longer known.
     void forget() { launcher_.forget(); }
 
  private:

@@ -1,5 +1,5 @@
-// aov.hpp -- what a picture may show: its colours, or another quantity of each pixel (AOV: arbitrary output variable). One
-// table: names, help, the kernel, what is in the film and how it is read and shown all follow from a row.
+// aov.hpp -- the quantities that a picture may show: its colours, or another quantity of each pixel (AOV: arbitrary output
+// variable). Each is one row of a table. Names, help, kernel, film format and display all follow from that row.
 #pragma once
 #include <string>
 #include <vector>
@@ -8,42 +8,45 @@
 
 namespace clarity {
 
+// One row of the table.
 struct Aov {
-    // Which program makes it: the tracer; the iterative tracer, counting generations; or cl/tracers/aov.cl.
+    // The program that computes it: the chosen tracer; the iterative tracer, counting generations; or cl/tracers/aov.cl.
     enum class Program { color, generations, camera_rays };
-    // What a pixel of the film is. colors: sums of r, g, b and their number; numbers: an int in the bits of a float, -1: none.
+    // The format of a film's pixel. colors: sums of r, g, b and the number of samples. numbers: the bits of an int, -1: none.
+    // vectors: three floats. distances, amounts: one float.
     enum class Film { colors, distances, amounts, numbers, vectors };
-    // How values become colours. tones: exposure and tone mapping. scale: along the colour bar. hash: a colour a number.
-    // direction: x, y, z to r, g, b. texture: u, v to r, g.
+    // How values become colours. tones: exposure and tone mapping. scale: a position on the colour bar. hash: one colour for
+    // each number. direction: x, y, z to r, g, b. texture: u, v to r, g.
     enum class Paint { tones, scale, hash, direction, texture };
-    // The scale's ends. measured: the least and the largest value. counts: from scale.min to the largest. share: 0 to 1.
+    // The ends of the scale. measured: the smallest and the largest value. counts: from scale.min to the largest value. share:
+    // 0 to 1.
     enum class Range { measured, counts, share };
-    // What it tells of, for the help text.
+    // What the quantity describes, for the help text.
     enum class About { color, first_hit, cost };
 
-    const char* name;  // as in --aov, and in capitals in aov.cl: RT_AOV_NAME
+    const char* name;  // as in --aov; aov.cl has it in capitals: RT_AOV_NAME
     const char* help;
     About about;
     Program program;
     Film film;
     Paint paint;
-    bool counts_steps = false;  // needs a program that counts nodes and primitives, which is slower
+    bool counts_steps = false;  // needs a slower program, which counts nodes and primitives
     Range range = Range::measured;
-    FalseColorScale scale = {};  // but for the ends that the picture decides
+    FalseColorScale scale = {};  // without the ends, which depend on the picture
 
     bool is_color() const { return film == Film::colors; }
-    // Floats a pixel: in the film, and in a picture of its values.
+    // Floats for each pixel: in the film, and in an image of its values.
     unsigned film_channels() const { return film == Film::colors ? 4 : film == Film::vectors ? 3 : 1; }
     unsigned value_channels() const { return film == Film::colors || film == Film::vectors ? 3 : 1; }
 };
 
-// The first is the default.
+// All AOVs. The first is the default.
 const std::vector<Aov>& aov_table();
-// A name of the table. Throws std::out_of_range for others: settings hold none.
+// Returns the row of that name. Throws std::out_of_range for unknown names, which settings never contain.
 const Aov& find_aov(const std::string& name);
-// RT_AOV_T, RT_AOV_LEAF_TESTS: what kernels call it. Its value is its number in the table.
+// Returns the name of the macro that kernels use: RT_AOV_T, RT_AOV_LEAF_TESTS. Its value is the row's number in the table.
 std::string kernel_macro(const Aov& aov);
-// The names in the table's order, and one sentence that describes them all.
+// Returns the names in the table's order, and one sentence that describes them all.
 std::vector<std::string> aov_names();
 std::string aov_help();
 

@@ -32,7 +32,7 @@ std::vector<std::string> split(const std::string& text, char at) {
     return parts;
 }
 
-// `count` numbers, commas between them.
+// Reads `count` numbers with commas between them.
 void read_floats(const std::string& key, const std::string& text, float* values, size_t count, const char* expected) {
     const std::vector<std::string> parts = split(text, ',');
     bool good = parts.size() == count;
@@ -44,7 +44,8 @@ void read_camera(Camera& camera, const std::string& text) {
     constexpr const char* expected = "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz";
     float n[10];
     read_floats("camera", text, n, 10, expected);
-    // A field of view that came from radians must come back bit by bit: floats of degrees are too coarse for that.
+    // A field of view in radians must survive the conversion to degrees and back exactly: float degrees are too coarse for
+    // that.
     double fov = 0;
     if (!read_number(split(text, ',')[6], fov) || fov <= 0 || fov >= 180)
         refuse("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
@@ -83,7 +84,7 @@ void read_light(EditedView& edited, const std::string& key, const std::string& v
     if (light.kind == RT_LIGHT_DIRECTIONAL) {
         const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
         if (!(length > 0)) refuse(key, value, "a direction: it has no length");
-        // A unit vector stays as it is, bit by bit.
+        // A unit vector must stay exactly as it is.
         if (std::fabs(length - 1) > 1e-6f)
             for (int k = 0; k < 3; ++k) n[k] /= length;
     }
@@ -98,7 +99,7 @@ void read_light(EditedView& edited, const std::string& key, const std::string& v
         lights[at] = light;
 }
 
-// Parts of a material by name.
+// The parts of a material that an edit may set, by name. `most` is the largest value allowed.
 struct MaterialPart {
     const char* name;
     size_t offset, count;

@@ -1,15 +1,16 @@
-// false_color_scale.hpp -- what the false colours of a picture mean.
+// false_color_scale.hpp -- the meaning of a picture's false colours.
 #pragma once
 #include <string>
 
 namespace clarity {
 
-// What the colours of a picture mean, for a colour bar beside it.
+// The data of a colour bar.
 struct FalseColorScale {
-    enum class Map { none, gray, heat };  // none: a colour says no amount, so there is no bar (color, prim, normal, ...)
+    // none: colours do not stand for amounts, so there is no bar (color, prim, normal, ...).
+    enum class Map { none, gray, heat };
     Map map = Map::none;
-    float min = 0, max = 1;   // values at the two ends of the bar; beyond them the end's colour
-    bool whole = false;       // a count: numbers between are none
+    float min = 0, max = 1;   // values at the two ends of the bar; values beyond them get the end's colour
+    bool whole = false;       // the quantity is a count: only whole numbers occur
     std::string label, unit;  // "Node visits", "per packet"
 };
 

@@ -15,17 +15,18 @@ using Json = nlohmann::ordered_json;
 
 const rt_plugin* accel_of(const PluginRegistry& plugins, const std::string& id, const std::string& name) {
     if (const rt_plugin* plugin = plugins.accel(id)) return plugin;
-    throw Error(Exit::usage, name + ": it wants the acceleration structure `" + id + "`, which is not among the plugins");
+    throw Error(Exit::usage,
+                name + ": it needs the acceleration structure `" + id + "`, but no plugin has this id: see `clarity plugins`");
 }
 
-// "max_leaf=4" -> key and value.
+// Returns a parameter's key and value: "max_leaf=4".
 Word parameter_word(const rt_plugin& plugin, const ParameterValues& values, size_t index) {
     const std::string text = parameter_text(plugin, values, index);
     const size_t equals = text.find('=');
     return {text.substr(0, equals), text.substr(equals + 1)};
 }
 
-// Of a JSON object all of whose values are strings.
+// Reads the members of a JSON object. Values that are not strings are taken as JSON text.
 std::vector<Word> words_of(const Json& object, const std::string& name, const std::string& what) {
     if (!object.is_object()) throw Error(Exit::usage, name + ": `" + what + "` is no object");
     std::vector<Word> words;
@@ -36,7 +37,7 @@ std::vector<Word> words_of(const Json& object, const std::string& name, const st
     return words;
 }
 
-// As a shell takes it for one word.
+// Quotes a text so that a shell takes it for one word.
 std::string shell_word(const std::string& text) {
     static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
     if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
@@ -60,7 +61,7 @@ std::string preset_json(const PluginRegistry& plugins, const Preset& preset) {
     }
     json["settings"] = Json::object();
     for (const Setting& row : settings_table()) json["settings"][row.key] = row.get(preset.settings);
-    // An array: a light that is set and then switched off has two words of one key.
+    // An array, because a light that is set and then switched off has two edits with the same key.
     json["edits"] = Json::array();
     for (const Word& word : preset.edits) json["edits"].push_back({word.key, word.value});
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";

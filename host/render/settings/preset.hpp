@@ -1,4 +1,4 @@
-// preset.hpp -- all that makes a picture of a scene, as JSON: settings, structure, device, view. Also as words of a command
+// preset.hpp -- everything that determines a picture of a scene: settings, structure, device, view. As JSON, or as a command
 // line.
 //
 //   {"clarity_preset": 1, "device": "0:0", "accel": {"id": "bvh2", "max_leaf": "4"}, "settings": {"depth": "4", ...},
@@ -13,20 +13,24 @@
 
 namespace clarity {
 
+// The contents of a preset.
 struct Preset {
-    std::string device;       // "": any
-    Settings settings;        // accel_params filled in
-    std::vector<Word> edits;  // for the scene that is open; see edit.hpp
+    std::string device;       // "": the default device
+    Settings settings;        // with accel_params filled in
+    std::vector<Word> edits;  // of the scene that is open; see edit.hpp
 };
 
+// Returns the preset as JSON text.
 std::string preset_json(const PluginRegistry& plugins, const Preset& preset);
-// Throws Error(usage) naming `name`, the key and what is allowed; an unknown key is an error, a missing one the default.
+// Reads JSON text. Missing keys keep their defaults; an unknown key is an error. Throws Error(usage), which names `name`, the
+// key and what is allowed.
 Preset parse_preset(const PluginRegistry& plugins, const std::string& json, const std::string& name);
+// Writes and reads a preset file. save_preset() throws Error(failed), load_preset() Error(usage), as parse_preset() does.
 void save_preset(const PluginRegistry& plugins, const Preset& preset, const std::string& path);
 Preset load_preset(const PluginRegistry& plugins, const std::string& path);
 
-// `clarity render FILES... -o OUT ...`: what makes this picture again, quoted for a shell. What stands at its default is left
-// out.
+// Returns the command that renders this picture again: `clarity render FILES... -o OUT ...`, quoted for a shell. Settings at
+// their defaults are left out.
 std::string render_command(const PluginRegistry& plugins, const Preset& preset, const std::vector<std::string>& files,
                            const std::string& output);
 

@@ -114,12 +114,12 @@ Setting lanes_setting() {
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
         choice("tracer", "Tracer",
-               "iterative: each packet goes through its generations of rays by itself; wavefront: rays that part go on side by "
-               "side, by way of queues in the device's memory; auto: wavefront on a GPU if nothing refracts, else iterative",
+               "iterative: a work-item traces all generations of its packet; wavefront: rays that split continue in queues in "
+               "the device's memory; auto: wavefront on a GPU if nothing refracts, else iterative",
                {"auto", "iterative", "wavefront"}, Effect::recompile, &Settings::tracer),
         integer("depth", "Depth", "generations of rays; 1: camera rays only", 1, 16, Effect::frame, &Settings::depth),
         size("packet", "Packet",
-             "pixels that one work-item computes; auto: 1x1 on a GPU, lanes x lanes but 4x4 at least on a CPU", 1, 32, true,
+             "pixels that one work-item computes; auto: 1x1 on a GPU; lanes x lanes, but at least 4x4, on a CPU", 1, 32, true,
              Effect::recompile, &Settings::packet_w, &Settings::packet_h),
         lanes_setting(),
         integer("ray_slots", "Ray slots", "rays that a pixel may have in one generation; more are dropped and counted", 1, 64,

@@ -1,4 +1,4 @@
-// memory_plan_test.cpp -- what a device cannot hold is said before anything is built, with the numbers; sums are of 64 bits.
+// memory_plan_test.cpp -- a scene that does not fit is refused before anything is built, with the sizes. Sums have 64 bits.
 #include "render/accel/memory_plan.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ uint64_t total(const std::vector<MemoryPiece>& pieces) {
     return sum;
 }
 
-// Meshes of so many triangles each, placed as often, without the triangles: only counts are looked at.
+// A scene with meshes of so many triangles each, placed that often. It has no triangles: only the counts are used.
 Scene counted(const std::vector<std::pair<rt_u32, int>>& meshes) {
     Scene scene;
     for (const auto& [triangles, places] : meshes) {
@@ -69,13 +69,13 @@ std::string error_of(const Scene& scene) {
     }
 }
 
-// Says nothing, remembers what was begun.
+// Records the stages that begin.
 struct Stages : Progress {
     std::vector<std::string> seen;
     void stage(const std::string& name) override { seen.push_back(name); }
 };
 
-// One more device like the tests' own, which says that it has less memory.
+// Prepares a scene on a device that claims to have this memory. Returns the error's message; empty: none.
 std::string prepared_on(uint64_t global_bytes, uint64_t max_allocation_bytes, std::vector<std::string>& stages) {
     DeviceInfo info = choose_device("");
     info.global_bytes = global_bytes;
@@ -98,7 +98,7 @@ TEST(MemoryPlan, CountsWhatIsBuiltNotWhatIsSeen) {
     const SceneCounts once = count_scene(counted({{100'000'000, 1}}));
     EXPECT_EQ(once.triangles, 100'000'000u);
     EXPECT_EQ(once.references, 100'000'000u);
-    // A thousand places of one mesh: its triangles once, and a box for each place.
+    // One mesh, placed several times: its triangles count once, and each place has a box.
     const SceneCounts often = count_scene(counted({{100'000'000, 20}, {12, 1}}));
     EXPECT_EQ(often.triangles, 100'000'012u);
     EXPECT_EQ(often.references, 100'000'032u);
@@ -116,7 +116,7 @@ TEST(MemoryPlan, SumsAreOf64Bits) {
 TEST(MemoryPlan, RefusesWithTheNumbers) {
     const std::vector<MemoryPiece> pieces = plan_memory({100'000'000, 100'000'000}, Scene(), bvh4());
     EXPECT_EQ(refusal(pieces, device_of(8 * kGibibyte, 8 * kGibibyte)), "");
-    EXPECT_EQ(refusal(pieces, device_of(0, 0)), "");  // a driver that does not say
+    EXPECT_EQ(refusal(pieces, device_of(0, 0)), "");  // the driver does not know its memory
     const std::string piece = refusal(pieces, device_of(8 * kGibibyte, 2 * kGibibyte));
     for (const char* part :
          {"leaves", "100000000 primitives in bvh4", "4.5 GiB", "2.0 GiB", "Card", "one piece", "fewer triangles"})
@@ -135,7 +135,7 @@ TEST(MemoryPlan, NothingIsBuiltOfWhatDoesNotFit) {
     EXPECT_TRUE(stages.empty()) << stages.front();
     EXPECT_NE(prepared_on(1 << 20, kGibibyte, stages).find("has 1.0 MiB"), std::string::npos);
     EXPECT_TRUE(stages.empty()) << stages.front();
-    // The plan says less than nodes take: found when they are there, and before they are uploaded.
+    // The plan underestimates nodes. The error comes after the build, but before the upload.
     const std::string why = prepared_on(2'450'000, kGibibyte, stages);
     EXPECT_NE(why.find("does not fit"), std::string::npos) << why;
     EXPECT_FALSE(stages.empty());

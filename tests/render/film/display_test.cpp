@@ -1,5 +1,4 @@
-// display_test.cpp -- what becomes of a picture after tracing: tones, false colours and their scale, distances for overlays,
-// times.
+// display_test.cpp -- a picture after tracing: tone mapping, false colours and their scale, distances for overlays, times.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +20,7 @@ ScenePtr primitives() {
     return load_scene(source_file("scenes/primitives.scene"));
 }
 
-// The 8-bit code of a background of this brightness.
+// The 8-bit sRGB code that a background of this colour gets.
 std::array<int, 3> shown(const Settings& settings, const std::array<float, 3>& color) {
     static const ScenePtr empty = shared_scene(scene_of(TriangleMesh()));
     View view = view_from({0, 0, 5}, {0, 0, 0}, 40);
@@ -71,7 +70,7 @@ TEST(Tones, ExposureIsAFactor) {
     EXPECT_EQ(shown(settings, {0.2f, 0.1f, 0.05f}), plain);
 }
 
-// A lamp that grows brighter turns white with AgX, and stays a hue of its own with the clipped curve.
+// A lamp that grows brighter turns white with AgX, and keeps a hue with the clipped curve.
 TEST(Tones, AgxBleachesBrightColors) {
     Settings settings = make_settings({{"size", "1x1"}, {"tone", "agx"}});
     const std::array<int, 3> dim = shown(settings, {0.3f, 0.02f, 0.02f}), bright = shown(settings, {30, 2, 2});
@@ -92,7 +91,7 @@ TEST(Display, IsWhatTheFilmSays) {
         const ByteImage image = bench().frames().read_display(settings, &stats, &scale);
         EXPECT_EQ(scale.map, FalseColorScale::Map::none);
         EXPECT_EQ(image.pixels.size(), size_t(image.width) * image.height * 4);
-        // The same of the rows alone, in memory of the caller's.
+        // The same rows, read into the caller's memory.
         std::vector<uint8_t> memory(image.pixels.size() + 64, 0xAB);
         std::vector<KernelTime> times;
         bench().frames().read_display(settings, memory.data(), times);
@@ -108,7 +107,7 @@ TEST(Display, IsWhatTheFilmSays) {
     }
 }
 
-// A picture stays as it is while others are made, of whatever size; only memory of one that nobody has any more is used again.
+// A picture keeps its content while others of any size are made. Only the memory of a picture that nothing holds is used again.
 TEST(Display, StaysWhileSomebodyHasIt) {
     const char* const eyes[] = {"0,2.5,11,0,2.2,0,50", "3,2.5,9,0,2.2,0,50"};
     std::vector<std::pair<ByteImage, std::vector<uint8_t>>> kept;
@@ -141,7 +140,7 @@ TEST(Display, StaysWhileSomebodyHasIt) {
     EXPECT_TRUE(all_stay());
 }
 
-// The picture's distances are the AOV's, however the picture is cut, and later samples leave them alone.
+// The picture's distances equal those of AOV `t`, whatever the packets and sizes are. Later samples do not change them.
 TEST(Display, DistancesMatchThePicture) {
     const ScenePtr scene = primitives();
     const View view = make_view(*scene, 4.0f / 3, "0,2.5,11,0,2.2,0,50");
@@ -175,7 +174,7 @@ TEST(Display, DistancesMatchThePicture) {
             EXPECT_LT(nothing, t.pixels.size() / 2);
         }
         bench().trace(scene, settings, view, 1);
-        EXPECT_EQ(bench().frames().read_distance().pixels, distance.pixels) << "sample 1 moved them";
+        EXPECT_EQ(bench().frames().read_distance().pixels, distance.pixels) << "sample 1 changed the distances";
     }
     Settings settings = make_settings({{"size", "20x20"}, {"aov", "normal"}});
     bench().trace(scene, settings, view);
@@ -194,7 +193,7 @@ TEST(View, MaterialsOfItsOwn) {
     };
     const std::vector<float> before = picture(scene);
     for (const Material& material : scene->materials) view.materials.push_back(material.values);
-    EXPECT_EQ(picture(scene), before) << "the scene's own, handed over";
+    EXPECT_EQ(picture(scene), before) << "the scene's own materials, given by the view, change the picture";
     auto repainted = std::make_shared<Scene>(*scene);
     for (size_t i = 0; i < view.materials.size(); ++i) {
         view.materials[i].color[i % 3] *= 0.3f;
@@ -203,11 +202,11 @@ TEST(View, MaterialsOfItsOwn) {
     }
     const auto prepared = bench().prepare(scene, settings);
     const std::vector<float> edited = picture(scene);
-    EXPECT_EQ(bench().prepare(scene, settings)->accel, prepared->accel) << "an edit built anew";
+    EXPECT_EQ(bench().prepare(scene, settings)->accel, prepared->accel) << "an edit caused a new build";
     EXPECT_NE(edited, before);
     view.materials.clear();
-    EXPECT_EQ(edited, picture(repainted)) << "not as if the scene had them";
-    EXPECT_EQ(picture(scene), before) << "the edit stayed";
+    EXPECT_EQ(edited, picture(repainted)) << "differs from a scene that has these materials";
+    EXPECT_EQ(picture(scene), before) << "the edit still has an effect";
 
     view.materials.assign(scene->materials.size() + 1, rt_material{});
     EXPECT_THROW(picture(scene), Error);
@@ -215,7 +214,7 @@ TEST(View, MaterialsOfItsOwn) {
     view.materials[0].texture = 1000;
     EXPECT_THROW(picture(scene), Error);
     view.materials.clear();
-    EXPECT_EQ(picture(scene), before) << "a refused view harmed the next";
+    EXPECT_EQ(picture(scene), before) << "a refused view affected the next picture";
 }
 
 TEST(Generations, AreAsDeepAsRaysGo) {
@@ -291,7 +290,7 @@ TEST(FalseColors, ArePaintedAsTheBarSays) {
     EXPECT_EQ(false_colors(values, "steps", short_scale).pixels[4 * 100], color_at(short_scale, 1)[0]);
     EXPECT_EQ(scale_of(values, "lanes").max, 1);
     EXPECT_EQ(scale_of(values, "normal").map, FalseColorScale::Map::none);
-    // Nothing at all, one value only, nothing but misses.
+    // No values, a single value, and only misses.
     EXPECT_GT(scale_of(ramp(1, 0), "steps").max, 0);
     FloatImage misses = ramp(3, 1);
     for (float& value : misses.pixels) value = INFINITY;
@@ -301,7 +300,7 @@ TEST(FalseColors, ArePaintedAsTheBarSays) {
     for (const float position : {-1.0f, 2.0f, float(NAN), float(INFINITY)}) color_at(scale_of(values, "steps"), position);
 }
 
-// From the device to the screen, with the end of the scale chosen.
+// A frame of the device, with the end of the scale chosen by the user.
 TEST(FalseColors, OfAFrame) {
     Settings settings = make_settings({{"size", "64x48"}, {"aov", "steps"}});
     bench().trace(primitives(), settings, make_view(*primitives(), 4.0f / 3));

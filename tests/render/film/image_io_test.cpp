@@ -1,4 +1,4 @@
-// Pictures come back as they were written, through readers that are not the program's; what fails leaves nothing.
+// Pictures are read back exactly, by readers that are not the program's. A write that fails leaves nothing behind.
 #include "render/film/image_io.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ class ImageIo : public ::testing::Test {
     Scratch scratch_;
 };
 
-// Values of every magnitude, with the ones that AOVs use for "nothing".
+// Values of every magnitude, including those that AOVs use for "no hit".
 FloatImage sample_values(unsigned width, unsigned height, unsigned channels) {
     FloatImage image{width, height, channels, {}};
     for (size_t i = 0; i < size_t(width) * height * channels; ++i)
@@ -63,7 +63,7 @@ bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
 }
 
-// The exit code and message of what `body` throws.
+// Returns the exit code and message of the Error that `body` throws.
 std::pair<Exit, std::string> failure_of(const std::function<void()>& body) {
     try {
         body();
@@ -73,7 +73,7 @@ std::pair<Exit, std::string> failure_of(const std::function<void()>& body) {
     return {Exit::done, "nothing was thrown"};
 }
 
-// Reads as the format's description says: rows bottom-up, a negative scale for little endian.
+// Reads PFM as its description says: rows bottom-up, a negative scale for little endian.
 FloatImage read_pfm(const std::string& path) {
     std::ifstream in(path, std::ios::binary);
     std::string magic;
@@ -123,7 +123,7 @@ TEST_F(ImageIo, PngOfOpaquePixelsComesBack) {
     ASSERT_NE(pixels, nullptr) << stbi_failure_reason();
     EXPECT_EQ(width, 37);
     EXPECT_EQ(height, 11);
-    EXPECT_EQ(channels, 3) << "an alpha that says nothing is left out";
+    EXPECT_EQ(channels, 3) << "an opaque alpha channel is omitted";
     EXPECT_EQ(std::memcmp(pixels, image.pixels.data(), image.pixels.size()), 0);
     stbi_image_free(pixels);
 }
@@ -175,7 +175,7 @@ TEST_F(ImageIo, APictureWithoutAllItsPixelsIsNotWritten) {
 }
 
 TEST_F(ImageIo, AFailingWriteLeavesTheOldFileAndNothingElse) {
-    // The shortest way to a write that fails half-way, which root too cannot escape: a limit on file sizes.
+    // A limit on file sizes is the simplest way to let a write fail half-way, even for root.
     const FloatImage image = sample_values(128, 128, 3);
     const ByteImage bytes = sample_bytes(128, 128, true);
     for (const char* name : {"a.pfm", "a.png", "a.exr"}) {
@@ -205,7 +205,7 @@ TEST_F(ImageIo, AnOldFileIsReplacedAndKeepsItsRights) {
     ASSERT_EQ(stat(path("a.pfm").c_str(), &status), 0);
     EXPECT_EQ(status.st_mode & 07777, 0640u);
     EXPECT_EQ(read_pfm(path("a.pfm")).width, 2u);
-    // Through a link: the link stays, its target is new.
+    // Through a link: the link stays, its target is replaced.
     fs::create_symlink("a.pfm", path("link.pfm"));
     write_image(path("link.pfm"), sample_values(3, 2, 1), {});
     EXPECT_TRUE(fs::is_symlink(path("link.pfm")));
@@ -227,7 +227,7 @@ TEST_F(ImageIo, UnusablePathsAreFoundBeforeWork) {
     EXPECT_EQ(file_count(), 2u);
     check_output_path(path("new.png"));
     check_output_path(path("new.pfm"));
-    EXPECT_EQ(file_count(), 2u) << "looking leaves nothing behind";
+    EXPECT_EQ(file_count(), 2u) << "a check leaves no file behind";
 }
 
 TEST(FramePath, ReplacesTheLastRunOfHashes) {

@@ -1,5 +1,6 @@
-// readback_test.cpp -- picture after picture, each copied while the next one is traced: none is lost, doubled or torn, and none
-// changes while somebody has it. A GPU copies by a queue of its own; here a CPU that says it is one does so too.
+// readback_test.cpp -- consecutive pictures, each copied while the next one is traced. No picture is lost, doubled or torn, and
+// none changes while somebody holds it. A GPU copies with a queue of its own. The parameter "gpu" lets a CPU pretend to be one,
+// so that it does the same.
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
@@ -75,7 +76,7 @@ TEST_P(Relay, GivesEachPictureWhileTheNextIsTraced) {
     EXPECT_EQ(frames_->copies_aside(), std::string(GetParam()) == "gpu");
 }
 
-// Several may be waited for in any order, later than what they came from is there, or never.
+// Pictures may be waited for in any order, after their renderer is gone, or never.
 TEST_P(Relay, PicturesBelongToWhoHasThem) {
     std::vector<std::vector<uint8_t>> expected;
     std::vector<AsyncReadback> pending;
@@ -93,7 +94,8 @@ TEST_P(Relay, PicturesBelongToWhoHasThem) {
     for (const size_t i : {3u, 0u, 4u, 2u}) EXPECT_TRUE(bytes(seen[i]) == expected[i]) << i;
 }
 
-// What was begun of a film is not what is given where the tones are others, more samples are in, or it was shown otherwise.
+// A copy that was begun is not used if the tone mapping changes, more samples are added, or the picture is displayed in another
+// way.
 TEST_P(Relay, GivesTheFilmAsItIs) {
     for (const char* eye : {kEyes[0], kEyes[1]}) {
         trace(eye);
@@ -127,7 +129,7 @@ TEST_P(Relay, SizesMayChangeOnTheWay) {
     for (size_t i = 0; i < pending.size(); ++i) EXPECT_TRUE(bytes(pending[i].wait()) == expected[i]) << i;
 }
 
-// Nobody waits while the first launch has not been made, nor after a cancel.
+// `meanwhile` is not called if no launch was made, for example after a cancel.
 TEST_P(Relay, ACancelledTraceLeavesThePictureBefore) {
     trace(kEyes[0]);
     const std::vector<uint8_t> before = picture();

@@ -1,5 +1,4 @@
-// counters_test.cpp -- what the counting programs count, against trees whose visits are known; and that counting changes
-// nothing.
+// counters_test.cpp -- the counts of counting programs, against trees whose visits are known. Counting must not change hits.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -60,7 +59,7 @@ TEST(Counters, ALooseListTestsEverything) {
             EXPECT_EQ(hit.lane_steps, unsigned(lanes));
         }
     }
-    // Any hit ends at the first.
+    // Any-hit rays end at their first hit.
     size_t early = 0;
     for (const rt_hit& hit : counted(ball(), "linear", 1, rays_at(0.5, 64), true)) {
         EXPECT_LE(hit.leaf_tests, triangles);
@@ -69,7 +68,7 @@ TEST(Counters, ALooseListTestsEverything) {
     EXPECT_GT(early, 32u);
 }
 
-// Spheres, polygons and meshes placed several times count as well, planes do not.
+// Spheres, polygons and instanced meshes count as well, planes do not.
 TEST(Counters, EveryKindOfPrimitive) {
     Scene scene = scene_of(box(0.5));
     scene.instances.push_back(scene.instances[0]);
@@ -81,10 +80,10 @@ TEST(Counters, EveryKindOfPrimitive) {
     scene.planes.push_back({{0, 1, 0}, -9, 0});
     scene.polygons.push_back({0, 3, 0});
     scene.polygon_corners = {0, 5, 0, 1, 5, 0, 0, 6, 0};
-    // The second ray meets the farther of the two first, as the list has them, and so enters both.
+    // The second ray meets the farther of the two instances first in the list, and so enters both.
     const std::vector<rt_hit> hits =
         counted(shared_scene(scene), "linear", 1, {ray_of({0, -5, 3}, {0, 0, 1}), ray_of({9, 0, 0}, {-1, 0, 0})});
-    EXPECT_EQ(hits[0].steps, 1u) << "the world's list; outside of their bounds, no instance's";
+    EXPECT_EQ(hits[0].steps, 1u) << "the world's list; the ray misses the instances' bounds";
     EXPECT_EQ(hits[0].leaf_tests, 2u);
     EXPECT_EQ(hits[1].steps, 3u) << "the world's list and each instance's";
     EXPECT_EQ(hits[1].leaf_tests, 2u * 12 + 2);
@@ -93,29 +92,29 @@ TEST(Counters, EveryKindOfPrimitive) {
 TEST(Counters, LanesOfANode) {
     for (const std::string& accel : bench().accels()) {
         const rt_ray straight = ray_of({0.1f, 0.2f, 5}, {0, 0, -1});
-        const rt_hit alone = counted(ball(), accel, 16, {straight})[0];  // by itself, but visited in a packet's order
+        const rt_hit alone = counted(ball(), accel, 16, {straight})[0];  // a packet of one ray, visited in a packet's order
         EXPECT_GT(alone.steps, 0u) << accel;
         EXPECT_LE(alone.lane_steps, alone.steps) << accel;
-        // Sixteen times the same ray: all are where one is.
+        // Sixteen equal rays: all are active wherever one is.
         for (const rt_hit& hit : counted(ball(), accel, 16, std::vector<rt_ray>(16, straight))) {
             EXPECT_EQ(hit.steps, alone.steps) << accel;
             EXPECT_EQ(hit.leaf_tests, alone.leaf_tests) << accel;
             EXPECT_EQ(hit.lane_steps, 16 * alone.lane_steps) << accel;
         }
-        // One and fifteen that are over before they begin.
+        // One active ray, and fifteen whose interval is empty.
         std::vector<rt_ray> lonely(16, ray_of({0.1f, 0.2f, 5}, {0, 0, -1}, -1));
         lonely[5] = straight;
         for (const rt_hit& hit : counted(ball(), accel, 16, lonely)) {
             EXPECT_EQ(hit.steps, alone.steps) << accel;
             EXPECT_EQ(hit.lane_steps, alone.lane_steps) << accel;
         }
-        // A few rays only, of a packet that is not full.
+        // Three rays, in a packet that is not full.
         EXPECT_EQ(counted(ball(), accel, 16, {straight, straight, straight})[0].lane_steps, 3 * alone.lane_steps) << accel;
     }
 }
 
-// A packet visits what any of its rays would visit, and each ray is counted where it would go alone, or nearly: what it would
-// skip behind a hit depends on the order, which is the packet's.
+// A packet visits every node that any of its rays would visit. Each ray is counted about where it would go alone. The counts
+// may differ, because the visits that a hit saves depend on the packet's order.
 TEST(Counters, PacketsAgainstTheirRaysAlone) {
     std::vector<rt_ray> rays;
     for (const rt_ray& at : rays_at(1.2, 100))
@@ -172,7 +171,7 @@ TEST(Counters, AsPictures) {
     EXPECT_GT(steps.pixels[25 * 66 + 33], steps.pixels[0]);
 }
 
-// What film.cl sums up of `count` packets that have these four numbers each.
+// Returns film.cl's sums over `count` packets that have these four numbers each.
 template <class Number>
 RayCounts summed(FilmKernels& kernels, const std::array<Number, 4>& of_each, unsigned count) {
     std::vector<Number> counters;

@@ -1,5 +1,5 @@
-// failures_test.cpp -- a device that has no room left or refuses to work costs a message; what comes after is as if nothing had
-// happened.
+// failures_test.cpp -- a device that has no memory left or refuses a launch causes an error message. Later pictures must be
+// unaffected.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -28,7 +28,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
     }
     void TearDown() override { faults.end(); }
 
-    // The message of the error that `work` is to end with.
+    // Returns the message of the error that `work` must end with.
     template <class Work>
     static std::string message(Work&& work) {
         try {
@@ -79,7 +79,7 @@ TEST_P(Failures, NoRoomForASceneLeavesTheLastOne) {
     EXPECT_NO_THROW(preparer_.prepare(scene_, small_, progress_));
 }
 
-// At every launch of a picture: tracing, sums over counters, tones.
+// Refuses each launch of a picture in turn: tracing, sums of counters, tone mapping.
 TEST_P(Failures, ALaunchThatIsRefused) {
     for (int launch = 0; launch < 12; ++launch) {
         faults.launches_left = launch;
@@ -96,7 +96,7 @@ TEST_P(Failures, ALaunchThatIsRefused) {
     }
 }
 
-// On a CPU that says it is a GPU, so that copies have a queue of their own.
+// Uses a CPU that pretends to be a GPU, so that copies have a queue of their own.
 class CopyFailures : public Failures {
  protected:
     void SetUp() override {
@@ -113,7 +113,7 @@ class CopyFailures : public Failures {
     std::unique_ptr<FrameRenderer> copying_;
 };
 
-// Pictures that follow one another.
+// Consecutive pictures.
 TEST_P(CopyFailures, ALaunchThatIsRefusedBetweenPictures) {
     AsyncReadback pending;
     ByteImage shown;
@@ -150,7 +150,7 @@ TEST_P(CopyFailures, ALaunchThatIsRefusedBetweenPictures) {
     }
 }
 
-// Copies too: a picture that does not arrive is a message, and those after it are whole.
+// A refused copy causes an error message, and the pictures after it are complete.
 TEST_P(CopyFailures, ACopyThatIsRefused) {
     copying_->trace(*prepared_, small_, view_, 0, false, progress_);
     AsyncReadback before = copying_->begin_display(small_);

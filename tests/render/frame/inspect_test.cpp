@@ -1,5 +1,5 @@
-// inspect_test.cpp -- the ray tree of a pixel is that of the picture: its light sums up to the pixel's, its rays are the
-// counted ones, and its camera ray meets what the AOVs say.
+// inspect_test.cpp -- the ray tree of a pixel matches the picture. Its light sums up to the pixel's, its rays are those that
+// were counted, and its camera ray hits what the AOVs show.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -24,7 +24,7 @@ Workbench& bench() {
 }
 
 Inspector& inspector() {
-    static auto* const one = new Inspector(bench().shared_device());  // never destroyed, as the workbench is not
+    static auto* const one = new Inspector(bench().shared_device());  // never destroyed, like the workbench
     return *one;
 }
 
@@ -75,7 +75,7 @@ void expect_light_of_pixel(const Case& c, const RayTree& tree, unsigned x, unsig
     }
 }
 
-// What must hold of any tree.
+// Checks what every tree must fulfil.
 void expect_sound(const Case& c, const RayTree& tree) {
     ASSERT_FALSE(tree.rays.empty());
     for (size_t i = 0; i < tree.rays.size(); ++i) {
@@ -94,10 +94,10 @@ void expect_sound(const Case& c, const RayTree& tree) {
             continue;
         }
         ASSERT_GE(ray.parent, 0);
-        ASSERT_LT(ray.parent, static_cast<int>(i)) << "parents stand before their children";
+        ASSERT_LT(ray.parent, static_cast<int>(i)) << "parents come before their children";
         const RayRecord& parent = tree.rays[ray.parent];
-        EXPECT_EQ(parent.fate, Fate::traced) << "a ray goes on from one that was not traced";
-        EXPECT_GE(parent.prim, 0) << "a ray goes on from nowhere";
+        EXPECT_EQ(parent.fate, Fate::traced) << "the parent was not traced";
+        EXPECT_GE(parent.prim, 0) << "the parent hit nothing";
         EXPECT_NE(parent.kind, Kind::shadow);
         EXPECT_EQ(ray.generation, parent.generation + (ray.kind == Kind::shadow ? 0 : 1));
         EXPECT_EQ(ray.light_index >= 0, ray.kind == Kind::shadow);
@@ -113,7 +113,7 @@ void expect_sound(const Case& c, const RayTree& tree) {
             size = std::max({size, std::fabs(at), double(parent.t)});
             EXPECT_LE(ray.weight[k], parent.weight[k] * 1.0001f);
         }
-        EXPECT_LE(off, 1e-4 * size) << "a ray starts elsewhere than where its parent ended";
+        EXPECT_LE(off, 1e-4 * size) << "the ray does not start where its parent ended";
         if (ray.kind == Kind::shadow) {
             EXPECT_EQ(ray.weight, parent.weight);
             if (ray.occluded) {
@@ -123,7 +123,7 @@ void expect_sound(const Case& c, const RayTree& tree) {
     }
 }
 
-// Every pixel of a small picture: the trees' rays are as many as the frame counted, of every kind.
+// Checks every pixel of a small picture. The trees have as many rays of each kind as the frame counted.
 void expect_counted_rays(const Case& c, size_t* dropped = nullptr) {
     uint64_t shadow = 0, secondary = 0, lost = 0;
     for (unsigned y = 0; y < unsigned(c.settings.height); ++y)
@@ -197,7 +197,7 @@ TEST(Inspect, CameraRayMeetsWhatTheAovsSay) {
     EXPECT_GT(nothing, 20u);
 }
 
-// A mirror before a lamp, straight ahead: three rays whose every number is known.
+// A mirror before a lamp, straight ahead: every number of the rays is known.
 TEST(Inspect, KnownByHand) {
     Scene scene = scene_of(TriangleMesh());
     scene.planes.push_back({{0, 0, 1}, 0, add_material(scene, mirror(0.5f))});
@@ -251,7 +251,7 @@ TEST(Inspect, FatesOfRaysThatAreNotTraced) {
     EXPECT_EQ(count(primitives(configuration, "64x48"), Fate::unasked), 0u);
 }
 
-// Within spheres of glass in a sphere that mirrors, every hit makes two rays of one.
+// Spheres of half-mirroring glass inside another one: every hit splits a ray in two.
 TEST(Inspect, TooManyRaysAreSaidToBeSo) {
     Scene scene = scene_of(TriangleMesh());
     rt_material both = glass(1.2f);
@@ -304,7 +304,7 @@ TEST(Inspect, NoSuchPixel) {
         }
 }
 
-// Frames go on while pixels are inspected.
+// Frames continue while pixels are inspected.
 TEST(Inspect, BesideFrames) {
     const Case c = primitives({"bvh2", 16, 4, 4}, "64x48");
     const FloatImage picture = c.picture;

@@ -1,4 +1,4 @@
-// pace_test.cpp -- pieces of a picture stay short on any device, by a device that is told how fast it is.
+// pace_test.cpp -- pieces of a picture stay short on any device. The device is simulated, with a given speed.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ struct Picture {
     unsigned pieces = 0;
 };
 
-// group_ms: what a group takes, by its number.
+// group_ms: the time of a group, by its number.
 Picture trace(Pace& pace, unsigned groups, const std::function<double(unsigned)>& group_ms, double compile_ms = 0,
               unsigned most = ~0u) {
     Picture picture;
@@ -39,7 +39,7 @@ Picture trace(Pace& pace, unsigned groups, const std::function<double(unsigned)>
 }
 
 TEST(Pace, OfAnyDeviceIsUnderHalfASecond) {
-    // From 40 ms a group of 64 pixels, 64 lights and depth 16 at 1.6 Mrays/s, to what a large GPU does.
+    // From 40 ms a group (64 pixels, 64 lights and depth 16 at 1.6 Mrays/s) to the speed of a large GPU.
     for (const double ms : {40.0, 8.0, 1.0, 0.1, 0.01, 1e-3, 1e-5})
         for (const unsigned groups : {1u, 192u, 12288u, 129600u}) {
             if (ms * groups > 1e6) continue;
@@ -60,7 +60,7 @@ TEST(Pace, OfAFastPictureIsOnePieceFromTheSecondOn) {
     for (int picture = 1; picture < 4; ++picture) EXPECT_EQ(trace(pace, 12288, [](unsigned) { return 4e-5; }).pieces, 1u);
 }
 
-// Sky above a model that takes ten times as long; and below it sky again, which must not be what the next picture goes by.
+// Sky, then a model that takes ten times as long, then sky again. The next picture's pace must not follow the last sky.
 TEST(Pace, OfUnevenPicturesHoldsToo) {
     const auto uneven = [](unsigned group) { return group > 4000 && group < 9000 ? 0.5 : 0.05; };
     Pace pace;

@@ -1,5 +1,5 @@
-// wavefront_test.cpp -- the tracer `wavefront` gives the pictures and counts of `iterative`, whoever is first and however small
-// its queues are.
+// wavefront_test.cpp -- the tracer `wavefront` gives the same pictures and counts as `iterative`, in whatever order its
+// work-groups run and however small its queues are.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ void expect_same_counts(const FrameStats& a, const FrameStats& b, const std::str
     EXPECT_EQ(a.overflowed, b.overflowed) << what;
 }
 
-// One lane with `portable` is what a GPU without shuffles runs: work-groups of 64 that agree through local memory.
+// With `portable`, one lane runs what a GPU without shuffles runs: work-groups of 64 that communicate through local memory.
 struct Way {
     int lanes, packet_w, packet_h;
     bool portable;
@@ -93,11 +93,11 @@ TEST(Wavefront, GlassHasTheSameColours) {
             differ += !(std::fabs(a.values.pixels[i] - b.values.pixels[i]) <= 1e-5f * std::max(1.0f, a.values.pixels[i]));
         EXPECT_EQ(differ, 0u) << way.text();
         expect_same_counts(a.stats, b.stats, way.text());
-        EXPECT_EQ(different_bits(b.values, again.values), 0u) << way.text() << ": it matters who was first";
+        EXPECT_EQ(different_bits(b.values, again.values), 0u) << way.text() << ": the order of work-groups changes the picture";
     }
 }
 
-// Much room for each pixel means few pixels at a time.
+// With more room for each pixel, fewer pixels fit into a piece.
 TEST(Wavefront, ManySmallPiecesAreOnePicture) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const View view = make_view(*scene, 4.0f / 3);
@@ -109,7 +109,7 @@ TEST(Wavefront, ManySmallPiecesAreOnePicture) {
     expect_same_counts(whole.stats, pieces.stats, "pieces");
 }
 
-// Balls within balls: a ray parts more often on its way than there is room for.
+// Concentric balls: a ray splits more often than there is room for.
 TEST(Wavefront, WhatFindsNoRoomIsCounted) {
     Scene balls;
     const rt_u32 material = add_material(balls, glass(2.4f));

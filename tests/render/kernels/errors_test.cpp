@@ -1,5 +1,5 @@
-// errors_test.cpp -- a kernel that does not compile: which file, which line, which exit code; and what worked before still
-// works.
+// errors_test.cpp -- a kernel that does not compile: the error names file and line and has the right exit code. What worked
+// before still works.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The checkout's kernels and traversals, copied to where CLARITY_KERNEL_PATH finds them before the embedded ones.
+// Copies the checkout's kernels and traversals to a folder that CLARITY_KERNEL_PATH names, so that they precede the embedded
+// ones.
 class Errors : public ::testing::Test {
  protected:
     void SetUp() override {
@@ -29,7 +30,7 @@ class Errors : public ::testing::Test {
         scene_ = shared_scene(scene_of(box(1)));
         settings_ = make_settings({{"accel", "bvh2"}, {"size", "32x24"}, {"lanes", "4"}});
     }
-    // Puts a line that is no OpenCL C after the `after`-th line of a file.
+    // Inserts a line that is not OpenCL C after the first `after` lines of a file.
     void break_line(const std::string& name, int after) {
         std::istringstream in(scratch_.read(name));
         std::ostringstream out;
@@ -45,7 +46,7 @@ class Errors : public ::testing::Test {
         Preparer preparer(Workbench::get().plugins(), std::make_shared<Device>(choose_device("")));
         try {
             preparer.prepare(scene_, settings_, progress);
-            FAIL() << "a kernel that is no OpenCL C was built";
+            FAIL() << "a kernel with an error was built";
         } catch (const Error& error) {
             EXPECT_EQ(error.code(), Exit::kernel_build_failed) << error.what();
             EXPECT_NE(std::string(error.what()).find(where), std::string::npos) << error.what();
@@ -87,7 +88,7 @@ TEST_F(Errors, LeaveWhatWasPreparedBefore) {
     const std::string sound = scratch_.read("cl/tracers/iterative.cl");
     break_line("cl/tracers/iterative.cl", 20);
     Settings other = settings_;
-    other.lanes = 8;  // another program, so that it is compiled
+    other.lanes = 8;  // needs another program, so that something is compiled
     EXPECT_THROW(preparer.prepare(scene_, other, progress), Error);
     frames.trace(*good, settings_, view, 0, false, progress);
     EXPECT_EQ(frames.read_display(settings_).pixels, before.pixels);

@@ -1,4 +1,4 @@
-// packet_streams_test.cpp -- packets that go down a tree together find bit for bit what each finds alone.
+// packet_streams_test.cpp -- packets that are traced together as a stream find bit for bit what each of them finds alone.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ using namespace clarity::test;
 
 namespace {
 
-// A packet of one block is alone; one of as many pixels either way as there are lanes is a whole bundle.
+// A packet of one block is traced alone. A packet with as many pixels in each direction as there are lanes is a whole stream.
 std::vector<rt_hit> trace(const ScenePtr& scene, int lanes, bool together, bool portable, const std::vector<rt_ray>& rays,
                           RayQuery query) {
     Settings settings = make_settings({});
@@ -29,8 +29,8 @@ std::vector<rt_hit> trace(const ScenePtr& scene, int lanes, bool together, bool 
 
 class Beams {
  public:
-    // Rays of one bundle at least: from about one point or from all over a square, within `spread` of a direction that is near
-    // an octant's border or not.
+    // Adds rays for at least one stream. They start near one point or anywhere in a square. Their directions are within
+    // `spread` of a common one, which may be close to the border of an octant.
     void add(float square, float spread, bool at_border) {
         Point eye, along, from;
         for (int k = 0; k < 3; ++k) eye[k] = 2 * at(), along[k] = 0.5f * at() - eye[k];
@@ -65,7 +65,7 @@ std::vector<rt_ray> all_beams() {
     return beams.rays;
 }
 
-// Rubble among which stand copies of some of it, turned, stretched and in each other, and balls.
+// Rubble, and among it copies of a part of it, rotated, stretched and overlapping, and balls.
 ScenePtr instanced_rubble() {
     Scene scene = *rubble();
     const Instance whole = scene.instances.at(0);
@@ -94,7 +94,7 @@ void expect_as_alone(const ScenePtr& scene, const std::vector<rt_ray>& rays, siz
     for (const int lanes : lane_counts)
         for (const bool portable : {false, true})
             for (const bool any_hit : {false, true}) {
-                if (portable && lanes == 16) continue;  // the longest to compile
+                if (portable && lanes == 16) continue;  // takes longest to compile
                 const std::vector<rt_hit> alone = trace(scene, lanes, false, portable, rays, {any_hit}),
                                           together = trace(scene, lanes, true, portable, rays, {any_hit});
                 size_t hits = 0, different = 0;
@@ -113,12 +113,12 @@ TEST(Bundles, BeamsOfAllWidths) {
     expect_as_alone(rubble(), all_beams(), 10000, {4, 8, 16});
 }
 
-// Those of a bundle that come to an instance enter it one after the other.
+// The packets of a stream that reach an instance enter it one after the other.
 TEST(Bundles, AmongInstances) {
     expect_as_alone(instanced_rubble(), all_beams(), 10000, {16});
 }
 
-// Lanes and whole packets without rays, and rays that begin late and end soon.
+// Lanes and whole packets without rays, and rays whose intervals begin late and end early.
 TEST(Bundles, GapsAndLimits) {
     std::vector<rt_ray> rays = all_beams();
     std::mt19937 random(22);
@@ -131,7 +131,7 @@ TEST(Bundles, GapsAndLimits) {
     expect_as_alone(rubble(), rays, 3000, {16});
 }
 
-// A number of packets that no bundle divides.
+// Numbers of packets that are no multiple of a stream's.
 TEST(Bundles, TheLastOne) {
     std::vector<rt_ray> rays = all_beams();
     for (const size_t left : {1, 17, 255, 256 + 40}) {
@@ -140,7 +140,8 @@ TEST(Bundles, TheLastOne) {
     }
 }
 
-// What a node saves by being fetched once is not counted, but nobody may visit much more than alone.
+// Streams count each packet's visits separately, so fetching a node once for all saves nothing here. But no packet may visit
+// many more nodes than alone.
 TEST(Bundles, VisitNoMoreThanAlone) {
     const std::vector<rt_ray> rays = all_beams();
     RayQuery counted;
@@ -152,8 +153,8 @@ TEST(Bundles, VisitNoMoreThanAlone) {
     EXPECT_LT(together, alone * 11 / 10);
 }
 
-// Triangles smaller than pixels, all half mirrors: mirrored and shadow rays start far apart by their size, and packets that
-// would go together part. No digit of the picture may show it.
+// Triangles smaller than pixels, all half mirrors. Mirror and shadow rays start far apart compared with that size, so packets
+// of a stream are split. This must not change any bit of the picture.
 TEST(Bundles, ScatteredRaysPartUnseen) {
     Scene scene = scene_of(torus(1, 0.4, 200, 100));
     const ScenePtr shared = shared_scene(std::move(scene));

@@ -1,7 +1,7 @@
-// reload_test.cpp -- a kernel edited again and again: each text is the one that runs, and memory stays what it was.
+// reload_test.cpp -- a kernel is edited again and again. Each text must be the one that runs, and memory must not grow.
 //
-// CLARITY_RELOADS is how many reloads to measure after the first 20: a multiple of 16, since the device is opened anew after 16
-// programs. 16 by default; 176 take some minutes.
+// CLARITY_RELOADS is the number of reloads to measure after the first 20. Use a multiple of 16, since the device is closed and
+// opened again after 16 programs. The default is 16; 176 take some minutes.
 #include <gtest/gtest.h>
 #include <malloc.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Resident, of this process.
+// Resident memory of this process.
 double resident_mb() {
     std::ifstream in("/proc/self/statm");
     double all = 0, resident = 0;
@@ -29,31 +29,31 @@ double resident_mb() {
     return resident * double(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
-// In use on the heap: to the byte, where pages tell only of much.
+// Heap memory in use. This is exact to the byte, while pages show only large changes.
 double heap_mb() {
     const struct mallinfo2 info = mallinfo2();
     return double(info.uordblks + info.hblkhd) / (1 << 20);
 }
 
-// Edits a kernel and looks at a small picture, over and over.
+// Edits a kernel and traces a small picture, repeatedly.
 class Author {
  public:
     Author() {
         fs::copy(source_file("cl"), scratch_.path("cl"), fs::copy_options::recursive);
         environment_.set("CLARITY_KERNEL_PATH", scratch_.path("cl"));
-        // Before the first use of PoCL: what an earlier run left in its cache would not be compiled.
+        // Set before the first use of PoCL: kernels that an earlier run left in its cache would not be compiled.
         fs::create_directories(scratch_.path("pocl"));
         environment_.set("POCL_CACHE_DIR", scratch_.path("pocl"));
         sound_ = scratch_.read("cl/tracers/aov.cl");
         plugins_ = PluginRegistry::discover();
         scene_ = shared_scene(scene_of(box(1)));
         settings_ = make_settings({{"accel", "bvh2"}, {"size", "8x8"}, {"aov", "t"}});
-        view_ = view_from({0, 0, 5}, {0, 0, 0}, 20);  // 4 before the box, which fills the picture
+        view_ = view_from({0, 0, 5}, {0, 0, 0}, 20);  // the box is 4 away and fills the picture
         const auto device = std::make_shared<Device>(choose_device(""));
         preparer_ = std::make_unique<Preparer>(plugins_, device);
         frames_ = std::make_unique<FrameRenderer>(device);
     }
-    // The picture's first value after an edit that multiplies distances by `number`.
+    // Multiplies distances by `number` in the kernel's text. Returns a value of the new picture.
     float distance_times(int number) {
         const std::string store = "RT_FOR_LANES_STORE(out, at, hit->t, bits)";
         std::string text = sound_;
@@ -71,7 +71,7 @@ class Author {
     }
 
  private:
-    // As `render --watch` does.
+    // Closes and opens the device as `render --watch` does.
     void renew_device() {
         const std::weak_ptr<const TraceProgram> program = prepared_->program;
         const std::weak_ptr<const DeviceScene> on_device = prepared_->on_device;
@@ -112,7 +112,7 @@ TEST(Reload, EachTextRunsAndMemoryStays) {
     }
     const double after = resident_mb(), heap_after = heap_mb();
     EXPECT_LT(after, 1.05 * before) << "resident, MB";
-    // A program that is kept takes PoCL up to a megabyte.
+    // If PoCL keeps a program, that takes up to a megabyte.
     EXPECT_LT((heap_after - heap_before) / count, 0.05) << "MB of heap a reload";
 }
 

@@ -1,5 +1,5 @@
-// single_ray_test.cpp -- rays taken out of their packet and tested against rows of triangles: bit for bit what packets find,
-// which test one triangle after the other.
+// single_ray_test.cpp -- single rays, taken out of their packet and tested against rows of triangles, find bit for bit what
+// packets find, which test one triangle after the other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,7 +32,7 @@ size_t different(const std::vector<rt_hit>& a, const std::vector<rt_hit>& b, boo
     return count;
 }
 
-// Each ray in all lanes of a packet of its own, which such packets stay.
+// Traces each ray in all lanes of a packet of its own. Packets of equal rays are not split into single rays.
 std::vector<rt_hit> as_packets(const ScenePtr& scene, const std::vector<rt_ray>& rays, bool any_hit) {
     constexpr size_t lanes = 16;
     std::vector<rt_ray> repeated;
@@ -47,7 +47,7 @@ struct Program {
     int lanes;
     bool portable;
 };
-const std::vector<Program> kAll = {{1, false}, {16, false}, {1, true}, {8, true}};  // a second and more to compile, each
+const std::vector<Program> kAll = {{1, false}, {16, false}, {1, true}, {8, true}};  // each takes over a second to compile
 
 void expect_as_packets(const ScenePtr& scene, const std::vector<rt_ray>& rays, size_t least_hits,
                        const std::vector<Program>& programs = kAll) {
@@ -85,7 +85,7 @@ TEST(LoneRays, RandomOnes) {
     expect_as_packets(rubble(), rays, 10000);
 }
 
-// Through corners and along edges, where edge functions are zero, and along axes, where products cancel.
+// Through corners and along edges, where edge functions are zero, and along axes, where products cancel each other.
 TEST(LoneRays, CornersEdgesAndAxes) {
     const Scene& scene = *rubble();
     std::mt19937 random(13);
@@ -98,7 +98,7 @@ TEST(LoneRays, CornersEdgesAndAxes) {
                     middle[3] = {(a[0] + b[0]) / 2, (a[1] + b[1]) / 2, (a[2] + b[2]) / 2};
         rays.push_back(towards(from, a, random));
         rays.push_back(towards(from, middle, random));
-        if (std::memcmp(a, b, 3 * sizeof(float)) != 0) rays.push_back(towards(a, b, random));  // from the corner itself
+        if (std::memcmp(a, b, 3 * sizeof(float)) != 0) rays.push_back(towards(a, b, random));  // starts at the corner
         float beside[3] = {a[0], a[1], a[2]};
         beside[i % 3] -= 2;
         rays.push_back(towards(beside, a, random));
@@ -106,7 +106,7 @@ TEST(LoneRays, CornersEdgesAndAxes) {
     expect_as_packets(rubble(), rays, 6000);
 }
 
-// All that may stand in a leaf beside triangles.
+// Every kind of primitive that a leaf may hold beside triangles.
 TEST(LoneRays, EveryKindOfPrimitive) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Bounds box = scene->bounds();
@@ -121,10 +121,10 @@ TEST(LoneRays, EveryKindOfPrimitive) {
         point(from), point(to);
         rays.push_back(towards(from, to, random));
     }
-    expect_as_packets(scene, rays, 2000, {{1, false}, {16, false}});  // such programs take seconds to compile
+    expect_as_packets(scene, rays, 2000, {{1, false}, {16, false}});  // these programs take seconds to compile
 }
 
-// Coordinates so large that products overflow, and limits between which nothing, or everything, lies.
+// Coordinates so large that products overflow, and intervals that contain nothing or everything.
 TEST(LoneRays, OverflowAndLimits) {
     std::mt19937 random(15);
     std::uniform_real_distribution<float> at(-1.2f, 1.2f);

@@ -1,4 +1,4 @@
-// variants_test.cpp -- the same kernels without CPU instructions, and with every stack watched.
+// variants_test.cpp -- the same kernels without CPU instructions, and with bounds checks of every stack.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,7 +68,7 @@ void expect_no_overflow(const ScenePtr& scene, const std::string& name, const st
         EXPECT_EQ(stats.overflowed, 0u) << name << ", " << configuration.text();
         if (accel == accels.front()) {
             EXPECT_EQ(different_bits(watched, picture(scene, view, configuration, "color", false, false)), 0u)
-                << name << ", " << configuration.text() << ": watching changes the picture";
+                << name << ", " << configuration.text() << ": bounds checks change the picture";
         }
     }
 }
@@ -83,7 +83,7 @@ TEST(Debug, NoStackOverflowsOnTheDragon) {
     expect_no_overflow(load_scene(file), "dragon", bench().fast_accels());
 }
 
-// Sizes that double from triangle to triangle make trees as deep as they get.
+// Sizes that double from triangle to triangle make the deepest trees.
 TEST(Debug, NoStackOverflowsOnTheDeepestTrees) {
     TriangleMesh mesh;
     for (int i = 0; i < 100; ++i) {
@@ -91,14 +91,14 @@ TEST(Debug, NoStackOverflowsOnTheDeepestTrees) {
         const rt_u32 a = mesh.add_vertex(s, 0, 0), b = mesh.add_vertex(s * 1.2, s, 0), c = mesh.add_vertex(s * 1.2, 0, s);
         mesh.add_triangle(a, b, c);
     }
-    for (int i = 0; i < 2000; ++i) {  // and many at one place
+    for (int i = 0; i < 2000; ++i) {  // and many triangles at one place
         const rt_u32 a = mesh.add_vertex(0.5, 0.5, 0), b = mesh.add_vertex(0.6, 0.5, 0), c = mesh.add_vertex(0.5, 0.6, 0);
         mesh.add_triangle(a, b, c);
     }
     expect_no_overflow(shared_scene(scene_of(mesh)), "doubling triangles", bench().accels());
 }
 
-// Kernels in which a structure's traversal has a stack of two entries.
+// Kernels in which the traversal stack of a structure has two entries.
 class SmallStack {
  public:
     explicit SmallStack(const std::string& accel, const std::string& macro) {
@@ -115,7 +115,7 @@ class SmallStack {
     Environment environment_;
 };
 
-// The watch itself works: bvh2's traversal with a stack of two entries must say that they are too few, and still end.
+// The check itself works: bvh2's traversal with a stack of two entries must report overflows, and still end.
 TEST(Debug, AFullStackIsCounted) {
     const SmallStack small("bvh2", "BVH2_STACK");
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
@@ -124,7 +124,7 @@ TEST(Debug, AFullStackIsCounted) {
     EXPECT_GT(stats.overflowed, 0u);
 }
 
-// Of camera rays there are as many in every picture, whatever it shows of them.
+// Every picture traces the same camera rays, whatever quantity it shows.
 TEST(Debug, AFullStackIsCountedForEveryAov) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const View view = make_view(*scene, 4.0f / 3);
@@ -137,7 +137,7 @@ TEST(Debug, AFullStackIsCountedForEveryAov) {
     const SmallStack small("bvh2", "BVH2_STACK");
     const uint64_t of_camera_rays = overflowed("t");
     EXPECT_GT(of_camera_rays, 0u);
-    EXPECT_EQ(overflowed("t"), of_camera_rays) << "a picture counts anew";
+    EXPECT_EQ(overflowed("t"), of_camera_rays) << "each picture starts at 0";
     for (const std::string& aov : find_setting("aov")->choices) {
         const bool spawns = aov == "color" || aov == "generations";
         if (spawns)
@@ -147,7 +147,7 @@ TEST(Debug, AFullStackIsCountedForEveryAov) {
     }
 }
 
-// What the log gets while it exists.
+// Collects errors of the log during its lifetime.
 class Listener {
  public:
     Listener() {
@@ -162,7 +162,7 @@ class Listener {
     std::string errors_;
 };
 
-// Rays of the caller's own, by each of the kernels that trace them, and the inspector's.
+// The caller's own rays, by each kernel that traces them, and the inspector's rays.
 TEST(Debug, AFullStackOfRayQueriesIsReported) {
     const ScenePtr scene = shared_scene(scene_of(uv_sphere(1, 48, 24)));
     const View view = view_from({0, 0, 5}, {0, 0, 0}, 40);
@@ -175,7 +175,7 @@ TEST(Debug, AFullStackOfRayQueriesIsReported) {
         if (std::string(lanes) == "1") set_setting(settings, "packet", "1x1"), set_setting(settings, "portable", "true");
         const auto prepared = bench().prepare(scene, settings);
         std::string silent;
-        // Each way to trace them is tried in turn, so that many runs see all.
+        // The autotuner tries the variants in turn, so that six runs cover all.
         for (const RayQuery query : {RayQuery{false, false}, RayQuery{true, false}, RayQuery{false, true}}) {
             const RayBlocks packed(rays, unsigned(settings.lanes));
             for (int run = 0; run < (query.count ? 1 : 6); ++run) {

@@ -1,4 +1,4 @@
-// failures_test.cpp -- a device that fails costs a message, and the picture is whole.
+// failures_test.cpp -- a device that fails causes a warning, and the picture is complete.
 #include <cstring>
 #include <mutex>
 
@@ -10,7 +10,7 @@ using namespace clarity::test;
 
 namespace {
 
-// Warnings of its lifetime.
+// Collects the log's warnings during its lifetime.
 class Warnings {
  public:
     Warnings() {
@@ -41,7 +41,7 @@ class FailingDevice : public ::testing::Test {
         truth_ = whole.frames.read_values().pixels;
         display_ = whole.frames.read_display(settings_).pixels;
     }
-    // Without context and queue, a device answers every call with an error.
+    // Without a context and a queue, every call of a device fails.
     void lose(Team& team, size_t device) {
         team.devices[device]->queue() = cl::CommandQueue();
         team.devices[device]->context() = cl::Context();
@@ -50,7 +50,8 @@ class FailingDevice : public ::testing::Test {
         EXPECT_EQ(differing(truth_, team.frames.read_values().pixels), 0u);
         EXPECT_TRUE(display_ == team.frames.read_display(settings_).pixels);
         EXPECT_NE(warnings.text().find("0:0/2.1 takes no further part"), std::string::npos) << warnings.text();
-        EXPECT_NE(warnings.text().find("part 2 of 2"), std::string::npos) << "it says which: " << warnings.text();
+        EXPECT_NE(warnings.text().find("part 2 of 2"), std::string::npos)
+            << "the warning names the device: " << warnings.text();
     }
 
     const Settings settings_ = make_settings({{"size", "160x120"}});
@@ -90,7 +91,7 @@ TEST_F(FailingDevice, BeforeItIsReadBack) {
     expect_whole(team, warnings);
     const FloatImage distance = team.frames.read_distance();
     EXPECT_EQ(distance.pixels.size(), 160u * 120u);
-    // And goes on so.
+    // The following pictures work too.
     EXPECT_EQ(team.frames.trace(prepared, settings_, view_, 0, false, team.progress, 4).devices.size(), 1u);
     expect_whole(team, warnings);
 }

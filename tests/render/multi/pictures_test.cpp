@@ -1,4 +1,4 @@
-// pictures_test.cpp -- a picture that several devices share is, bit for bit, the one that one of them makes.
+// pictures_test.cpp -- a picture that several devices share equals, bit for bit, the picture of a single device.
 #include <cstring>
 
 #include "render/frame/frame_stats.hpp"
@@ -9,7 +9,7 @@ using namespace clarity::test;
 
 namespace {
 
-// Of one structure, which is compiled quickly.
+// Settings with one structure, which compiles quickly.
 Settings settings_of(std::vector<std::pair<std::string, std::string>> pairs) {
     pairs.emplace_back("accel", "bvh2");
     return make_settings(pairs);
@@ -43,7 +43,7 @@ class SharedPictures : public ::testing::Test {
         compare_films(settings, what);
     }
 
-    // What is read of both, in every way there is.
+    // Compares everything that can be read of both pictures.
     static void compare_films(const Settings& settings, const std::string& what) {
         EXPECT_EQ(differing(one_->frames.read_values().pixels, two_->frames.read_values().pixels), 0u) << what;
         EXPECT_EQ(differing(one_->frames.read_distance().pixels, two_->frames.read_distance().pixels), 0u) << what;
@@ -53,7 +53,8 @@ class SharedPictures : public ::testing::Test {
         const ByteImage display = one_->frames.read_display(settings, nullptr, &one_scale),
                         shared = two_->frames.read_display(settings, &stats, &scale);
         EXPECT_TRUE(display.pixels == shared.pixels) << what;
-        EXPECT_TRUE(shared.pixels == two_->frames.read_display(settings).pixels) << what << ": another picture's memory";
+        EXPECT_TRUE(shared.pixels == two_->frames.read_display(settings).pixels)
+            << what << ": a second read gives another picture";
         EXPECT_FALSE(stats.kernels.empty()) << what;
         EXPECT_EQ(scale.max, one_scale.max) << what;
     }
@@ -69,7 +70,7 @@ TEST_F(SharedPictures, OfEveryPacketAndLanes) {
         const Settings settings = settings_of({{"lanes", lanes}, {"packet", packet}, {"size", "240x181"}, {"tone", "agx"}});
         expect_same(scene, settings, std::string(lanes) + " lanes, packet " + packet);
     }
-    // As a GPU runs it, a work-item a pixel.
+    // As a GPU does it: one pixel per work-item.
     expect_same(scene, settings_of({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}}), "groups of 64");
 }
 
@@ -79,7 +80,7 @@ TEST_F(SharedPictures, OfOddSizes) {
         expect_same(scene, settings_of({{"size", size}}), size);
 }
 
-// Tones are mapped four pixels at a time, and here a row of work-groups has a number of pixels that 4 does not divide.
+// Tone mapping works on four pixels at a time. Here the pixels of a work-group row are no multiple of 4.
 TEST_F(SharedPictures, OfRowsThatFoursDoNotFill) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const char* packet : {"5x5", "3x3", "7x1", "1x5"})
@@ -87,7 +88,7 @@ TEST_F(SharedPictures, OfRowsThatFoursDoNotFill) {
             const std::string what = std::string(size) + ", packet " + packet;
             const Settings settings = settings_of({{"packet", packet}, {"size", size}, {"depth", "1"}});
             expect_same(scene, settings, what);
-            // Once it was shown, each device brings its part with the next picture.
+            // After a picture was displayed, each device copies its rows of the next one during trace().
             expect_same(scene, settings, what + ", shown before", 2);
             for (const char* aov : {"t", "uv"})
                 expect_same(scene, settings_of({{"packet", packet}, {"size", size}, {"aov", aov}}), what + ", " + aov);
@@ -125,7 +126,7 @@ TEST_F(SharedPictures, OfOneStructureBuiltOnce) {
     ASSERT_EQ(prepared->parts.size(), 2u);
     EXPECT_EQ(prepared->parts[0].prepared->accel, prepared->parts[1].prepared->accel);
     EXPECT_NE(prepared->parts[0].prepared->on_device, prepared->parts[1].prepared->on_device);
-    // Nothing is done anew without need.
+    // Nothing is built, uploaded or compiled again without need.
     const auto again = two_->preparer.prepare(scene, settings_of({{"depth", "2"}}), two_->progress);
     for (size_t i = 0; i < 2; ++i) {
         EXPECT_EQ(again->parts[i].prepared->accel, prepared->parts[i].prepared->accel);
@@ -134,7 +135,7 @@ TEST_F(SharedPictures, OfOneStructureBuiltOnce) {
     }
 }
 
-// A whole CPU and a part of it: of two kinds, so nothing is known of their speeds at first.
+// A whole CPU and a part of it are of different kinds, so at first their speeds are not known.
 TEST_F(SharedPictures, OfUnlikeDevices) {
     Team unlike("cpu,cpu/2.0");
     ASSERT_EQ(unlike.devices.size(), 2u);
@@ -148,7 +149,7 @@ TEST_F(SharedPictures, OfUnlikeDevices) {
     }
 }
 
-// As GPUs do it: a launch is of several samples, as soon as it is known to be short.
+// As GPUs do it: a launch traces several samples, as soon as these are known to be short.
 TEST_F(SharedPictures, OfManySamplesALaunch) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene")),
                    plain = load_scene(source_file("scenes/spheres21.scene"));
@@ -159,7 +160,7 @@ TEST_F(SharedPictures, OfManySamplesALaunch) {
                     {{"lanes", "1"}, {"packet", packet}, {"portable", "true"}, {"tracer", tracer}, {"size", "32x25"}});
             };
             const View view = make_view(*of, 32.0f / 25.0f);
-            // A packet of 2x1 is traced sample by sample.
+            // Packets of 2x1 are traced one sample per launch.
             const FrameStats truth = one_->trace(of, with("2x1"), view, 0, 21);
             const std::vector<float> pixels = one_->frames.read_values().pixels, distance = one_->frames.read_distance().pixels;
             EXPECT_GE(truth.launches, 21u);
@@ -170,7 +171,7 @@ TEST_F(SharedPictures, OfManySamplesALaunch) {
                     EXPECT_EQ(differing(pixels, team->frames.read_values().pixels), 0u) << tracer << picture;
                     EXPECT_EQ(differing(distance, team->frames.read_distance().pixels), 0u) << tracer << picture;
                     EXPECT_EQ(stats.samples, 21u);
-                    // The first picture learns how long a sample takes; rays that part go sample by sample in queues.
+                    // The first picture measures the time of a sample. Wavefront traces one sample per launch if rays split.
                     const bool together = picture == 2 && (of == plain || std::string(tracer) == "iterative");
                     EXPECT_TRUE(!together || stats.launches < 21 * team->devices.size()) << tracer << stats.launches;
                     EXPECT_EQ(stats.primary, truth.primary) << tracer << picture;
@@ -180,7 +181,7 @@ TEST_F(SharedPictures, OfManySamplesALaunch) {
         }
 }
 
-// What was shown once is brought along with the next picture.
+// After a picture was displayed, the next one is copied to the host during trace().
 TEST_F(SharedPictures, ThatAreShownOneAfterTheOther) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     Settings settings = settings_of({{"size", "160x121"}});
@@ -196,7 +197,7 @@ TEST_F(SharedPictures, ThatAreShownOneAfterTheOther) {
     }
 }
 
-// Stops after so many samples of so many.
+// Cancels after this fraction of the samples.
 class StopAfter : public Progress {
  public:
     explicit StopAfter(float fraction) : fraction_(fraction) {}
@@ -219,7 +220,7 @@ TEST_F(SharedPictures, ThatAreCancelledKeepWhatIsComplete) {
     EXPECT_THROW(two_->frames.trace(prepared, settings, view, 0, false, at_once), Cancelled);
     EXPECT_EQ(two_->frames.samples(), 0u);
     EXPECT_THROW(two_->frames.trace(prepared, settings, view, 0, false, later, 50), Cancelled);
-    // One device may be ahead of the other; every pixel has its own number of samples.
+    // One device may have more samples than the other. Each pixel counts its own.
     const unsigned complete = two_->frames.samples();
     EXPECT_GE(complete, 1u);
     EXPECT_LT(complete, 50u);

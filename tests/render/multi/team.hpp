@@ -1,4 +1,4 @@
-// team.hpp -- a CPU alone and in parts, to compare what they make.
+// team.hpp -- one CPU as a whole and in parts, to compare their pictures.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 namespace clarity::test {
 
-// Devices of one choice, with what makes pictures on them.
+// A choice of devices, with a preparer and a renderer for them.
 struct Team {
     explicit Team(const std::string& choice)
         : devices(open_devices(choose_devices(choice))), preparer(Workbench::get().plugins(), devices), frames(devices) {}
@@ -23,7 +23,7 @@ struct Team {
     }
 };
 
-// Why this machine cannot part its CPU; empty if it can.
+// Why this machine cannot split its CPU; empty if it can.
 inline std::string why_no_parts() {
     try {
         choose_devices("cpu/2");

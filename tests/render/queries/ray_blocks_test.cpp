@@ -1,4 +1,4 @@
-// ray_blocks_test.cpp -- rays of the caller's own on their way to kernels and back: blocks of all lane counts, full or not.
+// ray_blocks_test.cpp -- packs the caller's rays for kernels and unpacks answers: blocks of all lane counts, full or not.
 #include "render/queries/ray_blocks.hpp"
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ using namespace clarity::test;
 namespace {
 
 constexpr unsigned kLanes[] = {1, 4, 8, 16};
-constexpr size_t kCounts[] = {1, 3, 4, 15, 16, 17, 33, 20000};  // the last is more than one task
+constexpr size_t kCounts[] = {1, 3, 4, 15, 16, 17, 33, 20000};  // the last one needs more than one task
 
 std::vector<rt_ray> numbered_rays(size_t count) {
     std::vector<rt_ray> rays(count);
@@ -28,7 +28,7 @@ std::vector<rt_ray> numbered_rays(size_t count) {
     return rays;
 }
 
-// Through a tilted grid over the unit ball, so that some hit and some miss.
+// Rays through a tilted grid over the unit ball: some hit, some miss.
 std::vector<rt_ray> rays_at_ball(size_t count) {
     std::vector<rt_ray> rays;
     for (size_t i = 0; i < count; ++i) {
@@ -68,7 +68,7 @@ TEST(RayBlocks, AreFieldByField) {
     EXPECT_TRUE(RayBlocks({}, 16).floats().empty());
 }
 
-// With one lane both are the structs themselves.
+// With one lane, rays and answers have the layout of the structs.
 TEST(RayBlocks, OfOneLaneAreTheStructs) {
     const std::vector<rt_ray> rays = numbered_rays(5);
     const RayBlocks blocks(rays, 1);
@@ -118,7 +118,7 @@ TEST(RayBlocks, AnswersComeBackInOrder) {
         }
 }
 
-// On the device: the same answers for all lane counts, whether blocks are full or not, counted or not.
+// On the device: answers do not depend on the lane count, on blocks being full, or on counting.
 TEST(RayBlocks, AnswersDoNotDependOnLanes) {
     const std::vector<rt_ray> all = rays_at_ball(333);
     const std::vector<rt_hit> nearest = traced(1, all, {false, false}), any = traced(1, all, {true, false});

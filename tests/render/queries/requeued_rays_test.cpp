@@ -1,5 +1,5 @@
-// requeued_rays_test.cpp -- rays of the caller's own in one launch, in two, drawn from a queue, and a warp's together: which it
-// is, is found out by trying, so the same rays are asked for as often as it takes to see all.
+// requeued_rays_test.cpp -- the caller's own rays in one launch, in two, with dynamic fetch, and a warp's rays together.
+// The autotuner chooses the variant, so the same rays are traced often enough to cover all.
 #include "render/queries/autotuner.hpp"
 
 #include <gtest/gtest.h>
@@ -16,9 +16,9 @@ using namespace clarity::test;
 namespace {
 
 constexpr unsigned kTries = 15;
-constexpr rt_u32 kLong = 64;  // turns: a node or two triangles each
+constexpr rt_u32 kLong = 64;  // steps: a node or two triangles each
 
-// Towards the rubble from all around, straight and askew, some reaching only half of the way, some inactive.
+// Rays towards the rubble from all sides. Some are horizontal, some reach only half-way, some are inactive.
 std::vector<rt_ray> rays_at_rubble() {
     std::vector<rt_ray> rays;
     for (int i = 0; i < 3000; ++i) {
@@ -31,7 +31,7 @@ std::vector<rt_ray> rays_at_rubble() {
     return rays;
 }
 
-// Many times over at one place, so that rays meet the same distances again and again, and pass by more than they hit.
+// Several copies at nearly the same place. Rays find many equal distances, and pass more triangles than they hit.
 ScenePtr heap() {
     Scene scene = *rubble();
     for (int i = 0; i < 8; ++i) {
@@ -119,7 +119,7 @@ TEST(Autotuner, StaysWithTheFirstForLittle) {
     EXPECT_EQ(way.way(), 0u);
 }
 
-// Each way takes its time by `ms`; the clock is slower by `slowdown`.
+// Runs of variants that take `ms`, on a machine slower by `slowdown`. Returns the number of trials.
 unsigned use(Autotuner& way, const std::vector<double>& ms, double slowdown, int runs) {
     unsigned trials = 0;
     for (int i = 0; i < runs; ++i) {
@@ -136,7 +136,7 @@ TEST(Autotuner, IsSettledOnceARunConfirmsTheChoice) {
     EXPECT_FALSE(way.trying());
     EXPECT_FALSE(way.settled());
     way.took(20);
-    EXPECT_FALSE(way.settled()) << "another time than it was chosen by";
+    EXPECT_FALSE(way.settled()) << "this run took another time than the one that decided the choice";
     way.took(5.2);
     EXPECT_TRUE(way.settled());
     EXPECT_TRUE(Autotuner(1).settled());
@@ -147,12 +147,12 @@ TEST(Autotuner, LooksAgainWhenRunsTakeAnotherTime) {
     Autotuner way(2);
     use(way, {10, 12}, 8, 6);
     EXPECT_EQ(way.way(), 0u);
-    const std::vector<double> warm = {10, 7};  // at full clock the second way is the faster one
+    const std::vector<double> warm = {10, 7};  // at full clock the second variant is faster
     EXPECT_EQ(use(way, warm, 1, 3), 0u);
     EXPECT_TRUE(way.trying()) << "three runs took an eighth of the time";
     EXPECT_EQ(use(way, warm, 1, 4), 4u);
     EXPECT_EQ(way.way(), 1u);
-    // One disturbed run, or two, change nothing.
+    // One or two disturbed runs change nothing.
     for (const double ms : {7.0, 30.0, 30.0, 7.0, 30.0}) way.took(ms);
     EXPECT_FALSE(way.trying());
 }

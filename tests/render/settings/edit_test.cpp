@@ -1,4 +1,4 @@
-// Changes of a view in words: each comes back as it was, and a wrong one is refused with what is allowed.
+// Edits of a view as text: each is restored exactly, and wrong ones are refused with what is allowed.
 #include "render/settings/edit.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST(Edit, EveryChangeComesBackBitByBit) {
     view.materials[1].ior = 1.33f;
     view.materials[1].color[2] = 0.123456789f;
     edited.hidden = {0, 2};
-    // Whatever angle radians were made from, its float comes back.
+    // The float in radians is restored, whatever angle it was made from.
     for (const float fov : {0.7853982f, 0.1f, 1.234567f, 3.0f, 0.9999999f}) {
         view.camera.fov_y_rad = fov;
         const EditedView again = replay(scene, edits_between(scene, first_view(scene).view, edited));

@@ -78,7 +78,7 @@ TEST(Preset, RefusesWhatItDoesNotKnow) {
     }
 }
 
-// The window's own frames take their settings through words too: of 1/512 rounded to six digits more rays were followed.
+// The window also passes settings as text. With 1/512 rounded to six digits, more rays were followed.
 TEST(Settings, NumbersInWordsComeBackBitByBit) {
     for (const Setting& row : settings_table()) {
         if (row.kind != Setting::Kind::real) continue;
