@@ -1,4 +1,4 @@
-// clarity bench: measures suites or scenes, and writes what was measured as table, JSON, CSV and a page.
+// clarity bench: measures suites or scenes, and writes the records as table, JSON, CSV and a page.
 #include "bench/run/bench.hpp"
 
 #include <algorithm>
@@ -45,8 +45,9 @@ BenchRequest make_request(const BenchCommand& command) {
     for (const auto& [key, value] : request.settings) {
         const bool whole = request.suites == std::vector<std::string>{"devices"};
         if (key == "spp" && value != "1" && !whole)
-            throw Error(Exit::usage, "--spp " + value + ": frames of one sample are timed");
-        if (key == "aov" && value != "color") throw Error(Exit::usage, "--aov " + value + ": frames are timed in colour only");
+            throw Error(Exit::usage, "--spp " + value + ": frames of one sample are timed; leave it out");
+        if (key == "aov" && value != "color")
+            throw Error(Exit::usage, "--aov " + value + ": frames are timed in colour only; leave it out");
     }
     request.only = command.only;
     request.breakdown = command.breakdown;
@@ -67,7 +68,7 @@ void print_list(const Suite& suite) {
     for (const std::string& note : suite.notes) std::printf("left out  %s\n", note.c_str());
 }
 
-// Records of earlier runs, before those of this one.
+// Puts the records of earlier runs before the records of this run.
 void join(BenchReport& report, const std::vector<std::string>& files) {
     BenchReport all;
     all.run = report.run;
@@ -97,7 +98,7 @@ void join(BenchReport& report, const std::vector<std::string>& files) {
     report = std::move(all);
 }
 
-// Before an hour is spent on measuring.
+// Checks that all outputs can be written, before time is spent on measuring. Throws Error.
 void check_outputs(const BenchCommand& command) {
     if (!command.json_file.empty() && command.json_file != "-") check_writable(command.json_file);
     if (!command.csv_file.empty()) check_writable(command.csv_file);
@@ -135,7 +136,7 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
     std::optional<RowsFile> rows;
     if (!command.json_file.empty() && command.json_file != "-") rows.emplace(command.json_file);
     BenchReport report;
-    join(report, command.join_files);  // what cannot be read is found before anything is measured
+    join(report, command.join_files);  // fails for an unreadable file before anything is measured
     report = {};
     if (!suite.cases.empty()) {
         BenchOptions options;

@@ -13,7 +13,7 @@ constexpr const char* kExitCodes =
     "Exit codes: 0 done, 1 failed, 2 usage, 3 no OpenCL device, 4 import failed, 5 kernel build failed, 130 interrupted\n"
     "Environment: CLARITY_DEVICE, CLARITY_PLUGIN_PATH (folders, colon between them), NO_COLOR";
 
-// Everything that options are parsed into; commands keep it alive.
+// The options of all commands, as CLI11 fills them in; it must live as long as a command.
 struct Parsed {
     CommonOptions common;
     SceneOptions scene;
@@ -24,7 +24,7 @@ struct Parsed {
     bool json = false;
 };
 
-// The last one of several wins, so that a shell alias can be overruled.
+// Of a repeated option the last value counts, so that a user can override a shell alias.
 CLI::Option* single(CLI::Option* option) {
     return option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
 }
@@ -33,18 +33,18 @@ void add_common(CLI::App& app, CommonOptions& common) {
     app.add_option("--plugin", common.plugin_files, "A plugin library to load before all others; may be repeated")
         ->type_name("FILE")
         ->allow_extra_args(false);
-    auto* verbose = app.add_flag("-v,--verbose", common.verbose, "Say more");
+    auto* verbose = app.add_flag("-v,--verbose", common.verbose, "Log debug messages too");
     app.add_flag("-q,--quiet", common.quiet, "Warnings and errors only, no progress bar")->excludes(verbose);
     single(app.add_option("--log-file", common.log_file, "Append the log, with times, to this file"))->type_name("FILE");
 }
 
 CLI::Option* add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_option("--search-path", scene.import.search_paths,
-                   "A folder besides the scene's own that it may read files from; may be repeated")
+                   "A folder which the scene may read files from, besides its own; may be repeated")
         ->type_name("DIR")
         ->allow_extra_args(false);
     app.add_flag("--import-in-process", scene.import.in_process,
-                 "Run importers in this process, to debug them; a crash is then the program's");
+                 "Run importers in this process, to debug them; a crash then ends the program");
     return app.add_option("scene", scene.files, "Scene or model files; several become one scene")->type_name("FILE");
 }
 
@@ -85,7 +85,7 @@ void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>
             ->type_name(setting.kind == Setting::Kind::size ? "WxH" : "VALUE")
             ->group("Settings");
     }
-    app.add_option("--set", sets, "The same, as key=value with the setting's key (ray_slots=16); may be repeated")
+    app.add_option("--set", sets, "A setting as key=value (ray_slots=16); may be repeated")
         ->type_name("key=value")
         ->allow_extra_args(false)
         ->group("Settings");
@@ -99,14 +99,14 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
     single(app.add_option("--accel", trace.accel, "Acceleration structure with its parameters (`clarity plugins` lists them)"))
         ->type_name("ID[,key=value...]")
         ->default_str("the one of highest merit for the device");
-    single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or where it stands and looks"))
+    single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or its position and target"))
         ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
     single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");
-    single(app.add_option("--preset", trace.preset, "Settings and view saved from the window; options beside it win"))
+    single(app.add_option("--preset", trace.preset, "Settings and view saved from the window; other options override it"))
         ->type_name("FILE");
     add_settings(app, trace.settings, trace.sets);
     app.get_option("--set")->description(
-        "The same, as key=value with the setting's key (ray_slots=16), or a change of the view: "
+        "A setting as key=value (ray_slots=16), or a change of the view: "
         "camera=ex,ey,ez,tx,ty,tz,fov,ux,uy,uz, background=r,g,b, ambient=r,g,b, "
         "light.N=off|point,x,y,z,r,g,b|directional,..., "
         "material.N.color=r,g,b (emission, specular, reflect, refract, ior, shininess), hide=3,5-9 (instances); may be "
@@ -117,18 +117,17 @@ void add_render(CLI::App& app, RenderOptions& render) {
     single(app.add_option("-o,--output", render.output, "Picture to write: .png, .exr or .pfm; #### is the frame's number"))
         ->type_name("OUT")
         ->required();
-    single(app.add_option("--frames", render.frames, "Numbers of the frames to render (a scene that does not move: all alike)"))
+    single(app.add_option("--frames", render.frames, "Numbers of the frames to render (all alike: scenes do not move yet)"))
         ->type_name("A-B[/STEP]");
     single(app.add_option("--time", render.time_s,
                           "Time within the scene, seconds; ignored with a warning: scenes do not move yet"))
         ->type_name("SECONDS");
-    single(app.add_option("--repeat", render.repeat, "Trace each frame N times, after one to warm up, for timing"))
-        ->type_name("N");
+    single(app.add_option("--repeat", render.repeat, "Trace each frame N times for timing, after one warm-up"))->type_name("N");
     single(app.add_option("--stats", render.stats_file, "Write a JSON of times, rays and sizes; - is stdout"))
         ->type_name("FILE");
-    app.add_flag(
-        "--watch", render.watch,
-        "Render again whenever a kernel or a scene file named here is saved; Ctrl-C ends, with the last try's exit code");
+    app.add_flag("--watch", render.watch,
+                 "Render again whenever a kernel or a scene file named here is saved; Ctrl-C ends, with the exit code of the "
+                 "last attempt");
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {
@@ -139,12 +138,13 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->type_name("SUITE|SCENE");
     single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
         ->type_name("D[,D...]");
-    app.add_option("--accel", bench.accels, "A structure to compare; may be repeated; without it every one found")
+    app.add_option("--accel", bench.accels, "A structure to compare; may be repeated; default: all which are found")
         ->type_name("ID[,key=value...]")
         ->allow_extra_args(false);
-    single(app.add_option("--json", bench.json_file, "Write the records here, a list; - is stdout, instead of the tables"))
+    single(app.add_option("--json", bench.json_file,
+                          "Write the records as a JSON list; - writes it to stdout instead of the tables"))
         ->type_name("FILE");
-    single(app.add_option("--csv", bench.csv_file, "Write them as CSV too"))->type_name("FILE");
+    single(app.add_option("--csv", bench.csv_file, "Write the records as CSV"))->type_name("FILE");
     single(app.add_option("--report", bench.report_folder, "Write a page with charts, index.html, into this folder"))
         ->type_name("DIR");
     app.add_option("--join", bench.join_files, "Add the records of an earlier run (its --json); may be repeated")
@@ -156,8 +156,8 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_flag("--breakdown", bench.breakdown,
                  "Where the time of a frame goes: of the scenes named, or of the shared models as half mirrors");
     app.add_flag("--list", bench.list, "Only list what would be measured");
-    app.add_flag("--no-peers", bench.no_baselines, "Leave other people's ray tracers out");
-    single(app.add_option("--time-limit", bench.time_limit_s, "For everything; without it what the suites are made for"))
+    app.add_flag("--no-peers", bench.no_baselines, "Leave out other ray tracers (peers)");
+    single(app.add_option("--time-limit", bench.time_limit_s, "Limit for the whole run; default: the limits of the suites"))
         ->type_name("SECONDS")
         ->check(CLI::Range(1.0, 1e6));
     single(app.add_option("--max-spread", bench.max_spread,
@@ -169,7 +169,7 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->type_name("N")
         ->capture_default_str();
     app.add_option("--search-path", bench.import.search_paths,
-                   "A folder besides the scene's own that it may read files from; may be repeated")
+                   "A folder which the scene may read files from, besides its own; may be repeated")
         ->type_name("DIR")
         ->allow_extra_args(false);
     add_settings(app, bench.settings, bench.sets);
@@ -185,7 +185,7 @@ std::string version_text() {
            "\nwindow: " + window;
 }
 
-// `clarity SCENE...` is `clarity view SCENE...`.
+// Inserts the default command: `clarity SCENE...` means `clarity view SCENE...`.
 std::vector<std::string> with_command(const CLI::App& app, int argc, char** argv) {
     std::vector<std::string> words(argv + 1, argv + argc);
     const auto is_command = [&](const std::string& word) {
@@ -214,7 +214,7 @@ CommandLine parse_command_line(int argc, char** argv) {
     CLI::App* view = app.add_subcommand("view", "Open the window on a scene");
     CLI::App* render = app.add_subcommand("render", "Render a scene to a picture file");
     CLI::App* bench = app.add_subcommand("bench", "Measure: structures, settings, devices and peers on suites or scenes");
-    CLI::App* info = app.add_subcommand("info", "Tell what the importer understood of a file");
+    CLI::App* info = app.add_subcommand("info", "Show what the importer read from a file");
     CLI::App* devices = app.add_subcommand("devices", "List OpenCL devices, best first");
     CLI::App* plugins = app.add_subcommand("plugins", "List every plugin seen, loaded or not, and why not");
 
@@ -279,10 +279,10 @@ CommandLine parse_command_line(int argc, char** argv) {
 
     std::vector<std::string> words = with_command(app, argc, argv);
     try {
-        const std::vector<std::string> reversed(words.rbegin(), words.rend());  // as CLI11 wants them
+        const std::vector<std::string> reversed(words.rbegin(), words.rend());  // CLI11 expects the arguments in reverse order
         app.parse(std::vector<std::string>(reversed));
     } catch (const CLI::CallForHelp&) {
-        std::printf("%s", app.help().c_str());  // of the command, where one was named
+        std::printf("%s", app.help().c_str());  // of the subcommand, if one was given
         return {};
     } catch (const CLI::CallForVersion& e) {
         std::printf("%s\n", e.what());

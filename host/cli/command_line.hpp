@@ -1,4 +1,4 @@
-// command_line.hpp -- what may be typed, and its meaning.
+// command_line.hpp -- parses the command line.
 #pragma once
 #include <functional>
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace clarity {
 
-// Of every command.
+// Options which every command has.
 struct CommonOptions {
     std::vector<std::string> plugin_files;
     bool verbose = false, quiet = false;
@@ -17,13 +17,13 @@ struct CommonOptions {
 
 struct CommandLine {
     CommonOptions common;
-    // What to do; empty if there is nothing left to do (help, version).
+    // Runs the command and returns the exit code; empty if there is nothing left to do (help, version).
     std::function<int(const PluginRegistry&)> command;
-    bool needs_plugins = true;
-    bool refused_plugin_is_fatal = true;  // one named by --plugin
+    bool needs_plugins = true;            // plugins must be loaded before the command runs
+    bool refused_plugin_is_fatal = true;  // end the program if a library named by --plugin was refused
 };
 
-// Prints help and version to stdout. Throws Error(usage) for what cannot be understood.
+// Parses the arguments. Prints help and version to stdout. Throws Error(usage) for invalid arguments.
 CommandLine parse_command_line(int argc, char** argv);
 
 }  // namespace clarity

@@ -1,5 +1,5 @@
-// commands.hpp -- the subcommands, one file each, and what the command line gives them. Each returns the program's exit code;
-// failures are thrown as Error.
+// commands.hpp -- the subcommands, one file each, with their options. A command returns the program's exit code and throws
+// Error if it fails.
 #pragma once
 #include <string>
 #include <utility>
@@ -17,32 +17,33 @@ struct SceneOptions {
     import::ImportOptions import;
 };
 
-// What render and view share.
+// Options which render and view share.
 struct TraceOptions {
-    std::string device;                                         // "": CLARITY_DEVICE, else the best
-    std::string accel;                                          // ID[,key=value...]; "": the preset's, else default_accel()
-    std::vector<std::string> sets;                              // key=value, in the order given
-    std::vector<std::pair<std::string, std::string>> settings;  // from options of their own; they win over `sets`
-    std::string camera, light;                                  // as make_view reads them
-    std::string preset;                                         // file; what is given beside it wins
+    std::string device;                                         // "": CLARITY_DEVICE; if that is not set, the best device
+    std::string accel;                                          // ID[,key=value...]; "": the preset's, or else default_accel()
+    std::vector<std::string> sets;                              // key=value, in the order of the command line
+    std::vector<std::pair<std::string, std::string>> settings;  // from options of their own; override `sets`
+    std::string camera, light;                                  // in the syntax of make_view
+    std::string preset;                                         // file; other options override it
 };
-// Words that are checked without a scene, and those that need one. Throws Error(usage) for an unknown plugin, key or value.
+// The parts of TraceOptions which are checked without a scene, and the edits which need one.
 struct TraceWords {
     std::string device;
     Settings settings;
-    std::vector<Word> edits;  // of the view, in their order
+    std::vector<Word> edits;  // of the view, in the order of the command line
 };
+// Throws Error(usage) for an unknown plugin, key or value.
 TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions& options);
 
 struct RenderOptions {
     SceneOptions scene;
     TraceOptions trace;
-    std::string output;      // .png, .exr, .pfm; a run of # is the frame's number
-    std::string frames;      // A-B[/S]; "": one frame, number 1
-    double time_s = 0;       // of the scene
-    unsigned repeat = 1;     // frames of each picture, for timing
-    std::string stats_file;  // "-": stdout
-    bool watch = false;      // again after each save of a kernel or scene file
+    std::string output;      // .png, .exr or .pfm; a run of # is replaced by the frame's number
+    std::string frames;      // A-B[/S]; "": one frame with number 1
+    double time_s = 0;       // time within the scene
+    unsigned repeat = 1;     // how often each picture is traced, for timing
+    std::string stats_file;  // file for the statistics; "-": stdout; "": none
+    bool watch = false;      // render again after each change of a kernel or scene file
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);
@@ -56,19 +57,19 @@ int run_view(const PluginRegistry& plugins, const ViewCommand& options);
 
 struct BenchCommand {
     std::vector<std::string> what;    // suites and scene files
-    std::string device;               // comma list, or "all"; "": the best
-    std::vector<std::string> accels;  // ID[,key=value...] each; empty: every one found
+    std::string device;               // comma-separated list, or "all"; "": the best device
+    std::vector<std::string> accels;  // ID[,key=value...] each; empty: all structures found
     std::vector<std::string> sets;
     std::vector<std::pair<std::string, std::string>> settings;
     std::string json_file, csv_file, report_folder;
-    std::vector<std::string> join_files;  // that --json wrote in earlier runs
+    std::vector<std::string> join_files;  // files of --json of earlier runs
     bool list = false, no_baselines = false, quiet = false;
     double time_limit_s = 0, max_spread = 0.1;
     std::vector<std::string> only;
     bool breakdown = false;
     uint64_t max_triangles = 10'000'000;
     import::ImportOptions import;
-    std::string text;  // of the command line
+    std::string text;  // the command line as typed
 };
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& options);
 
@@ -76,10 +77,10 @@ int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool js
 
 int run_devices(bool json);
 
-// Prints every library that discovery saw, loaded or not, and why not.
+// Lists every library that discovery saw: loaded, or the reason why not.
 int run_plugins(const PluginRegistry& plugins, bool json);
 
-// Throws Error(import_failed) for a file that does not exist or cannot be read, before anything is started for it.
+// Throws Error(import_failed) for a file which does not exist or cannot be read, so that this is known before any work.
 void check_scene_files(const std::vector<std::string>& files);
 
 }  // namespace clarity

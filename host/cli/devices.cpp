@@ -1,4 +1,5 @@
-// clarity devices: what clinfo -l shows, in the order of preference, and which ones are taken without --device.
+// clarity devices: lists the OpenCL devices (like `clinfo -l`) in the order of preference, and tells which of them are used
+// without --device.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -21,14 +22,14 @@ const char* type_name(const DeviceInfo& device) {
 }
 
 constexpr const char* kSeveral =
-    "\nSeveral share each picture: --device 0,1 or gpus or all. A CPU in two parts: cpu/2, or one of them: cpu/2.0.\n";
+    "\nSeveral devices can share a picture: --device 0,1 or gpus or all. cpu/2 is a CPU split in two, cpu/2.0 a half.\n";
 
-// As Device::preferred_lanes, without opening the device.
+// Device::preferred_lanes, computed without opening the device.
 unsigned lanes_of(const DeviceInfo& device) {
     return !device.cpu ? 1 : device.float_width >= 16 ? 16 : device.float_width >= 8 ? 8 : 4;
 }
 
-// Which devices a command without --device takes, and why.
+// The devices which a command without --device uses, and the reason.
 struct Default {
     std::vector<DeviceInfo> devices;
     std::string why;
@@ -55,7 +56,7 @@ Default find_default(const std::vector<DeviceInfo>& devices) {
     if (devices.size() == 1) return {{best}, "the only one"};
     const bool same_kind = devices[1].gpu == best.gpu && devices[1].cpu == best.cpu;
     if (same_kind) return {{best}, std::string("most compute units x clock of every ") + type_name(best)};
-    return {{best}, best.gpu ? "a GPU goes before a CPU" : "a CPU goes before other devices"};
+    return {{best}, best.gpu ? "a GPU is preferred to a CPU" : "a CPU is preferred to other devices"};
 }
 
 Json device_json(const DeviceInfo& device, size_t number, const Default& chosen) {
@@ -101,11 +102,11 @@ int run_devices(bool json) {
     } else {
         for (size_t i = 0; i < devices.size(); ++i) print_device(devices[i], i, chosen);
         for (const std::string& warning : warnings)
-            if (!devices.empty()) print_text("          %s\n", warning.c_str());  // else they are part of the error
+            if (!devices.empty()) print_text("          %s\n", warning.c_str());  // else the error below has them
         if (chosen.devices.empty() && !devices.empty()) print_text("          no default: %s\n", chosen.why.c_str());
         if (!devices.empty()) print_text("%s", kSeveral);
     }
-    if (devices.empty()) choose_device({});  // throws, with what to install
+    if (devices.empty()) choose_device({});  // throws, and says what to install
     return static_cast<int>(Exit::done);
 }
 

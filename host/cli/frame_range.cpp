@@ -8,7 +8,7 @@ namespace clarity {
 
 FrameRange parse_frame_range(const std::string& text) {
     const char *at = text.data(), *const end = at + text.size();
-    // Digits only: from_chars would take a sign.
+    // Accepts digits only, because from_chars would accept a sign.
     const auto number = [&](int& value) {
         if (at == end || *at < '0' || *at > '9') return false;
         const auto [next, error] = std::from_chars(at, end, value);

@@ -1,4 +1,4 @@
-// clarity info: what the importer understood of a file, in the file's own units and axes.
+// clarity info: shows what the importer read from a file, in the file's units and axes.
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -62,7 +62,7 @@ Json scene_json(const Scene& scene, const std::vector<std::string>& files) {
     return json;
 }
 
-// 871414 -> "871 414": readable, and the same in every locale.
+// 871414 -> "871 414", the same in every locale.
 std::string grouped(uint64_t number) {
     std::string text = std::to_string(number);
     for (size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ' ');
@@ -73,7 +73,7 @@ void row(const char* label, const std::string& value) {
     print_text("  %-14s%s\n", label, value.c_str());
 }
 
-// Nothing is said about what a scene does not have.
+// Prints a count; prints nothing for 0.
 void count_row(const char* label, uint64_t count, const std::string& more = {}) {
     if (count > 0) row(label, grouped(count) + more);
 }
@@ -108,7 +108,7 @@ void print_scene(const Scene& scene, const std::vector<std::string>& files) {
     }
     const Bounds bounds = scene.bounds();
     if (bounds.empty) {
-        row("bounds", "none: nothing in it has an end, or there is nothing in it");
+        row("bounds", "none: the scene is empty or has planes only");
     } else {
         row("bounds", vector_text(bounds.min));
         row("", vector_text(bounds.max));
@@ -129,10 +129,10 @@ int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool js
     ProgressBar progress(quiet);
     const CancelOnSignal cancel(progress);
     import::ImportOptions import = options.import;
-    import.log_warnings = false;  // they are part of what is printed
+    import.log_warnings = false;  // because they are printed with the rest
     const Scene scene = import::import_scene(plugins, options.files, import, progress);
     progress.clear();
-    if (json)  // names in files need not be UTF-8; JSON must
+    if (json)  // names in files may not be UTF-8, but JSON must be
         std::printf("%s\n", scene_json(scene, options.files).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     else
         print_scene(scene, options.files);

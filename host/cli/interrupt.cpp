@@ -21,9 +21,9 @@ CancelOnSignal::CancelOnSignal(Progress& progress) {
     target = &progress;
     struct sigaction action {};
     action.sa_handler = on_signal;
-    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // the second signal finds the default: the end
+    action.sa_flags = static_cast<int>(SA_RESETHAND | SA_RESTART);  // SA_RESETHAND: the second signal ends the program
     for (const int signal : {SIGINT, SIGTERM}) {
-        // A shell starts background jobs with SIGINT ignored; that stays.
+        // A shell starts background jobs with SIGINT ignored; do not change that.
         struct sigaction old {};
         if (sigaction(signal, nullptr, &old) == 0 && old.sa_handler == SIG_IGN) continue;
         sigaction(signal, &action, nullptr);

@@ -1,10 +1,11 @@
-// interrupt.hpp -- Ctrl-C ends work at its next safe point, so that what is finished can be written; a second one ends at once.
+// interrupt.hpp -- Ctrl-C cancels the work at its next safe point, so that finished parts can be written. A second Ctrl-C ends
+// the program at once.
 #pragma once
 #include "base/progress.hpp"
 
 namespace clarity {
 
-// While it lives, SIGINT and SIGTERM cancel `progress`. One at a time.
+// SIGINT and SIGTERM cancel `progress` during the lifetime of this object. Only one such object may exist at a time.
 class CancelOnSignal {
  public:
     explicit CancelOnSignal(Progress& progress);
@@ -13,7 +14,7 @@ class CancelOnSignal {
     CancelOnSignal& operator=(const CancelOnSignal&) = delete;
 };
 
-// Whether such a signal came since the program began.
+// True if such a signal has come since the program started.
 bool interrupted();
 
 }  // namespace clarity

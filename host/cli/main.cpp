@@ -1,4 +1,4 @@
-// clarity: parses, runs one command, and turns what it threw into one line and an exit code.
+// clarity: parses the command line, runs one command, and turns its exceptions into a message and an exit code.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -22,7 +22,7 @@ void set_up_log(const CommonOptions& common) {
 
 PluginRegistry find_plugins(const CommandLine& line) {
     PluginRegistry plugins = PluginRegistry::discover(line.common.plugin_files);
-    // A person who names a library does not want to go on without it.
+    // A library named by --plugin was refused: do not go on without it.
     for (size_t i = 0; line.refused_plugin_is_fatal && i < plugins.records().size(); ++i)
         for (const std::string& named : line.common.plugin_files)
             if (plugins.records()[i].path == named && !plugins.records()[i].plugin)
@@ -39,7 +39,7 @@ int run(int argc, char** argv) {
 }
 
 int fail(Exit code, const std::string& message, const std::string& details = {}) {
-    // The user's own Ctrl-C is no error, whatever it made fail on its way.
+    // The user's Ctrl-C is not an error, even if it made something fail.
     if (interrupted()) {
         log(LogLevel::warning, "interrupted: nothing more is written");
         return static_cast<int>(Exit::interrupted);
@@ -65,7 +65,7 @@ int guarded_run(int argc, char** argv) {
 }  // namespace clarity
 
 int main(int argc, char** argv) {
-    // The worker has limits of its own to set up before anything else runs.
+    // The import worker must set its resource limits before anything else runs.
     if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import::import_worker_main(argc, argv);
     const int code = clarity::guarded_run(argc, argv);
     errno = 0;

@@ -1,4 +1,4 @@
-// clarity plugins: every library that was seen, what it offers, and why one was refused.
+// clarity plugins: lists every library seen, its plugins, and the reason if it was refused.
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -148,7 +148,7 @@ int run_plugins(const PluginRegistry& plugins, bool json) {
     if (json) {
         Json list = {{"abi_version", RT_ABI_VERSION}, {"plugins", Json::array()}};
         for (const PluginRecord& record : plugins.records()) list["plugins"].push_back(record_json(record));
-        // A path need not be UTF-8; JSON must.
+        // A path may not be UTF-8, but JSON must be.
         std::printf("%s\n", list.dump(2, ' ', false, Json::error_handler_t::replace).c_str());
         return 0;
     }

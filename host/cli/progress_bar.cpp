@@ -14,7 +14,7 @@
 namespace clarity {
 namespace {
 
-constexpr auto kFirstAfter = std::chrono::milliseconds(150);  // short work needs no bar
+constexpr auto kFirstAfter = std::chrono::milliseconds(150);  // so that short work shows no bar
 constexpr auto kEvery = std::chrono::milliseconds(80);
 
 bool stderr_is_terminal() {
@@ -68,7 +68,7 @@ void ProgressBar::clear() {
 void ProgressBar::draw(float fraction, Clock::time_point now) {
     constexpr size_t kBar = 24, kNumbers = 16;
     const size_t columns = terminal_columns();
-    // A line that wraps could not be taken back; the bar matters more than the end of a long name.
+    // A line which wraps cannot be erased. Long names are cut to make room for the bar.
     const size_t others = kNumbers + 1 + (columns >= 60 ? kBar + 4 : 0);
     std::string line = name_.substr(0, columns > others ? columns - others : 0);
     const size_t left = columns - std::min(columns, line.size() + kNumbers + 1);

@@ -1,4 +1,4 @@
-// progress_bar.hpp -- one moving line on stderr, where that is a terminal.
+// progress_bar.hpp -- a progress bar: one line on stderr which is redrawn in place.
 #pragma once
 #include <chrono>
 #include <mutex>
@@ -8,14 +8,14 @@
 
 namespace clarity {
 
-// Silent where stderr is no terminal, or if `quiet`. Thread-safe.
+// Shows nothing if stderr is not a terminal, or if `quiet`. Thread-safe.
 class ProgressBar : public Progress {
  public:
     explicit ProgressBar(bool quiet);
     ~ProgressBar() override;
     void stage(const std::string& name) override;
     bool report(float fraction) override;
-    // Takes the line away; call it before anything is printed to stdout.
+    // Erases the line; to be called before anything is printed to stdout.
     void clear();
 
  private:

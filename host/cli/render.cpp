@@ -1,4 +1,4 @@
-// clarity render: a scene to picture files, without a window.
+// clarity render: renders a scene to picture files, without a window.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -29,7 +29,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A part of the bar: report(f) of the part is report(from + f * share) of the whole.
+// Progress of a part of the work: report(f) of the part is report(from + f * share) of the whole.
 class PartOf : public Progress {
  public:
     PartOf(Progress& whole, double from, double share) : whole_(whole), from_(from), share_(share) {}
@@ -43,10 +43,11 @@ class PartOf : public Progress {
     const double from_, share_;
 };
 
-// Each repetition keeps two times of 8 bytes, and one more pass warms up: this bound leaves both far from their limits.
+// Each repetition stores two times of 8 bytes, and there is one more pass to warm up: with this bound neither memory nor the
+// pass counter comes near its limit.
 constexpr unsigned kMaxRepeat = 1000000;
 
-// Everything that can be found wrong before any work is done.
+// Checks all options which can be checked before any work is done. Throws Error.
 void check_options(const RenderOptions& options, const Settings& settings, const FrameRange& range) {
     check_output_path(frame_path(options.output, range.first));
     if (range.count() > 1 && frame_path(options.output, 1) == frame_path(options.output, 2))
@@ -64,13 +65,13 @@ void check_options(const RenderOptions& options, const Settings& settings, const
         log(LogLevel::warning, "--time " + exact_text(options.time_s) +
                                    ": ignored, because this version shows every scene at rest, as it is at time 0; leave "
                                    "--time out");
-    // A camera's numbers can be read without a scene; its name cannot.
+    // The numbers of a camera can be checked without a scene, its name cannot.
     const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
                                                          options.trace.camera.find_first_of("0123456789+-.") != 0);
     make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
 }
 
-// Cancels one round of --watch, without a word, once a file was saved that makes it useless.
+// Cancels a round of --watch, without a message, when a saved file has made it obsolete.
 class UntilSaved : public Progress {
  public:
     UntilSaved(Progress& whole, std::function<bool()> saved) : whole_(whole), saved_(std::move(saved)) {}
@@ -109,7 +110,7 @@ class RenderJob {
     }
 
  private:
-    // Import, build and compile as far as they are not done, then all pictures.
+    // Imports, builds and compiles what is not up to date, then renders all pictures.
     Exit round(Progress& progress) {
         if (!scene_) import(progress);
         prepare(progress);
@@ -123,7 +124,7 @@ class RenderJob {
         return Exit::done;
     }
 
-    // Rounds, one after each save, until a signal comes. The code is that of the last one.
+    // Renders one round after each save until a signal comes. Returns the exit code of the last round.
     int watch() {
         std::mutex mutex;
         std::condition_variable wake;
@@ -135,7 +136,8 @@ class RenderJob {
         const FileWatch scenes(options_.scene.files, changed);
         if (kernels.files().empty())
             log(LogLevel::warning,
-                "--watch: the kernels are inside the program; CLARITY_KERNEL_PATH names a folder of kernels to edit");
+                "--watch: kernels are not watched, because the program uses those built into it; set CLARITY_KERNEL_PATH to a "
+                "folder of kernels to edit");
         for (;;) {
             const uint64_t kernels_seen = kernels.revision(), scenes_seen = scenes.revision();
             const auto saved = [&] { return kernels.revision() != kernels_seen || scenes.revision() != scenes_seen; };
@@ -144,7 +146,7 @@ class RenderJob {
             if (interrupted()) return static_cast<int>(Exit::interrupted);
             if (!saved()) log(LogLevel::info, "waiting for a change of a kernel or a scene file; Ctrl-C ends");
             {
-                // Signals wake nobody, so they are looked for.
+                // A signal does not notify the condition variable, so that it must be polled.
                 std::unique_lock<std::mutex> lock(mutex);
                 while (!saved() && !interrupted()) wake.wait_for(lock, std::chrono::milliseconds(100));
             }
@@ -155,7 +157,7 @@ class RenderJob {
         }
     }
 
-    // Whatever fails is said, and waits for the next save.
+    // Runs a round. Reports a failure as a message and returns its exit code, so that the watch goes on with the next save.
     Exit guarded_round(const std::function<bool()>& saved) {
         superseded_ = saved;
         UntilSaved progress(bar_, saved);
@@ -184,7 +186,7 @@ class RenderJob {
         stats_.devices = infos_of(devices);
     }
 
-    // A device closes with its last user.
+    // A device closes when its last owner releases it, so everything which holds one goes first.
     void reopen_devices() {
         prepared_.reset();
         stats_.prepared.reset();
@@ -219,10 +221,10 @@ class RenderJob {
         log(LogLevel::debug, line);
     }
 
-    // One picture; with --repeat the same one again and again. False if interrupted: then what was accumulated is written.
+    // Renders one picture, with --repeat several times. Returns false if interrupted; the samples done so far are then written.
     bool render(MultiFrameRenderer& frames, int number, Progress& progress) {
         bar_.stage("rendering " + std::filesystem::path(frame_path(options_.output, number)).filename().string());
-        // Counting rays costs a little, and the first frame warms caches: timed frames come after it.
+        // The first pass counts rays, which costs a little time, and warms up caches; timed passes come after it.
         const bool warm_up = options_.repeat > 1;
         const unsigned passes = options_.repeat + (warm_up ? 1 : 0);
         unsigned samples = 0;
@@ -243,7 +245,7 @@ class RenderJob {
         return whole;
     }
 
-    // All samples of one frame. Returns how many are complete.
+    // Traces all samples of one frame. Returns the number of complete samples.
     unsigned trace_pass(MultiFrameRenderer& frames, bool count, bool timed, double from, double share, Progress& progress) {
         if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
         double device_ms = 0, wall_ms = 0;
@@ -252,7 +254,7 @@ class RenderJob {
         for (unsigned sample = 0, next = std::min(all, 2u); sample < all;
              sample += std::exchange(next, batch(wall_ms, sample + next))) {
             const double at = from + share * sample / all;
-            // A short sample is one launch and asks nobody.
+            // A short sample is one launch, during which cancelling is not checked.
             if (!progress.report(float(at))) return sample;
             PartOf part(progress, at, share * next / all);
             FrameStats frame;
@@ -280,8 +282,8 @@ class RenderJob {
         return all;
     }
 
-    // Samples to trace at once after so many, which took so long: several devices wait for each other after each batch, and a
-    // person for the bar.
+    // Number of samples to trace in the next batch, after `done` samples took wall_ms: about 100 ms. Longer batches delay the
+    // progress bar; shorter ones make several devices wait for each other more often.
     unsigned batch(double wall_ms, unsigned done) const {
         constexpr double kBatchMs = 100;
         const double each = std::max(wall_ms / done, 1e-3);
@@ -337,7 +339,7 @@ class RenderJob {
     const PluginRegistry& plugins_;
     ProgressBar bar_;
     Devices devices_;
-    std::function<bool()> superseded_;  // with --watch: whether a save made this round useless
+    std::function<bool()> superseded_;  // with --watch: true if a save has made this round obsolete
     std::shared_ptr<const Scene> scene_;
     View view_;
     std::unique_ptr<MultiPreparer> preparer_;

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Times to the microsecond: further digits are noise.
+// Rounds a time to the microsecond; further digits are noise.
 double rounded(double ms) {
     return double(int64_t(ms * 1000 + 0.5)) / 1000;
 }
@@ -21,7 +21,7 @@ Json times_json(const std::vector<double>& values) {
     return {{"median", rounded(median(values))}, {"min", rounded(*least)}, {"max", rounded(*most)}};
 }
 
-// A whole number as one: 4, not 4.0.
+// Writes a whole number without decimals: 4, not 4.0.
 Json number_json(double value) {
     const auto whole = static_cast<int64_t>(std::clamp(value, -1e15, 1e15));
     return double(whole) == value ? Json(whole) : Json(value);
@@ -68,7 +68,7 @@ double mrays_per_s(const RenderStats& stats) {
 std::string stats_json(const RenderStats& stats) {
     const Prepared& prepared = *stats.prepared;
     const AccelData& accel = *prepared.accel;
-    const Settings& used = prepared.settings;  // with what was automatic resolved
+    const Settings& used = prepared.settings;  // automatic settings are resolved here
     Json json;
     json["files"] = stats.files;
     json["device"] = devices_name(stats.devices);

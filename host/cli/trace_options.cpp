@@ -1,4 +1,4 @@
-// From the words of the command line to checked values.
+// trace_options.cpp -- turns the options of the command line into checked values.
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -1,4 +1,4 @@
-// clarity view: hands over to the window.
+// clarity view: opens the window.
 #include <algorithm>
 
 #include "base/error.hpp"
@@ -11,7 +11,8 @@ namespace clarity {
 #ifdef CLARITY_HAVE_UI
 namespace {
 
-// A preset says it even by leaving it out: what it does not name is as `clarity render` has it.
+// True if the user chose the number of samples. A preset always chooses it: if it does not name spp, the default of `clarity
+// render` holds.
 bool names_samples(const TraceOptions& options) {
     const auto named = [](const auto& pair) { return pair.first == "spp"; };
     const auto set = [](const std::string& pair) { return pair.rfind("spp=", 0) == 0; };

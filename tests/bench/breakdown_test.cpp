@@ -1,5 +1,5 @@
-// breakdown_test.cpp -- parts of a frame: that they add up to it, that programs of parts trace the same rays, and that leaf
-// tests done twice change nothing.
+// breakdown_test.cpp -- the parts of a frame: they add up to the frame, reduced programs trace the same rays, and leaf tests
+// which are done twice do not change the result.
 #include "bench/run/breakdown.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,8 @@ TEST(FrameParts, LeafTestsDoneTwiceChangeNothing) {
     FrameParts programs(bench.shared_device());
     FrameRenderer frames(bench.shared_device());
     Progress progress;
-    // A mesh with normals, a ray at a time; every primitive, instances and materials, in packets and where they part.
+    // A mesh with normals and single rays; then a scene with all primitives, instances and materials, with packets which
+    // diverge.
     const struct {
         const char *scene, *accel, *lanes;
     } cases[] = {{"scenes/thesis/models/teapot.obj", "bvh2", "1"}, {"scenes/primitives.scene", "bvh8", "16"}};
@@ -99,7 +100,7 @@ TEST(FrameParts, BeginAsAFrameBegins) {
     }
 }
 
-// From the scene to the records.
+// The whole way from a scene to its records.
 TEST(Breakdown, OfAScene) {
     Workbench& bench = Workbench::get();
     BenchRequest request;

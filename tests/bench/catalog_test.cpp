@@ -1,4 +1,4 @@
-// catalog_test.cpp -- where scenes are found, what is said of those that are not, and which cases suites have.
+// catalog_test.cpp -- finding scenes, the messages for missing ones, and the cases of each suite.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -113,7 +113,7 @@ TEST_F(Catalog, CompressedModelsAreUnpackedAndRemoved) {
         EXPECT_EQ(std::string(std::istreambuf_iterator<char>(in), {}), plain);
     }
     EXPECT_FALSE(fs::exists(unpacked));
-    // One that ends too early, as a broken download does, leaves nothing behind.
+    // A truncated file, as after a broken download, is an error and leaves no temporary file.
     std::ifstream packed(folder_ / "a.obj.gz", std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(packed), {});
     write("short.obj.gz", bytes.substr(0, bytes.size() / 2));
@@ -179,7 +179,7 @@ TEST(Suites, TheCpuHasFramesOfPeersFromNearAndFar) {
         EXPECT_EQ(variant_settings(Workbench::get().plugins(), {}, c.variants[1]).depth, 5);
         EXPECT_EQ(variant_settings(Workbench::get().plugins(), {}, c.variants[1]).accel, "bvh8");
     }
-    // Without the shared folder those of the project.
+    // Without the shared folder, the project's scenes are left.
     EXPECT_EQ(measures.count("skull near"), 1u);
     EXPECT_EQ(measures.count("spot far_1M"), 1u);
     for (const auto& [scene, found] : measures)

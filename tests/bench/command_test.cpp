@@ -1,4 +1,4 @@
-// command_test.cpp -- clarity bench as a user runs it. Times are not looked at: --max-spread is as wide as it goes.
+// command_test.cpp -- `clarity bench` as a user runs it. Tests do not depend on times: --max-spread has its largest value.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -33,7 +33,8 @@ class BenchCommand : public testing::Test {
         words.insert(words.begin(), "bench");
         return run_program(words, options);
     }
-    // Small pictures, never refused; the time limit is for the compiler, where its cache is cold.
+    // Runs with small pictures; no row is refused as unsteady. The time limit leaves room for compiling kernels with an empty
+    // cache.
     ProgramResult quick(std::vector<std::string> words, RunOptions options = {}) const {
         for (const char* word : {"--size", "64x48", "--time-limit", "90", "--max-spread", "10"}) words.push_back(word);
         return bench(words, options);
@@ -106,7 +107,7 @@ TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
     EXPECT_EQ(lines, 1 + list.size());
     EXPECT_TRUE(fs::exists(file("page/index.html")));
 
-    // Joined with itself, without measuring anything.
+    // Joins a file with itself; nothing is measured.
     const ProgramResult joined = bench({"--join", file("a.json"), "--join", file("a.json"), "--json", "-"});
     EXPECT_EQ(joined.exit_code, 0) << joined.err;
     EXPECT_EQ(Json::parse(joined.out).size(), 2 * list.size());
@@ -143,7 +144,7 @@ TEST_F(BenchCommand, DevicesShareAPicture) {
     EXPECT_EQ(list[0]["rays"], list[1]["rays"]);
     EXPECT_EQ(list[1]["threads"], list[0]["threads"].get<int>() * 2);
     EXPECT_TRUE(list[0]["versus"].is_null());
-    EXPECT_GT(list[1]["versus"]["ratio"], 0) << "times as fast as one";
+    EXPECT_GT(list[1]["versus"]["ratio"], 0) << "speed-up over one device";
     EXPECT_NE(result.out.find("x the first"), std::string::npos) << result.out;
 }
 
@@ -207,7 +208,7 @@ TEST_F(BenchCommand, ScenesThatCannotBeReadAreImportErrors) {
         EXPECT_EQ(result.exit_code, 4) << result.err;
         EXPECT_NE(result.err.find(name), std::string::npos) << result.err;
     }
-    // What others gave is kept.
+    // Rows of the other scene are kept.
     const ProgramResult mixed =
         quick({file("broken.obj"), file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--json", file("a.json")});
     EXPECT_EQ(mixed.exit_code, 1) << mixed.err;

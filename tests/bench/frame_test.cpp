@@ -1,4 +1,4 @@
-// frame_test.cpp -- the frame that peers render too is the same picture of the same rays, else comparing its times means
+// frame_test.cpp -- the baselines' frame is the same picture of the same rays as ours; otherwise comparing times would mean
 // nothing.
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ using namespace clarity::test;
 
 namespace {
 
-// A ball above a ring, so that there are shadows, and rays go to and fro.
+// A ball above a ring: it has shadows, and rays which bounce between the two.
 Scene ball_and_ring(bool smooth) {
     TriangleMesh mesh = torus(2, 0.7, 48, 24), ball = uv_sphere(0.9, 48, 24);
     ball.transform(1, {0, 0.9, 0});
@@ -23,7 +23,7 @@ Scene ball_and_ring(bool smooth) {
     scene.background = {0.25f, 0.5f, 0.75f};
     scene.ambient = {0.1f, 0.2f, 0.05f};
     if (!smooth) return scene;
-    // Of the ball those of a ball, of the ring none, and a few that point inwards: what files hold.
+    // Normals as files may have them: correct on the ball, missing on the ring, and a few which point inwards.
     scene.normals.assign(scene.positions.size(), 0);
     for (size_t v = torus(2, 0.7, 48, 24).positions.size(); v < scene.positions.size(); v += 3)
         for (size_t k = 0; k < 3; ++k) {
@@ -88,7 +88,7 @@ TEST(PeerFrame, IsOurPicture) {
     for (const bool smooth : {false, true}) {
         const ScenePtr scene = shared_scene(ball_and_ring(smooth));
         for (const char* mode : {"packet16", "packet16 mixed"}) {
-            // No multiple of tile or packet; then alone.
+            // The size is no multiple of tile or packet.
             const Both both = render(scene, view_of(*scene), settings_of(157, 93, 5), mode);
             expect_same(both, std::string(mode) + (smooth ? ", smooth" : ", flat"));
             EXPECT_GT(both.counts.secondary, 1000u);
@@ -114,7 +114,7 @@ TEST(PeerFrame, OfALightWithoutPlaceAndOfAMovedMesh) {
     expect_same(render(scene, view, settings_of(157, 93, 4), "packet16"), "directional, moved");
 }
 
-// A comparison that finds nothing different would pass everything.
+// Checks the comparison itself: it must find a difference where there is one.
 TEST(PeerFrame, APictureOfAnotherLightDiffers) {
     PEERS_OR_SKIP()
     const ScenePtr scene = shared_scene(ball_and_ring(false));

@@ -1,4 +1,4 @@
-// measure_test.cpp -- quartiles, turns, and what is refused.
+// measure_test.cpp -- quartiles, interleaving, and the reasons for which rows are refused.
 #include "bench/run/measure.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using namespace clarity;
 using namespace clarity::bench;
 
-// Takes no time and says it took what the list says, over and over.
+// A contender which returns at once and reports the times of the list, over and over.
 Contender fake(const std::string& name, std::vector<double> ms, std::string* order = nullptr) {
     auto at = std::make_shared<size_t>(0);
     return {name, [=] {
@@ -153,8 +153,8 @@ TEST(Measure, ARowThatRunsOutOfMemoryFailsAlone) {
     EXPECT_EQ(measured[1].status, RowStatus::ok);
 }
 
-// A contender that tunes itself as rays on a GPU do. ms: what each way takes once the clock has risen; slowdown: how many times
-// as long the n-th run takes before.
+// A contender which tunes itself, as ray queries on a GPU do. ms: time of each variant at full clock. slowdown: factor on the
+// time of the n-th run, while the clock rises.
 Contender tuned(
     std::vector<double> ms, std::function<double(unsigned)> slowdown = [](unsigned) { return 1.0; }) {
     const auto way = std::make_shared<Autotuner>(static_cast<unsigned>(ms.size()));
@@ -185,7 +185,7 @@ TEST(Measure, AChoiceMadeWhileTheClockRoseIsMadeAgain) {
     MeasureRules rules;
     rules.few_rounds = rules.min_rounds = rules.max_rounds = 3;
     Progress progress;
-    // The clock rises so fast that the way tried last looks best; it is the slowest.
+    // The clock rises so fast that the variant which is tried last looks fastest, though it is the slowest.
     const auto rising = [](unsigned run) { return run < 12 ? 10.0 - 0.75 * run : 1.0; };
     const auto measured = measure_interleaved({tuned({1, 1.1, 1.2}, rising)}, rules, progress);
     EXPECT_EQ(measured[0].time_ms.n, 3u);
@@ -203,7 +203,7 @@ TEST(Measure, SamplesOfAWayThatWasGivenUpAreDropped) {
     unsigned runs = 0;
     const Contender contender{"A", [&] {
                                   Sample take = base.once();
-                                  take.way = ++runs > 12 ? 7 : 3;  // what the second tuning chooses
+                                  take.way = ++runs > 12 ? 7 : 3;  // the variant which the second tuning chooses
                                   return take;
                               }};
     const auto measured = measure_interleaved({contender}, rules, progress);

@@ -1,4 +1,4 @@
-// rays_test.cpp -- the rays that everybody traces are those of the convention, and what is counted of them is counted right.
+// rays_test.cpp -- the rays of the ray benchmarks follow the convention, and their counters are correct.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -72,7 +72,7 @@ TEST(CameraRays, AreThoseOfTheConvention) {
         const rt_ray& ray = set.rays[i];
         ASSERT_EQ(is_active(ray), order[i] != RT_NONE);
         if (!is_active(ray)) continue;
-        const double x = order[i] % w, y = order[i] / w;  // here w = (0,0,-1), u = (1,0,0), v = (0,1,0), tangent 1
+        const double x = order[i] % w, y = order[i] / w;  // camera axes: w = (0,0,-1), u = (1,0,0), v = (0,1,0); tangent 1
         const double dx = (2 * (x + 0.5) / w - 1) * 2, dy = 1 - 2 * (y + 0.5) / h, length = std::sqrt(dx * dx + dy * dy + 1);
         EXPECT_NEAR(ray.direction[0], dx / length, 1e-6);
         EXPECT_NEAR(ray.direction[1], dy / length, 1e-6);
@@ -90,7 +90,7 @@ TEST(Hash, IsLowbias32) {
     EXPECT_EQ(lowbias32(1), product ^ (product >> 16));
 }
 
-// A floor of two triangles at y = 1, seen from above at a slant; light above.
+// A floor of two triangles at y = 1, seen obliquely from above; the light is above it.
 struct Floor {
     Scene scene;
     RaySet primary;
@@ -174,7 +174,7 @@ TEST(SecondaryRays, InactiveOnesLookLikeTheirNeighbours) {
         }
 }
 
-// Our own numbering of primitives, asked of the renderer: triangles of instances, spheres, polygons, planes.
+// The renderer's primitive indices match those of SurfaceNormals: triangles of instances, spheres, polygons, planes.
 TEST(SurfaceNormals, FaceTheRayOnEveryKindOfPrimitive) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const View view = make_view(*scene, 4.0f / 3);
@@ -201,7 +201,7 @@ TEST(SurfaceNormals, FaceTheRayOnEveryKindOfPrimitive) {
     EXPECT_LE(wrong, compared / 1000);  // silhouettes
 }
 
-// The thesis's way with analytic spheres finds what trees find.
+// The thesis's method for analytic spheres finds the same hits as trees.
 TEST(NaiveMode, HitsTheSame) {
     const ScenePtr scene = load_scene(source_file("scenes/spheres21.scene"));
     const RaySet primary = camera_rays(make_view(*scene, 1).camera, 96, 96);
@@ -221,8 +221,8 @@ TEST(NaiveMode, HitsTheSame) {
 }
 
 TEST(Analysis, OfTwoPacketsByHand) {
-    // Four lanes. First packet: all active, 10 nodes, 5 tests, 30 of the 40 lanes inside. Second: one active, 4 nodes, 2 tests,
-    // 4 inside.
+    // Four lanes. First packet: all rays active, 10 nodes, 5 tests, 30 of the 40 lanes intersect the node. Second packet: one
+    // ray active, 4 nodes, 2 tests, 4 lanes intersect.
     std::vector<rt_ray> rays(8);
     for (size_t i = 0; i < 8; ++i) rays[i].t_max = i < 5 ? 1 : -1;
     std::vector<rt_hit> hits(8);
@@ -255,7 +255,7 @@ TEST(Analysis, OneLaneHasWarpsAndSharesNothing) {
     EXPECT_DOUBLE_EQ(a.bytes_shared, 0);
 }
 
-// Peers say what we say, in every mode: else a comparison of times means nothing.
+// The baselines' hits are ours in every mode; otherwise comparing times would mean nothing.
 TEST(Peers, HitWhatWeHit) {
     std::string why;
     const std::vector<BaselineKind> kinds = baseline_kinds(&why);

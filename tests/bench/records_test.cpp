@@ -1,4 +1,4 @@
-// records_test.cpp -- what was measured survives being written, and what was refused is not told.
+// records_test.cpp -- records survive writing and reading, and the figures of refused rows are withheld.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -156,7 +156,7 @@ TEST(Json, BadFilesAreRefusedWithTheirRecord) {
     }
 }
 
-// RFC 4180, as strict as it gets.
+// A strict parser of CSV as RFC 4180 defines it.
 std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
     std::vector<std::vector<std::string>> rows(1);
     std::string field;
@@ -222,7 +222,7 @@ TEST(Table, FitsATerminalAndShowsWhatCounts) {
         if (line.find("REFUSED") == std::string::npos) {
             EXPECT_LE(line.size(), 120u) << line;
         }
-    EXPECT_NE(text.find("10.0"), std::string::npos) << text;  // x then: 100 + 1 by 10 + 1 is 9.18
+    EXPECT_NE(text.find("10.0"), std::string::npos) << text;  // column "x then": (100 + 1) / (10 + 1) = 9.18
     EXPECT_NE(text.find("9.18"), std::string::npos) << text;
     EXPECT_NE(text.find("REFUSED  accel bunny/diffuse, unsteady"), std::string::npos) << text;
     EXPECT_NE(text.find("left out  something"), std::string::npos) << text;
@@ -267,7 +267,7 @@ TEST(Report, RefusedAndFailedRowsAreNotOkSkippedOnesAre) {
     EXPECT_FALSE(all_ok(report));
 }
 
-// Everything of `before` that is not null is in `now`, with the same value.
+// Checks that `now` contains every value of `before` which is not null.
 void expect_kept(const Json& before, const Json& now, const std::string& path) {
     if (before.is_null()) return;
     if (before.is_object()) {
@@ -283,7 +283,8 @@ void expect_kept(const Json& before, const Json& now, const std::string& path) {
     }
 }
 
-// Written by `clarity bench` 0.1.0: a build, rays, a frame, a breakdown, pictures of two devices, a refused row; three runs.
+// Records which `clarity bench` 0.1.0 wrote: a build, rays, a frame, a breakdown, pictures of two devices, a refused row; three
+// runs.
 std::string old_records() {
     std::ifstream file(CLARITY_SOURCE_DIR "/tests/bench/data/record_of_0_1_0.json");
     return {std::istreambuf_iterator<char>(file), {}};
@@ -332,7 +333,7 @@ TEST(RowsFile, HoldsEveryRowAtOnceAndIsWholeAfterAFailure) {
         for (const BenchRecord& record : all.records) {
             so_far.records.push_back(record);
             file.add(so_far);
-            // As a kill would leave it: in a file beside the one that is wanted, with all rows.
+            // The state after a kill: all rows are in a temporary file beside the requested one.
             EXPECT_FALSE(std::filesystem::exists(path));
             const auto entry = *std::filesystem::directory_iterator(scratch.path(""));
             EXPECT_EQ(read_bench_json(scratch.read(entry.path().filename().string())).records.size(), so_far.records.size());

@@ -1,4 +1,4 @@
-// run_test.cpp -- what is left of a run that ends early.
+// run_test.cpp -- the rows which are kept when a run ends early.
 #include <gtest/gtest.h>
 
 #include <new>
@@ -14,7 +14,7 @@ using namespace clarity::test;
 
 namespace {
 
-// Three cases of a row each, which are counted and not timed.
+// Three cases with one row each; they are counted, not timed.
 class Run : public testing::Test {
  protected:
     Run() {

@@ -1,4 +1,4 @@
-// speedup_test.cpp -- ours by the best peer: which row is compared with which, and the means over scenes.
+// speedup_test.cpp -- our speed-up over the fastest baseline: which rows are compared, and the means over scenes.
 #include "bench/baselines/speedup.hpp"
 
 #include <gtest/gtest.h>
@@ -83,7 +83,7 @@ TEST(Speedup, WithoutPeersThereIsNone) {
 
 BenchReport three_scenes() {
     BenchReport report;
-    const double ours[] = {10, 40, 90}, theirs[] = {10, 20, 20};  // 1, 2, 4.5
+    const double ours[] = {10, 40, 90}, theirs[] = {10, 20, 20};  // ratios 1, 2, 4.5
     const char* const names[] = {"one", "two", "three"};
     for (int i = 0; i < 3; ++i) {
         std::vector<BenchRecord> rows = {row(names[i], "primary", "bvh2", "", ours[i]),
@@ -128,7 +128,7 @@ TEST(Speedup, IsInTableAndRecordsAndComesBack) {
     EXPECT_NE(bench_csv(report).find("versus.geometric_mean"), std::string::npos);
 }
 
-// The same structure twice, on a machine where times spread over a quarter of the median.
+// Two rows of the same structure, on a machine where times spread over a quarter of the median.
 std::vector<BenchRecord> twice_on_a_busy_machine(const char* measure, double ratio) {
     std::vector<BenchRecord> rows = {row("a", measure, "bvh2", "", 20 * ratio),
                                      row("a", measure, "", "embree packet16 high", 20)};

@@ -1,4 +1,4 @@
-// subdivide_test.cpp -- large models made of small ones.
+// subdivide_test.cpp -- large models made by subdividing small ones.
 #include "bench/suites/subdivide.hpp"
 
 #include <gtest/gtest.h>
@@ -38,12 +38,12 @@ TEST(Subdivide, EveryVertexIsUsedAndSet) {
     EXPECT_EQ(used.size(), fine.vertex_count());
     for (rt_u32 v = 0; v < fine.vertex_count(); ++v) {
         const float* p = &fine.positions[3 * size_t(v)];
-        EXPECT_GT(std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]), 0.5f) << v;  // none left at the origin
+        EXPECT_GT(std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]), 0.5f) << v;  // no point was left at the origin
     }
 }
 
 TEST(Subdivide, IsNoFlatCopy) {
-    // On a box's side, flat parts would leave all points in its plane.
+    // On a side of a box, triangles split without displacement would leave all points in its plane.
     const Scene fine = subdivide(scene_of(box(1)), 16);
     size_t off = 0;
     for (size_t i = 0; i < fine.positions.size(); i += 3) {

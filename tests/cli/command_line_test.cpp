@@ -1,4 +1,4 @@
-// What may be typed, what is refused, and the exit codes that scripts rely on.
+// command_line_test.cpp -- the arguments which are accepted and refused, and the exit codes which scripts rely on.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -34,7 +34,7 @@ TEST(CommandLine, HelpAndVersionAreData) {
         EXPECT_NE(result.out.find("Usage: clarity" + (command.empty() ? "" : " " + command)), std::string::npos) << result.out;
         EXPECT_NE(result.out.find("Exit codes:"), std::string::npos);
         EXPECT_EQ(result.err, "") << command;
-        EXPECT_EQ(result.out.find("import-worker"), std::string::npos) << "that one is not for people";
+        EXPECT_EQ(result.out.find("import-worker"), std::string::npos) << "the import worker is internal";
     }
     const ProgramResult version = run_program({"--version"});
     EXPECT_EQ(version.exit_code, 0);
@@ -146,7 +146,7 @@ TEST(CommandLine, UsageErrorsAreOneLineAndExit2AndWriteNothing) {
     EXPECT_EQ(left, (std::vector<std::string>{"a.scene", "folder.png"}));
 }
 
-// Names and messages that come from files are shown, not obeyed by the terminal.
+// Control characters in names and messages which come from files are escaped, so that the terminal does not execute them.
 TEST(CommandLine, EscapesInNamesAndMessagesAreShown) {
     const Scratch scratch;
     const std::string name = "a\x1b]0;owned\x07\x1b[2J.scene", log = scratch.path("log.txt");

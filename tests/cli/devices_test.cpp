@@ -1,4 +1,4 @@
-// Machines whose OpenCL is broken in the ways that are met: no driver, a platform without devices, one that fails.
+// devices_test.cpp -- machines with broken OpenCL: no driver, a platform without devices, a platform which fails.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kSystemDrivers = "/etc/OpenCL/vendors";
 
-// A folder of drivers as OCL_ICD_VENDORS wants it.
+// A folder of drivers as OCL_ICD_VENDORS expects it.
 class Devices : public ::testing::Test {
  protected:
     void SetUp() override { std::filesystem::create_directory(scratch_.path("vendors")); }
@@ -34,7 +34,7 @@ class Devices : public ::testing::Test {
         options.environment = {{"OCL_ICD_VENDORS", scratch_.path("vendors")}, {"CLARITY_DEVICE", device}};
         return run_program(words, options);
     }
-    // Of a rendered picture: how the program ended, what --stats says and the file's bytes.
+    // A rendered picture: how the program ended, the JSON of --stats, and the file's bytes.
     struct Rendered {
         ProgramResult result;
         nlohmann::json stats;
@@ -71,7 +71,7 @@ TEST_F(Devices, NoDriverExits3AndNamesThePackage) {
         EXPECT_NE(result.err.find("pocl-opencl-icd"), std::string::npos) << result.err;
     }
     EXPECT_FALSE(std::filesystem::exists(scratch_.path("a.png")));
-    // Data stays data: an empty list.
+    // stdout is data: an empty list.
     EXPECT_EQ(nlohmann::json::parse(run({"devices", "--json"}).out)["devices"], nlohmann::json::array());
     EXPECT_EQ(run({"devices"}).out, "");
 }
@@ -99,7 +99,7 @@ TEST_F(Devices, BrokenPlatformsDoNotHideWorkingOnes) {
     ASSERT_GE(list["devices"].size(), 1u);
     EXPECT_EQ(list["warnings"].size(), 2u) << result.out;
     const nlohmann::json first = list["devices"][0];
-    EXPECT_EQ(list["default"], first["id"]) << "the best comes first and is taken";
+    EXPECT_EQ(list["default"], first["id"]) << "the first device is the best one and the default";
     EXPECT_TRUE(first["default"].get<bool>());
     EXPECT_GT(first["compute_units"].get<int>(), 0);
     EXPECT_GT(first["global_bytes"].get<uint64_t>(), 0u);
@@ -122,7 +122,7 @@ TEST_F(Devices, AreChosenByNumberKindAndName) {
         const ProgramResult result = run({"render", scene(), "-o", scratch_.path("a.png"), "--device", nobody});
         EXPECT_EQ(result.exit_code, 3) << nobody << "\n" << result.err;
         EXPECT_NE(result.err.find(list["devices"][0]["id"].get<std::string>()), std::string::npos)
-            << "the choices: " << result.err;
+            << "the message must list the devices: " << result.err;
     }
 }
 
@@ -146,14 +146,14 @@ TEST_F(Devices, SeveralMakeThePictureOfOne) {
     EXPECT_NEAR(whole, 1, 0.01);
     EXPECT_EQ(shared.stats["device_id"], ids);
     EXPECT_EQ(shared.stats["rays"], alone.stats["rays"]);
-    EXPECT_TRUE(render(ids).picture == alone.picture) << "what is printed can be typed: " << ids;
+    EXPECT_TRUE(render(ids).picture == alone.picture) << "ids of the list are accepted by --device: " << ids;
 }
 
 TEST_F(Devices, OneThatIsMissingIsNamed) {
     if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
     for (const char* words : {"0,99", "0,no such device", "0,gpu/2"}) {
         const Rendered rendered = render(words);
-        if (rendered.result.exit_code == 0) continue;  // there is a GPU that can be parted
+        if (rendered.result.exit_code == 0) continue;  // this machine has a GPU which can be split
         EXPECT_EQ(rendered.result.exit_code, 3) << rendered.result.err;
         const std::string word = std::string(words).substr(2);
         EXPECT_NE(rendered.result.err.find(word.substr(0, word.find('/'))), std::string::npos) << rendered.result.err;
@@ -170,7 +170,7 @@ TEST_F(Devices, OneThatCannotBeOpenedIsAWarning) {
     EXPECT_TRUE(rendered.picture == alone.picture || rendered.stats.contains("devices"));
     EXPECT_NE(rendered.result.err.find("Broken device) cannot be opened"), std::string::npos) << rendered.result.err;
     EXPECT_NE(rendered.result.err.find("go on without it"), std::string::npos) << rendered.result.err;
-    // Alone it is an error.
+    // If it is the only device, that is an error.
     const Rendered failed = render("Broken");
     EXPECT_EQ(failed.result.exit_code, 3) << failed.result.err;
     EXPECT_NE(failed.result.err.find("Broken device) cannot be opened"), std::string::npos) << failed.result.err;

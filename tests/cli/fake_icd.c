@@ -1,11 +1,11 @@
-/* An OpenCL driver as small as the loader accepts: one platform, which has no device (FAKE_EMPTY), fails when it is asked for
- * them (FAKE_FAILING), or has one that cannot be opened (FAKE_BROKEN). */
+/* fake_icd.c -- the smallest OpenCL driver which the loader accepts. It has one platform without devices (FAKE_EMPTY), which
+ * fails to list its devices (FAKE_FAILING), or with a device which cannot be opened (FAKE_BROKEN). */
 #include <CL/cl.h>
 #include <CL/cl_icd.h>
 #include <string.h>
 
 struct _cl_platform_id {
-    const cl_icd_dispatch *dispatch; /* first, as the loader reads it */
+    const cl_icd_dispatch *dispatch; /* the loader expects it as the first member */
 };
 
 static cl_icd_dispatch dispatch;
@@ -45,7 +45,7 @@ static cl_int number(cl_ulong value, size_t bytes, void *to, size_t room, size_t
 {
     if (needed) *needed = bytes;
     if (to && room < bytes) return CL_INVALID_VALUE;
-    if (to) memcpy(to, &value, bytes); /* little-endian, as all that has OpenCL */
+    if (to) memcpy(to, &value, bytes); /* assumes little-endian, as all machines with OpenCL are */
     return CL_SUCCESS;
 }
 

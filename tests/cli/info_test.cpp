@@ -1,4 +1,4 @@
-// `clarity info` on scenes whose numbers can be worked out by hand.
+// info_test.cpp -- `clarity info` on scenes whose numbers are computed by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -79,11 +79,11 @@ TEST(Info, PeopleReadWords) {
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(result.out.rfind(file + "\n", 0), 0u) << result.out;
     EXPECT_NE(result.out.find("triangles     12, from 6 faces"), std::string::npos) << result.out;
-    EXPECT_EQ(result.out.find("spheres"), std::string::npos) << "nothing is said about what is not there";
+    EXPECT_EQ(result.out.find("spheres"), std::string::npos) << "counts of 0 are not printed";
     EXPECT_EQ(result.out.find('\033'), std::string::npos);
 }
 
-// Whether parsed in the worker or here, a file is the same scene.
+// A file gives the same scene in the worker process as in the program's own process.
 TEST(Info, InProcessSaysTheSame) {
     const Scratch scratch;
     const std::string file = scratch.write("cube.obj", kCube);

@@ -1,6 +1,6 @@
-// What PoCL makes of the kernels on a machine with 512-bit registers: a packet must stay in them. It leaves them where the
-// compiler falls back to lanes one by one, calls its library, or spills to a stack that is not aligned; pictures stay right
-// then, and frames take twice as long.
+// machine_code_test.cpp -- the machine code which PoCL generates for the kernels on a CPU with 512-bit registers: packets must
+// stay in these registers. They do not if the compiler falls back to one lane at a time, calls its library, or spills to a
+// stack which is not aligned. The pictures are still correct then, but frames take twice as long.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -24,7 +24,7 @@ bool has(const std::string& text, const char* what) {
     return text.find(what) != std::string::npos;
 }
 
-// Of the function that runs a work-group.
+// Counts the instructions of the function which runs a work-group.
 Code disassemble(const std::string& library, const std::string& function) {
     Code code;
     const std::string command = "objdump -d --no-show-raw-insn '" + library + "'";
@@ -70,10 +70,10 @@ TEST_P(MachineCode, KeepsPacketsInWideRegisters) {
     const Code code = disassemble(library, "_pocl_kernel_trace_iterative_workgroup");
     ASSERT_GT(code.instructions, 1000);
     EXPECT_GT(code.wide * 3, code.instructions) << "of " << code.instructions << " instructions";
-    EXPECT_EQ(code.calls, 0) << "the compiler's library is called, once a lane";
-    EXPECT_LT(code.lanes, 16) << "lanes are taken out of vectors";
-    // Queues are appended to anywhere: a handful.
-    EXPECT_LT(code.split_spills, 40) << "the stack is not aligned for what is spilled to it";
+    EXPECT_EQ(code.calls, 0) << "the compiler's library is called, once per lane";
+    EXPECT_LT(code.lanes, 16) << "single lanes are extracted from vectors";
+    // A handful remains: queues are appended to at unaligned addresses.
+    EXPECT_LT(code.split_spills, 40) << "the stack is not aligned for 512-bit spills";
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, MachineCode, ::testing::Values("bvh2", "bvh8", "bvh8,incoherent=single"),

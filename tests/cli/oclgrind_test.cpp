@@ -1,4 +1,5 @@
-// Kernels under oclgrind, which simulates a device and looks at every access: nothing out of bounds, no races.
+// oclgrind_test.cpp -- runs the kernels under oclgrind, which simulates a device and checks every memory access: nothing out of
+// bounds, no races.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -18,7 +19,7 @@ class Oclgrind : public ::testing::Test {
         scratch_.write("cube.obj",
                        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
                        "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-        // Every kind of primitive, instances, and rays of every kind.
+        // Every kind of primitive, instances, and every kind of ray.
         scene_ = scratch_.write("a.scene",
                                 "camera main eye 1 3 8 target 0 1 0 fov 40\n"
                                 "light point position 3 6 4\n"
@@ -32,7 +33,7 @@ class Oclgrind : public ::testing::Test {
                                 "load cube.obj translate 1.5 0 1 rotate 0 1 0 30\n"
                                 "load cube.obj translate -2.5 0 0 scale 1.4 material glass\n");
     }
-    // What oclgrind says about one small frame.
+    // Renders one small frame and returns oclgrind's messages.
     std::string report(std::vector<std::string> words, const std::string& kernels = {}) {
         const std::string log = scratch_.path("log"), picture = scratch_.path("a.png");
         RunOptions options;
@@ -73,7 +74,7 @@ TEST_F(Oclgrind, WouldTell) {
     std::string film = scratch_.read("cl/film.cl");
     const std::string store = "alpha, i, display)";
     const size_t at = film.find(store);
-    ASSERT_NE(at, std::string::npos) << "film.cl has changed: this test needs a store to spoil";
+    ASSERT_NE(at, std::string::npos) << "film.cl has changed: this test needs a store to break";
     film.replace(at, store.size(), "alpha, i + (1u << 20), display)");
     scratch_.write("cl/film.cl", film);
     EXPECT_NE(report({}, scratch_.path("cl")).find("Invalid write"), std::string::npos);

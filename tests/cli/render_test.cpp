@@ -1,4 +1,4 @@
-// `clarity render` from the outside: files, statistics, interruption, what goes to stdout and what to stderr.
+// render_test.cpp -- `clarity render` from outside: files, statistics, interruption, and the texts on stdout and stderr.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,9 +68,9 @@ TEST_F(Render, WritesOnePictureAndItsStatistics) {
     EXPECT_LE(stats["frame_ms"]["min"], stats["frame_ms"]["median"]);
     EXPECT_LE(stats["frame_ms"]["median"], stats["frame_ms"]["max"]);
     EXPECT_GT(stats["frame_ms"]["min"].get<double>(), 0);
-    EXPECT_EQ(stats["rays"]["primary"], 64 * 48) << "of one frame, however often it was repeated";
+    EXPECT_EQ(stats["rays"]["primary"], 64 * 48) << "rays of one frame, independent of --repeat";
     EXPECT_GT(stats["rays"]["shadow"].get<int>(), 0);
-    EXPECT_GT(stats["rays"]["secondary"].get<int>(), 0) << "the mirror";
+    EXPECT_GT(stats["rays"]["secondary"].get<int>(), 0) << "the mirror reflects rays";
     EXPECT_GT(stats["mrays_per_s"].get<double>(), 0);
     EXPECT_EQ(stats["triangles"], 0);
 }
@@ -95,7 +95,7 @@ TEST_F(Render, FloatFormatsHoldTheFirstHit) {
     const std::string pfm = scratch_.read("out/t.pfm"), head = "Pf\n64 48\n-1.0\n";
     ASSERT_EQ(pfm.substr(0, head.size()), head);
     ASSERT_EQ(pfm.size(), head.size() + 64 * 48 * sizeof(float));
-    // The centre sees the sphere's front, 5 away (half a pixel off the axis, so a little more).
+    // The centre ray hits the sphere's front at distance 5, and a little more because it is half a pixel off the axis.
     float t = 0;
     std::memcpy(&t, pfm.data() + head.size() + (24 * 64 + 32) * sizeof(float), sizeof t);
     EXPECT_NEAR(t, 5, 0.01);
@@ -113,10 +113,10 @@ TEST_F(Render, FramesAreNumbered) {
     const ProgramResult result = run_program(words({"-o", out("f_###.png"), "--frames", "8-12/2", "--time", "1.5"}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(files(), (std::vector<std::string>{"f_008.png", "f_010.png", "f_012.png"}));
-    EXPECT_EQ(scratch_.read("out/f_008.png"), scratch_.read("out/f_012.png")) << "nothing moves";
+    EXPECT_EQ(scratch_.read("out/f_008.png"), scratch_.read("out/f_012.png")) << "scenes do not move yet";
 }
 
-// `animate` is ignored with a warning of the importer, and --time with one of its own: each is said once.
+// `animate` gives a warning of the importer, and --time one of its own: each is printed once.
 TEST_F(Render, AWarningIsSaidOnce) {
     const auto count = [](const std::string& text, const std::string& part) {
         size_t found = 0;
@@ -151,7 +151,7 @@ TEST_F(Render, QuietSaysNothingVerboseSaysMore) {
     EXPECT_NE(normal.find(out("a.png")), std::string::npos) << normal;
     EXPECT_GT(run_program(words({"-o", out("a.png"), "-v"})).err.size(), normal.size());
     ASSERT_EQ(run_program(words({"-o", out("a.png"), "-q", "--log-file", out("log.txt")})).exit_code, 0);
-    EXPECT_NE(scratch_.read("out/log.txt").find("a.png"), std::string::npos) << "the log file holds it all";
+    EXPECT_NE(scratch_.read("out/log.txt").find("a.png"), std::string::npos) << "the log file has every message";
 }
 
 TEST_F(Render, CtrlCWritesWhatIsAccumulated) {
@@ -162,7 +162,7 @@ TEST_F(Render, CtrlCWritesWhatIsAccumulated) {
     EXPECT_EQ(result.exit_code, 130) << result.err;
     EXPECT_LT(result.seconds, 20);
     EXPECT_NE(result.err.find("interrupted"), std::string::npos) << result.err;
-    // With or without a complete sample: a whole picture or none, and nothing half-written.
+    // With or without a complete sample, there is a whole picture or none, but no partial file.
     const bool any = result.err.find("no sample was complete") == std::string::npos;
     EXPECT_EQ(files(), any ? std::vector<std::string>{"a.png"} : std::vector<std::string>{});
     if (any) {
@@ -174,8 +174,8 @@ TEST_F(Render, CtrlCWritesWhatIsAccumulated) {
 TEST_F(Render, CtrlCLaterKeepsTheSamplesSoFar) {
     RunOptions options;
     options.signal = SIGTERM;
-    options.signal_after_s = 8;  // long after the kernels are there
-    // So many pixels that all samples take minutes.
+    options.signal_after_s = 8;  // long after the kernels are compiled
+    // So many pixels that all samples would take minutes.
     const ProgramResult result = run_program(words({"-o", out("a.png"), "--spp", "65536", "--size", "800x600"}), options);
     EXPECT_EQ(result.exit_code, 130) << result.err;
     EXPECT_LT(result.seconds, 20);
@@ -201,7 +201,7 @@ TEST_F(Render, TheBarIsForTerminalsAndColourOnlyWithoutNoColor) {
 }
 
 TEST_F(Render, ABrokenKernelExits5WithTheCompilersWords) {
-    // A developer's copy of the kernels, with a mistake in it.
+    // A developer's copy of the kernels with an error in it.
     fs::copy(fs::path(CLARITY_SOURCE_DIR) / "cl", scratch_.path("cl"), fs::copy_options::recursive);
     scratch_.write("cl/shading/surface.h", "this is no OpenCL C;\n");
     RunOptions options;

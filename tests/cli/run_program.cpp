@@ -31,9 +31,9 @@ Channel make_channel(bool terminal) {
     return {ends[0], ends[1]};
 }
 
-// Between fork and exec.
+// Runs in the child, between fork and exec.
 [[noreturn]] void become(const std::vector<std::string>& words, const RunOptions& options, int out, int err) {
-    // Whoever runs the tests may ignore signals; the program under test starts as from a shell.
+    // The process which runs the tests may ignore signals; the program under test must start as from a shell.
     for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) std::signal(signal, SIG_DFL);
     const int in = open("/dev/null", O_RDONLY);
     if (!options.stdout_path.empty()) out = open(options.stdout_path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
@@ -49,7 +49,7 @@ Channel make_channel(bool terminal) {
     _exit(127);
 }
 
-// Appends what is there; false at the end. A terminal ends with EIO once the other side is closed.
+// Appends the available data. Returns false at the end. A terminal ends with EIO when its other side is closed.
 bool drain(int from, std::string& to) {
     char buffer[65536];
     const ssize_t got = read(from, buffer, sizeof buffer);

@@ -1,4 +1,4 @@
-// watch_test.cpp -- `clarity render --watch` as its user meets it: save, look, save something wrong, mend it, Ctrl-C.
+// watch_test.cpp -- `clarity render --watch` as a user experiences it: save, look, save an error, repair it, Ctrl-C.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// The program in the background, its stderr in a file.
+// The program in the background, with its stderr in a file.
 class Watcher {
  public:
     Watcher(const std::vector<std::string>& words, const std::string& kernels, const std::string& said) : said_(said) {
@@ -42,7 +42,7 @@ class Watcher {
         std::ifstream in(said_);
         return std::string(std::istreambuf_iterator<char>(in), {});
     }
-    // Until a text was said for the n-th time; false if the program ends first, or after a minute.
+    // Waits until stderr contains the text n times. Returns false if the program ends first, or after a minute.
     bool says(const std::string& text, int times = 1) {
         for (int i = 0; i < 1200; ++i) {
             const std::string all = said();
@@ -80,7 +80,7 @@ class Watch : public ::testing::Test {
     }
     std::string picture() const { return scratch_.path("a.pfm"); }
     std::vector<std::string> words() const { return {"render", scene_, "-o", picture(), "--size", "32x24", "--watch"}; }
-    // The first pixel, which is background: R, G, B.
+    // The first pixel, which shows the background: R, G, B.
     std::array<float, 3> corner() const {
         const std::string file = scratch_.read("a.pfm");
         std::array<float, 3> pixel{-1, -1, -1};
@@ -138,7 +138,7 @@ TEST_F(Watch, WrongFromTheStartAndEndedSo) {
     EXPECT_EQ(corner(), (std::array<float, 3>{1, 0, 0})) << watcher.said();
     scratch_.write("cl/tracers/camera.h", "mistake\n");
     ASSERT_TRUE(watcher.says(kWaiting, 3)) << watcher.said();
-    EXPECT_EQ(watcher.interrupt(), 5) << "the last try failed: " << watcher.said();
+    EXPECT_EQ(watcher.interrupt(), 5) << "the last attempt failed: " << watcher.said();
 }
 
 TEST_F(Watch, ASaveEndsARenderThatItMakesUseless) {
@@ -148,7 +148,7 @@ TEST_F(Watch, ASaveEndsARenderThatItMakesUseless) {
     ASSERT_TRUE(watcher.says("rendering a.pfm")) << watcher.said();
     scratch_.write("a.scene", scene_text("0 1 0"));
     ASSERT_TRUE(watcher.says("rendering a.pfm", 2)) << watcher.said();
-    EXPECT_FALSE(fs::exists(picture())) << "half a picture of the old scene";
+    EXPECT_FALSE(fs::exists(picture())) << "a partial picture of the old scene was written";
     EXPECT_EQ(watcher.interrupt(), 130) << watcher.said();
-    EXPECT_TRUE(fs::exists(picture())) << "what was accumulated is written: " << watcher.said();
+    EXPECT_TRUE(fs::exists(picture())) << "the accumulated samples must be written: " << watcher.said();
 }

@@ -19,7 +19,8 @@ BaselineMesh make_baseline_mesh(const Scene& scene) {
             mesh.positions.insert(mesh.positions.end(), q.begin(), q.end());
         }
         if (!scene.normals.empty()) {
-            // By the inverse transpose; only their proportions within a mesh matter.
+            // Normals are transformed by the inverse transpose. Their length does not matter, only their proportions within a
+            // mesh.
             Affine m = kIdentity;
             if (placed) invert(instance.world_from_object, m);
             for (size_t v = from.first_vertex; v < size_t(from.first_vertex) + from.vertex_count; ++v) {

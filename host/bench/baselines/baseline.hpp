@@ -1,4 +1,4 @@
-// baseline.hpp -- other people's ray tracers, on the same triangles and rays.
+// baseline.hpp -- other ray tracers, which trace the same triangles and rays for comparison.
 #pragma once
 #include <memory>
 #include <string>
@@ -10,57 +10,59 @@
 
 namespace clarity::bench {
 
-// World-space triangles of a scene, indexed.
+// Indexed triangles of a scene in world space.
 struct BaselineMesh {
-    std::vector<float> positions;   // 3 per vertex, and one float of padding, which Embree reads
-    std::vector<rt_u32> triangles;  // 3 per triangle, in the order of rt_hit.prim
-    std::vector<float> normals;     // 3 per vertex, (0, 0, 0) where there is none; empty: none at all
+    std::vector<float> positions;   // 3 per vertex, then one float of padding, because Embree reads 16 bytes per vertex
+    std::vector<rt_u32> triangles;  // 3 vertex indices per triangle, in the order of rt_hit.prim
+    std::vector<float> normals;     // 3 per vertex, (0, 0, 0) for a vertex without one; empty: the scene has none
     rt_u32 vertex_count() const { return static_cast<rt_u32>(positions.size() / 3); }
     rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
 };
 BaselineMesh make_baseline_mesh(const Scene& scene);
-// Why peers cannot trace this scene (it holds more than triangles); empty if they can.
+// Returns the reason why the baselines cannot trace this scene (it has other primitives than triangles), "" if they can.
 std::string baselines_cannot(const Scene& scene);
 
 struct BaselineHit {
-    float t;  // +inf: nothing; any hit: 0 where occluded
+    float t;  // distance; +inf: nothing was hit. Any-hit query: 0 if something was hit
     rt_i32 prim;
 };
-// In large pages, as the buffers of ours are.
+// Arrays in large pages, like our own buffers.
 template <class T>
 using BaselineArray = std::vector<T, DefaultInitAllocator<T>>;
 
-struct BaselineRayCounts {
+struct BaselineRayCounts {  // rays traced, by kind
     uint64_t primary = 0, shadow = 0, secondary = 0;
 };
 
-// One structure of a peer over one mesh.
+// A structure of a baseline over one mesh.
 class BaselineScene {
  public:
     virtual ~BaselineScene() = default;
     virtual double build_ms() const = 0;
-    // All that it holds besides the mesh; after the build.
+    // Memory of the structure after the build, without the mesh.
     virtual uint64_t bytes() const = 0;
-    // Ways to trace it: "single", "packet8", ...
+    // Modes of tracing: "single", "packet8", "packet16".
     virtual const std::vector<std::string>& modes() const = 0;
-    // Brings rays into the form that it likes best; not timed.
+    // Converts the rays to the layout which the baseline prefers; not timed.
     virtual void take_rays(const RaySet& rays) = 0;
-    // Traces them; wall time. hits: one a ray or more; of inactive rays undefined.
+    // Traces the rays of take_rays(). Returns the wall time in ms. `hits` holds at least one entry per ray; entries of inactive
+    // rays are undefined.
     virtual double trace_ms(const std::string& mode, BaselineArray<BaselineHit>& hits) = 0;
-    // Ways to render a whole frame; and one frame: wall time. film: r, g, b and the number of samples of each pixel.
+    // Modes of rendering a whole frame; frame_ms() renders one frame and returns the wall time in ms. film: r, g, b and the
+    // number of samples of each pixel.
     virtual const std::vector<std::string>& frame_modes() const = 0;
     virtual double frame_ms(const std::string& mode, const WhittedScene& whitted, BaselineArray<float>& film,
                             BaselineRayCounts& counts) = 0;
 };
 
-// A kind of structure that a peer builds.
+// A kind of structure which a baseline builds.
 struct BaselineKind {
     std::string name;     // "embree"
     std::string quality;  // "low", "medium", "high"
-    // The mesh must outlive it. Throws Error(failed).
+    // Builds the structure with so many threads. The mesh must outlive it. Throws Error(failed).
     std::unique_ptr<BaselineScene> (*build)(const BaselineMesh& mesh, const std::string& quality, unsigned threads);
 };
-// Those that this program was built with; none: `why` says so.
+// The kinds this program was built with. If there are none, `why` receives the reason.
 std::vector<BaselineKind> baseline_kinds(std::string* why);
 
 }  // namespace clarity::bench

@@ -1,5 +1,5 @@
-// embree_baseline.cpp -- Embree as its manual says it is fastest: one triangle mesh, no robust flag, packets with the coherent
-// flag but for diffuse rays, denormals flushed to zero, rays from and hits to flat arrays.
+// embree_baseline.cpp -- Embree in the fastest configuration of its manual: one triangle mesh, no robust flag, the coherent
+// flag for packets of all but diffuse rays, denormals flushed to zero, rays and hits in flat arrays.
 #include "bench/baselines/embree_baseline.hpp"
 
 #include <embree3/rtcore.h>
@@ -21,11 +21,11 @@
 namespace clarity::bench {
 namespace {
 
-constexpr size_t kBlock = 16;        // rays of the flat arrays' blocks
-constexpr size_t kTaskBlocks = 256;  // blocks that a thread takes at a time
+constexpr size_t kBlock = 16;        // rays per block of the flat arrays
+constexpr size_t kTaskBlocks = 256;  // blocks which a thread takes at a time
 static_assert(sizeof(rt_ray) == 32, "eight floats a ray");
 
-// 16 rays side by side, as packets read them.
+// 16 rays in structure-of-arrays form, as packets read them.
 struct RayBlock {
     alignas(64) float field[8][kBlock];  // origin, t_min, direction, t_max; t_max < 0: inactive
 };
@@ -42,7 +42,7 @@ BaselineArray<RayBlock> pack(const RaySet& set) {
     return blocks;
 }
 
-// Asks for the rays of the next block, where it has any, as rt_fetch_ahead() does for ours.
+// Prefetches the rays of the next block if it has active ones, as rt_fetch_ahead() does for our rays.
 void fetch_ahead(const BaselineArray<RayBlock>& blocks, size_t block) {
 #if defined(__SSE2__)
     const size_t last = blocks.size() - 1;
@@ -182,20 +182,21 @@ class EmbreeScene : public BaselineScene {
         packed_ = pack(set);
         blocks_.resize(packed_.size());
         any_hit_ = set.any_hit;
-        coherent_ = set.kind != "diffuse";  // what serves it best, measured with both
+        coherent_ = set.kind != "diffuse";  // faster of the two flags for each kind, measured
     }
 
     double trace_ms(const std::string& mode, BaselineArray<BaselineHit>& hits) override {
         hits.resize(std::max(hits.size(), blocks_.size() * kBlock));
         const auto trace = mode == "single" ? trace_block<1> : mode == "packet8" ? trace_block<8> : trace_block<16>;
-        // Ours has its rays copied to the device just before: theirs are as warm.
+        // Our rays are copied to the device just before tracing. This copy makes the baseline's rays equally warm in the
+        // caches.
         std::memcpy(blocks_.data(), packed_.data(), packed_.size() * sizeof(RayBlock));
         std::atomic<size_t> next{0};
         const auto begin = std::chrono::steady_clock::now();
         parallel_for(threads_, [&](uint32_t) {
 #if defined(__SSE2__)
             const unsigned saved = _mm_getcsr();
-            _mm_setcsr(saved | 0x8040);  // flush denormals to zero, both ways
+            _mm_setcsr(saved | 0x8040);  // flush denormal results (FTZ) and operands (DAZ) to zero
 #endif
             RTCIntersectContext context;
             rtcInitIntersectContext(&context);

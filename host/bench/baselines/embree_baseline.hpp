@@ -1,4 +1,4 @@
-// embree_baseline.hpp -- Embree 3 as a peer.
+// embree_baseline.hpp -- Embree 3 as a baseline.
 #pragma once
 #include "bench/baselines/baseline.hpp"
 

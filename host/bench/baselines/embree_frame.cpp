@@ -1,7 +1,7 @@
-// embree_frame.cpp -- tiles of the picture are taken by threads in turn. Of a tile, each generation is traced in packets of 16
-// that are full but for the last: rays that go on and shadow rays are compacted into arrays, field by field. All arithmetic is
-// loops over 16 lanes that the compiler turns into vectors, once for each instruction set. The rays and the picture are those
-// of cl/.
+// embree_frame.cpp -- threads take tiles of the picture from a shared counter. Each generation of a tile is traced in packets
+// of 16, all full but the last one: surviving rays and shadow rays are compacted into arrays, field by field. The arithmetic is
+// loops over 16 lanes, which the compiler vectorizes once for each instruction set. Rays and picture are the same as those of
+// cl/.
 #include "bench/baselines/embree_frame.hpp"
 
 #if defined(__SSE2__)
@@ -28,10 +28,10 @@ namespace clarity::bench {
 namespace {
 
 constexpr unsigned kWide = 16;
-constexpr unsigned kTile = 32;  // pixels, in both directions: what a thread holds stays in its second-level cache
-constexpr unsigned kMost = kTile * kTile + kWide;  // rays of a generation, and room for a store of a whole packet
-constexpr float kOffset = 1.5e-5f;                 // of secondary rays from the surface, of the largest coordinate or t
-constexpr float kFar = 3e38f;                      // farther than anything
+constexpr unsigned kTile = 32;  // pixels, width and height: the data of a tile fits a core's second-level cache
+constexpr unsigned kMost = kTile * kTile + kWide;  // rays of a generation, and padding to store a whole packet at the end
+constexpr float kOffset = 1.5e-5f;  // of secondary rays above the surface, relative to the largest coordinate or t
+constexpr float kFar = 3e38f;       // farther than any hit
 
 struct Lanes {
     alignas(64) float at[kWide];
@@ -45,7 +45,8 @@ INLINED Lanes lanes_of(const float* from) {
 }
 #define EACH_LANE for (unsigned i = 0; i < kWide; ++i)
 
-// Rays waiting for their turn: origin, direction; shadow rays also have the distance of the light and the light they bring.
+// Rays to be traced: origin, direction. Shadow rays also have the distance of the light and the light which arrives if nothing
+// is in the way.
 struct RayQueue {
     alignas(64) float field[8][kMost];
     alignas(64) unsigned pixel[kMost];
@@ -54,7 +55,7 @@ struct RayQueue {
 
 struct Tile {
     RayQueue rays[2], shadow;
-    // Of each pixel: weights of rays that were lit (times the cosine), that hit something, that left the scene.
+    // Per pixel: sum of the weights of rays which were lit (times the cosine), hit something, left the scene.
     float lit[kTile * kTile], met[kTile * kTile], left[kTile * kTile];
     BaselineRayCounts counts;
 };
@@ -67,13 +68,14 @@ struct Job {
     float* film;
 };
 
-// The lanes of `bits` to the end of a field of a queue; `from` lists them.
+// Appends lanes of `value` to a field of the queue; `from` lists the lanes.
 INLINED void put(RayQueue& queue, unsigned field, const Lanes& value, const unsigned* from) {
     float* const to = &queue.field[field][queue.count];
     EACH_LANE to[i] = value.at[from[i]];
 }
 
-// Lanes for which `keep` is not 0, in order, then any; returns how many.
+// Lists the lanes whose `keep` is not 0, in order; the remaining entries of `from` are valid but arbitrary lanes. Returns how
+// many were listed.
 INLINED unsigned list_lanes(const unsigned* keep, unsigned* from) {
     unsigned count = 0;
     EACH_LANE from[i] = 0;
@@ -104,7 +106,7 @@ INLINED void load(Rays& to, const RayQueue& queue, unsigned base) {
     std::memset(to.flags, 0, bytes);
 }
 
-// Camera rays of a tile in blocks of 4x4 pixels; see rt_camera_rays().
+// Makes the camera rays of a tile in blocks of 4x4 pixels, as rt_camera_rays() does.
 INLINED void start(Tile& tile, const rt_frame& frame, unsigned left, unsigned top) {
     RayQueue& queue = tile.rays[0];
     queue.count = 0;
@@ -137,7 +139,7 @@ INLINED void start(Tile& tile, const rt_frame& frame, unsigned left, unsigned to
     }
 }
 
-// Normals interpolated between the corners where there are any, else the geometric ones.
+// Sets interpolated vertex normals where the mesh has them; other lanes keep their geometric normals.
 INLINED void shading_normals(const BaselineMesh& mesh, const RTCHit16& hit, const unsigned* met, Lanes& nx, Lanes& ny,
                              Lanes& nz) {
     EACH_LANE {
@@ -154,8 +156,8 @@ INLINED void shading_normals(const BaselineMesh& mesh, const RTCHit16& hit, cons
     }
 }
 
-// Traces the packet of `queue` at `base`, and appends shadow rays and mirrored rays. See rt_point_of(), rt_direct_light() and
-// rt_mirror_direction(). go_on: whether there is a next generation.
+// Traces the packet of `queue` at `base`, and appends shadow rays and mirror rays. See rt_point_of(), rt_direct_light() and
+// rt_mirror_direction(). go_on: whether mirror rays are needed for a next generation.
 INLINED void trace_packet(const Job& job, Tile& tile, const RayQueue& queue, unsigned base, float weight, bool go_on,
                           RTCIntersectContext& context, RayQueue& next) {
     const WhittedScene& whitted = *job.whitted;
@@ -175,7 +177,8 @@ INLINED void trace_packet(const Job& job, Tile& tile, const RayQueue& queue, uns
     for (unsigned i = 0; i < in_queue; ++i) (met[i] ? tile.met : tile.left)[pixel[i]] += weight;
     if (!any_met) return;
 
-    // Copies of what Embree may have written: only of local arrays does the compiler know that nobody else changes them.
+    // Copies of Embree's output. The compiler can vectorize the loop only if it knows that nothing else changes the arrays, as
+    // with local ones.
     const Lanes hit_t = lanes_of(packet.ray.tfar), g_x = lanes_of(packet.hit.Ng_x), g_y = lanes_of(packet.hit.Ng_y),
                 g_z = lanes_of(packet.hit.Ng_z);
     Lanes nx = g_x, ny = g_y, nz = g_z;
@@ -252,7 +255,7 @@ INLINED void trace_shadows(const Job& job, Tile& tile, RTCIntersectContext& cont
 
 }  // namespace
 
-// Not in the unnamed namespace: the compiler picks one of its clones when the program is loaded.
+// Outside of the unnamed namespace because of target_clones: the program's loader picks one of the clones.
 EACH_ISA void embree_tile(const Job& job, Tile& tile, unsigned left, unsigned top);
 
 EACH_ISA void embree_tile(const Job& job, Tile& tile, unsigned left, unsigned top) {
@@ -281,7 +284,7 @@ EACH_ISA void embree_tile(const Job& job, Tile& tile, unsigned left, unsigned to
         tile.counts.secondary += next.count;
         weight *= whitted.reflect;
     }
-    // Emission there is none, and no highlight: what is left of the model in cl/shading/shading.h.
+    // The model of cl/shading/shading.h without emission and highlights, which these materials do not have.
     const float share = (1.0f - whitted.reflect) * whitted.color;
     const unsigned wide = std::min(kTile, frame.width - left), high = std::min(kTile, frame.height - top);
     for (unsigned y = 0; y < high; ++y) {
@@ -308,7 +311,7 @@ double embree_frame(RTCScene scene, const BaselineMesh& mesh, const WhittedScene
     parallel_for(threads, [&](uint32_t thread) {
 #if defined(__SSE2__)
         const unsigned saved = _mm_getcsr();
-        _mm_setcsr(saved | 0x8040);  // flush denormals to zero, both ways
+        _mm_setcsr(saved | 0x8040);  // flush denormal results (FTZ) and operands (DAZ) to zero
 #endif
         for (unsigned i = next++; i < tiles; i = next++)
             embree_tile(job, scratch[thread], i % across * kTile, i / across * kTile);

@@ -11,7 +11,7 @@ bool measured(const BenchRecord& record) {
     return record.status == RowStatus::ok && speed(record) > 0;
 }
 
-// Whether whole pictures were timed: these are counted by the host's clock.
+// True if whole pictures were timed: their speed is computed from wall time.
 bool is_picture(const BenchRecord& record) {
     const std::string& m = record.measure;
     return m == "frame" || m == "whitted" || m == "picture" || m == "moving";
@@ -21,7 +21,7 @@ bool ends_with(const std::string& text, const std::string& end) {
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// The fastest row of a peer; of builds, of one quality. nullptr: none was measured.
+// The fastest row of a baseline; for builds, among those of comparable quality. nullptr: none was measured.
 const BenchRecord* best_baseline(const std::vector<BenchRecord>& rows, const BenchRecord& ours) {
     const BenchRecord* best = nullptr;
     for (const BenchRecord& row : rows) {
@@ -91,7 +91,7 @@ std::vector<SpeedupMean> speedup_means(const BenchReport& report) {
             mean->least_scene = r.scene;
             mean->least_spread = r.speedup.spread;
         }
-        mean->mean += std::log(r.speedup.ratio);  // a sum of logarithms until all are in
+        mean->mean += std::log(r.speedup.ratio);  // sum of logarithms until the second loop
         mean->mean_spread = std::hypot(mean->mean_spread, r.speedup.spread);
         ++mean->rows;
     }

@@ -8,7 +8,8 @@
 namespace clarity::bench {
 
 View whitted_view(const Scene& scene, View view) {
-    if (view.lights.empty()) throw Error(Exit::failed, "no light: the frame of peers has one");
+    if (view.lights.empty())
+        throw Error(Exit::failed, "the scene has no light, and the frame of the peers needs one: add a light to the scene");
     view.lights.resize(1);
     rt_material mirror{};
     for (float& c : mirror.color) c = 0.8f;
@@ -21,7 +22,8 @@ View whitted_view(const Scene& scene, View view) {
 
 WhittedScene whitted_scene(const View& view, const Settings& settings) {
     WhittedScene whitted;
-    // Of the structure make_frame() takes the root and the number of planes, which peers do not have.
+    // make_frame() reads the root and the number of planes from the structure; baselines have neither, so that an empty one
+    // will do.
     whitted.frame = make_frame(view, settings, Layout(), AccelData(), 0);
     whitted.light = view.lights.at(0);
     whitted.color = view.materials.at(0).color[0];

@@ -1,10 +1,11 @@
-// whitted.hpp -- the frame that ours and peers both render: every surface a half mirror of one grey, one light, shadows.
+// whitted.hpp -- the frame which we and the baselines both render: every surface is a half mirror of one grey, with one light
+// and shadows.
 #pragma once
 #include "render/frame/renderer.hpp"
 
 namespace clarity::bench {
 
-// What a peer needs of it. The camera's vectors are those of rt_frame, so that all rays are the same.
+// The data which a baseline needs to render it. The camera's vectors are those of rt_frame, so that all rays are the same.
 struct WhittedScene {
     rt_frame frame{};
     rt_light light{};
@@ -12,12 +13,12 @@ struct WhittedScene {
     unsigned generations = 5;
 };
 
-// The scene's view with its first light alone and all its materials turned into half mirrors. Throws Error(failed) if there is
+// The view with the scene's first light only and all materials replaced by half mirrors. Throws Error(failed) if the scene has
 // no light.
 View whitted_view(const Scene& scene, View view);
 WhittedScene whitted_scene(const View& view, const Settings& settings);
 
-// Of how many pixels two pictures differ by more than `tolerance` in any channel; 0..1. Sizes that differ: 1.
+// Share (0..1) of the pixels which differ by more than `tolerance` in any channel; 1 if the sizes differ.
 double differing_pixels(const FloatImage& a, const FloatImage& b, float tolerance);
 
 }  // namespace clarity::bench

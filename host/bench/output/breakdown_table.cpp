@@ -1,4 +1,4 @@
-// breakdown_table.cpp -- shares of a frame's time, a line a scene.
+// breakdown_table.cpp -- the parts of a frame's time in percent, one line per scene.
 #include <algorithm>
 #include <cstdio>
 
@@ -43,7 +43,7 @@ std::string breakdown_table(const BenchReport& report) {
         for (const auto& [name, ms] : r.within_ms) in.push_back(share_text(ms, all));
         within.add(in);
     }
-    return "where a frame's time goes, percent; +-: the widest half of the middle half of repetitions\n" + table.text(20) +
+    return "where a frame's time goes, percent; +-: half the interquartile range of the least steady time\n" + table.text(20) +
            "\nand of these, percent of the frame\n" + within.text(20) + "\n";
 }
 

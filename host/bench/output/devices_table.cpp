@@ -1,4 +1,4 @@
-// devices_table.cpp -- what further devices give: pictures by several of them, by that of the first alone.
+// devices_table.cpp -- pictures rendered by several devices, compared with those of the first device alone.
 #include <cstdio>
 
 #include "bench/baselines/speedup.hpp"
@@ -14,7 +14,7 @@ double kernel_ms(const BenchRecord& r, const std::string& name) {
     return 0;
 }
 
-// "0.51 0.49"
+// Shares of the picture which the devices rendered, "0.510 0.490".
 std::string shares(const BenchRecord& r) {
     std::string text;
     for (const auto& [name, share] : r.kernels_ms) {

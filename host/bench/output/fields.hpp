@@ -1,4 +1,4 @@
-// fields.hpp -- the members of a struct as rows of a table, from which JSON is written and read, and columns are drawn.
+// fields.hpp -- a struct's members as a table of fields. From it JSON is written and read, and tables and charts are made.
 #pragma once
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -10,31 +10,32 @@ namespace clarity::bench {
 
 using Json = nlohmann::ordered_json;
 
-// How a statistic looks where a person reads it. Without `column` and `title` it is in JSON and CSV only.
+// How tables and the report show a statistic. Without `column` and `title` it is in JSON and CSV only.
 struct Look {
-    const char* column = nullptr;   // head of its column in the terminal's tables, with its unit
-    const char* title = nullptr;    // in the report
-    const char* unit = nullptr;     // in the report
-    const char* meaning = nullptr;  // in the report, a paragraph; null: it has no chart of its own
-    double scale = 1;               // what is shown by what is stored: 100 for percents
-    int digits = -1;                // behind the decimal point; -1: three significant digits in all
-    bool zero = false;              // 0 is a value; else it says that there is none
+    const char* column = nullptr;   // heading of its column in the terminal's tables, with its unit
+    const char* title = nullptr;    // heading in the report
+    const char* unit = nullptr;     // unit in the report
+    const char* meaning = nullptr;  // explanation in the report, a paragraph; null: the report has no chart of it
+    double scale = 1;               // factor from the stored to the shown value: 100 for percents
+    int digits = -1;                // decimals; -1: three significant digits in all
+    bool zero = false;              // true: 0 is a value; false: 0 means that there is none, and is not shown
 };
 
 template <class Owner>
 struct Field {
-    const char* key;                                // in JSON; CSV joins nested keys by a dot
-    std::function<Json(const Owner&)> write;        // null: there is nothing to say
-    std::function<void(const Json&, Owner&)> read;  // of a value that is not null; empty: it follows from other fields
+    const char* key;                          // in JSON; CSV joins nested keys with dots
+    std::function<Json(const Owner&)> write;  // returns null if there is nothing to write
+    std::function<void(const Json&, Owner&)>
+        read;  // reads a value which is not null; empty: the value follows from other fields
     Look look = {};
-    std::function<double(const Owner&)> number = {};  // as stored; empty: it is none
+    std::function<double(const Owner&)> number = {};  // the stored value; empty: the field is not a number
     bool figure = false;                              // withheld unless the row is ok
 };
 
 template <class Owner>
 using Fields = std::vector<Field<Owner>>;
 
-// Six significant digits, more than any measurement has; whole numbers stay whole; null for what is no number.
+// Six significant digits, which is more than any measurement has. Whole numbers stay whole. NaN and infinity become null.
 Json number_json(double value);
 
 template <class Value>
@@ -45,7 +46,7 @@ Json value_json(const Value& value) {
         return value;
 }
 
-// A member as it is.
+// A field which writes and reads the member as it is.
 template <class Owner, class Value>
 Field<Owner> plain(const char* key, Value Owner::*member, Look look = {}) {
     Field<Owner> field{key, [=](const Owner& o) { return value_json(o.*member); },
@@ -54,7 +55,7 @@ Field<Owner> plain(const char* key, Value Owner::*member, Look look = {}) {
     return field;
 }
 
-// A member whose empty value (0, "") says that there is nothing to say.
+// A field whose member is written as null if it is empty (0, ""): there is nothing to say.
 template <class Owner, class Value>
 Field<Owner> unless_empty(const char* key, Value Owner::*member, Look look = {}) {
     Field<Owner> field = plain(key, member, look);
@@ -62,7 +63,7 @@ Field<Owner> unless_empty(const char* key, Value Owner::*member, Look look = {})
     return field;
 }
 
-// The same, withheld unless the row is ok.
+// The same field, but withheld unless the row is ok.
 template <class Owner>
 Field<Owner> figure_of(Field<Owner> field) {
     field.figure = true;
@@ -76,14 +77,15 @@ Json write_fields(const Fields<Owner>& fields, const Owner& owner, bool with_fig
     return json;
 }
 
-// Fields that `json` lacks, or that are null, stay as they are. Throws Json::exception for values of another kind.
+// Reads the fields which `json` has; fields which it lacks or which are null stay as they are. Throws Json::exception if a
+// value has the wrong type.
 template <class Owner>
 void read_fields(const Json& json, const Fields<Owner>& fields, Owner& owner) {
     for (const Field<Owner>& field : fields)
         if (const auto at = json.find(field.key); field.read && at != json.end() && !at->is_null()) field.read(*at, owner);
 }
 
-// nullptr: there is none of that key.
+// The field of that key; nullptr if there is none.
 template <class Owner>
 const Field<Owner>* find_field(const Fields<Owner>& fields, const std::string& key) {
     for (const Field<Owner>& field : fields)

@@ -1,4 +1,4 @@
-// output.hpp -- records as text: a table for the terminal, JSON, CSV.
+// output.hpp -- writes records as text: tables for the terminal, JSON, CSV.
 #pragma once
 #include <string>
 
@@ -6,23 +6,22 @@
 
 namespace clarity::bench {
 
-// A list of records, each whole with machine and run, so that lists of several runs may be joined (DESIGN.md section 5). Ends
-// in a newline.
+// A JSON list of records which ends in a newline. Each record holds its machine and run, so that lists of several runs can be
+// joined (DESIGN.md section 5).
 std::string bench_json(const BenchReport& report);
-// One of these records, indented as in the list, without a comma or newline behind it.
+// One record of the list, indented as in the list, without a comma or newline after it.
 std::string bench_json_row(const BenchReport& report, const BenchRecord& record);
-// The same as the list, a line a record, nested keys joined by a dot; RFC 4180.
+// The same records as CSV (RFC 4180), one line per record; nested keys are joined with dots.
 std::string bench_csv(const BenchReport& report);
-// Reads what bench_json wrote; the list may lack its end, as a run leaves it that was killed. Throws Error(failed): what is not
-// understood.
+// Reads the text of bench_json(). The end of the list may be missing, as after a kill. Throws Error(failed) for any other text.
 BenchReport read_bench_json(const std::string& text);
-// One table a suite and measure, at most 120 columns wide.
+// All tables for the terminal: one per suite and measure, at most 120 columns wide, then what was left out.
 std::string bench_table(const BenchReport& report);
-// Of these, where the time of frames goes.
+// Part of bench_table(): where the time of frames goes.
 std::string breakdown_table(const BenchReport& report);
-// Pictures by several devices, by those of one.
+// Part of bench_table(): pictures rendered by several devices, compared with those of one.
 std::string devices_table(const BenchReport& report);
-// And ours by the best of the peers.
+// Part of bench_table(): our speed compared with the fastest baseline's.
 std::string speedup_table(const BenchReport& report);
 
 }  // namespace clarity::bench

@@ -1,4 +1,4 @@
-// output_csv.cpp -- records as CSV (RFC 4180): JSON's keys, nested ones joined by a dot.
+// output_csv.cpp -- records as CSV (RFC 4180), with the keys of JSON; nested keys are joined with dots.
 #include <algorithm>
 
 #include "bench/output/record_keys.hpp"
@@ -21,7 +21,7 @@ std::string parts_text(const Json& parts) {
     return text;
 }
 
-// Values by their paths, "/run/clock_mhz/before".
+// Values by their JSON pointers, "/run/clock_mhz/before".
 Json flat(const BenchReport& report, const BenchRecord& record) {
     Json json = record_json(report, record);
     json["kernels_ms"] = kernels_text(json["kernels_ms"]);
@@ -29,7 +29,7 @@ Json flat(const BenchReport& report, const BenchRecord& record) {
     return json.flatten();
 }
 
-// A record that has everything: its paths are the columns, whatever the first record lacks.
+// The columns: all paths of a record which has every member, so that they do not depend on the records to be written.
 std::vector<std::string> columns() {
     BenchReport report;
     BenchRecord full;

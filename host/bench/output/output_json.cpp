@@ -1,4 +1,4 @@
-// output_json.cpp -- records as JSON and back, by the table of record_fields.hpp.
+// output_json.cpp -- writes records as JSON and reads them, by the table of record_fields.hpp.
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/output/output.hpp"
@@ -27,7 +27,7 @@ bool same_run(const BenchRun& a, const BenchRun& b) {
     return write_fields(run_fields(), a) == write_fields(run_fields(), b);
 }
 
-// What comes out over all scenes of the suite, with each of its rows.
+// Adds the means over all scenes of the suite to the speed-up of one row.
 void add_means(Json& speedup, const SpeedupMean& mean) {
     speedup["geometric_mean"] = number_json(mean.mean);
     speedup["least"] = number_json(mean.least);
@@ -53,7 +53,7 @@ std::string bench_json(const BenchReport& report) {
 }
 
 std::string bench_json_row(const BenchReport& report, const BenchRecord& record) {
-    // The list "[\n {...}\n]" without its brackets.
+    // The text is "[\n {...}\n]"; removes the brackets and their newlines.
     const std::string list = Json::array({record_json(report, record)}).dump(1, ' ', false, Json::error_handler_t::replace);
     return list.substr(2, list.size() - 4);
 }
@@ -63,8 +63,9 @@ BenchReport read_bench_json(const std::string& text) {
     size_t at = 0;
     try {
         Json list = Json::parse(text, nullptr, false);
-        if (list.is_discarded()) list = Json::parse(text + "\n]", nullptr, false);  // of a run that was killed
-        if (list.is_discarded()) list = Json::parse(text);                          // says where the text is wrong
+        if (list.is_discarded())
+            list = Json::parse(text + "\n]", nullptr, false);  // the list lacks its end: the run was killed
+        if (list.is_discarded()) list = Json::parse(text);     // throws, with the position of the error
         if (!list.is_array()) throw Error(Exit::failed, "expected a list of records, as `clarity bench --json` writes it");
         for (; at < list.size(); ++at) {
             BenchRecord record = read_record(list[at]);

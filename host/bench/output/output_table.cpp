@@ -1,4 +1,4 @@
-// output_table.cpp -- records as tables that one reads at a glance: what was compared side by side stands side by side.
+// output_table.cpp -- records as tables for the terminal; what was compared stands side by side.
 #include <algorithm>
 #include <cstdio>
 #include <map>
@@ -25,7 +25,7 @@ bool shown(const BenchRecord& r) {
     return r.status == RowStatus::ok && r.time_ms.n > 0;
 }
 
-// Records put together by a key, in the order in which keys first came.
+// Groups records by a key, in the order of the keys' first records.
 class Groups {
  public:
     std::vector<const BenchRecord*>& of(const std::string& key) {
@@ -46,7 +46,7 @@ const BenchRecord* find(const std::vector<const BenchRecord*>& group, const std:
     return nullptr;
 }
 
-// Devices get a column of their own only where there are several.
+// True if all records are of one device; the tables then have no column for the device.
 bool one_device(const BenchReport& report) {
     std::string first;
     for (const BenchRecord& r : report.records) {
@@ -61,10 +61,10 @@ std::string device_cell(const BenchReport& report, const BenchRecord& r) {
     return one_device(report) ? std::string() : r.device;
 }
 
-// Frames per second by steps: the thesis's charts.
+// Frames per second by number of steps, as in the thesis's charts.
 std::string steps_table(const BenchReport& report, const std::string& suite) {
     Groups groups;
-    std::map<std::string, const BenchRecord*> then;  // by scene, device and depth
+    std::map<std::string, const BenchRecord*> then;  // scene, device, depth -> row
     const auto key = [](const BenchRecord& r) { return r.scene + "\n" + r.device_id + r.device; };
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || r.measure != "frame" || !shown(r)) continue;
@@ -96,7 +96,7 @@ std::string steps_table(const BenchReport& report, const std::string& suite) {
                      table.text(22) + "\n";
 }
 
-// Packet sizes down, lanes across.
+// Frames per second: packet sizes down, numbers of lanes across.
 std::string packets_table(const BenchReport& report) {
     Groups groups;
     std::vector<int> lanes;
@@ -122,7 +122,7 @@ std::string packets_table(const BenchReport& report) {
     return table.empty() ? std::string() : "packets: frames per second at 4 steps\n" + table.text() + "\n";
 }
 
-// Scene by scene as they came, and in each ours before peers.
+// Sorts groups by scene, in the order of the scenes' first records; within a scene, our rows come before the baselines'.
 std::vector<std::vector<const BenchRecord*>> ours_first(std::vector<std::vector<const BenchRecord*>> groups) {
     std::map<std::string, size_t> place;
     for (const auto& group : groups) place.emplace(group.front()->scene, place.size());
@@ -135,18 +135,18 @@ std::vector<std::vector<const BenchRecord*>> ours_first(std::vector<std::vector<
     return groups;
 }
 
-// Columns that say what a structure costs, besides the time of its building.
+// Columns of a structure's costs, besides its build time.
 constexpr const char* kBuildKeys[] = {"mtris_per_s", "bytes_per_triangle", "sah_cost"};
 
-// One row a scene and structure or peer: what it costs and what it gives.
+// One line per scene and structure or baseline: build costs and speed by kind of ray.
 std::string accel_table(const BenchReport& report, const std::string& suite) {
     Groups groups;
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || !shown(r) || r.measure == "dropped" || (suite == "quick" && r.measure == "frame")) continue;
-        // A peer is built in a quality and traced in several ways: rows of builds stand by themselves.
+        // A baseline is built once per quality and traced in several modes, so that its builds have lines of their own.
         groups.of(r.scene + "\n" + (r.measure == "build" || !r.baseline.empty() ? "" : r.device) + "\n" + who(r)).push_back(&r);
     }
-    // Builds go with the rows of ours that have the same structure.
+    // Our builds are shown in the lines of the same structure.
     std::vector<std::string> head = {"scene", "structure", "device", "triangles", "build ms"};
     for (const char* key : kBuildKeys) head.push_back(record_field(key).look.column);
     for (const char* word : {"primary", "shadow", "reflect", "diffuse", "frame ms", "worst +-%"}) head.push_back(word);
@@ -218,7 +218,7 @@ bool unsteady(const BenchReport& report, const BenchRecord& r) {
     return r.status == RowStatus::refused && std::max(r.time_ms.spread(), r.wall_ms.spread()) > most;
 }
 
-// Parts, joined by commas, in lines that fit a terminal.
+// Joins the parts with commas, and breaks lines to fit a terminal of 120 columns.
 std::string wrapped(std::string line, const std::vector<std::string>& parts) {
     std::string text;
     for (size_t i = 0; i < parts.size(); ++i) {
@@ -232,7 +232,7 @@ std::string wrapped(std::string line, const std::vector<std::string>& parts) {
     return text + line + "\n";
 }
 
-// Who of a case was too unsteady, and by how much.
+// The rows of each case which were too unsteady, with their spread.
 std::string refused_rows(const BenchReport& report) {
     Groups groups;
     for (const BenchRecord& r : report.records)
@@ -247,11 +247,11 @@ std::string refused_rows(const BenchReport& report) {
     }
     if (text.empty()) return text;
     const BenchRun& run = report.run_of(*groups.all().front().front());
-    return text + "Refused: the middle half of repetitions spreads over so much of the median, more than " +
-           percent(run.max_spread) + " %.\nLet the machine be quiet, or raise --max-spread or --time-limit.\n";
+    return text + "Refused: the spread above (the middle half of repetitions, relative to the median) exceeds " +
+           percent(run.max_spread) + " %.\nClose other programs and measure again, or raise --max-spread or --time-limit.\n";
 }
 
-// Rows of one scene that are missing for the same reason are one line.
+// Rows which were left out: rows of one scene with the same reason share a line.
 std::string left_out(const BenchReport& report) {
     Groups groups;
     for (const BenchRecord& r : report.records)

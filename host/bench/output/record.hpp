@@ -1,4 +1,4 @@
-// record.hpp -- what `clarity bench` measured: one flat record a row, from which table, JSON, CSV and HTML are all made.
+// record.hpp -- the results of `clarity bench`: one flat record per row. Tables, JSON, CSV and HTML are all made from these.
 // docs/bench.md defines every figure.
 #pragma once
 #include <cstdint>
@@ -11,52 +11,52 @@
 namespace clarity::bench {
 
 enum class RowStatus {
-    ok,
-    refused,  // measured, but too unsteady to be believed, or its answers differ from the others': figures are withheld
-    failed,   // an error
+    ok,       // complete, with figures
+    refused,  // measured, but too unsteady to be believed, or with other hits than the other rows: figures are withheld
+    failed,   // an error occurred
     skipped   // not measured, on purpose
 };
 
-// What the tracer did, by the counting program. Rays are the active ones; a packet is the rays traced side by side, one by one
-// lane.
+// Work of the tracer, counted by a separate program. Only active rays count. A packet is the rays which one work-item traces
+// side by side, one per lane.
 struct Analysis {
-    bool present = false;
-    double nodes_per_ray = 0;       // that its packet visits, mean over rays: what a ray sits through
-    double own_nodes_per_ray = 0;   // of these, those that the ray itself is in
-    double leaf_tests_per_ray = 0;  // primitives that its packet tests
-    double lanes_alive = 0;         // 0..1: of all lanes at all node visits, those whose ray is in the node
-    double warp_alive = 0;          // 0..1, one lane only: of 32 neighbours, mean of nodes visited by the most
-    double bytes_per_ray = 0;       // nodes and leaves fetched, each once a packet
-    double bytes_shared = 0;        // 0..1: of the nodes that the rays would fetch one by one, what fetching together saves
-    unsigned node_bytes = 0;
+    bool present = false;           // false: not counted
+    double nodes_per_ray = 0;       // nodes which a ray's packet visits, mean over rays; the ray waits for all of them
+    double own_nodes_per_ray = 0;   // nodes among these which the ray itself intersects
+    double leaf_tests_per_ray = 0;  // primitives which the ray's packet tests, mean over rays
+    double lanes_alive = 0;         // 0..1: share of lanes whose ray intersects the node, over all node visits
+    double warp_alive = 0;          // 0..1, with one lane only: of 32 neighbours, mean of visited nodes divided by the largest
+    double bytes_per_ray = 0;       // bytes of nodes and leaves fetched per ray; each packet fetches a node once
+    double bytes_shared = 0;  // 0..1: share of node fetches which a packet saves, compared with tracing its rays one by one
+    unsigned node_bytes = 0;  // size of a node in bytes
 };
 
-// Names and ms, in an order that means something.
+// Names and milliseconds, in a meaningful order.
 using Parts = std::vector<std::pair<std::string, double>>;
 
-// Ours by the fastest row of a peer in the same case.
+// Our speed divided by that of the fastest baseline in the same case.
 struct Speedup {
-    std::string baseline;    // which; "": there was none
-    double ratio = 0;        // how many times as fast we are
-    double spread = 0;       // measured, of the ratio; 0: not known, as in records of earlier versions
-    double bytes_ratio = 0;  // of memory, above 1 is more
+    std::string baseline;    // name of the baseline; "": there was none
+    double ratio = 0;        // our speed divided by theirs, above 1 is faster
+    double spread = 0;       // measured spread of the ratio; 0: unknown, as in records of earlier versions
+    double bytes_ratio = 0;  // our memory divided by theirs, above 1 is more
 };
 
 struct BenchRecord {
-    // ---- what
+    // ---- what was measured
     std::string suite;      // thesis | packets | accel | scale | cpu | devices | quick | breakdown
-    std::string case_name;  // "bunny/primary"; rows of one case were measured A B A B, so they may be compared
+    std::string case_name;  // "bunny/primary"; rows of one case were measured interleaved, so that they can be compared
     std::string scene;      // "bunny"
     std::string measure;    // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture
-    std::string variant;    // tells the rows of a case apart on one device: "now", "then", "bvh2", "4x4, 16 lanes"
-    std::string baseline;   // "" for ours, else "embree packet16 high"
+    std::string variant;    // identifies a row within its case and device: "now", "then", "bvh2", "4x4, lanes 16"
+    std::string baseline;   // "" for our rows, else "embree packet16 high"
 
-    // ---- on what
-    std::string device, device_id, driver;  // of a peer: the host's processor
-    unsigned device_clock_mhz = 0;          // highest, as the driver says; 0: it does not
-    unsigned threads = 0;                   // compute units of the device; threads of a peer
+    // ---- on which device
+    std::string device, device_id, driver;  // of a baseline: the host's processor
+    unsigned device_clock_mhz = 0;          // highest clock, as the driver says; 0: unknown
+    unsigned threads = 0;                   // compute units of the device; for a baseline its threads
 
-    // ---- how; of ours only
+    // ---- settings; of our rows only
     std::string accel, accel_params;  // "bvh2", "max_leaf=4,bins=32"
     std::string tracer;
     int depth = 0;  // generations of rays: the thesis's steps
@@ -64,50 +64,50 @@ struct BenchRecord {
     int width = 0, height = 0;
     uint64_t triangles = 0, primitives = 0;  // placed in the world; primitives: triangles, spheres, polygons, planes
 
-    // ---- how it went
+    // ---- outcome
     RowStatus status = RowStatus::ok;
-    std::string why;  // unless ok: what is wrong and what to do
+    std::string why;  // unless ok: the reason, and what to do
 
-    // ---- figures; not refused ones
-    Summary time_ms;  // by the device's clock: kernels. build: builder and packing
-    Summary wall_ms;  // by the host's: a frame from the call to the pixels in host memory; else as the caller waited
-    double fps = 0;   // frames only: of the median wall time
-    uint64_t rays_primary = 0, rays_shadow = 0, rays_secondary = 0, rays_dropped = 0;  // of one repetition; active ones
-    uint64_t hits = 0;                                                                 // of ray rows
-    double mrays_per_s = 0;                                                            // all rays by the median device time
+    // ---- figures; withheld if the row is refused
+    Summary time_ms;  // by the device's clock: kernels only. build: builder and packing
+    Summary wall_ms;  // by the host's clock. frame: from the call to pixels in host memory; else: time of the call
+    double fps = 0;   // frames only: frames a second, from the median wall time
+    uint64_t rays_primary = 0, rays_shadow = 0, rays_secondary = 0, rays_dropped = 0;  // per repetition; active rays only
+    uint64_t hits = 0;                                                                 // of rows which trace rays
+    double mrays_per_s = 0;  // million rays a second, all rays and median device time
 
-    // ---- the structure
+    // ---- structure
     double build_ms = 0, pack_ms = 0, compile_ms = 0;
-    double mtris_per_s = 0;  // build only: triangles by builder and packing
+    double mtris_per_s = 0;  // build only: million triangles a second, builder and packing
     double bytes_per_triangle = 0;
     uint64_t accel_bytes = 0, nodes = 0;
-    double sah_cost = 0;  // 0: the structure does not say
+    double sah_cost = 0;  // 0: the structure does not report it
 
     Speedup speedup;
     Analysis analysis;
     std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
 
-    Parts parts_ms;             // breakdown: they add up to the frame
-    Parts within_ms;            // of these
-    double parts_error_ms = 0;  // half of the middle half's width, of the least steady of what they come from
+    Parts parts_ms;             // of breakdown: they add up to the frame
+    Parts within_ms;            // of breakdown: contained in the parts
+    double parts_error_ms = 0;  // half the interquartile range of the least steady probe
 
     size_t run = 0;  // 0: BenchReport::run, else joined[run - 1]
 
     uint64_t rays() const { return rays_primary + rays_shadow + rays_secondary; }
 };
 
-// Where and when; the same for all rows of a run.
+// Machine, date and conditions of a run; shared by all its rows.
 struct BenchRun {
     std::string version;   // of the program
     std::string date;      // ISO 8601, UTC
     std::string command;   // as typed
     std::string host_cpu;  // "AMD EPYC ..."
     unsigned host_threads = 0;
-    std::string governor;                              // "": not readable (a virtual machine)
-    double clock_mhz_before = 0, clock_mhz_after = 0;  // of the host's processor, mean over its cores; 0: not readable
-    double load_before = 0, load_after = 0;            // load average of the last minute
-    double max_spread = 0;                             // above it rows are refused
-    double seconds = 0;                                // that the run took
+    std::string governor;                              // frequency governor; "": not readable (a virtual machine)
+    double clock_mhz_before = 0, clock_mhz_after = 0;  // of the host's processor, mean over its cores, MHz; 0: not readable
+    double load_before = 0, load_after = 0;            // load average of the last minute, before and after the run
+    double max_spread = 0;                             // rows with a larger spread are refused
+    double seconds = 0;                                // duration of the run
 };
 
 struct BenchReport {
@@ -115,9 +115,9 @@ struct BenchReport {
     std::vector<BenchRun> joined;      // earlier runs, read from files
     std::vector<BenchRecord> records;  // in the order measured
     const BenchRun& run_of(const BenchRecord& record) const { return record.run == 0 ? run : joined.at(record.run - 1); }
-    std::vector<std::string> notes;  // what was left out and why, for a person
-    bool interrupted = false;
-    std::string failure;  // why the run ended early; "": it did not
+    std::vector<std::string> notes;  // what was left out and why, for the user
+    bool interrupted = false;        // cancelled by the user; the records are complete rows
+    std::string failure;             // reason why the run ended early; "": it did not
 };
 
 }  // namespace clarity::bench

@@ -12,7 +12,7 @@ namespace {
 
 constexpr const char* kStatus[] = {"ok", "refused", "failed", "skipped"};
 
-// Of a row that is not ok, all is withheld but how unsteady it was.
+// A summary as JSON. If the row is not ok, only its spread and count are written: figures are withheld.
 Json summary_json(const BenchRecord& r, const Summary& s) {
     if (s.n == 0) return nullptr;
     if (r.status != RowStatus::ok) return {{"spread", number_json(s.spread())}, {"n", s.n}};
@@ -23,26 +23,26 @@ Summary read_summary(const Json& json) {
     Summary s;
     read_fields(json, summary_fields(), s);
     if (json.contains("spread") && !json.contains("median") && !json.contains("p50")) {
-        s.median = s.q1 = 1;  // it was withheld: a summary of that spread
+        s.median = s.q1 = 1;  // figures were withheld: make a summary of that spread
         s.q3 = 1 + json.at("spread").get<double>();
     }
     return s;
 }
 
-// Rays are not timed by the host's clock: their times of 0 are none.
+// A summary of times; null if it is 0, because rays are not timed by the host's clock.
 Field<BenchRecord> times(const char* key, Summary BenchRecord::*member) {
     return {key, [=](const BenchRecord& r) { return (r.*member).median > 0 ? summary_json(r, r.*member) : Json(); },
             [=](const Json& json, BenchRecord& r) { r.*member = read_summary(json); }};
 }
 
-// "4x2"; 0x0: nothing to say.
+// A size as "4x2"; null for 0x0.
 Field<BenchRecord> size(const char* key, int BenchRecord::*w, int BenchRecord::*h) {
     return {key,
             [=](const BenchRecord& r) { return r.*w > 0 ? Json(std::to_string(r.*w) + "x" + std::to_string(r.*h)) : Json(); },
             [=](const Json& json, BenchRecord& r) {
                 const std::string text = json.get<std::string>();
                 if (std::sscanf(text.c_str(), "%dx%d", &(r.*w), &(r.*h)) != 2)
-                    throw Error(Exit::failed, std::string(key) + ": `" + text + "` is no size such as 4x4");
+                    throw Error(Exit::failed, std::string(key) + ": `" + text + "` is not a size such as 4x4");
             }};
 }
 
@@ -50,7 +50,7 @@ Field<BenchRecord> parts(const char* key, Parts BenchRecord::*member) {
     return figure_of<BenchRecord>({key,
                                    [=](const BenchRecord& r) {
                                        if ((r.*member).empty()) return Json();
-                                       Json json = Json::array();  // an order that an object would not keep
+                                       Json json = Json::array();  // an array keeps the order, an object would not
                                        for (const auto& [name, ms] : r.*member)
                                            json.push_back({{"part", name}, {"ms", number_json(ms)}});
                                        return json;
@@ -62,7 +62,7 @@ Field<BenchRecord> parts(const char* key, Parts BenchRecord::*member) {
                                    }});
 }
 
-// A struct of its own within the record. present: whether there is anything to say.
+// A struct within the record. present: tells whether there is anything to write.
 template <class Part>
 Field<BenchRecord> nested(const char* key, Part BenchRecord::*member, const Fields<Part>& (*fields)(),
                           bool (*present)(const Part&)) {
@@ -137,34 +137,39 @@ const Fields<Analysis>& analysis_fields() {
     static const Fields<Analysis> fields = {
         plain("nodes_per_ray", &Analysis::nodes_per_ray,
               {"nodes/ray", "Nodes visited", "a ray, mean",
-               "Every node is a fetch from memory and a test of a volume, one after the other: this is what a ray waits for. A "
-               "packet visits what any of its rays needs, so one that holds together visits little more than each ray alone, "
-               "and one that has spread visits much more."}),
+               "Every node costs a fetch from memory and a test of its volume, one after the other. A packet visits the nodes "
+               "which any of its rays needs: a coherent packet visits few more than each ray alone, an incoherent one many "
+               "more."}),
         plain("own_nodes_per_ray", &Analysis::own_nodes_per_ray, {"own"}),
         plain("leaf_tests_per_ray", &Analysis::leaf_tests_per_ray,
               {"leaf tests", "Primitives tested", "a ray, mean",
-               "Tests of triangles, spheres and polygons in the leaves. Tight volumes keep them near one; bounding spheres, "
-               "which are mostly air around a triangle, let many more through, and spheres without a tree above them are all "
-               "asked."}),
+               "Tests of triangles, spheres and polygons in the leaves. Tight volumes keep them near one. Bounding spheres are "
+               "mostly empty around a triangle, so that more rays reach the leaves. Spheres without a tree above them are all "
+               "tested."}),
         plain("lanes_alive", &Analysis::lanes_alive,
-              percent("lanes alive %", "Lanes alive", "percent of all lanes, per node visited",
-                      "Branch divergence: the lanes of a work-item go the same way, and those whose ray is not in the node are "
-                      "carried along. 100 % means that all rays of a packet want every node it visits. Mirrored rays of curved "
-                      "things spread, and the share falls. With one lane it is how many of the nodes tested were entered.")),
-        plain("warp_alive", &Analysis::warp_alive,
-              percent("warp %", "Alive in a warp", "percent, of 32 neighbours, one lane only",
-                      "The same on a graphics card, where each ray is a work-item and 32 neighbours run in step: all wait for "
-                      "the one that visits the most nodes. This is the mean of their visits over the most.",
-                      false)),
+              percent(
+                  "lanes alive %", "Lanes alive", "percent of all lanes, per node visited",
+                  "Branch divergence: all lanes of a work-item visit the same nodes, and a lane whose ray misses the node does "
+                  "no work. 100 % means that every ray of a packet needs every node which the packet visits. Mirror rays of "
+                  "curved surfaces diverge, and the share falls. With one lane it is the share of tested nodes which were "
+                  "entered.")),
+        plain(
+            "warp_alive", &Analysis::warp_alive,
+            percent("warp %", "Alive in a warp", "percent, of 32 neighbours, one lane only",
+                    "The same on a GPU, where each ray is a work-item and 32 neighbours run in lockstep: all wait for the ray "
+                    "which visits most nodes. The figure is the mean number of visits divided by the largest.",
+                    false)),
         plain("bytes_per_ray", &Analysis::bytes_per_ray,
               {"bytes/ray", "Bytes fetched", "a ray, mean",
-               "Nodes and primitives as they lie in memory, each counted once a packet. Times the rays a second this is what "
-               "caches and memory must deliver."}),
-        plain("bytes_shared", &Analysis::bytes_shared,
-              percent("shared %", "Fetched together", "percent of the node fetches",
-                      "What packets are for, and what coalesced reads are on a graphics card: of the nodes that the rays would "
-                      "fetch one by one, the share that fetching together saves. 0 % with one lane, where nothing is shared "
-                      "but by the cache.")),
+               "Nodes and primitives as they are stored in memory, each counted once per packet. Multiplied by the rays a "
+               "second, "
+               "this is the bandwidth which caches and memory must deliver."}),
+        plain(
+            "bytes_shared", &Analysis::bytes_shared,
+            percent(
+                "shared %", "Fetched together", "percent of the node fetches",
+                "The gain of packets, as of coalesced reads on a GPU: the share of node fetches which a packet saves, compared "
+                "with rays which fetch one by one. 0 % with one lane, where only the cache shares fetches.")),
         plain("node_bytes", &Analysis::node_bytes)};
     return fields;
 }
@@ -247,7 +252,7 @@ const Fields<BenchRun>& run_fields() {
 
 const Field<BenchRecord>& record_field(const std::string& key) {
     const Field<BenchRecord>* const field = find_field(record_fields(), key);
-    if (!field) throw Error(Exit::failed, "a record of the bench has no field " + key);
+    if (!field) throw Error(Exit::failed, "a benchmark record has no field '" + key + "'");
     return *field;
 }
 

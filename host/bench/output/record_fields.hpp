@@ -1,5 +1,5 @@
-// record_fields.hpp -- all fields of a record, each one row: its key in JSON and CSV, where the record holds it, and how tables
-// and the report show it. A new statistic is a member of BenchRecord (or Analysis, or Summary) and a row here.
+// record_fields.hpp -- the table of a record's fields: key in JSON and CSV, member of the record, and how tables and the report
+// show it. To add a statistic, add a member to BenchRecord (or Analysis, or Summary) and a line to its table here.
 #pragma once
 #include "bench/output/fields.hpp"
 #include "bench/output/record.hpp"
@@ -11,10 +11,10 @@ const Fields<Summary>& summary_fields();
 const Fields<Analysis>& analysis_fields();
 const Fields<BenchRun>& run_fields();
 
-// The row of record_fields() with that key, which must exist.
+// The field of that key. Throws Error(failed) if there is none.
 const Field<BenchRecord>& record_field(const std::string& key);
 
-// As tables show it: scaled, "" for 0 and for what is no number.
+// The value as tables show it: scaled; "" for NaN, infinity, and a 0 which means that there is none.
 std::string shown_text(double stored, const Look& look);
 template <class Owner>
 std::string shown_text(const Field<Owner>& field, const Owner& owner) {

@@ -1,11 +1,11 @@
-// record_keys.hpp -- one record with the keys that JSON and CSV share.
+// record_keys.hpp -- one record as JSON, which CSV is also made from.
 #pragma once
 #include "bench/output/fields.hpp"
 #include "bench/output/output.hpp"
 
 namespace clarity::bench {
 
-// Every key is there, null where there is nothing to say.
+// Every key is present; its value is null if there is nothing to say.
 Json record_json(const BenchReport& report, const BenchRecord& record);
 
 }  // namespace clarity::bench

@@ -18,7 +18,7 @@ RowsFile::~RowsFile() {
         file_->write("\n]\n", 3);
         file_->commit();
     } catch (...) {
-        // The run fails already, and says why.
+        // A destructor must not throw. The run has already failed with a message of its own.
     }
 }
 

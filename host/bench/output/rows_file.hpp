@@ -1,4 +1,4 @@
-// rows_file.hpp -- a JSON file of records that grows while they are measured, so that a run that dies loses none.
+// rows_file.hpp -- a JSON file of records which grows during the run, so that a run which crashes loses no row.
 #pragma once
 #include <memory>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace clarity::bench {
 
-// Rows go into the temporary file beside `path` at once. finish() writes the whole report instead, whose rows also know how the
-// run ended and what the means over all of its scenes are. Without finish(), the destructor closes the list and puts the rows
-// in place. After a kill, the temporary file holds all rows, and read_bench_json() reads it.
-// Functions throw Error(failed) where the file cannot be written.
+// add() appends each row at once to a temporary file beside `path`. finish() then replaces it with the whole report, whose rows
+// also hold the end of the run and the means over all scenes. Without finish(), the destructor closes the list and moves the
+// file to `path`. After a kill, the temporary file holds all rows, and read_bench_json() can read it. Functions throw
+// Error(failed) if the file cannot be written.
 class RowsFile {
  public:
     explicit RowsFile(std::string path);
@@ -25,9 +25,9 @@ class RowsFile {
 
  private:
     const std::string path_;
-    std::unique_ptr<OutputFile> file_;  // null: a pipe or device, which cannot be replaced, or done
+    std::unique_ptr<OutputFile> file_;  // null if finished, or if `path` is a pipe or device, which cannot be replaced
     bool any_ = false;
-    bool torn_ = false;  // the last row is there in part: the disk is full, say
+    bool torn_ = false;  // the last row was written in part, for example because the disk is full
 };
 
 }  // namespace clarity::bench

@@ -1,4 +1,4 @@
-// speedup_table.cpp -- how many times the best peer we are: scenes down, measures across, and what comes out of them.
+// speedup_table.cpp -- our speed divided by the fastest baseline's: scenes down, measures across, and means at the end.
 #include <algorithm>
 
 #include "bench/baselines/speedup.hpp"
@@ -20,7 +20,7 @@ struct Line {
 };
 
 bool together(const BenchRecord& a, const BenchRecord& b) {
-    // Builders run on the host, whatever the device.
+    // Builds run on the host, so that they belong to the lines of every device.
     const bool device = a.device_id == b.device_id || a.measure == "build" || b.measure == "build";
     return a.run == b.run && a.suite == b.suite && a.scene == b.scene && a.variant == b.variant && device;
 }
@@ -36,7 +36,7 @@ void add_mean(TextTable& table, const std::vector<SpeedupMean>& means, const Ben
                 found = ratio_text(m.*value, m.*spread, kSame);
         cells.push_back(found);
     }
-    cells.emplace_back();  // of bytes there is no mean
+    cells.emplace_back();  // memory has no mean
     table.add(cells);
 }
 
@@ -50,7 +50,7 @@ std::string speedup_table(const BenchReport& report) {
         if (r.speedup.baseline.empty() || r.status != RowStatus::ok || r.suite != "cpu" || at == std::end(kMeasures)) continue;
         auto line = std::find_if(lines.begin(), lines.end(), [&](const Line& l) { return together(*l.first, r); });
         if (line == lines.end()) line = lines.insert(lines.end(), Line{&r, {}, 0});
-        if (line->first->measure == "build") line->first = &r;  // so that the device is known
+        if (line->first->measure == "build") line->first = &r;  // because a row of a build has no device
         line->speedup[at - std::begin(kMeasures)] = r.speedup;
         if (r.measure == "build") line->bytes = r.speedup.bytes_ratio;
     }

@@ -7,7 +7,7 @@
 namespace clarity::bench {
 namespace {
 
-// Characters on the screen: bytes of UTF-8 that begin one.
+// Characters on the screen: counts the first byte of each UTF-8 character.
 size_t width_of(const std::string& text) {
     return static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (c & 0xC0) != 0x80; }));
 }

@@ -7,11 +7,11 @@ namespace clarity::bench {
 
 class TextTable {
  public:
-    // The first `left` columns are text and stand left, the others are numbers and stand right.
+    // The first `left` columns are text and aligned left; the others are numbers and aligned right.
     TextTable(std::vector<std::string> head, size_t left) : left_(left) { rows_.push_back(std::move(head)); }
     void add(std::vector<std::string> row) { rows_.push_back(std::move(row)); }
     bool empty() const { return rows_.size() == 1; }
-    // Cells are cut at `cell` characters in text columns; columns of numbers in which nothing stands are left out.
+    // The table as text. Cells of text columns are cut to `cell` characters. Empty columns of numbers are left out.
     std::string text(size_t cell = 34) const;
 
  private:

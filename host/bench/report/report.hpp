@@ -1,4 +1,4 @@
-// report.hpp -- the measured records as a page for people.
+// report.hpp -- writes the records as a page for readers.
 #pragma once
 #include <string>
 
@@ -6,8 +6,8 @@
 
 namespace clarity::bench {
 
-// Writes DIR/index.html (made if it is not there), self-contained, with the records as bench.json and bench.csv beside it.
-// Throws Error(failed) that names the file.
+// Writes DIR/index.html, which is self-contained, and the records beside it as bench.json and bench.csv. Creates the folder if
+// needed. Throws Error(failed) which names the file that cannot be written.
 void write_report(const std::string& folder, const BenchReport& report);
 
 }  // namespace clarity::bench

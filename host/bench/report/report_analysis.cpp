@@ -1,4 +1,4 @@
-// report_analysis.cpp -- what the thesis reasons about, counted: each figure with what it means.
+// report_analysis.cpp -- the counters which the thesis argues with, each with an explanation.
 #include "bench/output/record_fields.hpp"
 #include "bench/report/report_markup.hpp"
 #include "bench/report/report_sections.hpp"
@@ -21,7 +21,7 @@ std::string charts_of(const BenchReport& report, const Field<Analysis>& field, c
         BarChart chart;
         chart.title = scene.front()->scene;
         chart.unit = field.look.unit;
-        chart.whole = field.look.scale == 100 ? 100 : 0;  // percents
+        chart.whole = field.look.scale == 100 ? 100 : 0;  // axes of percents reach to 100
         bool any = false;
         for (const auto& kind : kinds.all()) {
             chart.groups.push_back({rays_of(*kind.front()), {}});
@@ -63,10 +63,10 @@ std::string dropped_of(const BenchReport& report, const SeriesNames& names) {
                ? charts
                : "<h3>Dropped rays</h3>\n" +
                      paragraph(
-                         "The thesis keeps the rays of a generation in arrays of a fixed size, since its cards could not "
-                         "allocate. Glass makes two rays of one, and an array that is full must refuse some: a pixel then "
-                         "misses light. This is the share that is refused with 1, 2, 4 and 8 places a pixel; after 4 steps "
-                         "no pixel can need more than 8.") +
+                         "The thesis keeps the rays of a generation in arrays of a fixed size, because its graphics cards "
+                         "could not allocate memory. Glass turns one ray into two. If the array is full, rays are dropped, and "
+                         "the pixel misses light. The figure is the share of dropped rays with 1, 2, 4 and 8 slots a pixel; in "
+                         "4 steps no pixel can need more than 8.") +
                      "<div class=\"grid three\">\n" + charts + "</div>\n";
 }
 
@@ -80,8 +80,8 @@ std::string analysis_section(const BenchReport& report, const SeriesNames& names
     if (out.empty()) return out;
     return "<h2 id=\"analysis\">Why: what the tracer did</h2>\n" +
            paragraph(
-               "Counted by a second, slower program on the same rays, so that counting costs no time above. docs/bench.md "
-               "defines every figure.") +
+               "A second, slower program counts on the same rays, so that counting does not affect the times above. "
+               "docs/bench.md defines every figure.") +
            out;
 }
 

@@ -36,7 +36,7 @@ class Axis {
         if (!(value > 0) || !(high_ > 0) || !std::isfinite(value)) return 0;
         return log_ ? std::log(value / low_) / std::log(high_ / low_) : value / high_;
     }
-    // At most six, and none that would stick out.
+    // At most six ticks, all within the axis.
     std::vector<double> ticks() const {
         std::vector<double> at;
         if (!(high_ > 0)) return at;
@@ -56,7 +56,7 @@ class Axis {
     double low_ = 0, high_ = 0;
 };
 
-// Room for the longest label, within reason.
+// Width of the label column: the longest label, within limits.
 std::string label_width(const BarChart& chart) {
     size_t longest = 0;
     for (const BarGroup& group : chart.groups)

@@ -1,4 +1,4 @@
-// report_compare.cpp -- packets, structures and peers, and how cost grows with size.
+// report_compare.cpp -- compares packets, structures and baselines, and shows how cost grows with size.
 #include <algorithm>
 #include <map>
 
@@ -52,7 +52,7 @@ std::string builds_of(const std::vector<const BenchRecord*>& scene) {
     return table.markup();
 }
 
-// Our best against the best peer on the same rays.
+// Our best structure against the best baseline on the same rays.
 std::string against_baselines(const RecordGroups& scenes, const SeriesNames& names) {
     MarkupTable table({"scene", "rays", "best of ours", "best peer", "ours, Mrays/s", "theirs", "ours by theirs"}, 4);
     for (const auto& scene : scenes.all())
@@ -80,11 +80,10 @@ std::string packets_section(const BenchReport& report, const SeriesNames& names)
     std::string out =
         "<h2 id=\"packets\">Packets</h2>\n" +
         paragraph(
-            "How many pixels one work-item computes, and how many rays it traces side by side (lanes). The thesis found 4x4 "
-            "best on its graphics cards, where every ray of a packet was traced on its own. Here a packet of 4x4 on 16 lanes "
-            "is one ray to the traversal: a node is fetched once for all. bvh8 takes as many such rays together as a packet "
-            "holds, "
-            "up to one for each lane.") +
+            "Packet: the pixels which one work-item computes. Lanes: the rays which it traces side by side. The thesis found "
+            "4x4 best on its graphics cards, where every ray of a packet was traced on its own. Here a packet of 4x4 on 16 "
+            "lanes is traversed like one ray: a node is fetched once for all. bvh8 traces all such groups of a larger packet "
+            "together, up to as many groups as lanes.") +
         "<div class=\"grid\">\n";
     for (const auto& scene : scenes.all()) {
         BarChart chart;
@@ -114,12 +113,13 @@ std::string structures_section(const BenchReport& report, const SeriesNames& nam
     for (const BenchRecord& r : report.records)
         if (is_comparison(r)) scenes.add(r.suite + "\n" + r.scene, r);
     if (scenes.all().empty()) return {};
-    std::string out = "<h2 id=\"structures\">Structures and peers</h2>\n" +
-                      paragraph(
-                          "Every structure on the same rays, made once on the host: camera rays, a ray from every hit to the "
-                          "light, one mirrored at every hit, one scattered at random. Peers (grey) get the same rays and as "
-                          "many threads, turn by turn with ours. Only rays count that exist: pixels that saw nothing have no "
-                          "shadow.");
+    std::string out =
+        "<h2 id=\"structures\">Structures and peers</h2>\n" +
+        paragraph(
+            "All structures trace the same rays, which are made once on the host: camera rays, and from each hit a ray to "
+            "the light, a mirrored ray and a diffusely scattered ray. Peers (grey) trace the same rays with the "
+            "same number of threads, and are measured interleaved with ours. Only active rays count: a pixel whose "
+            "camera ray hit nothing has no secondary rays.");
     out += against_baselines(scenes, names);
     bool first = true;
     for (const auto& scene : scenes.all()) {
@@ -160,9 +160,9 @@ std::string scale_section(const BenchReport& report, const SeriesNames& names) {
     if (charts.empty()) return {};
     return "<h2 id=\"scale\">How cost grows</h2>\n" +
            paragraph(
-               "One model, its triangles cut finer and finer and moved so that the surface really has the detail. A "
-               "hierarchy makes ten times the triangles cost a few more nodes a ray, until they no longer fit a cache; "
-               "trying all of them would make a ray cost ten times as much.") +
+               "One model at several sizes: its triangles are split and displaced, so that the surface has detail at every "
+               "size. With a hierarchy, ten times as many triangles cost a ray only a few more nodes, until they no longer fit "
+               "a cache. Testing every triangle would make a ray ten times as expensive.") +
            "<div class=\"grid\">\n" + charts + "</div>\n";
 }
 

@@ -1,4 +1,4 @@
-// report_curves.cpp -- curves over two logarithmic axes.
+// report_curves.cpp -- curves with two logarithmic axes.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -18,7 +18,7 @@ std::string number(double value) {
     return text;
 }
 
-// Whole decades that hold all values.
+// Whole powers of ten which enclose all values.
 struct Decades {
     double low = INFINITY, high = -INFINITY;
     void add(double value) {
@@ -37,7 +37,7 @@ std::string text_at(double x, double y, const char* anchor, const std::string& t
            "</text>";
 }
 
-// Circle, square, triangle, diamond: told apart without colour.
+// Circle, square, triangle or diamond, so that curves can be told apart without colour.
 std::string marker(int shape, double x, double y) {
     const auto at = [&](double dx, double dy) { return number(x + dx) + "," + number(y + dy) + " "; };
     switch (shape % 4) {
@@ -52,7 +52,7 @@ std::string marker(int shape, double x, double y) {
     }
 }
 
-// Whole characters of UTF-8, at most kNameBytes of them.
+// Cuts a name to at most kNameBytes bytes, at whole UTF-8 characters.
 std::string shortened(const std::string& name) {
     if (name.size() <= kNameBytes) return name;
     size_t end = kNameBytes - 1;
@@ -81,7 +81,8 @@ std::string curve_chart(const CurveChart& chart) {
     std::string out = "<figure class=\"curves\"><figcaption>" + escape_markup(chart.title) + " <small>" +
                       escape_markup(chart.y_unit) + "; both axes logarithmic</small></figcaption>\n<div class=\"wide\">";
     const double bottom = kTop + kHeight;
-    // Names to the right of the last points, moved apart from the top to the bottom, then up again if they ran out of room.
+    // Places the curves' names to the right of their last points. Names which overlap are moved down, then all up again if they
+    // exceed the bottom.
     std::vector<std::pair<double, const Curve*>> names;
     for (const Curve& curve : chart.curves)
         if (!curve.points.empty()) names.emplace_back(at_y(curve.points.back().second), &curve);

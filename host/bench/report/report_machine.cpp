@@ -1,4 +1,4 @@
-// report_machine.cpp -- what was left out, on which machine and how it was measured, and every figure.
+// report_machine.cpp -- what was left out, the machine, the method of measuring, and all figures.
 #include <algorithm>
 #include <set>
 
@@ -80,10 +80,13 @@ std::string left_out_section(const BenchReport& report, const SeriesNames& names
         if (r.status != RowStatus::ok) table.add({status_word(r.status), r.suite, r.case_name, names.label(r), r.why});
     for (const std::string& note : report.notes) table.add({"left out", "", "", "", note});
     std::string out = table.markup();
-    if (report.interrupted) out = "<p class=\"warn\">The run was interrupted: what is here was complete by then.</p>\n" + out;
+    if (report.interrupted)
+        out = "<p class=\"warn\">The run was interrupted. The page shows the rows which were complete by then.</p>\n" + out;
     if (!report.failure.empty())
         out = "<p class=\"warn\">" +
-              escape_markup("The run ended early, and what is here was complete by then: " + report.failure) + "</p>\n" + out;
+              escape_markup("The run ended early; the page shows the rows which were complete by then. The reason: " +
+                            report.failure) +
+              "</p>\n" + out;
     return out.empty() ? out : "<h2 id=\"left-out\">Left out</h2>\n" + out;
 }
 
@@ -93,16 +96,15 @@ std::string machine_section(const BenchReport& report, const SeriesNames& names)
     const std::vector<const BenchRun*> runs = measured_runs(report);
     for (const BenchRun* run : runs) max_spread = std::max(max_spread, run->max_spread);
     out += paragraph(
-        "A figure is the p50 (the median) of many takes after a warm-up. What stands in one chart and comes from one run was "
-        "taken "
-        "turn by turn, A B A B, so that what disturbs the machine for a while disturbs all alike. The spread is the width of "
-        "the middle half by the median; where it stays above " +
+        "A figure is the p50 (the median) of many repetitions after a warm-up. Figures of one chart and one run were measured "
+        "interleaved, A B A B, so that a disturbance of the machine affects all alike. The spread is the interquartile range "
+        "divided by the median. If it stays above " +
         percent_figure(max_spread) +
-        " after measuring anew, the row is refused instead of shown. Kernels are timed by the device's own clock, \"all in\" "
+        " after further attempts, the row is refused instead of shown. Kernels are timed by the device's clock, \"all in\" "
         "by the host's. bench.json and bench.csv beside this page hold every figure.");
     if (runs.size() > 1)
         out += paragraph("This page joins " + std::to_string(runs.size()) +
-                         " runs: their rows were not taken in turn with each other.");
+                         " runs. Rows of different runs were not measured interleaved.");
     const std::string rows = rows_of(report, names);
     if (!rows.empty())
         out += "<details><summary>All " + std::to_string(report.records.size()) + " rows</summary>\n" + rows + "</details>\n";

@@ -8,7 +8,7 @@
 namespace clarity::bench {
 namespace {
 
-// Bytes of the UTF-8 character at `at` that XML allows; 0 if there is none.
+// Length in bytes of the UTF-8 character at `at`; 0 if it is none, or if XML forbids it.
 size_t character_bytes(const std::string& text, size_t at) {
     const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
     const unsigned first = byte(at);

@@ -1,24 +1,24 @@
-// report_markup.hpp -- text, numbers and tables as XHTML: what comes out is well-formed whatever goes in.
+// report_markup.hpp -- text, numbers and tables as XHTML; the result is well-formed for any input.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace clarity::bench {
 
-// Text for element content and attribute values in double quotes. What no XML may hold (control characters, bytes that are not
-// UTF-8) becomes U+FFFD.
+// Escapes text for element content and for attribute values in double quotes. Characters which XML forbids (control characters,
+// bytes which are not UTF-8) become U+FFFD.
 std::string escape_markup(const std::string& text);
 
-// Three significant digits with thin spaces between thousands: "0.0123", "1.23", "45 600"; "0" for 0, "" for what is no number.
+// Three significant digits, with thin spaces between thousands: "0.0123", "1.23", "45 600". "0" for 0; "" for NaN and infinity.
 std::string figure(double value);
-// The same without zeros at the end: "0.1", "10".
+// The same without trailing zeros: "0.1", "10".
 std::string tick_figure(double value);
 std::string percent_figure(double share);
 
-// <p>TEXT</p>, escaped.
+// The escaped text as <p>TEXT</p>.
 std::string paragraph(const std::string& text);
 
-// The first `left` columns are text. Cells are escaped; columns in which nothing stands are left out. Empty without rows.
+// A table. The first `left` columns are text. Cells are escaped. Empty columns are left out. A table without rows is empty.
 class MarkupTable {
  public:
     MarkupTable(std::vector<std::string> head, size_t left) : head_(std::move(head)), left_(left) {}

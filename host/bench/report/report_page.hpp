@@ -1,4 +1,5 @@
-// report_page.hpp -- the measured records as one page of XHTML, pictures and style inside: it needs no network and no script.
+// report_page.hpp -- the records as one page of XHTML with all charts and styles inside, so that it needs no network and no
+// script.
 #pragma once
 #include <string>
 

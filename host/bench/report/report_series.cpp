@@ -9,7 +9,7 @@
 namespace clarity::bench {
 namespace {
 
-constexpr int kGrey = kChartColors - 1;  // of peers
+constexpr int kGrey = kChartColors - 1;  // for baselines
 
 std::string short_device(const BenchRecord& record) {
     const std::string& name = record.device;
@@ -34,7 +34,7 @@ void RecordGroups::add(const std::string& key, const BenchRecord& record) {
 
 SeriesNames::SeriesNames(const BenchReport& report) {
     for (const BenchRecord& r : report.records) {
-        // A peer's device is a processor, and so is what builds: the CPU of this report.
+        // Baselines and builds run on the host's processor, which the report calls CPU; they add no device.
         if (!r.baseline.empty() || r.device.empty() || r.measure == "build") continue;
         if (devices_.count(r.device)) continue;
         const std::string base = short_device(r);
@@ -47,12 +47,12 @@ SeriesNames::SeriesNames(const BenchReport& report) {
     }
     int next = 0;
     for (const BenchRecord& r : report.records) {
-        // Packets and array sizes are told apart by their places in their own charts.
+        // Rows of packets and array sizes have charts of their own, in which positions tell them apart instead of colours.
         if (!r.baseline.empty() || r.measure == "dropped" || r.measure == "build" || r.suite == "packets") continue;
         const std::string key = label(r);
         if (colors_.count(key)) continue;
         colors_[key] = next++ % kGrey;
-        colors_.emplace(who_is(r), colors_[key]);  // of its building, wherever that was
+        colors_.emplace(who_is(r), colors_[key]);  // for its builds, on any device
     }
     for (const BenchRecord& r : report.records)
         if (r.baseline.empty() && r.measure == "build" && colors_.emplace(label(r), next % kGrey).second) ++next;
@@ -101,7 +101,7 @@ std::string hint_of(const BenchRecord& r) {
     if (r.status != RowStatus::ok) return r.why;
     std::string text = who_is(r) + ": kernels p50 " + figure(r.time_ms.median) + " ms, all in p50 " + figure(r.wall_ms.median) +
                        " ms, spread " + percent_figure(std::max(r.time_ms.spread(), r.wall_ms.spread())) + " of " +
-                       std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) + " takes";
+                       std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) + " repetitions";
     if (r.rays() > 0) text += ", " + figure(double(r.rays())) + " rays";
     if (r.lanes > 0)
         text +=

@@ -1,4 +1,4 @@
-// report_series.hpp -- records put in order for drawing: who they are of, short names of devices, colours.
+// report_series.hpp -- prepares records for charts: groups, names of series and devices, colours.
 #pragma once
 #include <map>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace clarity::bench {
 
-// Records put together by a key, in the order in which keys first came.
+// Groups records by a key, in the order of the keys' first records.
 class RecordGroups {
  public:
     void add(const std::string& key, const BenchRecord& record);
@@ -21,35 +21,35 @@ class RecordGroups {
     std::vector<std::vector<const BenchRecord*>> groups_;
 };
 
-// Names and colours of all series of a report, the same in every chart.
+// Names and colours of all series of a report; they are the same in every chart.
 class SeriesNames {
  public:
     explicit SeriesNames(const BenchReport& report);
-    // "now", "embree packet16 high"; with several devices "now, H200".
+    // "now", "embree packet16 high"; "now, H200" if there are several devices.
     std::string label(const BenchRecord& record) const;
     int color(const BenchRecord& record) const;
-    // "H200", "CPU"; told apart by numbers where they would be the same.
+    // Short name: "H200", "CPU"; numbered if two devices would have the same name.
     std::string device(const BenchRecord& record) const;
     bool several_devices() const { return devices_.size() > 1; }
 
  private:
-    std::map<std::string, std::string> devices_;  // by the device's own name
-    std::map<std::string, int> colors_;           // by label
+    std::map<std::string, std::string> devices_;  // key: the device's full name
+    std::map<std::string, int> colors_;           // key: label
 };
 
-// Those that measured something: one that only joins others has no date.
+// The runs which measured something. A run which only joins earlier runs has no date.
 std::vector<const BenchRun*> measured_runs(const BenchReport& report);
-// The variant, or the peer.
+// Name of the variant or the baseline.
 std::string who_is(const BenchRecord& record);
-// Whether there are figures to be shown.
+// True if the record has figures to show.
 bool has_figures(const BenchRecord& record);
-// "1.23", or "about the same" where the difference is within the measured spread; "" where nothing was compared.
+// "1.23"; "about the same" if the difference is within the measured spread; "" if nothing was compared.
 std::string ratio_figure(const Speedup& speedup);
-// "" for 0, which says that there is no such figure.
+// "" for 0, which means that there is no figure.
 std::string figure_or_nothing(double value);
-// Spread, rays, settings: shown when pointed at.
+// Spread, rays and settings, shown when the pointer is over the bar.
 std::string hint_of(const BenchRecord& record);
-// A bar of a record: its value, or in words why there is none.
+// A bar of a record: its value, or a word which says why it has none.
 Bar bar_of(const SeriesNames& names, const BenchRecord& record, double value, const std::string& label = {});
 
 }  // namespace clarity::bench

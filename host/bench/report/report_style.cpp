@@ -2,7 +2,7 @@
 
 namespace clarity::bench {
 
-// Colours: Okabe and Ito 2008. The track of a bar leaves 4.5em to its right for the number behind a full bar.
+// Colours: Okabe and Ito 2008. The track of a bar leaves 4.5em on its right for the number beside a full bar.
 const char* const kReportStyle = R"css(
 :root { color-scheme: light dark; --paper: #fff; --ink: #1d2126; --faint: #626a73; --rule: #d9dde2; --panel: #f5f6f8; --ref: #b3261e;
   --c0: #0072b2; --c1: #e69f00; --c2: #009e73; --c3: #d55e00; --c4: #cc79a7; --c5: #56b4e9; --c6: #7a7f87; }

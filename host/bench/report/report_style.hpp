@@ -1,4 +1,4 @@
-// report_style.hpp -- how a report looks: on light and dark screens, narrow ones and paper.
+// report_style.hpp -- style sheet of a report, for light and dark screens, narrow screens, and paper.
 #pragma once
 
 namespace clarity::bench {

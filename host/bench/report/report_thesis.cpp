@@ -1,4 +1,4 @@
-// report_thesis.cpp -- the thesis's charts: frames per second by steps and device, then and now.
+// report_thesis.cpp -- the thesis's charts: frames per second by steps and device, "then" and "now".
 #include <algorithm>
 #include <map>
 
@@ -9,7 +9,8 @@
 namespace clarity::bench {
 namespace {
 
-// What the thesis says about a scene: where the axis of its chart ends, which no device of 2008 reached.
+// A scene of the thesis, and the figure to compare with. For the six tests that is the end of the chart's axis in fps, which no
+// device of 2008 reached.
 struct ThesisTest {
     const char *scene, *title;
     double fps;
@@ -56,7 +57,7 @@ std::string chart_of(const std::vector<const BenchRecord*>& scene, const SeriesN
     return bar_chart(chart);
 }
 
-// One row a scene, device and design; then the share of each kernel.
+// One line per scene, device and design.
 std::string table_of(const RecordGroups& rows, const SeriesNames& names) {
     std::map<std::string, const BenchRecord*> then;
     for (const auto& row : rows.all())
@@ -102,7 +103,7 @@ std::string kernels_of(const RecordGroups& scenes, const SeriesNames& names) {
     return markup.empty() ? markup : "<h3>Where a frame of the aim spends its time</h3>\n" + markup;
 }
 
-// How far the six are beyond their axes' ends at 4 steps, and the other two scenes.
+// Tiles: the range of speed-ups over the axes' ends of the six tests at 4 steps, and the frame rates of the other two scenes.
 std::string tiles_of(const RecordGroups& rows, const SeriesNames& names) {
     struct Range {
         double least = 0, most = 0;
@@ -151,11 +152,11 @@ std::string thesis_section(const BenchReport& report, const SeriesNames& names) 
     std::string out = "<h2 id=\"thesis\">The thesis's tests, then and now</h2>\n";
     out += tiles_of(rows, names);
     out += paragraph(
-        "Frames per second by generations of rays (the thesis's steps), as the thesis draws them. The dashed line is where "
-        "the axis of its chart ends, above all that its two graphics cards and two processors reached in 2008. \"then\" is "
-        "its design on this machine: trees of bounding spheres halved by count, one a mesh and none above, one ray at a time "
-        "in packets of 4x4. \"now\" is this program as it comes. Both count a frame from the call until its pixels lie in "
-        "the host's memory.");
+        "Frames per second by generations of rays (the thesis's steps), as the thesis draws them. The dashed line is the end "
+        "of the axis of its chart, which is above all that its two graphics cards and two processors reached in 2008. "
+        "\"then\" is its design on this machine: trees of bounding spheres split by count, one per mesh without a top level, "
+        "one ray at a time in packets of 4x4. \"now\" is this program with its default settings. Both time a frame from the "
+        "call until its pixels are in host memory.");
     out += "<div class=\"grid\">\n";
     for (const auto& scene : scenes.all()) out += chart_of(scene, names);
     return out + "</div>\n" + table_of(rows, names) + kernels_of(scenes, names);

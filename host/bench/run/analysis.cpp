@@ -11,7 +11,7 @@ double ratio(double a, double b) {
     return b > 0 ? a / b : 0;
 }
 
-// Rays of a warp wait for the one that visits most nodes.
+// Share of a warp's time in which its rays do work: all rays of a warp wait for the ray which visits most nodes.
 double warp_alive(const std::vector<rt_ray>& rays, const std::vector<rt_hit>& hits) {
     double visited = 0, waited = 0;
     for (size_t first = 0; first < rays.size(); first += kWarp) {
@@ -34,7 +34,7 @@ Analysis analyze(const std::vector<rt_ray>& rays, const std::vector<rt_hit>& hit
         double in_packet = 0;
         for (size_t i = first; i < std::min(first + lanes, rays.size()); ++i) in_packet += is_active(rays[i]);
         if (in_packet == 0) continue;
-        const rt_hit& counted = hits[first];  // each ray carries its packet's sums
+        const rt_hit& counted = hits[first];  // each ray holds the sums of its packet
         active += in_packet;
         nodes += counted.steps;
         leaves += counted.leaf_tests;

@@ -1,4 +1,4 @@
-// analysis.hpp -- from what packets counted to figures a ray.
+// analysis.hpp -- turns the counters of packets into figures per ray.
 #pragma once
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace clarity::bench {
 
-// hits: of rays, traced with RayQuery::count by packets of `lanes`. node_bytes: of one node.
+// `hits`: results of `rays`, traced with RayQuery::count in packets of `lanes`. node_bytes: size of one node in bytes.
 Analysis analyze(const std::vector<rt_ray>& rays, const std::vector<rt_hit>& hits, unsigned lanes, unsigned node_bytes);
 
 }  // namespace clarity::bench

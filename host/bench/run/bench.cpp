@@ -46,7 +46,7 @@ std::string row_text(const BenchRecord& row) {
     return "  " + who + ": " + text + spread;
 }
 
-// Cases in their order, each with its share of the time that is left.
+// Measures the cases in their order. Each case gets an equal share of the time which is left.
 class Session {
  public:
     Session(const PluginRegistry& plugins, const BenchRequest& request, const Suite& suite, const BenchOptions& options,
@@ -88,7 +88,7 @@ class Session {
         }
     }
 
-    // Throws the error of the first scene that a person named and that could not be read, if no row has figures.
+    // Throws the error of the first unreadable scene named by the user, if no row has figures.
     void throw_if_nothing(const BenchReport& report) const {
         const auto failed = [](const BenchRecord& row) { return row.status == RowStatus::failed; };
         if (first_error_ && std::all_of(report.records.begin(), report.records.end(), failed)) throw *first_error_;
@@ -100,7 +100,8 @@ class Session {
         if (options_.on_row) options_.on_row(report);
     }
 
-    // Where not even the rows can be made (too little memory, say), one row says why.
+    // Measures one case. If its rows cannot even be made (not enough memory, for example), returns one failed row with the
+    // reason.
     std::vector<BenchRecord> measure(const BenchCase& c, const MeasureRules& rules) {
         try {
             return run_case(fixture_, plugins_, request_, c, rules, progress_);
@@ -122,7 +123,8 @@ class Session {
         return row;
     }
 
-    // A scene that is not to be had is a failed row where a person named it, else a note.
+    // Loads the scene of a case. Returns false if that fails: a scene named by the user then gets a failed row, a scene of a
+    // suite gets a note.
     bool load(const BenchCase& c, BenchReport& report) {
         const SuiteScene& source = suite_.scenes[c.scene];
         const Settings settings = variant_settings(plugins_, request_, {});
@@ -162,7 +164,7 @@ class Session {
     Progress& progress_;
     Fixture fixture_;
     const Clock::time_point begin_ = Clock::now();
-    std::optional<Error> first_error_;  // of a scene that a person named
+    std::optional<Error> first_error_;  // of a scene named by the user
 };
 
 }  // namespace
@@ -178,7 +180,7 @@ Settings variant_settings(const PluginRegistry& plugins, const BenchRequest& req
 BenchReport run_bench(const PluginRegistry& plugins, const BenchRequest& request, const Suite& suite,
                       const BenchOptions& options, Progress& progress) {
     for (const BenchCase& c : suite.cases)
-        for (const Variant& variant : c.variants) variant_settings(plugins, request, variant);  // before anything is traced
+        for (const Variant& variant : c.variants) variant_settings(plugins, request, variant);  // throws for bad settings now
     BenchReport report;
     report.notes = suite.notes;
     const bool wants_baselines =
@@ -188,8 +190,8 @@ BenchReport run_bench(const PluginRegistry& plugins, const BenchRequest& request
     const auto is_cpu = [](const DeviceInfo& device) { return device.cpu; };
     if (wants_baselines && no_baselines.empty() && std::none_of(options.devices.begin(), options.devices.end(), is_cpu))
         report.notes.push_back(
-            "peers trace on the host's processor, and no device of this run is one: they are left out (--device all takes "
-            "every device)");
+            "peers are left out: they trace on the host's processor, and no device of this run is a CPU; --device all takes "
+            "every device");
     for (const std::string& note : report.notes) log(LogLevel::warning, note);
     BenchRun& run = report.run;
     run.version = CLARITY_VERSION;

@@ -60,7 +60,7 @@ void measure_breakdown(BenchRecord& row, Fixture& fixture, size_t device, const 
     const Fixture::Held held = fixture.prepare(device, settings, progress);
     describe(row, *held.prepared);
     FrameParts programs(fixture.opened(device));
-    // Each has a film of its own, as rows of other cases do, so that none disturbs another's pace.
+    // Each probe has a film of its own, like the rows of other cases, so that it does not disturb another probe's pace.
     std::vector<Contender> contenders;
     std::vector<KernelTime> shown;
     for (size_t i = 0; i < kProbes; ++i) {
@@ -74,7 +74,7 @@ void measure_breakdown(BenchRecord& row, Fixture& fixture, size_t device, const 
         if (probe <= Probe::no_shadows) reduced.shadows = false;
         const auto prepared = programs.prepare(*held.prepared, kPrograms[i]);
         const auto frames = std::make_shared<FrameRenderer>(fixture.opened(device));
-        frames->trace(*prepared, reduced, view, 0, false, progress);  // compiles, which is no part of the time limit's share
+        frames->trace(*prepared, reduced, view, 0, false, progress);  // warm-up: compilation must not count as measuring time
         contenders.push_back({kNames[i], [=, &view, &progress, &shown] {
                                   const auto begin = std::chrono::steady_clock::now();
                                   FrameStats stats = frames->trace(*prepared, reduced, view, 0, false, progress);

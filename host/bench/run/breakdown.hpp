@@ -1,5 +1,6 @@
-// breakdown.hpp -- where the time of a frame goes: programs that do less of it, or some of it twice, measured in turns.
-// docs/bench.md says what is measured, what follows from it and how far to believe it.
+// breakdown.hpp -- how the time of a frame divides among its parts. Reduced programs, and programs which do one part twice, are
+// measured interleaved; differences of their times are the parts. docs/bench.md defines the parts, and says how accurate they
+// are.
 #pragma once
 #include <memory>
 
@@ -9,7 +10,8 @@
 
 namespace clarity::bench {
 
-// Frames that are measured. Those with `shadows` or `depth` are settings, the others programs.
+// Frames which are measured. one_generation and no_shadows are the whole program with other settings, the rest are programs of
+// their own.
 enum class Probe {
     film,
     rays,
@@ -23,14 +25,14 @@ enum class Probe {
 };
 constexpr size_t kProbes = 9;
 
-// ms of each probe, by the device's clock -> ms of the parts, which add up to the whole frame, and of leaf tests within two of
-// them.
+// Parts of a frame in ms.
 struct Breakdown {
-    Parts parts, within;
+    Parts parts, within;  // parts: add up to the whole frame; within: leaf tests contained in two of the parts
 };
+// Computes the parts from the time of each probe, in ms by the device's clock.
 Breakdown break_down(const double (&ms)[kProbes]);
 
-// Fills in the record: parts, what is in them, the whole frame's time. Throws what Preparer and Frames throw.
+// Fills in the record: parts, leaf tests within them, times of the whole frame. Throws what Preparer and FrameRenderer throw.
 void measure_breakdown(BenchRecord& row, Fixture& fixture, size_t device, const Settings& settings, const View& view,
                        const MeasureRules& rules, Progress& progress);
 

@@ -28,11 +28,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Structures that try everything sit out beyond so many primitives, where one picture would take them minutes.
+// Beyond so many primitives `linear` is skipped, because one picture would take minutes.
 constexpr uint64_t kTryEverything = 4000;
-// Rays whose answers may differ from those of the first row: silhouettes, seen by other arithmetic.
+// Share of rays whose hit may differ from the first row's: rays at silhouettes, where rounding decides.
 constexpr double kMayDiffer = 1e-3;
-// And pixels of pictures, where five generations of mirrors enlarge every difference.
+// Share of pixels of the baselines' frame which may differ, and from which difference on a pixel counts. The limit is larger
+// than for rays, because five generations of mirrors magnify every difference.
 constexpr double kPixelsMayDiffer = 1e-2;
 constexpr float kPixelMayDiffer = 0.02f;
 
@@ -46,7 +47,7 @@ class CaseRunner {
         for (const Variant& variant : case_.variants)
             for (size_t device = 0; device < fixture_.device_count(); ++device) {
                 if (variant.cpu_only && !fixture_.device(device).cpu) continue;
-                if (case_.measure == "moving" && fixture_.device(device).cpu) continue;  // which copies nothing
+                if (case_.measure == "moving" && fixture_.device(device).cpu) continue;  // a CPU copies nothing
                 if (case_.measure == "build" && device > 0) break;                       // builders run on the host
                 add_ours(variant, device);
             }
@@ -68,7 +69,7 @@ class CaseRunner {
     struct Entry {
         BenchRecord row;
         std::function<Sample()> once;
-        std::function<void(BenchRecord&)> finish;  // what is counted rather than timed
+        std::function<void(BenchRecord&)> finish;  // adds what is counted rather than timed; may be empty
     };
 
     static void guarded(Entry& entry, const std::function<void(BenchRecord&)>& work) {
@@ -78,7 +79,7 @@ class CaseRunner {
         } catch (const Cancelled&) {
             throw;
         } catch (const std::exception& e) {
-            // A setting that this device or structure cannot have is not a failure.
+            // A setting which the device or structure does not support is no failure: the row is skipped.
             const auto* error = dynamic_cast<const Error*>(&e);
             entry.row.status = error && error->code() == Exit::usage ? RowStatus::skipped : RowStatus::failed;
             entry.row.why = failure_text(e);
@@ -114,7 +115,8 @@ class CaseRunner {
         describe(row, settings);
         if (plugin.accel->ray_cost == RT_RAY_COST_LINEAR && row.primitives > kTryEverything) {
             row.status = RowStatus::skipped;
-            row.why = "tests every primitive: " + std::to_string(row.primitives) + " would take it minutes";
+            row.why = "it tests every primitive, and a picture of " + std::to_string(row.primitives) +
+                      " primitives would take minutes";
             return;
         }
         guarded(entry, [&](BenchRecord&) {
@@ -147,14 +149,14 @@ class CaseRunner {
         row.rays_dropped = stats.dropped;
     }
 
-    // Medians of a frame's parts, by name.
+    // Times of a frame's parts in ms by name, one entry per repetition; the record gets the medians.
     using Parts = std::map<std::string, std::vector<double>>;
     static void put_parts(BenchRecord& row, const Parts& parts) {
         for (const auto& [name, ms] : parts) row.kernels_ms.emplace_back(name, median(ms));
     }
 
-    // A frame from the call to tone-mapped pixels in host memory: ms by the wall clock. What of it the device did nothing for
-    // this frame is `waiting`.
+    // Renders one frame, from the call to tone-mapped pixels in host memory. Returns its wall time in ms. Appends the kernels'
+    // times to `parts`; its "waiting" is the wall time in which the device ran none of them.
     double show_frame(const Settings& settings, const Fixture::Held& held, const View& view, FrameStats& stats, Parts& parts) {
         const auto begin = Clock::now();
         stats = held.frames->trace(*held.prepared, settings, view, 0, false, progress_);
@@ -182,7 +184,8 @@ class CaseRunner {
         };
     }
 
-    // The frame that peers render too: into the film, by both clocks, as they do; and shown, for its parts.
+    // The frame which baselines render too. Its times end when the film is complete, as theirs do. Tone mapping and readback
+    // are in `parts` only.
     void add_whitted(Entry& entry, const Settings& settings, const Fixture::Held& held) {
         const View view = whitted_view(*fixture_.scene(), fixture_.view());
         whitted_ = whitted_scene(view, settings);
@@ -217,7 +220,7 @@ class CaseRunner {
                 expected = digest;
             } else if (digest != expected) {
                 row.status = RowStatus::refused;
-                row.why = "its pictures are not those that are copied one by one";
+                row.why = "its pictures differ from those which are copied one by one: one of the two is wrong";
             }
         };
     }
@@ -252,7 +255,8 @@ class CaseRunner {
         (set.kind == "primary" ? row.rays_primary : set.kind == "shadow" ? row.rays_shadow : row.rays_secondary) = set.active;
     }
 
-    // Whoever answers otherwise than the first row does not trace the same scene, and a comparison of times would mean nothing.
+    // Refuses a row whose hits differ from the first row's: it does not trace the same scene, so that comparing times would
+    // mean nothing. The first row called becomes the reference.
     void compare(BenchRecord& row, const RaySet& set, const std::vector<float>& distances) {
         uint64_t differ = 0;
         for (size_t i = 0; i < set.rays.size(); ++i) {
@@ -272,6 +276,7 @@ class CaseRunner {
                   std::to_string(set.active) + " rays: one of the two is wrong, `ctest -R conformance` says which";
     }
 
+    // The same for pictures.
     void compare(BenchRecord& row, FloatImage picture) {
         if (reference_picture_.pixels.empty()) {
             reference_picture_ = std::move(picture);
@@ -344,7 +349,7 @@ class CaseRunner {
         };
     }
 
-    // The structure of a peer, or a row that says why there is none.
+    // Calls `use` with the structure of a baseline. If there is none, adds a failed row with the reason.
     template <class Use>
     void with_baseline(const BaselineKind& kind, const Use& use) {
         try {
@@ -436,7 +441,7 @@ class CaseRunner {
         }
     }
 
-    // Each overlapped row by that of the same structure and device which is not.
+    // Compares each overlapped row with the non-overlapped row of the same structure and device.
     static void compare_with_one_by_one(std::vector<BenchRecord>& rows) {
         for (size_t i = 0; i < rows.size(); ++i)
             for (size_t k = 0; k < i; ++k) {
@@ -466,11 +471,11 @@ class CaseRunner {
     Progress& progress_;
     std::vector<Entry> entries_;
     const RaySet* rays_ = nullptr;                                 // of this case
-    std::map<unsigned, std::shared_ptr<const RayBlocks>> packed_;  // the same, by lanes
-    std::vector<float> reference_;                                 // distances of the first row that was compared
-    std::optional<WhittedScene> whitted_;
-    FloatImage reference_picture_;                // likewise
-    std::map<std::string, uint64_t> one_by_one_;  // digests of pictures that are not overlapped
+    std::map<unsigned, std::shared_ptr<const RayBlocks>> packed_;  // the same rays packed for each number of lanes
+    std::vector<float> reference_;                                 // hit distances of the first row
+    std::optional<WhittedScene> whitted_;                          // set once one of our rows can render it
+    FloatImage reference_picture_;                                 // picture of the first row
+    std::map<std::string, uint64_t> one_by_one_;  // digests of the non-overlapped pictures, by same_but_overlapped()
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-// failure.hpp -- what a person is told about an exception that ends a row of a benchmark.
+// failure.hpp -- the message for an exception which ends a row of a benchmark.
 #pragma once
 #include <exception>
 #include <new>

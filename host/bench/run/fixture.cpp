@@ -13,10 +13,11 @@
 namespace clarity::bench {
 namespace {
 
-// What a triangle takes on the host while three structures, a peer and their inputs are held and one more is built, roughly.
+// Estimate of the host memory per triangle, in bytes, while three structures, a baseline and their inputs are held and one more
+// structure is built.
 constexpr uint64_t kBytesPerTriangle = 600;
 
-// All that asks for another structure or program.
+// Identifies a structure with its program: the device and all settings which need another structure or program.
 std::string key_of(size_t device, const Settings& settings) {
     std::string key = std::to_string(device) + " " + settings.accel;
     for (const double value : settings.accel_params) key += "," + exact_text(value);
@@ -77,10 +78,10 @@ void Fixture::load(const SuiteScene& scene, int width, int height, Progress& pro
     if (scene.subdivide_to == 0) return;
     const double base = double(loaded_.scene->placed_triangle_count());
     const double n = std::round(std::sqrt(double(scene.subdivide_to) / std::max(base, 1.0)));
-    if (base == 0) throw Error(Exit::failed, "there are no triangles to split");
+    if (base == 0) throw Error(Exit::failed, "the scene has no triangles to split");
     if (n < 1)
-        throw Error(Exit::failed,
-                    "its " + std::to_string(uint64_t(base)) + " triangles are more than " + std::to_string(scene.subdivide_to));
+        throw Error(Exit::failed, "the scene has " + std::to_string(uint64_t(base)) + " triangles, more than the " +
+                                      std::to_string(scene.subdivide_to) + " wanted");
     check_memory(uint64_t(base * n * n));
     progress.stage("splitting " + scene.source.name);
     progress.report(-1);

@@ -1,5 +1,5 @@
-// fixture.hpp -- the test stand: one scene at a time, held by every structure, device and peer that a case asks for, and its
-// rays.
+// fixture.hpp -- fixture of a benchmark case: one scene, its rays, and everything built from it (structures, device buffers,
+// baselines).
 #pragma once
 #include <map>
 #include <memory>
@@ -20,29 +20,32 @@ class Fixture {
     size_t device_count() const { return places_.size(); }
     const DeviceInfo& device(size_t i) const;
     const std::shared_ptr<Device>& opened(size_t i) const;
-    // Threads of peers: as many as the first CPU among the devices has. 0: there is none, and no peers then.
+    // Threads of baselines: the compute units of the first CPU among the devices. 0: there is no CPU, and thus no baselines.
     unsigned baseline_threads() const;
 
-    // Lets go of the last scene. Throws as load_scene does, and Error(failed) where it is larger than memory.
+    // Loads a scene and frees everything of the previous one. Throws what load_scene throws, and Error(failed) if the scene
+    // does not fit into free memory. width, height: size of the rays' picture in pixels.
     void load(const SuiteScene& scene, int width, int height, Progress& progress);
     const std::shared_ptr<const Scene>& scene() const { return loaded_.scene; }
     const View& view() const { return loaded_.view; }
 
-    // A structure and program, with a film and ray buffers of its own: taking turns with others does not disturb its pace.
+    // A structure with its program, and a renderer of its own (film, ray buffers), so that interleaved measuring does not
+    // disturb its pace.
     struct Held {
         std::shared_ptr<const Prepared> prepared;
         std::shared_ptr<FrameRenderer> frames;
     };
-    // Kept until the next scene. Throws what Preparer::prepare throws.
+    // Builds it on first use and keeps it until the next scene. Throws what Preparer::prepare throws.
     const Held& prepare(size_t device, const Settings& settings, Progress& progress);
 
-    // On all devices, which are to share pictures.
+    // Prepares the scene on all devices, to share pictures.
     std::shared_ptr<const MultiPrepared> prepare_all(const Settings& settings, Progress& progress);
 
-    // Made once a scene, from the hits that `held` finds.
+    // The rays of one kind. All kinds are made at the first call per scene, from the hits that `held` finds. Throws
+    // Error(failed) if there are no such rays.
     const RaySet& rays(const std::string& kind, const Held& held);
 
-    // Built once a scene.
+    // Built on first use and kept until the next scene.
     BaselineScene& baseline(const BaselineKind& kind);
     const BaselineMesh& baseline_mesh();
 

@@ -8,7 +8,7 @@
 namespace clarity::bench {
 namespace {
 
-// The text after the colon of each line of /proc/cpuinfo that begins with `key`, handed to `use`.
+// Calls `use` with the text after the colon for each line of /proc/cpuinfo which begins with `key`.
 template <class Use>
 void each_cpu_line(const std::string& key, Use&& use) {
     std::ifstream file("/proc/cpuinfo");
@@ -40,7 +40,7 @@ std::string host_cpu_name() {
 double host_clock_mhz() {
     double sum = 0;
     int count = 0;
-    // The frequency driver's own figure where there is one, else what the kernel estimates.
+    // The figure of the frequency driver; if there is none, the kernel's estimate.
     std::error_code none;
     for (const auto& entry : std::filesystem::directory_iterator("/sys/devices/system/cpu", none)) {
         const std::string khz = first_word(entry.path().string() + "/cpufreq/scaling_cur_freq");

@@ -1,4 +1,4 @@
-// machine.hpp -- what the host's processor is and how busy it is, so that figures can be judged later.
+// machine.hpp -- describes the host's processor and its load, so that figures can be judged later.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -6,15 +6,15 @@
 namespace clarity::bench {
 
 std::string host_cpu_name();
-// Mean over the cores that say it, MHz; 0 if none does.
+// Mean over the cores whose frequency can be read, MHz; 0 if there are none.
 double host_clock_mhz();
-// Of the first core; empty where the machine has none (a virtual one).
+// Frequency governor of the first core; empty if the machine has none (a virtual machine).
 std::string clock_governor();
-// Of the last minute.
+// Load average of the last minute.
 double load_average();
-// Memory that programs may still take, without swapping; 0: unknown.
+// Memory in bytes which programs can still take without swapping; 0: unknown.
 uint64_t free_memory_bytes();
-// Now, ISO 8601, UTC.
+// The present time, ISO 8601, UTC.
 std::string utc_date();
 
 }  // namespace clarity::bench

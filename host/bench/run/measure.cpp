@@ -19,16 +19,16 @@ double seconds_since(Clock::time_point begin) {
 struct Runner {
     const Contender* contender = nullptr;
     Measured result;
-    double once_s = 0;  // wall time of a repetition, as the warm-up had it
-    unsigned way = 0;   // that its samples were taken by
+    double once_s = 0;  // wall time of the last repetition of the warm-up, seconds
+    unsigned way = 0;   // variant which the samples were taken with
     std::vector<double> time_ms, wall_ms;
     bool running() const { return result.status == RowStatus::ok; }
 };
 
-// A contender that tunes itself and never settles is measured as it is after so many repetitions.
+// A contender whose tuning never settles is measured as it is after so many trials.
 constexpr unsigned kMostTrials = 100;
 
-// One repetition; a contender that fails is out.
+// Runs one repetition. Returns false if the contender failed; it is then dropped.
 bool take(Runner& runner, Sample& result) {
     try {
         result = runner.contender->once();
@@ -42,8 +42,9 @@ bool take(Runner& runner, Sample& result) {
     }
 }
 
-// At least twice: the first repetition compiles, pages in and wakes threads, the second says how long one takes. A contender
-// that tunes itself goes on until its choice is made and confirmed, or a quarter of the budget is used up.
+// Runs each contender at least twice: the first repetition compiles, loads pages and wakes threads, the second tells how long
+// one takes. A contender that tunes itself goes on until its variant is chosen and confirmed, or a quarter of the budget is
+// used up.
 void warm_up(std::vector<Runner>& runners, const MeasureRules& rules, Progress& progress) {
     const auto first = Clock::now();
     for (Runner& runner : runners) {
@@ -73,8 +74,8 @@ bool all_steady(const std::vector<Runner>& runners, double spread) {
     });
 }
 
-// A repetition that is a sample: tries of a contender that tunes itself are done, but not counted. Where the tuning has chosen
-// another way than before, the samples of the old way are dropped.
+// Adds one sample. Trials of a contender that tunes itself are run but not counted. If its tuning has chosen another variant
+// than before, the samples of the old variant are dropped.
 void take_sample(Runner& runner) {
     Sample t;
     for (unsigned i = 0; i < kMostTrials; ++i) {
@@ -95,7 +96,7 @@ bool all_have(const std::vector<Runner>& runners, size_t samples) {
                        [&](const Runner& runner) { return !runner.running() || runner.time_ms.size() >= samples; });
 }
 
-// Rounds until all are steady or the budget is used up.
+// Takes rounds of samples until all contenders are steady or the budget is used up.
 void take_rounds(std::vector<Runner>& runners, const MeasureRules& rules, double budget_s, Progress& progress) {
     const auto begin = Clock::now();
     for (Runner& runner : runners) {
@@ -121,8 +122,8 @@ void refuse_unsteady(Measured& result, const MeasureRules& rules) {
     char why[200];
     std::snprintf(
         why, sizeof why,
-        "the middle half of %u repetitions spreads over %.0f %% of the median, more than %.0f %%, after %u attempts: let the "
-        "machine be quiet, or raise --max-spread or --time-limit",
+        "the middle half of %u repetitions spreads over %.0f %% of the median, more than %.0f %%, after %u attempts: close "
+        "other programs, or raise --max-spread or --time-limit",
         result.time_ms.n, 100 * result.spread(), 100 * rules.max_spread, rules.retries + 1);
     result.status = RowStatus::refused;
     result.why = why;
@@ -141,7 +142,7 @@ std::vector<Measured> measure_interleaved(const std::vector<Contender>& contende
     for (const Contender& contender : contenders) runners.emplace_back().contender = &contender;
     warm_up(runners, rules, progress);
     for (unsigned attempt = 0; attempt <= rules.retries; ++attempt) {
-        // Half of the budget is for the first attempt, warm-up included, the rest for all others.
+        // The first attempt with its warm-up gets half of the budget, and all further attempts together get the other half.
         const double share = attempt == 0 ? 0.5 - seconds_since(begin) / rules.budget_s : 0.5 / rules.retries;
         take_rounds(runners, rules, share * rules.budget_s, progress);
         if (all_steady(runners, rules.max_spread)) break;

@@ -1,5 +1,4 @@
-// measure.hpp -- contenders that are to be compared, timed turn by turn: A B A B, so that what disturbs the machine for a while
-// disturbs all of them alike.
+// measure.hpp -- times contenders interleaved (A B A B), so that a disturbance of the machine affects all of them alike.
 #pragma once
 #include <functional>
 #include <string>
@@ -10,40 +9,40 @@
 
 namespace clarity::bench {
 
-// One repetition.
+// One repetition of a contender. Times are in ms.
 struct Sample {
     double time_ms = 0;  // by the device's clock
     double wall_ms = 0;  // by the host's
 
-    // Of a contender that tunes itself (render/faster_way.hpp):
-    bool trial = false;   // a try of one of several ways: the time does not count, and the repetition is done again
-    bool settled = true;  // the way is chosen: the warm-up may end
-    unsigned way = 0;     // the number of the way; samples of another way than the last one's are dropped
+    // Of a contender that tunes itself (render/queries/autotuner.hpp):
+    bool trial = false;   // this repetition tried one of several variants: its time does not count, and it is repeated
+    bool settled = true;  // a variant is chosen: the warm-up may end
+    unsigned way = 0;     // index of the variant; samples of other variants than the last one are dropped
 };
 
 struct Contender {
     std::string name;              // for messages
-    std::function<Sample()> once;  // may throw Error: the contender is out, the others go on
+    std::function<Sample()> once;  // runs one repetition. If it throws, the contender is out and the others go on
 };
 
 struct MeasureRules {
     double budget_s = 10;      // for all contenders of a case together, warm-up included
-    double goal_spread = .01;  // at which enough is enough
-    double max_spread = .1;    // above it the case is measured anew, and in the end refused
-    unsigned min_rounds = 9;   // wanted; fewer where the budget does not hold them
-    unsigned few_rounds = 3;   // demanded
+    double goal_spread = .01;  // stop early once all spreads are at most this
+    double max_spread = .1;    // attempts with a larger spread are repeated, and finally refused
+    unsigned min_rounds = 9;   // wanted; fewer if the budget is too short
+    unsigned few_rounds = 3;   // the least that count as a result
     unsigned max_rounds = 51;
-    unsigned retries = 2;  // of a case with a refused contender
+    unsigned retries = 2;  // further attempts if a contender is refused
 };
 
 struct Measured {
     RowStatus status = RowStatus::ok;
-    std::string why;  // unless ok
+    std::string why;  // reason, unless status is ok
     Summary time_ms, wall_ms;
-    double spread() const;  // the larger of the two
+    double spread() const;  // the larger one of both
 };
 
-// In the order of the contenders. Throws Cancelled.
+// Results in the order of the contenders. Throws Cancelled.
 std::vector<Measured> measure_interleaved(const std::vector<Contender>& contenders, const MeasureRules& rules,
                                           Progress& progress);
 

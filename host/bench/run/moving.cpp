@@ -11,7 +11,7 @@ namespace clarity::bench {
 namespace {
 
 constexpr unsigned kPictures = 100;
-constexpr float kStep = 0.004f;  // of a circle's 6.28
+constexpr float kStep = 0.004f;  // radians between two pictures
 
 View turned(View view, unsigned step) {
     const float angle = kStep * float(step), c = std::cos(angle), s = std::sin(angle);
@@ -22,7 +22,7 @@ View turned(View view, unsigned step) {
     return view;
 }
 
-// Wants the whole picture, and costs little beside it.
+// A digest of all bytes of a picture, which costs little compared with tracing it.
 void add_bytes(uint64_t& digest, const SharedBytes& bytes) {
     for (size_t i = 0; i + 8 <= bytes.size(); i += 8) {
         uint64_t word;

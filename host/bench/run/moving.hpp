@@ -1,12 +1,13 @@
-// moving.hpp -- picture after picture, as a window shows them while the camera moves.
+// moving.hpp -- renders a sequence of pictures, as the window does while the camera moves.
 #pragma once
 #include "bench/run/measure.hpp"
 #include "render/frame/renderer.hpp"
 
 namespace clarity::bench {
 
-// 100 pictures of a camera that goes about what it looks at, each on the host in the end; times are of one, in the mean.
-// overlapped: each is copied while the next is traced, else before. digest: of all their bytes. parts: gain the times of each.
+// Renders 100 pictures of a camera which circles its target. Each picture is copied to the host. Returns mean times per
+// picture. overlapped: copies each picture while the next one is traced, else before. digest: receives a digest of all
+// pictures' bytes. parts: receives the kernels' times of each picture.
 Sample show_moving(FrameRenderer& frames, const Prepared& prepared, const Settings& settings, const View& view, bool overlapped,
                    Progress& progress, std::vector<KernelTime>* parts = nullptr, uint64_t* digest = nullptr);
 

@@ -19,16 +19,17 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr float kMayDiffer = 0.02f;        // of a pixel, where devices are of different kinds
-constexpr double kPixelsMayDiffer = 0.01;  // so many of them
+constexpr float kMayDiffer = 0.02f;        // tolerance of a pixel if the devices are of different kinds
+constexpr double kPixelsMayDiffer = 0.01;  // share of pixels which may exceed it
 
-// The first devices of a run, and what makes pictures on them.
+// The first devices of a run, with their renderer and their row.
 struct Team {
     BenchRecord row;
     std::shared_ptr<const MultiPrepared> prepared;
     std::unique_ptr<MultiFrameRenderer> frames;
-    std::map<std::string, std::vector<double>> times;
-    bool alike = true;
+    std::map<std::string, std::vector<double>>
+        times;          // ms of kernels and figures of each device, by name; one entry per repetition
+    bool alike = true;  // all devices are of one kind: their pictures must agree exactly
 };
 
 std::vector<size_t> team_sizes(size_t all) {
@@ -72,14 +73,15 @@ void check_picture(Team& team, const FloatImage& truth, const FloatImage& pictur
     const double differ = differing_pixels(picture, truth, team.alike ? 0.0f : kMayDiffer);
     if (differ <= (team.alike ? 0.0 : kPixelsMayDiffer)) return;
     char why[160];
-    std::snprintf(why, sizeof why, "%.3g %% of its pixels are not those of one device: one of the two is wrong", 100 * differ);
+    std::snprintf(why, sizeof why, "%.3g %% of its pixels differ from the picture of one device: one of the two is wrong",
+                  100 * differ);
     team.row.status = RowStatus::refused;
     team.row.why = why;
 }
 
-// By the rows of one device.
+// Compares each row with the row of one device.
 void compare_with_one(std::vector<BenchRecord>& rows) {
-    const BenchRecord* one = nullptr;  // the first
+    const BenchRecord* one = nullptr;  // the first row
     for (BenchRecord& row : rows) {
         if (!one) one = &row;
         if (&row == one || row.status != RowStatus::ok || one->status != RowStatus::ok || speed(*one) <= 0) continue;

@@ -15,9 +15,9 @@
 namespace clarity::bench {
 namespace {
 
-constexpr unsigned kChunk = 1u << 20;  // bytes that are unpacked at a time
+constexpr unsigned kChunk = 1u << 20;  // bytes per read
 
-// Returns why a write failed; "": it did not.
+// Writes all bytes to the open file `file`. Returns the reason of a failure, "" for success.
 std::string write_all(int file, const char* at, size_t bytes) {
     while (bytes > 0) {
         const ssize_t written = write(file, at, bytes);
@@ -29,7 +29,7 @@ std::string write_all(int file, const char* at, size_t bytes) {
     return {};
 }
 
-// Unpacks `from` into the open file `to`. Returns why that failed; "": it did not.
+// Unpacks `from` into the open file `to`. Returns the reason of a failure, "" for success.
 std::string unpack(gzFile from, int to) {
     std::vector<char> chunk(kChunk);
     for (;;) {
@@ -41,8 +41,8 @@ std::string unpack(gzFile from, int to) {
             return error == Z_BUF_ERROR ? "the file ends too early"
                    : error == Z_ERRNO   ? std::strerror(errno)
                                         : "the file is damaged: " + why;
-        // zlib passes through what is not packed.
-        if (gzdirect(from) && got > 0) return "it is no gzip file";
+        // zlib reads a file that is not compressed as it is, so that no error would be reported.
+        if (gzdirect(from) && got > 0) return "it is not a gzip file";
         if (got == 0) return {};
         const std::string failed = write_all(to, chunk.data(), static_cast<size_t>(got));
         if (!failed.empty()) return "the temporary file cannot be written: " + failed;
@@ -56,7 +56,7 @@ TemporaryFile::~TemporaryFile() {
 }
 
 TemporaryFile gunzip(const std::string& path) {
-    const std::string stem = std::filesystem::path(path).stem().string();  // without .gz
+    const std::string stem = std::filesystem::path(path).stem().string();  // without ".gz"
     const auto fail = [&](const std::string& why) -> Error {
         return Error(Exit::import_failed, path + ": cannot be unpacked: " + why);
     };
@@ -65,7 +65,7 @@ TemporaryFile gunzip(const std::string& path) {
     if (error) throw fail("no folder for temporary files: " + error.message());
     const std::unique_ptr<gzFile_s, int (*)(gzFile)> from(gzopen(path.c_str(), "rbe"), gzclose_r);
     if (!from) throw fail(std::strerror(errno));
-    // The importer goes by the extension, which stays at the end.
+    // Importers choose the format by the extension, so that the name must end with it.
     std::string name = (folder / ("clarity-XXXXXX-" + stem)).string();
     const int to = mkstemps(name.data(), static_cast<int>(stem.size() + 1));
     if (to < 0) throw fail(name + ": " + std::strerror(errno));

@@ -1,10 +1,10 @@
-// gunzip.hpp -- a compressed model as a file that importers read.
+// gunzip.hpp -- unpacks a compressed model into a temporary file, which importers can read.
 #pragma once
 #include <string>
 
 namespace clarity::bench {
 
-// Lives as long as the object, in the folder for temporary files.
+// Owns a temporary file: the destructor deletes it.
 class TemporaryFile {
  public:
     explicit TemporaryFile(std::string path) : path_(std::move(path)) {}
@@ -18,7 +18,8 @@ class TemporaryFile {
     std::string path_;
 };
 
-// "dir/bunny.ply.gz" -> a file that ends in "bunny.ply". Throws Error(import_failed).
+// Unpacks a .gz file into the folder for temporary files. "dir/bunny.ply.gz" becomes a file whose name ends in "bunny.ply",
+// because importers choose the format by the extension. Throws Error(import_failed) if the file cannot be read or unpacked.
 TemporaryFile gunzip(const std::string& path);
 
 }  // namespace clarity::bench

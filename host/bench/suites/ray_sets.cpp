@@ -9,9 +9,9 @@
 namespace clarity::bench {
 namespace {
 
-constexpr int kTile = 16;        // pixels, in both directions
-constexpr size_t kPacket = 16;   // rays among which an inactive one looks for a direction
-constexpr size_t kChunk = 4096;  // rays of one task
+constexpr int kTile = 16;        // pixels, width and height
+constexpr size_t kPacket = 16;   // rays per packet; an inactive ray copies an active ray of its packet
+constexpr size_t kChunk = 4096;  // rays per task
 constexpr double kPi = 3.14159265358979323846;
 
 Vec3 vec(const float* p) {
@@ -28,7 +28,8 @@ rt_ray make_ray(const Vec3& origin, const Vec3& direction, double t_max) {
     return ray;
 }
 
-// Gives inactive rays what packets judge rays by: origin and direction of a neighbour.
+// Sets `active`, and gives inactive rays the origin and direction of an active ray of the same packet. Packets choose their
+// traversal by origins and directions, so that inactive rays must not stand out.
 void settle(RaySet& set) {
     set.active = 0;
     for (size_t first = 0; first < set.rays.size(); first += kPacket) {

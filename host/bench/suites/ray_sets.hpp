@@ -1,4 +1,5 @@
-// ray_sets.hpp -- the rays that everybody traces: made once on the host, the same for structures, settings, devices and peers.
+// ray_sets.hpp -- the rays of the ray benchmarks. They are made once on the host, so that all structures, settings, devices and
+// baselines trace the same rays.
 #pragma once
 #include <memory>
 #include <string>
@@ -9,46 +10,48 @@
 
 namespace clarity::bench {
 
-// Rays in an order that suits packets of any size up to 16x16 pixels: tiles of 16x16 in rows, Z-order within, so that any 4, 8
-// or 16 in a row are 2x2, 4x2 or 4x4 pixels. Rays of pixels that have none (beyond the picture's edge, or where the camera ray
-// met nothing) stay in their place and are inactive: t_max = -1, direction that of a neighbour. Only active ones count as rays.
+// Rays in an order which suits packets of up to 16x16 pixels: tiles of 16x16 pixels in rows, Z-order within a tile. Any 4, 8 or
+// 16 consecutive rays are thus 2x2, 4x2 or 4x4 pixels. A pixel without a ray (beyond the picture's edge, or where the camera
+// ray hit nothing) keeps its place with an inactive ray: t_max = -1, origin and direction of a neighbour. Only active rays
+// count.
 struct RaySet {
     std::string kind;      // primary | shadow | reflection | diffuse
-    bool any_hit = false;  // shadow: whether anything lies before t_max
+    bool any_hit = false;  // true for shadow rays: the query is whether anything lies before t_max
     std::vector<rt_ray> rays;
-    uint64_t active = 0;
+    uint64_t active = 0;  // number of active rays
 };
 inline bool is_active(const rt_ray& ray) {
     return ray.t_max >= 0;
 }
 
-// Pixel y * width + x of each ray; RT_NONE beyond the edge.
+// Pixel of each ray as y * width + x; RT_NONE beyond the picture's edge.
 std::vector<rt_u32> ray_order(int width, int height);
 
-// Through the pixel centres.
+// One ray through the centre of each pixel.
 RaySet camera_rays(const Camera& camera, int width, int height);
 
-// What the hits of the camera rays lead to; origins lie eps above the surface along the geometric normal that faces the viewer,
-// eps being 1e-4 of the diagonal of the scene's bounds.
+// Makes the secondary rays of the camera rays' hits. `hits` has one entry per ray of `primary`. Origins lie eps above the
+// surface, along the geometric normal which faces the viewer. eps is 1e-4 of the diagonal of the scene's bounds.
 //   shadow      to the light's position (or along a directional light), unit direction; t_max is the distance
 //   reflection  the mirror direction by the geometric normal
-//   diffuse     one direction, cosine-weighted by lowbias32 of 2 pixel + 1 and 2 pixel + 2
+//   diffuse     one direction, cosine-weighted; its random numbers are lowbias32(2 pixel + 1) and lowbias32(2 pixel + 2)
 std::vector<RaySet> secondary_rays(const Scene& scene, const rt_light& light, const RaySet& primary,
                                    const std::vector<rt_hit>& hits, int width, int height);
 
-// Geometric normals by the number that rt_hit.prim carries: triangles of all instances, then spheres, polygons, planes.
+// Geometric normals by the index which rt_hit.prim holds: triangles of all instances, then spheres, polygons and planes. Keeps
+// a reference to the scene.
 class SurfaceNormals {
  public:
     explicit SurfaceNormals(const Scene& scene);
-    // Unit, either side, at a point of the primitive; (0, 1, 0) for one without area.
+    // Unit normal at a point of the primitive, on either side of it; (0, 1, 0) for a primitive without area.
     Vec3 at(rt_i32 prim, const Vec3& point) const;
 
  private:
     const Scene& scene_;
-    std::vector<uint64_t> first_prim_;  // of each instance, and the end
+    std::vector<uint64_t> first_prim_;  // index of the first triangle of each instance, then their total number
 };
 
-// Wellons 2018, "Prospecting for Hash Functions": a 32-bit mix of low bias.
+// 32-bit hash of low bias: Wellons 2018, "Prospecting for Hash Functions".
 uint32_t lowbias32(uint32_t x);
 
 }  // namespace clarity::bench

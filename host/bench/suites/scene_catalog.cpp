@@ -29,7 +29,7 @@ std::string beside_program() {
     return error ? std::string() : (program.parent_path().parent_path() / "share/clarity/scenes").string();
 }
 
-// "scenes/models/a.ply.gz + scenes/models/b.ply.gz (gunzip; faces of part 2 after part 1)" -> the files.
+// Splits "scenes/models/a.ply.gz + scenes/models/b.ply.gz (gunzip; faces of part 2 after part 1)" into the two paths.
 std::vector<std::string> files_of(std::string text, const std::string& folder) {
     text = text.substr(0, text.find(" ("));
     std::vector<std::string> files;
@@ -71,7 +71,7 @@ BenchScene SceneCatalog::project(const std::string& name) const {
     scene.name = fs::path(name).filename().string();
     std::error_code error;
     for (const char* extension : {".scene", ".obj", ".ply"}) {
-        // Files that the scene loads are judged by where it really lies.
+        // A scene's relative paths start at the folder of the real file, not of a link to it.
         const fs::path real = fs::canonical(fs::path(project_) / (name + extension), error);
         if (error) continue;
         scene.files = {real.string()};
@@ -117,7 +117,7 @@ std::vector<BenchScene> SceneCatalog::shared() const {
         none.missing = path + ": " + e.what() + "; CLARITY_SHARED should name a folder with bench/cameras.json";
         return {none};
     }
-    // Small ones first: a run that is broken off has more to show.
+    // Small files first: a run which is interrupted then has more rows.
     const auto bytes = [](const BenchScene& scene) {
         uint64_t sum = 0;
         std::error_code error;
@@ -131,7 +131,7 @@ std::vector<BenchScene> SceneCatalog::shared() const {
 
 std::vector<BenchView> SceneCatalog::views() const {
     struct Row {
-        const char *name, *project, *shared;  // either a file of the project or one of the shared folder
+        const char *name, *project, *shared;  // one of the two is set: the file's path in the project or in the shared folder
         const char *camera, *light;
         uint64_t subdivide_to;
     };

@@ -1,4 +1,4 @@
-// scene_catalog.hpp -- the scenes that suites name, and where they are found.
+// scene_catalog.hpp -- finds the scenes which suites name.
 #pragma once
 #include <memory>
 #include <string>
@@ -11,40 +11,42 @@ namespace clarity::bench {
 
 struct BenchScene {
     std::string name;
-    std::vector<std::string> files;  // become one scene; .gz is unpacked first
-    std::string camera, light;       // as make_view reads them; "": the scene's own
-    std::string missing;             // not empty: it was not found, and this says where it was looked for and what to do
+    std::vector<std::string> files;  // imported together as one scene; .gz files are unpacked first
+    std::string camera, light;       // in the syntax of make_view; "": the scene's own
+    std::string missing;             // not empty: the scene was not found; where it was sought, and what to do
 };
 
-// A scene seen from a chosen place.
+// A scene seen from a chosen camera.
 struct BenchView {
     BenchScene scene;
-    uint64_t subdivide_to = 0;  // about so many triangles; 0: as it is
+    uint64_t subdivide_to = 0;  // split to about so many triangles; 0: unchanged
 };
 
-// Finds scenes of the project and larger shared ones.
-//   project  $CLARITY_SCENES, else ../share/clarity/scenes relative to the executable (a build folder has a link there)
-//   shared   $CLARITY_SHARED, with bench/cameras.json that names models and cameras
+// Finds the scenes of the project and larger shared scenes.
+//   project  $CLARITY_SCENES; if it is not set, ../share/clarity/scenes relative to the executable (a build folder has a link
+//            there)
+//   shared   $CLARITY_SHARED, whose bench/cameras.json names models and cameras
 class SceneCatalog {
  public:
     SceneCatalog();
     SceneCatalog(std::string project_folder, std::string shared_folder);  // for tests
 
-    // "thesis/1_two_triangles": a .scene or model file of the project, by its path without extension.
+    // A .scene or model file of the project by its path without extension, "thesis/1_two_triangles". If there is none,
+    // `missing` says so.
     BenchScene project(const std::string& name) const;
-    // The six of scenes/thesis and the 21 spheres, in order.
+    // The six test scenes of scenes/thesis in order.
     std::vector<BenchScene> thesis() const;
-    // Those of cameras.json; one entry that says so if there is none.
+    // The scenes of cameras.json, small files first. If there is no such file, one entry whose `missing` says so.
     std::vector<BenchScene> shared() const;
-    // Models of the project and the shared folder from close by, where a triangle covers many pixels, and from afar, where
-    // several share one; what is not found says so.
+    // Models of the project and of the shared folder from near (one triangle covers many pixels) and from far (one pixel covers
+    // several triangles). The `missing` of an entry says that its file was not found.
     std::vector<BenchView> views() const;
 
  private:
     std::string project_, shared_;
 };
 
-// A scene that a person named: file stem, its own camera.
+// A scene of a file named by the user: its name is the file's stem, its camera is its own.
 BenchScene scene_of_file(const std::string& path);
 
 struct LoadedScene {
@@ -52,7 +54,8 @@ struct LoadedScene {
     View view;
     double import_ms = 0;
 };
-// Throws Error(import_failed), Error(usage) for a camera that is not there, Cancelled.
+// Imports a scene and sets camera and light. Throws Error(import_failed), Error(usage) if the scene lacks the named camera, and
+// Cancelled.
 LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, float aspect,
                        const import::ImportOptions& options, Progress& progress);
 

@@ -13,7 +13,7 @@
 namespace clarity::bench {
 namespace {
 
-// World-space corners, points at the same place being one vertex: seams of texture coordinates must not tear open.
+// World-space triangles. Points at the same position are one vertex, so that seams of texture coordinates do not tear open.
 struct Flattened {
     std::vector<Vec3> points, normals;
     std::vector<std::array<rt_u32, 3>> triangles;
@@ -43,7 +43,7 @@ Flattened flatten(const Scene& scene) {
             for (int c = 0; c < 3; ++c) {
                 auto p = transform_point(instance.world_from_object,
                                          &scene.positions[3 * size_t(scene.triangles[3 * size_t(i) + c])]);
-                for (float& x : p) x += 0.0f;  // -0 is where 0 is
+                for (float& x : p) x += 0.0f;  // turns -0 into 0, which is the same position
                 const auto [place, fresh] = known.try_emplace(p, static_cast<rt_u32>(mesh.points.size()));
                 if (fresh) mesh.points.push_back({p[0], p[1], p[2]});
                 corners[c] = place->second;
@@ -52,7 +52,7 @@ Flattened flatten(const Scene& scene) {
             mesh.materials.push_back(instance.material != RT_NONE ? instance.material : scene.triangle_materials[i]);
         }
     }
-    // Sums of the faces' normals, weighted by area.
+    // Vertex normals: sums of the triangles' normals, weighted by area.
     mesh.normals.assign(mesh.points.size(), Vec3{0, 0, 0});
     for (const auto& t : mesh.triangles) {
         const Vec3 normal = cross(mesh.points[t[1]] - mesh.points[t[0]], mesh.points[t[2]] - mesh.points[t[0]]);
@@ -62,7 +62,7 @@ Flattened flatten(const Scene& scene) {
     return mesh;
 }
 
-// Waves along three directions at angles to all axes, each octave twice as fine and half as high.
+// Height at a point: waves along three directions which are oblique to all axes. Each octave is twice as fine and half as high.
 double roughness(const Vec3& p, double size, double finest) {
     double sum = 0;
     for (double wave = size / 4; wave > 4 * finest; wave /= 2) {
@@ -74,8 +74,8 @@ double roughness(const Vec3& p, double size, double finest) {
     return sum;
 }
 
-// Where the new points stand: the old ones, then n - 1 along each edge, then those within the triangles. Points that several
-// triangles have are placed by the first of these.
+// Numbers the new points: first the old points, then n - 1 points along each edge, then the points inside each triangle. Of the
+// triangles which share a point, the first one places it.
 class Refined {
  public:
     Refined(const Flattened& mesh, unsigned n) : mesh_(mesh), n_(n) {
@@ -102,13 +102,13 @@ class Refined {
         first_inner_ = first_edge_ + edges.size() * (n - 1);
     }
 
-    // Whether a triangle places its corner c, and the points between corner c and the next one.
+    // True if the triangle places its corner c (owns_corner), or the points between corner c and the next corner (owns_edge).
     bool owns_corner(size_t triangle, int c) const { return point_owner_[mesh_.triangles[triangle][c]] == triangle; }
     bool owns_edge(size_t triangle, int c) const { return edge_owner_[edge_of_[3 * triangle + c]] == triangle; }
 
     size_t count() const { return first_inner_ + mesh_.triangles.size() * inner(); }
 
-    // Point i steps from corner a towards b, j towards c, of n.
+    // Index of the point which is i of n steps from corner a towards b and j steps towards c.
     size_t index(size_t triangle, unsigned i, unsigned j) const {
         const auto& t = mesh_.triangles[triangle];
         const unsigned k = n_ - i - j;
@@ -118,7 +118,7 @@ class Refined {
         if (j == 0) return on_edge(triangle, 0, i);
         if (k == 0) return on_edge(triangle, 1, j);
         if (i == 0) return on_edge(triangle, 2, k);
-        // Rows of j = 1 .. n - 2; the row of j has n - 1 - j points.
+        // Rows j = 1 .. n - 2; row j has n - 1 - j points.
         const size_t row = size_t(j - 1) * (n_ - 1) - size_t(j - 1) * j / 2;
         return first_inner_ + triangle * inner() + row + (i - 1);
     }
@@ -130,7 +130,7 @@ class Refined {
         const auto [low, high] = std::minmax(t[e], t[(e + 1) % 3]);
         return uint64_t{low} << 32 | high;
     }
-    // Step s of n from corner e to the next one.
+    // Index of the point which is s of n steps from corner e to the next corner.
     size_t on_edge(size_t triangle, int e, unsigned s) const {
         const auto& t = mesh_.triangles[triangle];
         const bool forward = t[e] < t[(e + 1) % 3];
@@ -140,13 +140,13 @@ class Refined {
     static constexpr size_t kChunk = 4096;
     const Flattened& mesh_;
     const unsigned n_;
-    std::vector<rt_u32> edge_of_;  // of each triangle's three
+    std::vector<rt_u32> edge_of_;  // the three edges of each triangle
     std::vector<rt_u32> edge_owner_, point_owner_;
     size_t first_edge_ = 0, first_inner_ = 0;
 };
 
-// A point of a triangle by its weights: bulged, then roughened. Only weights and corners that matter are used, in the order of
-// the vertices' numbers, so that both triangles of an edge make the same point.
+// Position of a point, given by its weights in a triangle: curved, then displaced. Corners of weight 0 are skipped and the
+// others are added in the order of their vertex indices, so that both triangles of an edge compute exactly the same point.
 Vec3 place(const Flattened& mesh, const std::array<rt_u32, 3>& t, const double weights[3], double size, double finest) {
     std::array<int, 3> order{0, 1, 2};
     std::sort(order.begin(), order.end(), [&](int a, int b) { return t[a] < t[b]; });
@@ -162,7 +162,7 @@ Vec3 place(const Flattened& mesh, const std::array<rt_u32, 3>& t, const double w
         const double height = dot(flat - mesh.points[t[c]], mesh.normals[t[c]]);
         bulged += weights[c] * (flat - height * mesh.normals[t[c]]);
     }
-    constexpr double kBulge = 0.75;  // the paper's choice between flat and round
+    constexpr double kBulge = 0.75;  // curvature, 0 (flat) to 1: the paper's choice
     const Vec3 p = (1 - kBulge) * flat + kBulge * bulged;
     return p + roughness(p, size, finest) * normalized(normal, {0, 0, 0});
 }
@@ -178,7 +178,7 @@ Scene subdivide(const Scene& scene, unsigned n) {
     out.polygons = scene.polygons;
     out.polygon_corners = scene.polygon_corners;
     out.materials = scene.materials;
-    for (Material& material : out.materials) material.values.texture = RT_NONE;  // texture coordinates are not kept
+    for (Material& material : out.materials) material.values.texture = RT_NONE;  // because texture coordinates are not kept
     out.lights = scene.lights;
     out.cameras = scene.cameras;
     out.background = scene.background;
@@ -209,7 +209,7 @@ Scene subdivide(const Scene& scene, unsigned n) {
         const auto corner = [&](unsigned i, unsigned j) { *at++ = static_cast<rt_u32>(refined.index(t, i, j)); };
         for (unsigned j = 0; j < n; ++j)
             for (unsigned i = 0; i + j < n; ++i) {
-                if (i > 0 && j > 0) put(t, i, j);  // within
+                if (i > 0 && j > 0) put(t, i, j);  // points inside the triangle
                 corner(i, j), corner(i + 1, j), corner(i, j + 1);
                 if (i + j + 1 < n) corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1);
             }

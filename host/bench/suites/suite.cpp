@@ -12,8 +12,8 @@ namespace {
 
 const std::vector<std::string> kAllQualities = {"low", "medium", "high"};
 
-// The thesis's own design: bounding spheres parted by count, a tree a mesh and none above, analytic spheres tested one by one,
-// scalar work-items of 4x4 pixels.
+// The thesis's own design: bounding spheres split by count, one tree per mesh without a top level, analytic spheres tested one
+// by one, scalar work-items of 4x4 pixels.
 Variant then_variant() {
     return {"then", "spheres,lone_spheres=true", {{"lanes", "1"}, {"packet", "4x4"}}, false};
 }
@@ -38,7 +38,8 @@ class Planner {
     }
 
  private:
-    // Scenes stay where they are: cases name them by number, and none is loaded without a case.
+    // Keeps the cases which --only names. All scenes stay in the list, because cases refer to them by index; a scene without a
+    // case is never loaded.
     void keep_only() {
         if (request_.only.empty()) return;
         const auto wanted = [&](const BenchCase& c) {
@@ -62,10 +63,11 @@ class Planner {
         if (name == "quick") return quick();
         std::string known;
         for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
-        throw Error(Exit::usage, "bench " + name + ": there is no such suite nor file; suites are " + known);
+        throw Error(Exit::usage, "bench " + name + ": neither a suite nor a file; the suites are " + known);
     }
 
-    // The scenes named by the user, or else a suite's own that are there; the others are noted.
+    // Adds the scenes named by the user, or else those of the suite's own scenes which were found. Notes the missing ones.
+    // Returns indices into Suite::scenes.
     std::vector<size_t> chosen_or(const std::vector<BenchScene>& own, uint64_t subdivide_to = 0) {
         std::vector<BenchScene> sources = own;
         if (!request_.files.empty()) {
@@ -98,7 +100,7 @@ class Planner {
         return suite_.cases.back();
     }
 
-    // The structure that a suite about something else uses.
+    // The structure for suites which do not compare structures.
     std::string main_accel() const { return request_.accels.empty() ? cpu_accel() : request_.accels.front(); }
     std::string cpu_accel() const { return best_accel(plugins_, DeviceKind::cpu).id; }
 
@@ -153,7 +155,7 @@ class Planner {
         dropped(suite, scene);
     }
 
-    // How many rays find no room in arrays of a fixed size.
+    // How many rays are dropped when each pixel has a ray array of fixed size.
     void dropped(const std::string& suite, size_t scene) {
         BenchCase& c = add_case(suite, scene, "dropped", "dropped");
         c.timing = Timing::counted_only;
@@ -167,8 +169,8 @@ class Planner {
             BenchCase& c = add_case("packets", scene, "4 steps", "frame");
             for (const char* lanes : {"1", "4", "8", "16"})
                 for (const char* packet : {"1x1", "2x2", "4x4", "8x8", "16x16"}) {
-                    // A packet narrower than the lanes would leave some of them without a pixel.
-                    // Nor do the ray arrays of 16x16 pixels fit into a GPU's private memory.
+                    // A packet with fewer pixels than lanes would leave lanes idle. The ray arrays of 16x16 pixels do not fit
+                    // into a GPU's private memory.
                     const int side = std::atoi(packet), count = std::atoi(lanes);
                     if (side * side < count) continue;
                     c.variants.push_back({std::string(packet) + ", lanes " + lanes,
@@ -220,8 +222,7 @@ class Planner {
         }
     }
 
-    // What a model costs in memory and speed once it outgrows caches: the two best structures of GPUs, or those that are asked
-    // for.
+    // Memory and speed of models which are larger than the caches. Structures: the two best of GPUs, or those asked for.
     void large() {
         limit(1200);
         std::vector<Variant> variants = every_accel();
@@ -246,7 +247,7 @@ class Planner {
                 add_case("large", scene, measure, measure).variants = variants;
     }
 
-    // What a processor's vectors give, against the best that peers make of them.
+    // SIMD performance of a CPU, compared with the fastest mode of the baselines.
     void cpu() {
         limit(request_.files.empty() ? 1800 : 150.0 * double(request_.files.size()));
         std::vector<size_t> scenes = chosen_or(catalog_.shared());
@@ -274,7 +275,8 @@ class Planner {
             }
     }
 
-    // Scenes of a person as they are; the shared models, which mirror nothing, as the frame that peers render.
+    // Where the time of a frame goes. Scenes named by the user keep their materials. The shared models have no mirrors, so that
+    // they use the materials of the baselines' frame.
     void breakdown() {
         const std::vector<size_t> scenes = chosen_or(request_.files.empty() ? catalog_.shared() : std::vector<BenchScene>());
         limit(100.0 * double(scenes.size()));
@@ -289,7 +291,7 @@ class Planner {
             }
     }
 
-    // One picture by one device, by two of them, and so on. The structure is what the devices are best at, unless it is named.
+    // One picture by one device, by two devices, and so on. Without --accel, the default structure of the devices is used.
     void devices() {
         const auto usual = [&](Variant& variant, const char* key, const char* value) {
             const auto is_key = [&](const auto& pair) { return pair.first == key; };

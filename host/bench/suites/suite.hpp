@@ -1,4 +1,4 @@
-// suite.hpp -- what is to be measured, as data: nothing is loaded or traced here.
+// suite.hpp -- what is to be measured, as data. Nothing is loaded or traced here.
 #pragma once
 #include <string>
 #include <utility>
@@ -9,31 +9,31 @@
 
 namespace clarity::bench {
 
-// What the command line asks for.
+// A request of the command line.
 struct BenchRequest {
-    std::vector<std::string> suites;                            // as suite_names() has them
-    std::vector<std::string> files;                             // scenes instead of a suite's own; without a suite: accel
-    std::vector<std::string> accels;                            // ID[,key=value...]; empty: every one found
-    std::vector<std::pair<std::string, std::string>> settings;  // key, value: for all cases, where they do not set it
-    std::vector<std::string> only;                              // cases whose name has one of these in it; empty: all
-    uint64_t max_triangles = 10'000'000;                        // of the suites scale and large
-    double time_limit_s = 0;                                    // of everything; 0: what the suites want
-    bool baselines = true;
-    bool breakdown = false;  // where a frame's time goes; besides the suites
+    std::vector<std::string> suites;                            // from suite_names()
+    std::vector<std::string> files;                             // scenes which replace a suite's own; without a suite: accel
+    std::vector<std::string> accels;                            // ID[,key=value...]; empty: all structures found
+    std::vector<std::pair<std::string, std::string>> settings;  // key, value; for all variants which do not set the key
+    std::vector<std::string> only;                              // keeps the cases whose name contains one of these; empty: all
+    uint64_t max_triangles = 10'000'000;                        // largest model of the suites scale and large
+    double time_limit_s = 0;                                    // of the whole run; 0: the sum of the suites' own limits
+    bool baselines = true;                                      // measure the baselines too
+    bool breakdown = false;                                     // measure the parts of a frame's time, besides the suites
 };
 
 struct SuiteScene {
     BenchScene source;
-    uint64_t subdivide_to = 0;  // about so many triangles; 0: as it is
+    uint64_t subdivide_to = 0;  // split to about so many triangles; 0: unchanged
 };
 
-// One row of a case, on each device.
+// A configuration to measure: one row per device.
 struct Variant {
     std::string label;
     std::string accel;                                          // ID[,key=value...]
-    std::vector<std::pair<std::string, std::string>> settings;  // over those of the request
-    bool cpu_only = false;                                      // more lanes than one, or too much private memory
-    bool overlapped = false;                                    // moving: each picture is copied while the next is traced
+    std::vector<std::pair<std::string, std::string>> settings;  // override those of the request
+    bool cpu_only = false;                                      // needs several lanes, or too much private memory for a GPU
+    bool overlapped = false;  // of moving: copy each picture to the host while the next one is traced
 };
 
 enum class Timing { timed, counted_only };
@@ -42,23 +42,23 @@ struct BenchCase {
     std::string suite, name;
     std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture |
                           // moving
-    size_t scene = 0;     // of Suite::scenes
+    size_t scene = 0;     // index into Suite::scenes
     std::vector<Variant> variants;
-    std::vector<std::string> baseline_qualities;  // of peers, where they can trace the scene
+    std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene
     Timing timing = Timing::timed;
-    bool mirrors = false;  // breakdown: of the frame that peers render, whatever the scene's materials
+    bool mirrors = false;  // of breakdown: replace all materials by the half mirrors of the baselines' frame
 };
 
 struct Suite {
     std::vector<SuiteScene> scenes;
-    std::vector<BenchCase> cases;    // those of one scene one after the other
-    std::vector<std::string> notes;  // what was left out and why
-    double time_limit_s = 0;
+    std::vector<BenchCase> cases;    // the cases of one scene are adjacent
+    std::vector<std::string> notes;  // what was left out, and why
+    double time_limit_s = 0;         // sum over the suites
 };
 
 const std::vector<std::string>& suite_names();
 
-// Throws Error(usage) for a suite that there is not.
+// Throws Error(usage) for an unknown suite, or if no case is left to measure.
 Suite make_suite(const BenchRequest& request, const SceneCatalog& catalog, const PluginRegistry& plugins);
 
 }  // namespace clarity::bench

@@ -1,4 +1,5 @@
-// report_test.cpp -- the page of a bench: well-formed whatever is in the records, nothing from the network, every figure there.
+// report_test.cpp -- the page of the bench: it is well-formed for any records, loads nothing from the network, and shows every
+// figure.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +35,7 @@ TEST(ReportPage, IsWellFormedAndSelfContained) {
     EXPECT_EQ(xml_error(page), "");
     for (const char* foreign : {"src=", "@import", "url(", "<script", "<link", "http://", "https://"}) {
         const size_t allowed = std::string(foreign) == "http://" ? count_of(page, "http://www.w3.org/") : 0;
-        EXPECT_EQ(count_of(page, foreign), allowed) << foreign << ": the page must need nothing but itself";
+        EXPECT_EQ(count_of(page, foreign), allowed) << foreign << ": the page must be self-contained";
     }
     EXPECT_NE(page.find("prefers-color-scheme: dark"), std::string::npos);
     EXPECT_NE(page.find("@media print"), std::string::npos);
@@ -51,7 +52,7 @@ TEST(ReportPage, ShowsEveryThesisChartWithItsAxisEnd) {
     }
 }
 
-// The gains over the axes' ends, by hand: test n takes 6 * 1.6^(n - 1) ms a step, and 2 % and .3 ms more all in.
+// The speed-ups over the axes' ends, computed by hand: test n takes 6 * 1.6^(n - 1) ms a step, all in 2 % and .3 ms more.
 TEST(ReportPage, StatesTheGains) {
     const auto gain = [](int test, double end) { return 1000 / (6 * std::pow(1.6, test - 1) * 4 * 1.02 + .3) / end; };
     const std::string page = report_page(sample_report());
@@ -81,7 +82,7 @@ TEST(ReportPage, EmptySuites) {
     EXPECT_NE(report_page(nothing).find("interrupted"), std::string::npos);
 }
 
-// One that measures nothing and only joins earlier runs.
+// A run which measures nothing and only joins earlier runs.
 TEST(ReportPage, JoinsRuns) {
     BenchReport report = sample_report();
     report.joined = {report.run, report.run};
@@ -154,7 +155,7 @@ TEST(ReportFolder, SaysWhereItCannotWrite) {
     std::ofstream(file) << "here";
     try {
         write_report(file, sample_report());
-        FAIL() << "a file took the folder's place";
+        FAIL() << "write_report() must fail if a file has the folder's name";
     } catch (const Error& e) {
         EXPECT_EQ(e.code(), Exit::failed);
         EXPECT_NE(std::string(e.what()).find(file), std::string::npos) << e.what();
@@ -170,7 +171,8 @@ TEST(ReportNumbers, ThreeDigitsAndThousands) {
     EXPECT_EQ(figure(NAN), "");
 }
 
-// A log axis where values are far apart, a linear one where they are not; a bar of a hundredth is not a hundredth long there.
+// The axis is logarithmic if the values are far apart, else linear. On a logarithmic axis, the bar of a hundredth is longer
+// than a hundredth.
 TEST(ReportCharts, AxisFollowsTheRange) {
     BarChart chart{"t", "u", {{"", {{"a", 1, 0, "", ""}, {"b", 100, 1, "", ""}}}}, 0, "", 0};
     EXPECT_NE(bar_chart(chart).find("logarithmic"), std::string::npos);
@@ -179,7 +181,7 @@ TEST(ReportCharts, AxisFollowsTheRange) {
     EXPECT_EQ(bar_chart(chart).find("logarithmic"), std::string::npos);
     EXPECT_NE(bar_chart(chart).find("width:50.00%"), std::string::npos);
     chart.whole = 400;
-    EXPECT_NE(bar_chart(chart).find("width:25.00%"), std::string::npos) << "of a whole that is larger than any bar";
+    EXPECT_NE(bar_chart(chart).find("width:25.00%"), std::string::npos) << "relative to `whole`, which is larger than any bar";
     chart.groups[0].bars.clear();
     EXPECT_EQ(bar_chart(chart), "");
 }
@@ -204,7 +206,7 @@ TEST(ReportPage, SaysAboutTheSameWithinTheSpread) {
     BenchReport report = sample_report();
     const auto same = count_of(report_page(report), "about the same");
     for (BenchRecord& r : report.records)
-        if (r.suite == "accel" || r.suite == "quick") r.mrays_per_s = r.baseline.empty() ? 100 : 103;  // spreads are 5 % each
+        if (r.suite == "accel" || r.suite == "quick") r.mrays_per_s = r.baseline.empty() ? 100 : 103;  // spreads are 5 %
     EXPECT_GE(count_of(report_page(report), "about the same"), same + 3);
     for (BenchRecord& r : report.records)
         if (r.suite == "accel" || r.suite == "quick") r.mrays_per_s = r.baseline.empty() ? 150 : 100;

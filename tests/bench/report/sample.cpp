@@ -12,7 +12,7 @@ Summary around(double median) {
 
 struct Where {
     const char *name, *id, *driver;
-    double speed;  // to the processor's
+    double speed;  // relative to the processor
     unsigned units;
 };
 constexpr Where kWhere[] = {{"pthread-skylake-avx512-AMD EPYC", "0:0", "3.1", 1, 2},

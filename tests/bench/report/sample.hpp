@@ -1,4 +1,5 @@
-// sample.hpp -- records as a run could give them, by formula: every suite, two devices, peers, and rows without figures.
+// sample.hpp -- records as a run could write them, made by formulas: every suite, two devices, baselines, and rows without
+// figures.
 #pragma once
 #include "bench/output/record.hpp"
 

@@ -1,5 +1,5 @@
-// xml_check.hpp -- whether text is well-formed XML, as far as our pages go: one root, tags that match, quoted attributes given
-// once, the five entities, no byte that XML forbids.
+// xml_check.hpp -- checks that text is well-formed XML, as far as our pages use it: one root, matching tags, quoted attributes
+// without duplicates, the five entities, no byte which XML forbids.
 #pragma once
 #include <string>
 
