@@ -1,7 +1,8 @@
 // binning.inl -- the surface area heuristic over bins (Wald 2007, "On fast Construction of SAH-based Bounding Volume
-// Hierarchies"): primitives are counted and bounded in equal slices of their centroids' extent, on all three axes at once, and
-// only the planes between slices are candidates. One pass over the primitives per node, whatever their number.
-// Included once an instruction set, by kernels*.cpp.
+// Hierarchies"). The extent of the centroids is cut into equal slices on all three axes at once, and the primitives of each
+// slice are counted and bounded. Only the planes between slices are split candidates. A node takes one pass over its
+// primitives, whatever their number.
+// Each kernels*.cpp includes this file once, for its instruction set.
 
 namespace bvh2 {
 namespace BVH2_ISA {
@@ -31,12 +32,13 @@ void merge(const Bins& from, uint32_t bin_count, Bins& to) {
     }
 }
 
-// Neighbours often share a slice, and a box that was just written is waited for: in long ranges they go to four
-// sets by turns (two take as long as one on an Intel Sapphire Rapids, 10 ns a record where slices are shared; four take 3.5).
+// Neighbouring records often fall into the same slice, and then each must wait until the box that the last one stored can be
+// loaded. Long ranges therefore write to four sets of bins in rotation. Measured on an Intel Sapphire Rapids where records
+// share slices: one or two sets take 10 ns a record, four take 3.5 ns.
 constexpr ptrdiff_t kSets = 4, kManyForSets = 512;
 
 void bin(const Record* first, const Record* end, const Slices& slices, Bins& bins) {
-    const Slices place = slices;  // whatever is written, it stays in registers
+    const Slices place = slices;  // a local copy: stays in registers while the bins are written
     const Record* r = first;
     if (end - first >= kManyForSets) {
         Bins others[kSets - 1];
@@ -53,15 +55,15 @@ void bin(const Record* first, const Record* end, const Slices& slices, Bins& bin
 }
 
 void find_split(const Bins& bins, uint32_t bin_count, const AreaScale& area, uint32_t primitive_count, Split& split) {
-    // Sweep from the right: areas of all that lies at or right of each plane.
+    // Sweep from the right: right_area[b] is the area of everything at or right of plane b.
     Vec4 right_area[kMaxBins];
     Box8 box[3] = {no_box(), no_box(), no_box()};
     for (uint32_t b = bin_count - 1; b > 0; --b) {
         for (int axis = 0; axis < 3; ++axis) box[axis] = min(box[axis], load_box(bins.box[b][axis]));
         right_area[b] = half_areas(area, box);
     }
-    // Sweep from the left, with the cost of each plane. A side without primitives has an area of NaN or infinity, which no
-    // primitives make NaN, and so never wins.
+    // Sweep from the left and compute the cost of each plane. The area of a side without primitives is NaN or infinite; times 0
+    // primitives the cost is NaN, so such a plane never wins.
     for (int axis = 0; axis < 3; ++axis) box[axis] = no_box();
     alignas(16) const uint32_t none[4] = {0, 0, 0, 0};
     Count4 left = load_counts(none);
@@ -102,14 +104,15 @@ void scatter(const Record* first, const Record* end, const Slices& slices, const
     const Box8 base = all_eight(base_of[split.axis]), scale = all_eight(scale_of[split.axis]),
                plane = all_eight(static_cast<float>(split.bin));
     Box8 l = load_box(left_centroids2), r = load_box(right_centroids2);
-    // Where the next one goes, left or right: chosen by arithmetic, for a branch would be guessed wrongly every other time.
+    // Byte addresses of the next left and right record. The destination is selected by arithmetic, because a branch would be
+    // mispredicted half of the time.
     char* to_left = reinterpret_cast<char*>(left);
     char* to_right = reinterpret_cast<char*>(right);
     for (const Record* at = first; at != end; ++at) {
         fetch(at + kStreamAhead);
         const Box8 centroid = centroid2_box(box_of(*at));
-        // position < bin is trunc(position) < bin, since bin is a whole number: the same side as the bins said, where what lies
-        // beyond the last slice is in it.
+        // bin() truncates the position to an integer and clamps it to the last slice. Since `plane` is an integer, position <
+        // plane gives the same side as trunc(position) < plane, with or without the clamp.
         const Box8 is_left = less((lane_in_all(centroid, split.axis) - base) * scale, plane);
         l = min_where(is_left, centroid, l);
         r = min_unless(is_left, centroid, r);

@@ -1,5 +1,6 @@
-// box8.inl -- a box in registers: one of eight floats with AVX2, else two of four. Same operations, same bits.
-// Included once an instruction set, by kernels*.cpp.
+// box8.inl -- a box in registers: eight floats in one register with AVX2, else two registers of four. Both variants do the same
+// operations and give the same bits.
+// Each kernels*.cpp includes this file once, for its instruction set.
 #ifdef BVH2_ISA_AVX2
 #define BVH2_ISA avx2
 #else
@@ -14,7 +15,8 @@ namespace BVH2_ISA {
 struct Box8 {
     __m256 m;
 };
-// Not the aligned forms, which gain nothing: GCC 12 puts objects that a call returns at multiples of 16 bytes, whatever they ask.
+// Unaligned loads and stores on purpose. GCC 12 places objects that a call returns at multiples of 16 bytes, even if their type
+// asks for 32; and aligned forms would gain nothing.
 inline Box8 load_box(const float* p) {
     return {_mm256_loadu_ps(p)};
 }
@@ -48,7 +50,7 @@ inline Box8 all_eight(float x) {
 inline Box8 load_eight(const float* p) {
     return {_mm256_loadu_ps(p)};
 }
-// Where a < b: a to b and index_a, which is not below any index so far, to index_b.
+// Where a < b: b = a and index_b = index_a. index_a must not be below any index so far.
 inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
     index_b.m = _mm256_max_ps(index_b.m, _mm256_and_ps(_mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ), index_a.m));
     b.m = _mm256_min_ps(a.m, b.m);
@@ -56,35 +58,36 @@ inline void keep_less(Box8 a, Box8 index_a, Box8& b, Box8& index_b) {
 inline Box8 no_box() {
     return {_mm256_set1_ps(FLT_MAX)};
 }
-// The point at twice a box's centroid, as a box.
+// A point box at twice the centroid of a box.
 inline Box8 centroid2_box(Box8 a) {
     return {_mm256_sub_ps(a.m, _mm256_permute2f128_ps(a.m, a.m, 1))};
 }
-// A record's, without the ref.
+// The box of a record. The lane that holds the ref is cleared.
 inline Box8 box_of(const Record& r) {
     return {_mm256_and_ps(_mm256_loadu_ps(r.lo), _mm256_castsi256_ps(_mm256_setr_epi32(-1, -1, -1, 0, -1, -1, -1, -1)))};
 }
 inline Box8 max(Box8 a, Box8 b) {
     return {_mm256_max_ps(a.m, b.m)};
 }
-// The greatest of eight numbers, in all lanes.
+// The maximum of the eight lanes, in all lanes.
 inline Box8 highest(Box8 a) {
     __m256 m = _mm256_max_ps(a.m, _mm256_permute2f128_ps(a.m, a.m, 1));
     m = _mm256_max_ps(m, _mm256_permute_ps(m, _MM_SHUFFLE(1, 0, 3, 2)));
     return {_mm256_max_ps(m, _mm256_permute_ps(m, _MM_SHUFFLE(2, 3, 0, 1)))};
 }
-// One of the lower four lanes in all eight.
+// Copies one of the lower four lanes to all eight.
 inline Box8 lane_in_all(Box8 a, int lane) {
     return {_mm256_permutevar8x32_ps(a.m, _mm256_set1_epi32(lane))};
 }
-// A mask of the lanes where a < b, and 1 or 0: its first lane.
+// less() gives a mask of the lanes where a < b; first_of() gives the first lane of a mask as 1 or 0.
 inline Box8 less(Box8 a, Box8 b) {
     return {_mm256_cmp_ps(a.m, b.m, _CMP_LT_OQ)};
 }
 inline uint32_t first_of(Box8 mask) {
     return static_cast<uint32_t>(_mm256_movemask_ps(mask.m)) & 1u;
 }
-// The lesser of a and b, but b where the mask is set, or where it is not. NaN is what a minimum passes over.
+// The minimum of a and b, except in lanes where the mask is set (min_unless) or not set (min_where): those keep b. A masked
+// lane of a becomes NaN, and the minimum then returns its second operand.
 inline Box8 min_unless(Box8 mask, Box8 a, Box8 b) {
     return {_mm256_min_ps(_mm256_or_ps(a.m, mask.m), b.m)};
 }
@@ -191,7 +194,7 @@ inline Vec4 centroid2(Box8 a) {
 inline Box8 point(Vec4 p) {
     return join(p, splat(0.0f) - p);
 }
-// Half the areas of three boxes at once, in lanes 0..2, from their sides; all sides may be negated.
+// Half the areas of three boxes at once, in lanes 0..2. The arguments are the side lengths; all of them may be negated.
 inline Vec4 half_areas_of(Vec4 a, Vec4 b, Vec4 c) {
     Vec4 x, y, z;
     transpose3(a, b, c, x, y, z);

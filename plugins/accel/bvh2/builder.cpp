@@ -7,11 +7,12 @@
 namespace bvh2 {
 namespace {
 
-// 0.5 MiB of records stay in a core's own cache; small scenes are cut finer, so that all cores have some to the end.
+// At most 16384 records (0.5 MiB) per task, so that they fit into a core's own cache. Small scenes get smaller tasks, so that
+// no core runs out of work before the end.
 uint32_t task_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 16384));
 }
-// What is sorted along a curve needs none.
+// The sorted builder (Method::morton) needs no records.
 uint64_t record_count(const Rules& rules, uint64_t room) {
     return rules.method == Method::morton ? 0 : room;
 }
@@ -27,16 +28,16 @@ float unit_scale(const Bounds& box) {
     return longest > 2.0 / FLT_MAX ? static_cast<float>(2 / longest) : FLT_MAX;
 }
 
-// Part of a range that one thread takes.
+// The part of a range that one thread bins and moves.
 struct Builder::Chunk {
-    uint32_t owner;  // range of the level, or group
+    uint32_t owner;  // index of the range in its level; in load(): the group
     uint32_t begin, end;
-    uint32_t left = 0, right = 0;  // where its primitives go
-    Bounds box, centroids2;        // of its primitives
+    uint32_t left = 0, right = 0;  // first positions of its left and right primitives after the split
+    Bounds box, centroids2;        // of all its primitives
     Bounds left_centroids2, right_centroids2;
 };
 
-// What becomes of a range.
+// How one range of a level is split.
 struct Builder::Cut {
     uint32_t first_chunk, chunk_count;
     bool binned = false;
@@ -74,7 +75,7 @@ Builder::Builder(const rt_host* host, const rt_build_input& input, const Rules& 
     tree_.roots.resize(input.group_count);
 }
 
-// Throws where the user cancelled.
+// Adds `work` to the progress. Throws if the user has cancelled the build.
 void Builder::report(uint64_t work) {
     const uint64_t done = std::min(work_done_ += work, work_total_);
     rt::progress(host_, share_ * static_cast<float>(static_cast<double>(done) / static_cast<double>(work_total_)));
@@ -102,7 +103,7 @@ BinaryTree Builder::run(const rt_build_output* out, const std::function<void(con
     return std::move(tree_);
 }
 
-// Copies the primitives, one group after the other, and bounds each group.
+// Copies the primitives of all groups into records, group by group, and computes the bounds of each group.
 std::vector<Builder::Pending> Builder::load() {
     std::vector<Pending> groups;
     std::vector<Chunk> chunks;
@@ -110,7 +111,7 @@ std::vector<Builder::Pending> Builder::load() {
     uint64_t before = 0;
     for (uint32_t g = 0; g < input_.group_count; ++g) {
         Pending pending{{}, RT_NONE, g, g, 0, 0};
-        // Each group has its share of the room.
+        // The room is divided among the groups in proportion to their primitives.
         const auto place = [&](uint64_t primitives) {
             return static_cast<uint32_t>(primitives +
                                          (room_ - primitive_count_) * primitives / std::max<uint64_t>(primitive_count_, 1));
@@ -193,7 +194,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
         cuts[i].chunk_count = static_cast<uint32_t>(chunks.size()) - cuts[i].first_chunk;
     }
 
-    // Bin every chunk.
+    // 1. Bin every chunk.
     Scratch<Bins> chunk_bins(chunks.size());
     parallel_for(chunks.size(), [&](uint32_t c) {
         const Cut& cut = cuts[chunks[c].owner];
@@ -205,7 +206,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
                      chunk_bins.data()[c]);
     });
 
-    // Choose each range's plane, and from the chunks' counts the places where each one's primitives will go.
+    // 2. Choose the plane of each range. The counts of its chunks then say where the primitives of each chunk go.
     parallel_for(level.size(), [&](uint32_t i) {
         const Range& range = level[i].range;
         Cut& cut = cuts[i];
@@ -234,7 +235,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
         }
     });
 
-    // Move every chunk.
+    // 3. Move the primitives of every chunk.
     parallel_for(chunks.size(), [&](uint32_t c) {
         Chunk& chunk = chunks[c];
         const Cut& cut = cuts[chunk.owner];
@@ -267,7 +268,7 @@ std::vector<Builder::Pending> Builder::split_level(const std::vector<Pending>& l
 
 void Builder::run_tasks(const std::function<void(uint32_t)>& run_task) {
     const std::vector<Task>& tasks = tree_.tasks;
-    // The largest first, so that no thread is left alone with one at the end.
+    // Largest tasks first, so that no thread starts a large one at the end while the others are idle.
     std::vector<uint32_t> order(tasks.size());
     std::iota(order.begin(), order.end(), 0u);
     std::stable_sort(order.begin(), order.end(),

@@ -1,8 +1,9 @@
-// builder.hpp -- from the host's primitives to one binary tree per group, on all cores.
+// builder.hpp -- builds one binary tree per group from the host's primitives, on all cores.
 //
-// Large ranges are split breadth-first, all ranges of a level together, each cut into chunks that the threads bin and move in
-// parallel; then every range is small enough to be one thread's task. Where chunks begin depends on the input only, and what
-// threads compute is merged in the order of chunks, so the tree is the same whatever the number of threads.
+// Large ranges are split breadth-first. All ranges of a level are split together: each is cut into chunks, which the threads
+// bin and move in parallel. A range that is small enough becomes a task, which one thread builds. The chunk boundaries depend
+// on the input only, and the results of the threads are merged in chunk order. So the tree does not depend on the number of
+// threads.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -16,56 +17,58 @@
 
 namespace bvh2 {
 
-// A range that one thread builds, and its tree, whose nodes begin at first_node.
+// A range that one thread builds, and its tree. The nodes of the tree begin at first_node.
 struct Task {
     Range range;
     uint32_t first_node;
-    float scale;  // half a length times this is that length where the longest side of the group's box is 1
+    float scale;  // unit_scale() of the group's box
     Subtree tree;
 };
-// A node above the tasks.
+// An inner node above the tasks.
 struct Top {
     rt_u32 node;
     float scale;
 };
-// The tree of a group: a node or a leaf; RT_NONE: the group is empty.
+// The root of a group's tree: a node or a leaf. The code is RT_NONE if the group is empty.
 struct Root {
     Bounds box;
     rt_u32 code = RT_NONE;
 };
-// A finished tree, in the builder's own places: see Workspace::nodes. Codes of children name these.
+// A finished tree. Its nodes are still where the builder put them (see Workspace::nodes), and child codes are indices into that
+// array.
 struct BinaryTree {
     const bvh2_node* nodes;
     std::vector<Task> tasks;
     std::vector<Top> tops;    // parents before children
     std::vector<Root> roots;  // of groups
-    uint64_t leaf_count = 0;  // refs in leaf order
-    uint32_t depth = 1;       // nodes from a root to the deepest leaf
+    uint64_t leaf_count = 0;  // number of refs in leaf order
+    uint32_t depth = 1;       // number of nodes on the path from a root to the deepest leaf
 };
 
-// By which half a length becomes that length where the longest side of a group's box is 1.
+// Returns the factor from half a length to that length in units of the box's longest side. Returns FLT_MAX for a box without
+// extent.
 float unit_scale(const Bounds& box);
 
 class Builder {
  public:
-    // Positions in leaf order are 28 bits, as refs are.
+    // A position in leaf order has 28 bits, like the index in a ref.
     static constexpr uint64_t kMaxPrimitives = RT_REF_INDEX_MAX;
-    // Of memory that is given back at the end, at most.
+    // Returns an upper bound of the temporary memory of a build, in bytes. The builder frees it when it is destroyed.
     static uint64_t bytes(const Rules& rules, uint64_t primitive_count);
 
-    // Progress goes from 0 to `share`. The tree lives as long as this does.
+    // Reports progress from 0 to `share`. The tree's nodes live as long as this builder.
     Builder(const rt_host* host, const rt_build_input& input, const Rules& rules, uint64_t primitive_count, float share);
-    // Writes the leaf order. `after` is called for each task when it is done, by the thread that built it, whose caches hold
-    // it.
+    // Builds the tree and writes the leaf order to `out`. Calls `after` once for each finished task, on the thread that built
+    // it, while that thread's caches still hold it. Throws if the user cancels, or if memory is short.
     BinaryTree run(const rt_build_output* out, const std::function<void(const Task&)>& after);
     const Workspace& workspace() const { return workspace_; }
 
  private:
-    // A range that is not yet split, and where the code of its tree goes.
+    // A range that is not yet split, and the parent that its tree's code is written to.
     struct Pending {
         Range range;
-        uint32_t parent;  // node; RT_NONE: it is the root of its group
-        uint32_t which;   // child of the parent, or group
+        uint32_t parent;  // node index; RT_NONE: the range is the root of its group
+        uint32_t which;   // 0 or 1: child of the parent; without a parent: the group
         uint32_t group;
         uint32_t room_begin, room_end;  // see RoomyRange
     };
@@ -74,7 +77,7 @@ class Builder {
 
     std::vector<Pending> load();
     void add_task(const Pending& pending);
-    // What is small enough becomes a task; returns the rest.
+    // Makes a task of each range that is small enough, and returns the other ranges.
     std::vector<Pending> part_tasks(const std::vector<Pending>& level);
     void split_top(std::vector<Pending> level);
     std::vector<Pending> split_level(const std::vector<Pending>& level);
@@ -100,7 +103,7 @@ class Builder {
     Scratch<bvh2_node> nodes_;
     Workspace workspace_;
     BinaryTree tree_;
-    std::vector<Pending> task_place_;  // of tasks, without their ranges
+    std::vector<Pending> task_place_;  // of each task; the ranges are left empty
     std::vector<float> scales_;        // of groups
     std::atomic<uint64_t> work_done_{0};
 };

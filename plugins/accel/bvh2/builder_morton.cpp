@@ -1,11 +1,11 @@
-// builder_morton.cpp -- the binary tree of primitives that are sorted along a curve.
+// builder_morton.cpp -- builds the binary tree from primitives sorted along a space-filling curve.
 #include "builder.hpp"
 #include "sorted_run.hpp"
 
 namespace bvh2 {
 namespace {
 
-// From children first to depth-first order. Returns the next free place.
+// Copies a tree from children-first order to depth-first order. Returns the index after its last node.
 rt_u32 write_depth_first(const bvh2_node* from, rt_u32 node, bvh2_node* to, rt_u32 at) {
     rt_u32 next = at + 1;
     to[at] = from[node];
@@ -52,7 +52,7 @@ void Builder::build_sorted(const std::function<void(const Task&)>& after) {
         after(task);
     });
 
-    // What lies above, from the runs up.
+    // The nodes above the runs, from the bottom up.
     std::vector<Bounds> boxes(order.tops().size());
     const auto node_of = [&](rt_u32 code) {
         return code & MortonOrder::kRun ? tree_.tasks[code & ~MortonOrder::kRun].tree.root

@@ -1,11 +1,12 @@
-// builder_spatial.cpp -- the builder's steps for spatial splits.
+// builder_spatial.cpp -- the steps of the builder for spatial splits.
 #include <algorithm>
 
 #include "builder.hpp"
 
 namespace bvh2 {
 
-// Ranges are split level by level, each on all cores, until they are one thread's task; then refs close ranks.
+// Splits the ranges level by level, each range on all cores, until each is a task for one thread. At the end, close_gaps()
+// makes the refs contiguous.
 void Builder::split_space(std::vector<Pending> level, const rt_build_output* out) {
     const Scratch<rt_u32> leaves(room_);
     workspace_.leaves = leaves.data();
@@ -40,7 +41,7 @@ void Builder::split_space(std::vector<Pending> level, const rt_build_output* out
     close_gaps(counts, out);
 }
 
-// Moves the refs of each task to behind those of the last one, and corrects the leaves.
+// Copies the refs of all tasks into the leaf order without gaps between tasks, and corrects the positions in the leaf codes.
 void Builder::close_gaps(const std::vector<uint32_t>& counts, const rt_build_output* out) {
     std::vector<uint32_t> order(counts.size()), place(counts.size());
     for (uint32_t i = 0; i < order.size(); ++i) order[i] = i;

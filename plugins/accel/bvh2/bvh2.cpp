@@ -1,8 +1,8 @@
-// bvh2.cpp -- binary bounding volume hierarchy by the binned surface area heuristic: the plugin's table, and its entry.
+// bvh2.cpp -- the plugin of the binary BVH (binned surface area heuristic, SAH): its table and its build entry.
 //
-// Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies". 64 bytes a node, at most one node less than there
-// are primitives; the traversal's stack is BVH2_STACK, measured. Good at everything that does not move; weak where large and
-// small primitives overlap (there, builder=spatial helps).
+// Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies". A node takes 64 bytes. n primitives make
+// at most n - 1 nodes. The build measures the depth of the tree and defines the stack size of the traversal (BVH2_STACK) from
+// it. The structure suits static scenes. It is weak where large and small primitives overlap; there builder=spatial helps.
 #include <cstdio>
 
 #include "levels.hpp"
@@ -62,13 +62,15 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         rt::stat(out, "references", static_cast<double>(tree.leaf_count));
         rt::stat(out, "sah_cost", statistics.sah_cost);
         rt::stat(out, "build_bytes", static_cast<double>(Builder::bytes(rules, count)));
-        // One place a level, and one to spare that tells a full stack from an overflowing one; in steps of 8, since a new value
-        // recompiles the kernels.
+        // The traversal needs one stack entry a level, and one more to tell a full stack from an overflow. The size is a
+        // multiple of 8, because a new value recompiles the kernels.
         rt::define(out, "BVH2_STACK", (tree.depth + 1 + 7) / 8 * 8);
         return RT_OK;
     } catch (const std::bad_alloc&) {
-        std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
-                      static_cast<double>(Builder::bytes(rules, count)) / (1 << 30), static_cast<unsigned long long>(count));
+        std::snprintf(
+            why, sizeof why,
+            "cannot allocate the %.1f GiB that building a tree of %llu primitives takes: free memory, or instance meshes",
+            static_cast<double>(Builder::bytes(rules, count)) / (1 << 30), static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
 }

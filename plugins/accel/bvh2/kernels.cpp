@@ -35,7 +35,7 @@ void halve(Record* records, const Range& range, Range& left, Range& right) {
         }
     }
     const uint32_t middle = range.begin + range.count() / 2;
-    if (longest > 0.0f)  // else all are alike, and any half will do
+    if (longest > 0.0f)  // else all centroids are equal, and any halves will do
         std::nth_element(records + range.begin, records + middle, records + range.end,
                          [axis](const Record& a, const Record& b) {
                              return 0.5f * a.lo[axis] - 0.5f * a.neg_hi[axis] < 0.5f * b.lo[axis] - 0.5f * b.neg_hi[axis];

@@ -1,4 +1,5 @@
-// kernels.inl -- all kernels, in the order in which they need each other. Included once an instruction set, by kernels*.cpp.
+// kernels.inl -- includes all kernels in the order of their dependencies. Each kernels*.cpp includes it once, for its
+// instruction set.
 #include "box8.inl"
 #include "binning.inl"
 #include "small_range.inl"

@@ -1,5 +1,5 @@
-// The kernels once more, for machines with AVX2. Everything that they do not bring themselves is included first, so that no
-// function shared with other files is compiled for these machines only.
+// The kernels compiled for machines with AVX2. Every header that they need is included before the target pragma, so that no
+// inline function shared with other files is compiled for AVX2.
 #include "kernels.hpp"
 
 #ifdef BVH2_AVX2

@@ -8,11 +8,11 @@
 namespace bvh2 {
 namespace {
 
-constexpr unsigned kDigitBits = 9, kDigits = 1u << kDigitBits;  // of a pass on all cores
+constexpr unsigned kDigitBits = 9, kDigits = 1u << kDigitBits;  // digit of one parallel sorting pass
 using Counts = std::array<uint32_t, kDigits>;
 
-// Keys, boxes and nodes of a run stay in a core's own cache; small scenes are cut finer, so that all cores have some to the
-// end.
+// The keys, boxes and nodes of a run fit into a core's own cache. Small scenes get smaller runs, so that no core runs out of
+// work before the end.
 uint32_t run_size_for(uint64_t primitive_count) {
     return static_cast<uint32_t>(std::clamp<uint64_t>(primitive_count / 16, 1024, 8192));
 }
@@ -31,13 +31,13 @@ void insertion_sort(MortonKey* keys, uint32_t count) {
 
 }  // namespace
 
-// Parts one group.
+// Splits one group into runs and top nodes.
 struct MortonOrder::Builder {
     const MortonOrder& order;
     const rt_u32 group;
     const uint32_t group_begin, count;
     const rt_prim* const prims;
-    std::vector<Top> tops;  // codes are those of this group alone
+    std::vector<Top> tops;  // child codes count within this group
     std::vector<Run> runs;
 
     MortonKey* keys(int buffer) const { return order.keys_[buffer].data(); }
@@ -109,7 +109,7 @@ struct MortonOrder::Builder {
         return static_cast<rt_u32>(runs.size() - 1) | kRun;
     }
 
-    // A top node whose children do_left and do_right give.
+    // Adds a top node. do_left and do_right build its children and return their codes.
     template <class Left, class Right>
     rt_u32 add_top(uint32_t middle, Left&& do_left, Right&& do_right) {
         const size_t top = tops.size();
@@ -120,7 +120,8 @@ struct MortonOrder::Builder {
         return static_cast<rt_u32>(top);
     }
 
-    // Parts a range whose places are equal but for `unsorted` bits. counts: of its digits, chunk by chunk; empty: not known.
+    // Splits a range of positions that differ in their lowest `unsorted` bits only. `counts` are the counts of its next digit
+    // per chunk, or empty if they are not known yet.
     rt_u32 part(uint32_t begin, uint32_t end, unsigned unsorted, int buffer, uint32_t depth, std::vector<Counts> counts = {}) {
         if (end - begin <= order.run_size_) return add_run(begin, end, unsorted, buffer, depth);
         if (unsorted == 0) return part_cell(begin, end, buffer, depth);
@@ -146,7 +147,8 @@ struct MortonOrder::Builder {
         return part_digits(begins, 0, digits, unsorted - digit_bits(unsorted), buffer ^ 1, depth);
     }
 
-    // Parts what has digits first..last-1, a power of two of them. unsorted: bits below the digit.
+    // Splits the primitives with digits first..last-1, where last - first is a power of two. `unsorted` is the number of
+    // bits below the digit.
     rt_u32 part_digits(const std::vector<uint32_t>& begins, uint32_t first, uint32_t last, unsigned unsorted, int buffer,
                        uint32_t depth) {
         const uint32_t begin = begins[first], end = begins[last], half = (last - first) / 2;
@@ -161,8 +163,8 @@ struct MortonOrder::Builder {
             middle, [&] { return left(depth + 1); }, [&] { return right(depth + 1); });
     }
 
-    // Parts what lies in one cell of the curve: along one of its own, as long as leaves do not get too deep (a curve's bits,
-    // and what halves still take), else into halves.
+    // Splits primitives that all lie in one cell of the curve. Normally it lays a finer curve through the cell. It halves them
+    // by count if another curve (its bits, then the halves below) could make leaves too deep.
     rt_u32 part_cell(uint32_t begin, uint32_t end, int buffer, uint32_t depth) {
         if (depth + Curve::kMaxBits + log2_ceil(end - begin) < kMaxDepth) {
             Bounds half_centroids;
@@ -177,7 +179,7 @@ struct MortonOrder::Builder {
             }
             const Curve curve(half_centroids, end - begin);
             const Vec4 most = splat(0.0f) - load(half_centroids.neg_hi);
-            if (curve.place(xyz(load(half_centroids.lo))) != curve.place(xyz(most))) {  // else all are alike, or nearly
+            if (curve.place(xyz(load(half_centroids.lo))) != curve.place(xyz(most))) {  // else all centroids are (nearly) equal
                 each_chunk(begin, end, [&](rt_u32, uint32_t first, uint32_t last) {
                     for (uint32_t i = first; i < last; ++i)
                         keys(buffer)[i] = curve.place(centroid(i)) << kPositionBits | position(keys(buffer)[i]);
@@ -219,7 +221,7 @@ MortonOrder::MortonOrder(const rt_host* host, const rt_build_input& input, uint6
     }
 }
 
-// Least significant digits first, as many at a time as there are keys to pay for the counting.
+// A radix sort, least significant digit first. The digits are wider the more keys there are, because each digit costs counting.
 const MortonKey* MortonOrder::sort(const Run& run) const {
     constexpr unsigned kMostBits = 10, kMostPasses = (Curve::kMaxBits + 6) / 7;
     constexpr uint32_t kFew = 32;
@@ -242,7 +244,7 @@ const MortonKey* MortonOrder::sort(const Run& run) const {
     for (unsigned p = 0; p < passes; ++p) {
         const unsigned shift = kPositionBits + p * bits;
         const auto digit = [&](MortonKey key) { return static_cast<uint32_t>(key >> shift) & mask; };
-        if (counts[p][digit(from[0])] == count) continue;  // all alike
+        if (counts[p][digit(from[0])] == count) continue;  // all keys have the same digit
         uint32_t place = 0;
         for (uint32_t d = 0; d <= mask; ++d) place += std::exchange(counts[p][d], place);
         for (uint32_t i = 0; i < count; ++i) to[counts[p][digit(from[i])]++] = from[i];

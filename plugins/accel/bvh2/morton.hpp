@@ -1,8 +1,9 @@
-// morton.hpp -- primitives along a space-filling curve, for the fast builder: nodes are parted where the highest bit of their
-// places on it changes (Lauterbach, Garland, Sengupta, Luebke, Manocha 2009, "Fast BVH Construction on GPUs").
+// morton.hpp -- sorts primitives along a space-filling curve for the fast builder (Lauterbach, Garland, Sengupta, Luebke,
+// Manocha 2009, "Fast BVH Construction on GPUs"). A node splits its primitives where the highest bit of their positions on the
+// curve changes.
 //
-// The highest digits of the places part each group on all cores, until ranges are one thread's work: runs. A run is sorted, and
-// its tree made, while a core's own cache holds it.
+// The highest digits of the positions split each group into runs, on all cores. A run is small enough for one thread, which
+// sorts it and builds its tree while the core's own cache holds it.
 #pragma once
 #include <vector>
 
@@ -11,7 +12,7 @@
 
 namespace bvh2 {
 
-// A primitive's place on the curve above its number in its group (28 bits): sorting keys sorts both.
+// The position on the curve, above the number of the primitive in its group (28 bits). Sorting by keys sorts by both.
 using MortonKey = uint64_t;
 constexpr unsigned kPositionBits = 28;
 inline uint32_t position(MortonKey key) {
@@ -20,31 +21,32 @@ inline uint32_t position(MortonKey key) {
 
 class MortonOrder {
  public:
-    // Codes of what is below a group or a top node: the index of one, or with this bit of a run.
+    // Codes of children: the index of a top node, or with this bit the index of a run.
     static constexpr rt_u32 kRun = 0x80000000u;
-    // A part of a group: all that lies on one stretch of the curve, [begin, end) in leaf order.
+    // The primitives of one stretch of the curve, [begin, end) in leaf order.
     struct Run {
         rt_u32 group;
         uint32_t begin, end;
-        uint32_t depth;     // nodes above it
-        unsigned unsorted;  // low bits of the places by which keys are yet to be sorted
-        int buffer;         // that holds the keys
+        uint32_t depth;     // number of nodes above it
+        unsigned unsorted;  // the keys are not yet sorted by this many low bits of their positions
+        int buffer;         // which key buffer holds its keys, 0 or 1
         uint32_t count() const { return end - begin; }
     };
-    // A node above the runs.
+    // An inner node above the runs.
     struct Top {
         rt_u32 group, child[2];
-        uint32_t middle;  // first position of the right part
+        uint32_t middle;  // position in leaf order where its right child begins
     };
     struct Group {
         Bounds box;
-        rt_u32 code = RT_NONE;  // RT_NONE: it is empty
-        uint32_t begin = 0;     // in leaf order
+        rt_u32 code = RT_NONE;  // RT_NONE if the group is empty
+        uint32_t begin = 0;     // first position in leaf order
     };
 
+    // Returns the memory for the keys, in bytes.
     static uint64_t bytes(uint64_t primitive_count) { return 2 * primitive_count * sizeof(MortonKey); }
 
-    // The input must live as long as this.
+    // Finds the runs of all groups, on all cores. `input` must outlive this object.
     MortonOrder(const rt_host* host, const rt_build_input& input, uint64_t primitive_count);
 
     const std::vector<Group>& groups() const { return groups_; }
@@ -52,7 +54,7 @@ class MortonOrder {
     const std::vector<Run>& runs() const { return runs_; }  // in leaf order
     const rt_prim* prims(rt_u32 group) const { return input_.prims + input_.groups[group].first; }
 
-    // Sorts the keys of a run, equal places as they came, and returns them. By any thread.
+    // Sorts the keys of a run (stable for equal positions) and returns them. Different runs may be sorted by different threads.
     const MortonKey* sort(const Run& run) const;
 
  private:

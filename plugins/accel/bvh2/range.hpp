@@ -1,4 +1,4 @@
-// range.hpp -- what a builder works on: boxes of primitives, ranges of them, and the rules by which ranges are split.
+// range.hpp -- the data that the builders work on: boxes, records, ranges of records, and the rules for splitting them.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,7 @@
 
 namespace bvh2 {
 
-// A box with its upper bounds negated, so that growing it is one minimum over eight floats. The fourth lanes hold nothing. 32
-// B.
+// A box with negated upper bounds: to grow it is one minimum over eight floats. The fourth lanes are unused. 32 bytes.
 struct alignas(32) Bounds {
     float lo[4] = {FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX}, neg_hi[4] = {FLT_MAX, FLT_MAX, FLT_MAX, FLT_MAX};
     void add(const Bounds& b) {
@@ -19,7 +18,7 @@ struct alignas(32) Bounds {
     float hi(int axis) const { return -neg_hi[axis]; }
 };
 
-// A primitive while the tree is built: its box, and its ref in the bits of lo[3]. neg_hi[3] is 0. 32 B.
+// A primitive during the build: its box, and its ref in the bits of lo[3]. neg_hi[3] is 0. 32 bytes.
 struct alignas(32) Record {
     float lo[4], neg_hi[4];
     uint32_t ref() const {
@@ -28,38 +27,40 @@ struct alignas(32) Record {
         return r;
     }
     void set_ref(uint32_t r) { std::memcpy(&lo[3], &r, sizeof r); }
-    // Twice the centroid: spares a multiplication, and nobody needs the half. Infinite for coordinates beyond FLT_MAX / 2.
+    // Twice the centroid, because no comparison needs the exact half and this saves a multiplication. Infinite for coordinates
+    // beyond FLT_MAX / 2.
     float centroid2(int axis) const { return lo[axis] - neg_hi[axis]; }
 };
 
-// Where many are read one after the other, fetched so many before their turn: by itself a processor looks less far ahead.
+// Loops over many elements prefetch this many elements ahead. The hardware prefetcher looks less far ahead.
 constexpr uint32_t kStreamAhead = 64;
 
-// Part of the primitives that will be one subtree. There are two buffers: a split moves a range from one to the other, which
-// needs neither swaps nor unpredictable branches.
+// A part of the primitives that becomes one subtree. A split moves a range from one of two buffers to the other; that needs
+// neither swaps nor unpredictable branches.
 struct Range {
     uint32_t begin = 0, end = 0;
-    uint32_t buffer = 0;  // 0 or 1: which one holds it
-    uint32_t depth = 0;   // nodes above it
+    uint32_t buffer = 0;  // which of the two buffers holds it, 0 or 1
+    uint32_t depth = 0;   // number of nodes above it
     Bounds box, centroids2;
     uint32_t count() const { return end - begin; }
 };
 
-// How ranges are split: by the surface area heuristic; along a space-filling curve, which is fast; or by the heuristic with
-// primitives split as well where that pays, which is slow and good.
+// How ranges are split. sah: by the surface area heuristic. morton: along a space-filling curve; builds fast. spatial: by the
+// heuristic, and primitives are split too where that pays; builds slowly and gives the best trees.
 enum class Method { sah, morton, spatial };
 
-// What a tree costs and where it stops.
+// The costs by which trees are judged, and the limits of a build.
 struct Rules {
     uint32_t max_leaf, bins;
     float traversal_cost, intersection_cost;
     Method method = Method::sah;
-    float duplicates = 0;  // references that spatial splits may add, as a share of the primitives
-    bool halves = false;   // by count, without the heuristic: what it gains is measured against this
+    float duplicates = 0;  // references that spatial splits may add, as a fraction of the number of primitives
+    bool halves = false;   // split by count, without the heuristic: the baseline that shows what the heuristic gains
 };
 
-// No leaf is deeper: from where the rest, halved by count, would just fit, ranges are halved. Scenes that pile primitives into
-// each other by the thousand or shrink geometrically would otherwise grow chains.
+// No leaf is deeper than this. Where halving the rest by count would only just stay within the limit, ranges are halved.
+// Without the limit, scenes with thousands of interpenetrating primitives or geometrically shrinking ones would make long
+// chains of nodes.
 constexpr uint32_t kMaxDepth = 64;
 
 inline uint32_t log2_ceil(uint32_t n) {
@@ -68,12 +69,12 @@ inline uint32_t log2_ceil(uint32_t n) {
     return bits;
 }
 
-// Whether there is depth to spare for more than halves.
+// True if the range is not so deep that it must be halved.
 inline bool depth_to_spare(const Rules& rules, const Range& range) {
     return !rules.halves && range.depth + log2_ceil(range.count()) < kMaxDepth;
 }
 
-// Whether bins may choose: their slices need centroids whose extent is a number.
+// True if the range may be binned. Slices need a finite extent of the centroids.
 inline bool may_bin(const Rules& rules, const Range& range) {
     bool finite = true;
     for (int a = 0; a < 3; ++a) finite = finite && range.centroids2.hi(a) - range.centroids2.lo[a] < FLT_MAX;
@@ -82,41 +83,41 @@ inline bool may_bin(const Rules& rules, const Range& range) {
 
 constexpr uint32_t kMaxBins = 32;
 
-// Few primitives need few bins: the sweeps over empty ones would cost more than they find.
+// Few primitives get few bins: sweeping empty bins would cost more than it finds.
 inline uint32_t bins_for(const Rules& rules, uint32_t primitive_count) {
     return std::min(rules.bins, 4 + primitive_count / 4);
 }
 
-// From a centroid to the number of its slice on each axis.
+// Maps a centroid to its slice number on each axis.
 struct Slices {
     Vec4 base, scale, last;
     uint32_t count;
 
     Slices(const Bounds& centroids2, uint32_t slice_count) : base(xyz(load(centroids2.lo))), count(slice_count) {
-        // An axis without extent (or with a subnormal one) gets a huge but finite scale, and all of it lies in slice 0.
+        // An axis without extent (or with a subnormal one) gets a huge finite scale, so that everything on it lies in slice 0.
         const Vec4 extent = splat(0.0f) - xyz(load(centroids2.lo) + load(centroids2.neg_hi));
         scale = min(splat(static_cast<float>(slice_count)) / extent, splat(FLT_MAX));
         last = splat(static_cast<float>(slice_count - 1));
     }
-    // As floats, not yet truncated.
+    // The slice numbers as floats, not yet truncated.
     Vec4 position(Vec4 centroid2) const { return min((centroid2 - base) * scale, last); }
 };
 
-// Counts and bounds of the primitives of each slice, on three axes at once.
+// Counts and bounds of the primitives in each slice, for all three axes.
 struct Bins {
     Bounds box[kMaxBins][3];
     alignas(16) uint32_t count[kMaxBins][4];
 };
 
-// Where a range is parted: primitives of slices below `bin` go left.
+// A split of a range: primitives in slices below `bin` go left.
 struct Split {
-    float cost = INFINITY;  // sum over both sides of half area (by AreaScale) times primitives; infinite: there is none
+    float cost = INFINITY;  // sum over both sides of half area (by AreaScale) times primitives; infinite: no split found
     int axis = 0;
     uint32_t bin = 0, left_count = 0;
     Bounds left, right;
 };
 
-// The two ranges of a split, but for the bounds of their centroids.
+// Sets the two ranges of a split, except the bounds of their centroids (left empty).
 inline void begin_split(const Range& range, const Split& split, Range& left, Range& right) {
     left.begin = range.begin;
     left.end = right.begin = range.begin + split.left_count;
@@ -128,8 +129,9 @@ inline void begin_split(const Range& range, const Split& split, Range& left, Ran
     left.centroids2 = right.centroids2 = Bounds{};
 }
 
-// Areas are compared within one node only, so they are taken of boxes scaled to the node's longest side: neither huge nor tiny
-// coordinates overflow or vanish. The little that is added to each side keeps lines and points from costing nothing.
+// Computes areas relative to the longest side of one node's box. Areas are compared within one node only, and with this scale
+// huge coordinates do not overflow and tiny ones do not vanish. A small padding of each side gives lines and points a cost
+// above zero.
 struct AreaScale {
     Vec4 scale, pad = splat(1e-5f);
     explicit AreaScale(const Bounds& node) {
@@ -137,7 +139,7 @@ struct AreaScale {
         for (int a = 0; a < 3; ++a) longest = std::max(longest, node.hi(a) - node.lo[a]);
         scale = splat(longest > 1.0f / FLT_MAX ? 1.0f / longest : FLT_MAX);
     }
-    // Negated, which areas do not mind.
+    // The negated side lengths; products of two are the same as without the sign.
     Vec4 sides(Vec4 lo, Vec4 neg_hi) const { return (lo + neg_hi) * scale - pad; }
     float half_area(const Bounds& box) const {
         alignas(16) float e[4];
@@ -146,7 +148,8 @@ struct AreaScale {
     }
 };
 
-// The child of larger surface comes first: it is the one visited more often, and so the one to lie beside its parent.
+// The child with the larger surface comes first: rays visit it more often, and the first child lies next to its parent in
+// memory.
 inline bool right_is_larger(const AreaScale& area, const Range& left, const Range& right) {
     return area.half_area(left.box) < area.half_area(right.box);
 }

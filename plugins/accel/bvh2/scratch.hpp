@@ -1,4 +1,4 @@
-// scratch.hpp -- memory that is filled before it is read.
+// scratch.hpp -- temporary memory of a build. It is not cleared.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -12,12 +12,13 @@
 
 namespace bvh2 {
 
-// Blocks that were given back, the latest last, for the next build: what lies at the end of the heap the system takes and
-// clears anew. Those of scenes up to about 150 000 primitives fit; a scene that is built again asks for the same ones.
+// Keeps freed blocks for the next build, in order of their release. Without it, memory at the end of the heap would go back to
+// the system, which clears the pages again for the next allocation. The blocks of scenes up to about 150 000 primitives fit.
+// Building the same scene again asks for blocks of the same sizes.
 class SpareScratch {
  public:
     static constexpr size_t kKept = size_t{24} << 20, kMost = 16;
-    static constexpr size_t kLeast = size_t{1} << 16;  // smaller ones the heap keeps itself
+    static constexpr size_t kLeast = size_t{1} << 16;  // in bytes; the heap itself keeps smaller blocks
 
     void* take(size_t bytes) {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -32,7 +33,7 @@ class SpareScratch {
         blocks_[count_++] = {p, bytes};
         sum_ += bytes;
     }
-    // Of the plugin, which is never unloaded; never destroyed.
+    // The plugin's only instance. It is never destroyed, because the plugin is never unloaded.
     static SpareScratch& instance() {
         static SpareScratch& spare = *new SpareScratch;
         return spare;
@@ -56,8 +57,8 @@ class SpareScratch {
     size_t count_ = 0, sum_ = 0;
 };
 
-// Memory that nobody clears first: its pages are touched by the threads that fill them, and in large pages where the system has
-// them (the faults of small ones are a tenth of a build).
+// Uninitialised memory for `count` elements. The threads that fill it touch its pages first. It uses large pages where the
+// system offers them, because page faults of small ones take a tenth of a build. Throws std::bad_alloc.
 template <class T>
 class Scratch {
  public:
@@ -70,7 +71,7 @@ class Scratch {
         data_ = std::aligned_alloc(alignment, bytes_);
         if (!data_) throw std::bad_alloc();
 #ifdef __linux__
-        if (alignment == kLargePage) madvise(data_, bytes_, MADV_HUGEPAGE);  // advice: may fail
+        if (alignment == kLargePage) madvise(data_, bytes_, MADV_HUGEPAGE);  // only advice: may fail
 #endif
     }
     Scratch(const Scratch&) = delete;

@@ -1,27 +1,28 @@
-// small_range.inl -- the surface area heuristic over every plane between two primitives, for the few that a range has near the
-// leaves: there a sort in registers costs less than bins, and finds the best.
-// Included once an instruction set, by kernels*.cpp.
+// small_range.inl -- the surface area heuristic over every plane between two primitives, for ranges of at most kSmall
+// primitives. For so few, sorting in registers costs less than binning, and it finds the best plane.
+// Each kernels*.cpp includes this file once, for its instruction set.
 
 namespace bvh2 {
 namespace BVH2_ISA {
 
-constexpr uint32_t kSmall = 8;  // what the tag of a key can number
+constexpr uint32_t kSmall = 8;  // inputs of the sorting network; an index fits into the tag of a key
 
 struct SmallSplit {
-    float cost = INFINITY;  // as Split's
+    float cost = INFINITY;  // as in Split
     uint32_t axis = 0, left_count = 0;
-    alignas(16) uint32_t order[kSmall][4];  // [k][axis]: the k-th primitive by centroid
+    alignas(16) uint32_t order[kSmall][4];  // order[k][axis]: index of the k-th primitive by centroid on that axis
 };
 
-// Each lane of a and b: the smaller one to a, the larger one to b.
+// In each lane, moves the smaller value to a and the larger value to b.
 inline void put_in_order(Vec4& a, Vec4& b) {
     const Vec4 smaller = bvh2::min(a, b);
     b = bvh2::max(a, b);
     a = smaller;
 }
 
-// Sorts on three axes at once, one a lane, by a network (Batcher 1968, odd-even merge): no branch depends on a key. What tells
-// the primitives apart is in the keys' lowest bits, which costs equal and nearly equal ones their order.
+// Sorts by the centroids on all three axes at once, one axis a lane. It is a sorting network (Batcher 1968, odd-even merge), so
+// no branch depends on a key. The index of a primitive replaces the lowest bits of its keys. Keys that differ only in these
+// bits lose their true order.
 inline void sort_small(const Record* records, uint32_t count, uint32_t order[kSmall][4]) {
     const Vec4 least = splat(-FLT_MAX), most = splat(FLT_MAX);
     Vec4 key[kSmall];
@@ -46,10 +47,10 @@ inline void sort_small(const Record* records, uint32_t count, uint32_t order[kSm
     for (uint32_t k = 0; k < count; ++k) store_tags(order[k], key[k]);
 }
 
-// 2 <= count <= kSmall. `range` is the box of them all, `area` made of it.
+// Finds the best split of 2 <= count <= kSmall records. `range` is the box of all of them, and `area` is made from it.
 inline void split_small(const Record* records, uint32_t count, const Bounds& range, const AreaScale& area, SmallSplit& split) {
     sort_small(records, count, split.order);
-    // Within the unit cube, so that areas need neither scale nor sign.
+    // Map the boxes to the unit cube, so that the areas need neither a scale nor a sign.
     const Vec4 corner = xyz(load(range.lo));
     const Box8 base = point(corner), scale = join(area.scale, area.scale);
     Box8 unit[kSmall];

@@ -1,15 +1,15 @@
-// sorted_run.hpp -- the binary tree of primitives that are sorted along a curve, in one sweep.
+// sorted_run.hpp -- builds the binary tree of sorted primitives in one sweep.
 #pragma once
 #include "morton.hpp"
 
 namespace bvh2 {
 
-// What is below a node that is not yet made.
+// A finished subtree without a parent so far.
 struct SortedSubtree {
     Vec4 lo, neg_hi;
-    rt_u32 code;     // of a child; RT_NONE: so few primitives that they are one leaf
-    uint32_t begin;  // first primitive
-    uint32_t depth;  // nodes to the deepest leaf
+    rt_u32 code;     // child code; RT_NONE: at most max_leaf primitives, which may still join a larger leaf
+    uint32_t begin;  // index of its first primitive in the run
+    uint32_t depth;  // number of nodes on the path to the deepest leaf
 };
 
 inline void set_child(bvh2_node& node, int which, Vec4 lo, Vec4 neg_hi, rt_u32 code) {
@@ -22,18 +22,19 @@ inline void set_child(bvh2_node& node, int which, Vec4 lo, Vec4 neg_hi, rt_u32 c
     (which == 0 ? node.pad0 : node.pad1) = 0;
 }
 
-// Writes the refs of a run, and its nodes from nodes[0] on, children before parents; a leaf holds what fits into one. Returns
-// the root and counts nodes.
+// Builds the tree of a run. Writes the refs to `refs`, and the nodes from nodes[0] on, children before parents. Up to max_leaf
+// primitives become one leaf. Returns the root, and the number of nodes in node_count.
 //
-// A key lies between two nodes where it differs from its neighbours most: subtrees wait on a stack, each with where the key
-// behind it differs from its last one, until something differs in a higher bit (the tree is the Cartesian one of these
-// differences). Equal places differ by the numbers of primitives in the run, so they are parted about evenly.
+// The tree is the Cartesian tree of the differences between neighbouring keys: a node splits where neighbouring keys differ in
+// the highest bit. Each subtree stays on a stack, with the difference between its last key and the next one, until a difference
+// in a higher bit follows. Keys with equal positions differ by their index in the run, so such primitives are split into nearly
+// even halves.
 inline SortedSubtree sweep(const MortonKey* keys, uint32_t count, const rt_prim* prims, uint32_t first_leaf, uint32_t max_leaf,
                            rt_u32* refs, bvh2_node* nodes, uint32_t& node_count) {
     constexpr uint32_t kAhead = 16;
     struct Waiting {
         SortedSubtree tree;
-        uint64_t differs;  // from what comes behind
+        uint64_t differs;  // difference (xor) between its last key and the next key
     } stack[Curve::kMaxBits + kPositionBits + 2];
     uint32_t height = 0, made = 0;
     const auto finish = [&](SortedSubtree& tree, uint32_t end) {

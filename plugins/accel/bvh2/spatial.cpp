@@ -8,16 +8,16 @@
 namespace bvh2 {
 namespace {
 
-// Children whose boxes overlap by less, relative to their own or to the group's box, are not worth a look for a plane to cut
-// by.
-// The first one keeps small triangles from being cut for a gain at one node that their parts cost below: with 0.2 in its place,
-// all of salle_de_bain costs a hundredth more than if nothing is cut.
+// Spatial splits are tried only if the children's boxes overlap by at least these fractions of the node's own and of the
+// group's area.
+// The first value keeps small triangles whole where cutting them would gain at one node and cost more below it. With 0.2
+// instead, the whole of salle_de_bain costs 1 % more than without any cuts.
 constexpr float kLeastOverlap = 0.5f, kLeastOverlapOfRoot = 1e-5f;
-// Where no plane is worth cutting by, the kernels do better with the rest of ranges this small.
+// Ranges of at most this many primitives that are not worth a spatial split are built by the kernels, which do better there.
 constexpr uint32_t kFew = 8;
 constexpr uint32_t kChunk = 8192;
 
-// add(chunk's records, its own sum) for all chunks on all cores, then their sum in order.
+// Calls add(chunk's records, chunk's sum) for all chunks on all cores, and returns the sums merged in chunk order.
 template <class Sum, class Add, class Merge>
 Sum over_chunks(const rt_host* host, const Record* first, const Record* end, const Sum& none, Add&& add, Merge&& merge) {
     const auto count = static_cast<uint32_t>(end - first), chunks = (count + kChunk - 1) / kChunk;
@@ -53,7 +53,7 @@ Bounds both(const Bounds& a, const Bounds& b) {
     return box;
 }
 
-// Fills one side of a split, and bounds it.
+// Writes the records of one side of a split, and computes their bounds.
 class Side {
  public:
     Side(Record* next, int step) : next_(next), step_(step) {}
@@ -79,7 +79,8 @@ class Side {
     Bounds box_, centroids2_;
 };
 
-// Sides where the parts of a cut triangle go; whole to one of them where that is cheaper (section 4.4 of the paper).
+// Distributes records over both sides of a spatial split. A triangle that crosses the plane is cut in two, or goes whole to one
+// side where that is cheaper (section 4.4 of the paper).
 class Cutter {
  public:
     Cutter(const SpatialSplit& split, const Planes& planes, const AreaScale& area, const rt_geometry& geometry)
@@ -100,7 +101,7 @@ class Cutter {
         const float cut = left_area_ * left_count_ + right_area_ * right_count_;
         const float to_left = area_.half_area(both(split_.left, whole)) * left_count_ + right_area_ * (right_count_ - 1);
         const float to_right = left_area_ * (left_count_ - 1) + area_.half_area(both(split_.right, whole)) * right_count_;
-        // What goes whole counts for the next ones.
+        // The box and counts of the sides then apply to all later records.
         if (to_left < cut && to_left <= to_right) {
             split_.left.add(whole);
             left_area_ = area_.half_area(split_.left);
@@ -127,7 +128,7 @@ class Cutter {
     float left_area_, right_area_, left_count_, right_count_;
 };
 
-// Gives both parts, which lie at the ends of the room, their shares of what is left of it.
+// Divides the unused room between both parts by their sizes. The parts lie at the two ends of the room.
 void share_room(const RoomyRange& from, RoomyRange& left, RoomyRange& right) {
     const uint64_t count = uint64_t{left.range.count()} + right.range.count();
     const uint64_t spare = right.range.begin - left.range.end;
@@ -142,7 +143,7 @@ SpatialSplitter::SpatialSplitter(const rt_host* host, const Workspace& workspace
                                  const Bounds& root)
     : host_(host), workspace_(workspace), geometry_(geometry), root_scale_(root), root_area_(root_scale_.half_area(root)) {}
 
-// The best plane between bins, if there is any.
+// Finds the best plane between bins, if there is one.
 void SpatialSplitter::find_object_split(const Range& range, const AreaScale& area, Split& split) const {
     if (!may_bin(workspace_.rules, range)) return;
     const Record* const records = workspace_.records[range.buffer];
@@ -183,7 +184,7 @@ bool SpatialSplitter::cut(const RoomyRange& from, const AreaScale& area, const S
         return false;
     if (range.count() <= rules.max_leaf && rules.traversal_cost * whole + rules.intersection_cost * split.cost >=
                                                rules.intersection_cost * static_cast<float>(range.count()) * whole)
-        return false;  // a leaf is better
+        return false;  // a leaf is cheaper
 
     Record* const to = workspace_.records[range.buffer ^ 1];
     Side left_side(to + from.room_begin, 1), right_side(to + from.room_end - 1, -1);
@@ -228,7 +229,7 @@ void SpatialSplitter::split(const RoomyRange& from, RoomyRange& left, RoomyRange
     share_room(from, left, right);
 }
 
-// Of a tree that is being built: what comes next.
+// The next free positions of a tree that is being built, and its depth so far.
 struct SpatialSplitter::Growth {
     uint32_t node, leaf, depth = 0;
 };

@@ -20,7 +20,7 @@ Planes::Planes(const Bounds& box) {
     for (int a = 0; a < 3; ++a) {
         base_[a] = box.lo[a];
         step_[a] = box.hi(a) / kSpatialBins - box.lo[a] / kSpatialBins;
-        scale_[a] = step_[a] > 1.0f / FLT_MAX ? 1.0f / step_[a] : 0.0f;  // a flat box lies in slice 0
+        scale_[a] = step_[a] > 1.0f / FLT_MAX ? 1.0f / step_[a] : 0.0f;  // a flat box lies in slice 0 whole
     }
 }
 
@@ -65,11 +65,11 @@ Bounds clip(const rt_packed_prim& triangle, const Bounds& part, int axis, float 
     Bounds box = part;
     for (int a = 0; a < 3; ++a) {
         const float least = std::max(part.lo[a], lo[a]), most = std::min(part.hi(a), hi[a]);
-        if (!(least <= most)) continue;  // touched by rounding only: stays as large as it was
+        if (!(least <= most)) continue;  // only rounding touches this slab: keep the bounds of `part`
         box.lo[a] = least;
         box.neg_hi[a] = -most;
     }
-    // What the planes say holds for every part.
+    // The planes limit every part.
     const float least = std::max(part.lo[axis], std::min(from, part.hi(axis))),
                 most = std::min(part.hi(axis), std::max(to, part.lo[axis]));
     box.lo[axis] = std::min(std::max(box.lo[axis], least), most);

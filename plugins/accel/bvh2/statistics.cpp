@@ -63,7 +63,7 @@ Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nod
             node_area += parts[at].node_area;
             primitive_area += parts[at].primitive_area;
         }
-        if (!(whole > 0)) continue;  // no ray meets a point or a line
+        if (!(whole > 0)) continue;  // no ray hits a point or a line
         cost += groups[g].count * (rules.traversal_cost * node_area + rules.intersection_cost * primitive_area) / whole;
         primitives += groups[g].count;
     }

@@ -1,5 +1,5 @@
 // subtree.inl -- builds the tree of one range on one thread, without allocating.
-// Included once an instruction set, by kernels*.cpp.
+// Each kernels*.cpp includes this file once, for its instruction set.
 
 namespace bvh2 {
 namespace BVH2_ISA {
@@ -37,7 +37,7 @@ class Builder {
         return at;
     }
 
-    // False: a leaf. Else `left` and `right` are what the range becomes, moved where they belong.
+    // Splits a range and moves its records to the two parts. Returns false if the range should become a leaf.
     bool split(const Range& range, const AreaScale& area, Range& left, Range& right) {
         const uint32_t count = range.count();
         Record* const from = w_.records[range.buffer];
@@ -62,7 +62,8 @@ class Builder {
         return true;
     }
 
-    // `records` hold the range, whose first position in leaf order is `first`; they are reordered in place.
+    // Builds the tree of at most kSmall records, and reorders them in place. `first` is the position of the first record in its
+    // buffer.
     uint32_t build_small(Record* records, uint32_t first, uint32_t count, uint32_t depth, const Bounds& box) {
         if (count == 1) return make_small_leaf(records, first, 1, depth);
         const AreaScale area(box);
@@ -72,7 +73,7 @@ class Builder {
         if (leaf_is_better(count, area.half_area(box), split.cost) ||
             (!(split.cost < INFINITY) && count <= w_.rules.max_leaf))
             return make_small_leaf(records, first, count, depth);
-        if (split.left_count == 0) split.left_count = count / 2;  // areas that are no numbers
+        if (split.left_count == 0) split.left_count = count / 2;  // the areas are NaN
         Record sorted[kSmall];
         for (uint32_t i = 0; i < count; ++i) copy(sorted + i, records[split.order[i][split.axis]]);
         Box8 left = no_box(), right = no_box();
@@ -116,7 +117,7 @@ class Builder {
         (which == 0 ? node.pad0 : node.pad1) = 0;
     }
 
-    // half_area: of the range. split_cost: as Split's.
+    // half_area is that of the range; split_cost is as in Split.
     bool leaf_is_better(uint32_t count, float half_area, float split_cost) const {
         if (count > w_.rules.max_leaf) return false;
         const float as_leaf = w_.rules.intersection_cost * static_cast<float>(count) * half_area;
@@ -134,8 +135,8 @@ class Builder {
     }
 
     const Workspace& w_;
-    uint32_t next_;              // node
-    const uint32_t leaf_shift_;  // from the position of a record to that in leaf order
+    uint32_t next_;  // index of the next free node
+    const uint32_t leaf_shift_;  // added to a record's position gives its position in leaf order
     uint32_t depth_ = 0;
     Bins bins_;
 };
@@ -153,7 +154,7 @@ void share_roots(const float left[kRoots], const float right[2 * kRoots], Shared
 }
 
 void assign_places(Suits suits[], uint32_t count, uint32_t place_of[]) {
-    Box8 open = all_eight(FLT_MAX);  // what nothing exceeds; least for places that are taken
+    Box8 open = all_eight(FLT_MAX);  // upper limit per place: FLT_MAX if the place is free, -FLT_MAX if taken
     for (uint32_t left = count; left > 0; --left) {
         Box8 even = load_box(suits[0].place), odd = all_eight(-FLT_MAX);
         for (uint32_t i = 1; i + 1 < count; i += 2) {

@@ -1,5 +1,5 @@
-// vec4.hpp -- four floats in a register: SSE2 where there is one, else plain loops. Both give the same bits: the order of every
-// operation is the same, and min and max are `a < b ? a : b`, which is what MINPS and MAXPS do.
+// vec4.hpp -- four floats in a register, by SSE2 where it exists, else by plain loops. Both variants give the same bits: all
+// operations have the same order, and min and max are `a < b ? a : b`, as in MINPS and MAXPS.
 #pragma once
 #include <cfloat>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace bvh2 {
 
-// Has memory sent for what will be read.
+// Prefetches the cache line at p.
 inline void fetch(const void* p) {
 #ifdef __GNUC__
     __builtin_prefetch(p);
@@ -58,15 +58,15 @@ inline Vec4 min(Vec4 a, Vec4 b) {
 inline Vec4 max(Vec4 a, Vec4 b) {
     return {_mm_max_ps(a.m, b.m)};
 }
-// All bits of a lane where a < b, else none. False for NaN.
+// A mask with all bits of a lane set where a < b, else none. NaN gives no bits.
 inline Vec4 less(Vec4 a, Vec4 b) {
     return {_mm_cmplt_ps(a.m, b.m)};
 }
-// mask ? a : b, per lane.
+// mask ? a : b, lane by lane.
 inline Vec4 select(Vec4 mask, Vec4 a, Vec4 b) {
     return {_mm_or_ps(_mm_and_ps(mask.m, a.m), _mm_andnot_ps(mask.m, b.m))};
 }
-// Where a < b: a to b and index_a, which is not below any index so far, to index_b.
+// Where a < b: b = a and index_b = index_a. index_a must not be below any index so far.
 inline void keep_less(Vec4 a, Vec4 index_a, Vec4& b, Vec4& index_b) {
     index_b = max(index_b, {_mm_and_ps(less(a, b).m, index_a.m)});
     b = min(a, b);
@@ -75,19 +75,20 @@ inline void keep_less(Vec4 a, Vec4 index_a, Vec4& b, Vec4& index_b) {
 inline uint32_t any(Vec4 mask) {
     return _mm_movemask_ps(mask.m) != 0;
 }
-// x y z 0, whatever bits the fourth lane held (an integer, say).
+// (x, y, z, 0), whatever bits the fourth lane held (an integer, for example).
 inline Vec4 xyz(Vec4 a) {
     return {_mm_and_ps(a.m, _mm_castsi128_ps(_mm_setr_epi32(-1, -1, -1, 0)))};
 }
-// Lanes 0..2 towards zero, for lanes within [0, 32767].
+// Truncates lanes 0..2. They must be within [0, 32767].
 inline void to_index(Vec4 a, uint32_t index[3]) {
     const __m128i i = _mm_cvttps_epi32(a.m);
     index[0] = static_cast<uint32_t>(_mm_extract_epi16(i, 0));
     index[1] = static_cast<uint32_t>(_mm_extract_epi16(i, 2));
     index[2] = static_cast<uint32_t>(_mm_extract_epi16(i, 4));
 }
-// Tags tell equal numbers apart: the lowest bits of every lane become those of `tag` (+ 0, 1, 2, 3 in tag_lanes). What is about
-// 0 becomes the least normal number first: where threads treat denormal ones as 0 (Embree's do) their tags would be lost.
+// Tags make equal numbers distinct: the lowest bits of every lane become those of `tag` (tag_lanes adds 0, 1, 2, 3 to it by
+// lane). Zeros and denormals first become the smallest normal number, because threads that flush denormals to 0 (as Embree's
+// do) would lose their tags.
 constexpr uint32_t kTags = 64;
 inline __m128i room_for_tag(Vec4 a) {
     const __m128i bits = _mm_castps_si128(a.m), exponent = _mm_set1_epi32(0x7f800000), least = _mm_set1_epi32(0x00800000);
@@ -106,14 +107,14 @@ inline void store_tags(uint32_t* p, Vec4 a) {
     _mm_store_si128(reinterpret_cast<__m128i*>(p),
                     _mm_and_si128(_mm_castps_si128(a.m), _mm_set1_epi32(static_cast<int>(kTags) - 1)));
 }
-// From rows a, b, c: x = (a.x b.x c.x ?) and so on.
+// Transposes the rows a, b, c: x = (a.x b.x c.x ?), and so on.
 inline void transpose3(Vec4 a, Vec4 b, Vec4 c, Vec4& x, Vec4& y, Vec4& z) {
     const __m128 low = _mm_unpacklo_ps(a.m, b.m), high = _mm_unpackhi_ps(a.m, b.m);
     x.m = _mm_movelh_ps(low, c.m);
     y.m = _mm_shuffle_ps(low, c.m, _MM_SHUFFLE(1, 1, 3, 2));
     z.m = _mm_shuffle_ps(high, c.m, _MM_SHUFFLE(2, 2, 1, 0));
 }
-// Four unsigned counters, each below 2^31, as floats.
+// Four unsigned counters, each below 2^31; to_float() relies on this limit.
 struct Count4 {
     __m128i m;
 };
@@ -174,7 +175,7 @@ inline Vec4 min(Vec4 a, Vec4 b) {
 inline Vec4 max(Vec4 a, Vec4 b) {
     return each_lane([&](int i) { return a.v[i] > b.v[i] ? a.v[i] : b.v[i]; });
 }
-// A mask's lane is 1 or 0 here: only select() reads it.
+// In this variant a lane of a mask is 1 or 0. Only select() and any() read masks.
 inline Vec4 less(Vec4 a, Vec4 b) {
     return each_lane([&](int i) { return a.v[i] < b.v[i] ? 1.0f : 0.0f; });
 }

@@ -17,7 +17,7 @@ class Writer {
         std::sort(tops_.begin(), tops_.end());
     }
 
-    // Gives the nodes below a node their places, in depth-first order from `next` on; returns the next free one.
+    // Assigns new indices to all nodes below `code`, in depth-first order from `next` on. Returns the next free index.
     rt_u32 place(rt_u32 code, rt_u32 next) {
         if (code & BVH2_LEAF) return next;
         const uint32_t top = top_of(code);
@@ -73,7 +73,7 @@ class Writer {
     }
 
     const BinaryTree& tree_;
-    std::vector<rt_u32> place_, top_place_;  // of tasks, of tops
+    std::vector<rt_u32> place_, top_place_;  // first new index of each task; new index of each top
     std::vector<Place> tasks_by_begin_, tops_;
 };
 

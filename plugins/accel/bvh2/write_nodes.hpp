@@ -1,4 +1,4 @@
-// write_nodes.hpp -- a finished binary tree, from the builder's scattered places into the host's memory.
+// write_nodes.hpp -- copies a finished binary tree from the builder's arrays into the host's memory.
 #pragma once
 #include <vector>
 
@@ -12,7 +12,8 @@ struct Written {
     std::vector<rt_u32> roots;  // of groups, ascending
 };
 
-// Allocates slot 0, writes all trees depth-first, each group's behind the last one's, and reports the roots.
+// Allocates slot 0 of `out`, writes the trees of all groups there in depth-first order, one group after the other, and reports
+// the roots. The host owns the nodes.
 Written write_nodes(const rt_host* host, const BinaryTree& tree, const rt_build_output* out);
 
 }  // namespace bvh2

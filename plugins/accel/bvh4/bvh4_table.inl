@@ -1,8 +1,9 @@
-// bvh4_table.inl -- bounding volume hierarchy of four children a node, for one ray at a time on GPUs: what of bvh8.cpp, which
-// includes it, is this plugin's own.
+// bvh4_table.inl -- the parts of bvh8.cpp (which includes this file) that differ for bvh4: a BVH with four children a node, for
+// single rays on GPUs.
 //
-// bvh8's builder, of another width: 128 bytes a node, 66 to 68 a triangle with the triangle itself. A GPU's thread has registers
-// for four boxes at once, fetched by seven loads; in a binary tree it would wait for twice as many fetches, one after the other.
+// It uses bvh8's builder with another width. A node takes 128 bytes; a triangle takes 66 to 68 bytes, its own record included.
+// A GPU thread has registers for four boxes at once, which seven loads fetch. In a binary tree, the thread would wait for twice
+// as many dependent fetches.
 constexpr rt_cl_file kFiles[] = {
 #include "bvh4.inc"
 };

@@ -1,4 +1,5 @@
-// node_slots.cpp -- which child stands where in a node: the packets' order by signs, of two axes, since there are four slots.
+// node_slots.cpp -- chooses the slot of each child in a node. With four slots, the order that packets use (by direction signs)
+// covers two axes.
 #include "node_slots.hpp"
 
 #include <algorithm>
@@ -7,10 +8,10 @@
 namespace bvh8 {
 namespace {
 
-// Bit 0 of a slot: the child lies on the high side in x, bit 1: in y. Of all children and slots left over, the pair goes
-// together whose child lies farthest towards its side.
+// Assigns slots greedily. Bit 0 of a slot means the high side in x, bit 1 the high side in y. The best pair of all remaining
+// children and slots is assigned first; a child suits a slot better the farther it lies towards that side.
 void assign_slots(const Slot children[], uint32_t count, uint32_t slot_of[]) {
-    double at[BVH8_WIDTH][2], middle[2] = {0, 0};  // twice the centres; no float overflows
+    double at[BVH8_WIDTH][2], middle[2] = {0, 0};  // twice the centres; doubles, so that nothing overflows
     for (uint32_t i = 0; i < count; ++i)
         for (int a = 0; a < 2; ++a) {
             at[i][a] = double{children[i].box[a]} + children[i].box[3 + a];

@@ -1,16 +1,16 @@
-// bvh8.cpp -- bounding volume hierarchy of eight children a node, the usual structure on a CPU: the plugin's table, and its
-// entry.
+// bvh8.cpp -- the plugin of the BVH with eight children a node, the usual structure on a CPU: its table and its build entry.
 //
-// Binary tree by bvh2's builder, its nodes merged by the surface area heuristic, 224 bytes a node, 58 to 60 a triangle with the
-// triangle itself. Packets that keep together are tested by their bounds against all children at once, and so is a single ray;
-// the tree is shallow. A tree of a few nodes is traced faster as bvh2, whose packets need no bounds.
+// bvh2's builder makes a binary tree, and its nodes are merged by the surface area heuristic. A node takes 224 bytes; a
+// triangle takes 58 to 60 bytes, its own record included. Both a single ray and the bounds of a coherent packet are tested
+// against all eight children at once. The tree is shallow. A tree of only a few nodes is traced faster as bvh2, because packets
+// there need no bounds.
 #include "wide_build.hpp"
 #include "wide_levels.hpp"
 
 namespace bvh8 {
 namespace {
 
-// bvh4 is this plugin once more, of another width: its folder says what differs.
+// bvh4 compiles this file too, with another width. Its folder holds the differences.
 #if BVH8_WIDTH == 4
 #include "bvh4_table.inl"
 #else
@@ -23,18 +23,18 @@ constexpr const char *kId = "bvh8", *kName = "8-wide BVH (binned SAH)", *kStack 
 constexpr rt_cl_file kTypes = rt::file(kFiles, "bvh8_types.h"), kTraversal = rt::file(kFiles, "bvh8.cl");
 constexpr rt::Traits kTraits = rt::Traits().can(RT_TRAVERSES_STREAMS | RT_SPLITS_INCOHERENT).merit(1.4f, 1.17f);
 
-// How a CPU traces packets whose rays part.
+// How a CPU traces diverging packets: as packets, or as single rays.
 constexpr int kIncoherent = kOwnParams;
 enum Incoherent { kAuto, kPackets, kSingle };
 constexpr const char* kIncoherentWays[] = {"auto", "packets", "single", nullptr};
-// About where a tree outgrows a core's own cache, measured with diffuse rays and frames (docs/performance.md). With 2 MiB of it
-// and a slow third one (Sapphire Rapids) models of up to 70'000 triangles are traced faster together, those of 86'000 and
-// 100'000 as fast from close by and 1.1 to 1.3 times as fast alone from afar, those of a million 1.2 to 1.6 times as fast
-// alone.
+// Size from which packets that diverge are traced as single rays. Trees of about this size outgrow a core's own cache. Measured
+// with diffuse rays and frames (docs/performance.md) on Sapphire Rapids, with 2 MiB of that cache and a slow third level:
+// models of up to 70'000 triangles are traced faster as packets. At 86'000 and 100'000 triangles, single rays are as fast from
+// close by, and 1.1 to 1.3 times as fast from afar. At a million, single rays are 1.2 to 1.6 times as fast.
 constexpr uint64_t kTogether = 75'000;  // primitives
-// Leaves of the kernels' own measure: four triangles are tested by one ray at the price of one, and a packet's bounds spare it
-// most leaves. Against leaves of four at a cost of 1, measured over the twelve views of the suite `cpu`: diffuse rays 1.05
-// times as fast, shadow rays 1.07, primary rays 1.03, nodes a third fewer.
+// Leaf size and cost that suit the kernels: a ray tests four triangles at the price of one, and the bounds of a packet spare it
+// most leaves. Compared with leaves of four at a cost of 1, over the twelve views of the suite `cpu`: diffuse rays are 1.05
+// times as fast, shadow rays 1.07, primary rays 1.03, and there are a third fewer nodes.
 constexpr int kLeafSize = BVH8_LEAF_MAX;
 constexpr double kLeafCost = 0.4;
 #endif

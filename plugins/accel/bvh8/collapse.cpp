@@ -12,24 +12,25 @@ bool is_leaf(rt_u32 code) {
     return (code & BVH2_LEAF) != 0;
 }
 
-// Added to each side, so that lines and points do not cost nothing: too little to matter to what has an area.
+// Added to each side length, so that lines and points cost more than nothing. Too small to matter for anything that has an
+// area.
 constexpr float kLeast = 1e-12f;
 
 using bvh2::Vec4;
 
-// Halves first: no length overflows.
+// Halves the coordinates before it subtracts them, so that no length overflows.
 float half_area(Vec4 lo, Vec4 hi, float scale) {
     const Vec4 half = bvh2::splat(0.5f);
     alignas(16) float e[4];
     bvh2::store(e, bvh2::splat(kLeast) + bvh2::splat(scale) * (half * bvh2::xyz(hi) - half * bvh2::xyz(lo)));
     return e[0] * e[1] + e[2] * (e[0] + e[1]);
 }
-// Of the box around both.
+// Half area of the box around both children.
 float half_area(const bvh2_node& node, float scale) {
     return half_area(bvh2::min(bvh2::load_any(node.box1), bvh2::load_any(node.box0)),
                      bvh2::max(bvh2::load_any(node.box1 + 3), bvh2::load_any(node.box0 + 3)), scale);
 }
-// A seventh number is read.
+// Reads seven numbers.
 float half_area(const float box[6], float scale) {
     return half_area(bvh2::load_any(box), bvh2::load_any(box + 3), scale);
 }
@@ -46,7 +47,7 @@ void Collapse::decide_tops(const bvh2::BinaryTree& tree) const {
 
 void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     bvh2_node& node = nodes_[binary];
-    float left[bvh2::kRoots] = {}, right[2 * bvh2::kRoots] = {};  // beyond BVH8_WIDTH nobody looks
+    float left[bvh2::kRoots] = {}, right[2 * bvh2::kRoots] = {};  // entries from BVH8_WIDTH on are not read
     uint32_t count = 0;
     rt_u32 first = RT_NONE;
     bool may_be_leaf = true;
@@ -70,7 +71,7 @@ void Collapse::decide(rt_u32 binary, float scale, rt_u32 more_bits) const {
     may_be_leaf = may_be_leaf && count <= costs_.max_leaf;
 
     bvh2::SharedRoots shared;
-    if (is_leaf(node.child0) && is_leaf(node.child1)) {  // two roots, however many there may be
+    if (is_leaf(node.child0) && is_leaf(node.child1)) {  // two leaves are two roots, even if more are allowed
         std::fill_n(shared.cost, bvh2::kRoots, left[0] + right[bvh2::kRoots]);
         std::fill_n(shared.left, bvh2::kRoots, 1.0f);
     } else {

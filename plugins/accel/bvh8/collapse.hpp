@@ -1,57 +1,61 @@
-// collapse.hpp -- which nodes of a binary tree become nodes of the wide one: the cheapest choice by the surface area heuristic,
-// found by dynamic programming from the leaves up (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray Traversal on GPUs
-// Through Compressed Wide BVHs", section 3). Subtrees are decided by the threads that built them, while caches hold them.
+// collapse.hpp -- decides which nodes of a binary tree become nodes of the wide tree. It finds the cheapest choice by the
+// surface area heuristic, by dynamic programming from the leaves up (Ylitie, Karras, Laine 2017, "Efficient Incoherent Ray
+// Traversal on GPUs Through Compressed Wide BVHs", section 3). The thread that built a subtree also decides it, while its
+// caches hold the nodes.
 #pragma once
 #include "builder.hpp"
 #include "rt_plugin.h"
-// after rt_types.h, whose types it uses:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "bvh8_types.h"
 
 namespace bvh8 {
 
-// What the wide tree costs a ray: a node, however many children it has, and a primitive.
+// The costs of the wide tree to a ray: of a node (whatever its number of children) and of a primitive.
 struct Costs {
     float node, primitive;
     uint32_t max_leaf;
 };
 
-// What stands in a slot of a wide node.
+// One child of a wide node: a leaf or a node.
 struct Slot {
-    const float* box;  // lo, hi; a seventh number may be read
-    rt_u32 leaf;       // BVH8_EMPTY: it is a node, that of:
-    rt_u32 binary;     // node of the binary tree
+    const float* box;  // lo.xyz, hi.xyz; a seventh number may be read
+    rt_u32 leaf;       // BVH8_EMPTY: the child is a node, made from `binary`
+    rt_u32 binary;     // index of a node of the binary tree
 };
 
-// What was decided about a binary node stands in the node itself, in the places that its layout leaves free:
+// The decision about a binary node. It is stored in the node's own padding:
 //   pad0  position of the first primitive below, in leaf order
-//   pad1  bits 3 (i - 2) .. +2, i = 2..8: of i roots to be had from it, how many the left child has; 0: no better than i - 1
-//         bits 21..23: primitives below, if they may be one leaf, else 0;  bit 24: one root is that leaf;  bit 25: above tasks
+//   pad1  three bits from bit 3 (i - 2) on, for i = 2..8: how many of i roots come from the left child;
+//             0: i roots are no cheaper than i - 1
+//         bits 21..23: number of primitives below, if they may form one leaf, else 0
+//         bit 24: the cheapest single root is that leaf
+//         bit 25: the node is above the tasks
 struct Decision {
     static constexpr rt_u32 kIsLeaf = 1u << 24, kIsTop = 1u << 25;
     static uint32_t left_of(rt_u32 bits, uint32_t roots) { return bits >> 3 * (roots - 2) & 7; }
     static uint32_t count(rt_u32 bits) { return bits >> 21 & 7; }
 };
 
-// What is below a binary node can be had as at most i + 1 roots for cost[i]. Costs are relative to the group's root box, whose
-// longest side is taken as 1.
+// cost[i] is the cost of the subtree below a binary node if it is cut into at most i + 1 roots. The unit of area is the square
+// of the longest side of the group's box.
 struct RootCosts {
-    float cost[bvh2::kRoots];  // of BVH8_WIDTH in use the last one is that of one root less, for a whole vector
+    float cost[bvh2::kRoots];  // padded to a whole vector: entry BVH8_WIDTH - 1 repeats the one before
 };
 
 class Collapse {
  public:
-    // Of trees whose nodes and their costs stand at the same places.
+    // The arrays must have the same order: root_costs[i] belongs to nodes[i]. Both must outlive this object.
     Collapse(bvh2_node* nodes, RootCosts* root_costs, const Costs& costs)
         : nodes_(nodes), root_costs_(root_costs), kernels_(bvh2::kernels()), costs_(costs) {}
 
-    // For every task as soon as it is built, on any thread.
+    // Decides all nodes of a task. Call it for every task after its build, on any thread.
     void decide_task(const bvh2::Task& task) const;
-    // Then for what is above them.
+    // Decides the nodes above the tasks. Call it after decide_task() of all tasks.
     void decide_tops(const bvh2::BinaryTree& tree) const;
-    // For one node, after its children. scale: see bvh2::Task.
+    // Decides one node. Its children must be decided already. `scale` is as in bvh2::Task.
     void decide(rt_u32 binary, float scale, rt_u32 more_bits) const;
 
-    // The children of the wide node that a binary node becomes; returns how many.
+    // Lists the children of the wide node that is made from a binary node, and returns their number.
     uint32_t children(rt_u32 binary, Slot slots[BVH8_WIDTH]) const;
     bool is_above_tasks(rt_u32 binary) const { return nodes_[binary].pad1 & Decision::kIsTop; }
 

@@ -14,14 +14,14 @@ namespace {
 
 using bvh2::MortonOrder;
 
-// What a thread needs for one run after the other.
+// Work memory of a thread for one run at a time.
 struct RunSpace {
     explicit RunSpace(uint32_t size) : nodes(size), root_costs(size) {}
     bvh2::Scratch<bvh2_node> nodes;
     bvh2::Scratch<RootCosts> root_costs;
 };
 
-// As many as there are threads at work, whoever they are.
+// A pool of work memories. It grows to the number of threads that work at the same time.
 class RunSpaces {
  public:
     explicit RunSpaces(uint32_t size) : size_(size) {}
@@ -59,7 +59,7 @@ class MortonTree::RunBuilder {
           run_(run),
           result_(result) {}
 
-    // whole: it is all of its group, and nothing is above it.
+    // Builds the subtree of the run. `whole` means that the run is a whole group, with no nodes above it.
     void build(const MortonOrder& order, rt_u32* refs, bool whole, float scale) {
         const MortonOrder::Run& run = order.runs()[run_];
         uint32_t count = 0;
@@ -87,7 +87,7 @@ class MortonTree::RunBuilder {
         return static_cast<rt_u32>(result_.parts.size() - 1) | kPart;
     }
 
-    // Wide nodes from a binary one down; children by their places behind the part's first one.
+    // Writes the wide nodes below a binary node. Child indices count from the part's first node.
     Extent write(rt_u32 binary, rt_u32 first, Sums& sums) {
         Slot slots[BVH8_WIDTH];
         const uint32_t count = collapse_.children(binary, slots);
@@ -107,7 +107,7 @@ class MortonTree::RunBuilder {
         return extent;
     }
 
-    // Copies what the root merges, and finishes what is below.
+    // Copies the binary nodes that the root merges, and finishes the subtrees below them. Returns the index in `upper`.
     rt_u32 keep(rt_u32 binary) {
         const auto index = static_cast<rt_u32>(result_.upper.size());
         bvh2_node node = nodes_[binary];
@@ -129,7 +129,7 @@ class MortonTree::RunBuilder {
     const uint32_t max_leaf_;
     const rt_u32 run_;
     Finished& result_;
-    Slot slots_[BVH8_WIDTH];  // of the root
+    Slot slots_[BVH8_WIDTH];  // of the run's root
     uint32_t slot_count_ = 0;
 };
 
@@ -159,7 +159,7 @@ MortonTree::MortonTree(const rt_host* host, const rt_build_input& input, const r
     join(order, costs);
 }
 
-// Tops first, what runs keep behind them, parts last: children behind their parents.
+// Joins the runs. Order of nodes_: tops, the nodes that the runs keep, parts. So children come after their parents.
 void MortonTree::join(const MortonOrder& order, const Costs& costs) {
     const auto top_count = static_cast<rt_u32>(order.tops().size());
     std::vector<rt_u32> first_upper;
@@ -187,7 +187,7 @@ void MortonTree::join(const MortonOrder& order, const Costs& costs) {
         parts_.insert(parts_.end(), runs_[r].parts.begin(), runs_[r].parts.end());
         code_of_run.push_back(joined(runs_[r].root));
     }
-    nodes_.resize(first_part_ + parts_.size());  // parts: no leaf, and never more than one root
+    nodes_.resize(first_part_ + parts_.size());  // a part's node is no leaf and always one root
     root_costs_.resize(nodes_.size());
     for (size_t p = 0; p < parts_.size(); ++p) std::fill_n(root_costs_[first_part_ + p].cost, bvh2::kRoots, parts_[p].cost);
 

@@ -1,5 +1,6 @@
-// morton_tree.hpp -- the wide tree of primitives that are sorted along a curve: the fast builder's. The thread that sorts a run
-// makes its binary tree, decides what becomes of that and writes the wide nodes, all within its caches; the binary tree goes.
+// morton_tree.hpp -- the wide tree of the fast builder, from primitives sorted along a curve. The thread that sorts a run also
+// builds its binary tree, decides the collapse and writes the wide nodes, all in its caches. The binary tree of the run is not
+// kept.
 #pragma once
 #include <memory>
 
@@ -10,14 +11,14 @@ namespace bvh8 {
 
 class MortonTree : public Subtrees {
  public:
-    // Of memory that is given back at the end, about.
+    // Returns the approximate temporary memory of a build, in bytes. It is freed when this object is destroyed.
     static uint64_t bytes(uint64_t primitive_count);
 
-    // Writes the leaf order. Progress goes from 0 to `share`.
+    // Builds the subtrees of all runs and writes the leaf order. Reports progress from 0 to `share`.
     MortonTree(const rt_host* host, const rt_build_input& input, const rt_build_output* out, const Costs& costs,
                uint64_t primitive_count, float share);
 
-    // What is above the subtrees of runs.
+    // The collapse of the nodes above the runs' subtrees.
     const Collapse& collapse() const { return *collapse_; }
     const std::vector<bvh2::Root>& roots() const { return roots_; }
     Extent measure(rt_u32 binary) const override { return of_binary(binary).extent; }
@@ -25,24 +26,24 @@ class MortonTree : public Subtrees {
     void write(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const override;
 
  private:
-    // A subtree that is finished: a wide node and all below it.
+    // A finished subtree: a wide node and everything below it.
     struct Part {
-        rt_u32 run, first;  // of the run's nodes
+        rt_u32 run, first;  // first: index in the run's nodes
         Extent extent;
         Sums sums;
         float cost;  // as one root
     };
-    // What became of a run. Its root, as a wide node, would end the choice of what is above it: the binary nodes that the root
-    // merges are kept, parents before children, to be decided once more together with the tops.
+    // A finished run. If its root became a wide node, the choice of the nodes above would be limited. So the binary nodes that
+    // the root would merge are kept (parents before children), and they are decided again together with the tops.
     struct Finished {
         bvh2::Bounds box;
-        rt_u32 root = 0;               // a leaf, or the first of `upper`, or a part (whole groups)
-        std::vector<bvh2_node> upper;  // children: leaves, others of `upper`, parts
+        rt_u32 root = 0;               // a leaf, or index 0 of `upper`, or a part (if the run is a whole group)
+        std::vector<bvh2_node> upper;  // children: leaves, other nodes of `upper`, or parts
         std::vector<Part> parts;
         std::vector<bvh8_node> nodes;
     };
     class RunBuilder;
-    // Codes of children in Finished that are parts.
+    // With this bit, a child code in Finished is the index of a part.
     static constexpr rt_u32 kPart = 0x40000000u;
 
     void join(const bvh2::MortonOrder& order, const Costs& costs);
@@ -50,7 +51,8 @@ class MortonTree : public Subtrees {
 
     std::vector<Finished> runs_;
     std::vector<bvh2::Root> roots_;
-    // Nodes above the parts: tops, what is left of the runs, and for each part one that says nothing but its costs.
+    // The nodes above the parts: first the tops, then the kept nodes of the runs, then one node per part that carries its costs
+    // only.
     std::vector<bvh2_node> nodes_;
     std::vector<RootCosts> root_costs_;
     std::vector<Part> parts_;

@@ -1,14 +1,14 @@
-// node_bounds.hpp -- the boxes in a finished node.
+// node_bounds.hpp -- reads the boxes of a finished node.
 #pragma once
 #include <algorithm>
 
 #include "rt_plugin.h"
-// after rt_types.h, whose types it uses:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "bvh8_types.h"
 
 namespace bvh8 {
 
-// do_one(box, child) for every child that there is.
+// Calls do_one(box, child) for every child of the node. Empty slots are skipped.
 template <class Body>
 void each_child(const bvh8_node& node, Body&& do_one) {
     for (int slot = 0; slot < BVH8_WIDTH; ++slot) {
@@ -19,7 +19,7 @@ void each_child(const bvh8_node& node, Body&& do_one) {
     }
 }
 
-// Around all children; false: there is none.
+// Computes the box around all children. Returns false if there are none.
 inline bool bounds(const bvh8_node& node, float box[6]) {
     bool any = false;
     each_child(node, [&](const float child[6], rt_u32) {

@@ -1,12 +1,12 @@
-// node_memory.hpp -- a finished node as its traversal has it in memory. Of bvh8 that is as it was written; bvh4 turns the rows
-// of its nodes and names children by where their rows begin (bvh4_types.h).
+// node_memory.hpp -- converts a finished node to the memory layout that its traversal reads. bvh8 reads nodes as they were
+// written. bvh4 permutes the rows of its nodes, and refers to a child by the address at which its rows begin (bvh4_types.h).
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cstring>
 
 #include "rt_plugin.h"
-// after rt_types.h, whose types they use:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "bvh8_types.h"
 #if BVH8_WIDTH == 4
 #include "bvh4_types.h"
@@ -16,7 +16,7 @@ namespace bvh8 {
 
 #if BVH8_WIDTH == 4
 
-// Of node `at`; doing it twice undoes it.
+// Permutes the rows of node `at`. Calling it twice restores the node.
 inline void turn_rows(bvh8_node& node, rt_u32 at) {
     std::array<std::array<rt_f32, 4>, 8> rows, turned;
     static_assert(sizeof rows == sizeof node, "");
@@ -31,7 +31,7 @@ inline void settle(bvh8_node nodes[], rt_u32 at) {
     turn_rows(nodes[at], at);
 }
 
-// As it was before it settled.
+// Returns node `at` as it was before settle().
 inline bvh8_node settled_node(const bvh8_node nodes[], rt_u32 at) {
     bvh8_node node = nodes[at];
     turn_rows(node, at);

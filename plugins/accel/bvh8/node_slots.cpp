@@ -8,10 +8,11 @@ namespace {
 
 using bvh2::Vec4;
 
-// Slot s is the corner of the node whose coordinate k is high where bit k of s is set. Of all children and corners left over,
-// the pair goes together whose child lies farthest towards its corner.
+// Assigns slots greedily. Slot s stands for a corner of the node: coordinate k is at its high end if bit k of s is set. The
+// best pair of all remaining children and corners is assigned first; a child suits a corner better the farther it lies towards
+// it.
 void assign_slots(const Slot children[], uint32_t count, uint32_t slot_of[]) {
-    const Vec4 small = bvh2::splat(0.0625f);  // no sum below overflows
+    const Vec4 small = bvh2::splat(0.0625f);  // scales the boxes so that no sum below overflows
     const Vec4 share = bvh2::splat(1.0f / static_cast<float>(count));
     Vec4 center[BVH8_WIDTH], middle = bvh2::splat(0.0f);
     for (uint32_t i = 0; i < count; ++i) {

@@ -8,7 +8,7 @@ namespace bvh8 {
 namespace {
 
 constexpr uint64_t kMaxPrimitives = bvh2::Builder::kMaxPrimitives;
-constexpr float kBinaryShare = 0.85f;  // of the time
+constexpr float kBinaryShare = 0.85f;  // of the build time
 
 }  // namespace
 
@@ -24,8 +24,8 @@ WideBuild build_wide(const rt_host* host, const rt_build_input* input, const rt_
     }
     const Costs costs{static_cast<float>(input->params[kTraversalCost]), static_cast<float>(input->params[kIntersectionCost]),
                       static_cast<uint32_t>(input->params[kMaxLeaf])};
-    // Of the splits behind a full node each costs its part: the binary tree then ends in about the leaves that the wide
-    // one will have, and less is built that is merged again.
+    // A full wide node replaces BVH8_WIDTH - 1 binary splits, so each split costs that fraction of a node. The binary tree then
+    // ends in about the leaves that the wide tree will have, and fewer nodes are built only to be merged.
     const bvh2::Rules rules{
         costs.max_leaf,  static_cast<uint32_t>(input->params[kBins]),        costs.node / (BVH8_WIDTH - 1),
         costs.primitive, static_cast<bvh2::Method>(input->params[kBuilder]), static_cast<float>(input->params[kDuplicates])};
@@ -47,7 +47,7 @@ WideBuild build_wide(const rt_host* host, const rt_build_input* input, const rt_
             return result;
         }
         bvh2::Builder builder(host, *input, rules, count, kBinaryShare);
-        // Costs stand in the builder's records, which have done their duty.
+        // The root costs reuse the builder's record buffer, which is not needed any more at that time.
         static_assert(sizeof(RootCosts) == sizeof(bvh2::Record), "costs take the places of records");
         const Collapse collapse(builder.workspace().nodes, reinterpret_cast<RootCosts*>(builder.workspace().records[0]), costs);
         const bvh2::BinaryTree binary = builder.run(out, [&](const bvh2::Task& task) { collapse.decide_task(task); });
@@ -57,8 +57,10 @@ WideBuild build_wide(const rt_host* host, const rt_build_input* input, const rt_
         write(collapse, CollapsedSubtrees(collapse), binary.roots);
         return result;
     } catch (const std::bad_alloc&) {
-        std::snprintf(why, sizeof why, "could not get the %.1f GiB that building a tree of %llu primitives takes",
-                      static_cast<double>(result.build_bytes) / (1 << 30), static_cast<unsigned long long>(count));
+        std::snprintf(
+            why, sizeof why,
+            "cannot allocate the %.1f GiB that building a tree of %llu primitives takes: free memory, or instance meshes",
+            static_cast<double>(result.build_bytes) / (1 << 30), static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
 }

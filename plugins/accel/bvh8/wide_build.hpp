@@ -1,11 +1,11 @@
-// wide_build.hpp -- one build of a wide tree, from parameters to figures: what bvh8, bvh4 and cwbvh have in common.
+// wide_build.hpp -- one build of a wide tree, from the parameters to the statistics. Shared by bvh8, bvh4 and cwbvh.
 #pragma once
 #include "rt_plugin.hpp"
 #include "wide_tree.hpp"
 
 namespace bvh8 {
 
-// Shared parameters, in the order in which a plugin declares them; it may have more behind them.
+// The shared parameters, in the order in which a plugin must declare them. A plugin may append its own.
 enum Param { kMaxLeaf, kBins, kTraversalCost, kIntersectionCost, kBuilder, kDuplicates, kOwnParams };
 
 constexpr const char* kBuilders[] = {"sah", "morton", "spatial", nullptr};
@@ -31,23 +31,25 @@ constexpr rt_param kBuilderParam =
 constexpr rt_param kDuplicatesParam = rt::float_param(
     "duplicates", "Duplicates", "what builder=spatial may add to the primitives, as a share of their number", 0, 4, 0.3);
 
-// What came of it.
+// The results of a build.
 struct WideBuild {
     uint64_t primitives = 0, references = 0, build_bytes = 0;
     rt_u32 nodes = 0;
-    uint32_t depth = 0, stack = 0;  // as WideTree counts them
+    uint32_t depth = 0, stack = 0;  // see WideTree
     Statistics statistics;
 };
 
-// Fills slot 0 with bvh8_nodes, writes the leaf order and reports the roots. Throws where the host or memory refuses.
+// Builds the tree: fills slot 0 with bvh8_nodes, writes the leaf order and reports the roots. Throws if there are too many
+// primitives, if the user cancels, or if memory is short.
 WideBuild build_wide(const rt_host* host, const rt_build_input* input, const rt_build_output* out);
 
-// The figures that every wide tree has. bytes: of nodes.
+// Reports the statistics that all wide trees have. `node_bytes` is the size of all nodes in bytes.
 void report(const rt_build_output* out, const WideBuild& build, uint64_t node_bytes);
 
-// Room for what is put off, and one to spare that tells a full stack from an overflowing one; in steps of 16, since a new value
-// recompiles the kernels. Not 64: what stands at multiples of a page from each other drives itself out of the first cache
-// (a packet's entry distances would be one page; legocar's camera rays took 1.4 times as long).
+// Returns the size of the traversal's stack: the children that may be deferred, and one more entry to tell a full stack from an
+// overflow. It is a multiple of 16, because a new value recompiles the kernels. It is not a multiple of 64: data at distances
+// of whole pages evict each other from the first-level cache (the entry distances of a packet would span exactly one page;
+// legocar's camera rays then took 1.4 times as long).
 constexpr rt_u32 stack_places(uint32_t put_off) {
     const rt_u32 places = (put_off + 1 + 15) / 16 * 16;
     return places % 64 == 0 ? places + 16 : places;

@@ -18,7 +18,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
         return RT_OK;
     }
     struct Visit {
-        rt_u32 node, level;  // of the children
+        rt_u32 node, level;  // level of the node's children
     };
     std::vector<Visit> stack{{built->roots[group], 1}};
     while (!stack.empty()) {

@@ -93,7 +93,8 @@ rt_u32 WideTree::expand_root(rt_u32 group) {
     return static_cast<rt_u32>(tops_.size() - 1);
 }
 
-// Of a node of the binary tree that becomes one of the wide tree: the jobs below it, and what lies above them.
+// Collects the jobs and tops of the wide node that is made from a binary node. Returns its index in tops_, or in jobs_ with
+// kJob.
 rt_u32 WideTree::expand(rt_u32 binary, rt_u32 group) {
     if (!collapse_.is_above_tasks(binary)) {
         jobs_.push_back({binary, group, 0, 0, {}});
@@ -130,7 +131,7 @@ Extent WideTree::measure_top(rt_u32 code, const std::vector<Extent>& jobs) const
     return extent;
 }
 
-// Gives the nodes their places, parents before children, from `next` on; returns the next free one.
+// Assigns node indices in depth-first order from `next` on, parents before children. Returns the next free index.
 rt_u32 WideTree::place(rt_u32 code, rt_u32 next) {
     if (code & kJob) {
         Job& job = jobs_[code & ~kJob];
@@ -143,7 +144,7 @@ rt_u32 WideTree::place(rt_u32 code, rt_u32 next) {
     return next;
 }
 
-// Depth-first; returns the next free place.
+// Writes the subtree depth-first. Returns the next free index.
 rt_u32 CollapsedSubtrees::write_subtree(rt_u32 binary, bvh8_node* nodes, rt_u32 at, Sums& sums) const {
     Slot slots[BVH8_WIDTH];
     const uint32_t count = collapse_.children(binary, slots);
@@ -175,7 +176,7 @@ Statistics WideTree::statistics(const rt_group* groups) const {
         const bvh2::Bounds& box = groups_[g].box;
         const float whole_box[6] = {box.lo[0], box.lo[1], box.lo[2], box.hi(0), box.hi(1), box.hi(2)};
         const double whole = area(whole_box);
-        if (!(whole > 0)) continue;  // no ray meets a point or a line
+        if (!(whole > 0)) continue;  // no ray hits a point or a line
         cost +=
             groups[g].count *
             (double{costs_.node} * (whole + of_group[g].node_area) + double{costs_.primitive} * of_group[g].primitive_area) /

@@ -8,13 +8,13 @@
 namespace cwbvh {
 namespace {
 
-constexpr rt_u32 kChunk = 4096;  // nodes of a task
+constexpr rt_u32 kChunk = 4096;  // nodes per task
 
 bool is_node(rt_u32 child) {
     return (child & BVH8_LEAF) == 0;
 }
 
-// What the nodes of a chunk have below themselves, then what all before it have.
+// The numbers of children and primitives directly below the nodes of a chunk; later the sums over all earlier chunks.
 struct Below {
     uint64_t nodes = 0, primitives = 0;
 };
@@ -47,7 +47,7 @@ void compress(const rt_host* host, const WideNodes& wide, const rt_build_output*
         });
     });
     const auto root_count = static_cast<rt_u32>(wide.roots->size());
-    Below sum{root_count, 0};  // roots stand first
+    Below sum{root_count, 0};  // the roots come first
     for (Below& chunk : before) {
         const Below own = chunk;
         chunk = sum;
@@ -55,7 +55,7 @@ void compress(const rt_host* host, const WideNodes& wide, const rt_build_output*
         sum.primitives += own.primitives;
     }
 
-    // Where each node goes is known by its parent, which comes before it, so all places come first.
+    // The index of a node depends on its parent, so all indices are computed before any node is written.
     const bvh2::Scratch<rt_u32> place(wide.node_count);
     for (rt_u32 g = 0; g < root_count; ++g) {
         place.data()[(*wide.roots)[g]] = g;

@@ -1,4 +1,4 @@
-// compress.hpp -- a finished tree of bvh8's as one of compressed nodes.
+// compress.hpp -- converts a finished tree of bvh8 to compressed nodes.
 #pragma once
 #include <vector>
 
@@ -6,7 +6,7 @@
 
 namespace cwbvh {
 
-// bvh8_nodes in depth-first order, the leaf order that they name, the roots of the groups.
+// A tree of bvh8: its nodes in depth-first order, its leaf order, and the roots of its groups.
 struct WideNodes {
     const bvh8_node* nodes;
     rt_u32 node_count;
@@ -15,9 +15,9 @@ struct WideNodes {
     const std::vector<rt_u32>* roots;
 };
 
-// Writes slot 0 and the leaf order, and reports the roots, on all cores. Children stand in the order of their parents, siblings
-// together, and so do primitives: both places are sums over the nodes before, so that every part of the tree is written where
-// it belongs without the others.
+// Writes slot 0 and the leaf order, and reports the roots, on all cores. The output is in the order of the parents: the
+// children of a node are stored together, in the order of their parents, and so are its primitives. Both positions are sums
+// over all earlier nodes. So each part of the tree can be written independently of the others.
 void compress(const rt_host* host, const WideNodes& wide, const rt_build_output* out);
 
 }  // namespace cwbvh

@@ -25,7 +25,7 @@ Box rounded(const cwbvh_node& node, rt_u32 slot) {
     return box;
 }
 
-// do_one(box, child) for every child that there is; RT_NONE: a leaf.
+// Calls do_one(box, child) for every child of a node. `child` is RT_NONE for a leaf.
 template <class Body>
 void each_child(const cwbvh_node& node, Body&& do_one) {
     rt_u32 next = node.first_child;
@@ -57,7 +57,7 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
         return RT_OK;
     }
     struct Visit {
-        rt_u32 node, level;  // of the children
+        rt_u32 node, level;  // level of the node's children
     };
     std::vector<Visit> stack{{built->roots[group], 1}};
     while (!stack.empty()) {

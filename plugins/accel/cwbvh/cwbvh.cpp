@@ -1,7 +1,7 @@
-// cwbvh.cpp -- bounding volume hierarchy of eight children a node, compressed: for scenes that fill a GPU's memory.
+// cwbvh.cpp -- the plugin of the compressed BVH with eight children a node, for scenes that fill a GPU's memory.
 //
-// bvh8's tree, each box rounded outwards to a grid of 255 steps a node: 80 bytes a node instead of 224, 55 a triangle with the
-// triangle itself, where bvh4 takes 67.
+// It is bvh8's tree with each box rounded outwards to a grid of 255 steps a node. A node takes 80 bytes instead of 224. A
+// triangle takes 55 bytes, its own record included; with bvh4 it takes 67.
 #include <iterator>
 #include <memory>
 
@@ -32,7 +32,7 @@ constexpr rt_param kParams[] = {
 };
 static_assert(std::size(kParams) == kOwnParams, "in the order of bvh8::Param");
 
-// Takes what bvh8's builder writes, to be compressed and given back. The rest of the host's answers are passed on.
+// Receives the output of bvh8's builder in memory of its own, to be compressed and then freed.
 struct Catch {
     explicit Catch(rt_u32 group_count) : roots(group_count) {
         table.struct_bytes = sizeof table;
@@ -58,10 +58,10 @@ struct Catch {
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
     Catch caught(input->group_count);
     const bvh8::WideBuild wide = bvh8::build_wide(host, input, &caught.table);
-    rt::progress(host, 0.97f);  // of what is left bvh8 knows nothing
+    rt::progress(host, 0.97f);  // build_wide() does not report the progress of the compression
     compress(host, {caught.nodes->data(), wide.nodes, caught.refs->data(), wide.references, &caught.roots}, out);
     bvh8::report(out, wide, uint64_t{wide.nodes} * sizeof(cwbvh_node));
-    // Single rays put off what is left of a node, packets child by child.
+    // A single ray defers the rest of a node as one entry, so its stack follows the depth. A packet defers each child.
     rt::define(out, "CWBVH_DEPTH", bvh8::stack_places(wide.depth));
     rt::define(out, "CWBVH_STACK", bvh8::stack_places(wide.stack));
     return RT_OK;

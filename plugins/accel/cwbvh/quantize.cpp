@@ -8,21 +8,22 @@
 namespace cwbvh {
 namespace {
 
-constexpr int kPlanes = 255;             // the highest byte
-constexpr int kExponentBias = 127;       // as in floats
-constexpr int kLeastExponent = -100;     // cells of which a ray's steps are still normal numbers
-constexpr int kMostExponent = 112;       // of a cell of which CWBVH_BIAS are less than the largest float
-constexpr int kFinestOfCoordinate = 24;  // bits that a cell may be below a coordinate's highest: finer than its own last one
+constexpr int kPlanes = 255;          // the highest value of a byte
+constexpr int kExponentBias = 127;    // as in a float
+constexpr int kLeastExponent = -100;  // of the smallest cell for which the steps of a ray are normal numbers
+constexpr int kMostExponent = 112;    // of the largest cell for which CWBVH_BIAS cells stay below FLT_MAX
+// A cell may be this many bits below the highest bit of a coordinate: finer than the coordinate's own last bit.
+constexpr int kFinestOfCoordinate = 24;
 
-// The grid along one axis.
+// The quantisation grid of one axis.
 struct Grid {
     float origin;
     int exponent;
-    double cell, per_cell, base;  // base: where byte 0 is
+    double cell, per_cell, base;  // base: coordinate of byte 0
 
     Grid(float at, int e)
         : origin(at), exponent(e), cell(std::ldexp(1.0, e)), per_cell(std::ldexp(1.0, -e)), base(at + CWBVH_BIAS * cell) {}
-    // Neither is below 0: the lowest plane of all lies above `base`.
+    // Neither result is below 0, because the lowest plane of the node lies above `base`.
     int lower(float plane) const { return static_cast<int>((plane - base) * per_cell - double{CWBVH_MARGIN}); }
     int upper(float plane) const {
         const double at = (plane - base) * per_cell + double{CWBVH_MARGIN};

@@ -1,18 +1,18 @@
-// quantize.hpp -- the boxes of a node as bytes, and back.
+// quantize.hpp -- converts the boxes of a node to bytes and back.
 #pragma once
 #include "rt_plugin.h"
-// after rt_types.h, whose types they use:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "bvh8_types.h"
 #include "cwbvh_types.h"
 
 namespace cwbvh {
 
-// Origin, cells and planes of a node of bvh8's: each box, widened by CWBVH_MARGIN cells, lies in its quantised one, and cells
-// are as small as powers of two can be. An axis so long that no cell fits has an origin that is no number: kernels then meet
-// all of it. Slots that are nodes and all that names them is left to others.
+// Sets the origin, cells and planes of a compressed node. Each quantised box contains the box of `from`, widened by
+// CWBVH_MARGIN cells. The cell size is the smallest possible power of two. If an axis is so long that no cell size fits, its
+// origin becomes NaN, and kernels then treat it as unbounded. The caller sets the slots that are nodes, and all indices.
 void quantize(const bvh8_node& from, cwbvh_node& to);
 
-// The box of a slot: in double precision, by far finer than the margin.
+// Returns the quantised box of a slot, in double precision: its rounding error is far below the margin.
 void box_of(const cwbvh_node& node, uint32_t slot, double lo[3], double hi[3]);
 
 }  // namespace cwbvh

@@ -1,7 +1,7 @@
-// linear.cpp -- no structure at all: every ray meets every primitive, in order. Slow and hard to get wrong, so the reference
-// that the others are compared with, and the shortest example of a plugin.
+// linear.cpp -- no structure at all: every ray tests every primitive, in order. It is slow and hard to get wrong. So it is the
+// reference for the other structures, and the shortest example of a plugin.
 #include "rt_plugin.hpp"
-// after rt_types.h, whose types it uses:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "linear_types.h"
 
 namespace {
@@ -9,7 +9,7 @@ namespace {
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
     uint64_t count = 0;
     for (rt_u32 g = 0; g < input->group_count; ++g) count += input->groups[g].count;
-    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: take a tree, and instances");
+    if (count > RT_REF_INDEX_MAX) throw rt::fail(host, "holds 2^28 - 1 primitives at most: use a tree, and instance meshes");
 
     auto* runs = rt::alloc<linear_run>(out, 0, input->group_count);
     rt_u32* leaves = rt::leaves(out, count);
@@ -29,7 +29,7 @@ constexpr rt_cl_file kFiles[] = {
 #include "linear.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<linear_run>("linear_runs", "linear_run")};
-// It has no bounding volumes, hence no levels; and nothing to refit.
+// There are no bounding volumes, so `levels` is null. There is nothing to refit either.
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "linear_types.h"), rt::file(kFiles, "linear.cl"),
                                       rt::guarded<build>, nullptr, rt::Traits().tests_everything());
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");

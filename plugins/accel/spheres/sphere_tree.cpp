@@ -26,7 +26,7 @@ Item make_item(const rt_prim& prim) {
     Item item;
     item.ref = prim.ref;
     for (int axis = 0; axis < 3; ++axis) {
-        // A bound that is no number becomes the farthest one: nothing is lost.
+        // NaN becomes the farthest bound and infinite bounds are clamped, so no part of the primitive is lost.
         const float lo = prim.lo[axis] >= -FLT_MAX ? std::min(prim.lo[axis], FLT_MAX) : -FLT_MAX;
         const float hi = prim.hi[axis] <= FLT_MAX ? std::max(prim.hi[axis], -FLT_MAX) : FLT_MAX;
         item.box.lo[axis] = std::min(lo, hi);
@@ -41,7 +41,7 @@ bool is_leaf(const Rules& rules, uint64_t count, uint32_t depth) {
     return count <= rules.max_leaf || depth >= rules.max_depth;
 }
 
-// Sizes of the trees over n and n + 1 items; every tree below has one of two such sizes, too.
+// The sizes of the trees over n and n + 1 items. Every subtree has one of two such sizes as well.
 struct Sizes {
     uint64_t of_n, of_next;
 };
@@ -55,7 +55,7 @@ Sizes tree_sizes(const Rules& rules, uint64_t n, uint32_t depth) {
     return {leaf ? 1 : split, next_leaf ? 1 : next_split};
 }
 
-constexpr uint32_t kParallel = 16384;  // items from which on the halves are built by two threads
+constexpr uint32_t kParallel = 16384;  // smallest number of items for which two threads build the halves
 
 void build_node(const Forest& forest, uint32_t first, uint32_t count, uint32_t at, uint32_t level, uint32_t depth) {
     Box box;
@@ -83,7 +83,7 @@ void build_node(const Forest& forest, uint32_t first, uint32_t count, uint32_t a
             build_node(forest, first + left, right, right_at, level + 1, depth + 1);
     };
     if (count >= kParallel) {
-        rt::progress(forest.host, 0.5f);  // how far is anybody's guess; it is the cancelling that matters
+        rt::progress(forest.host, 0.5f);  // the true progress is unknown; the call is here to notice a cancelled build
         rt::parallel_for(forest.host, 2, child);
     } else {
         child(0);

@@ -1,7 +1,8 @@
-// spheres.cpp -- the structure of the thesis: a tree of bounding spheres for each mesh, and nothing above the meshes.
+// spheres.cpp -- the structure of the thesis: a tree of bounding spheres for each mesh, and no tree above the meshes.
 //
-// 32 bytes a node, no stack. Quick to build, cheap to test, small; but spheres overlap more than boxes do, halves by count know
-// nothing of empty space, nodes are not visited nearest first, and every ray meets the root of every mesh.
+// A node takes 32 bytes, and the traversal needs no stack. The structure is quick to build, cheap to test and small. But
+// spheres overlap more than boxes do, splitting by count ignores empty space, nodes are not visited in the order of distance,
+// and every ray tests the root of every mesh.
 #include <algorithm>
 #include <vector>
 
@@ -23,7 +24,7 @@ constexpr rt_param kParams[] = {
         false),
 };
 
-// Radius of a leaf that every ray enters: finite, so that the arithmetic of a test stays free of NaN.
+// Radius of a leaf that every ray enters. It is finite, so that the ray test computes no NaN.
 constexpr float kEverywhere = 1e30f;
 
 // The primitives of one mesh within a group.
@@ -33,13 +34,13 @@ struct Run {
     bool lone;
 };
 
-// Where a mesh's tree goes.
+// The tree of a mesh, the index of its first node, and the level of its root.
 struct Job {
     Run run;
     uint32_t at, level;
 };
 
-// What stands where, before it is built: heads of groups, nodes above the meshes, and the meshes' trees.
+// Lays out the nodes before they are built: the heads of the groups, the nodes above the meshes, and the trees of the meshes.
 class Plan {
  public:
     Plan(const rt_host* host, const Rules& rules, bool top_level) : host_(host), rules_(rules), top_level_(top_level) {}
@@ -47,7 +48,7 @@ class Plan {
     std::vector<rt_u32> roots;
     std::vector<Job> jobs;
     std::vector<Run> lone;
-    std::vector<std::pair<uint32_t, spheres_node>> ready;  // place and node
+    std::vector<std::pair<uint32_t, spheres_node>> ready;  // index and node
     uint64_t size = 0;
 
     void add_group(std::vector<Run> runs) {
@@ -74,7 +75,7 @@ class Plan {
         size += tree_size(rules_, run.count);
     }
 
-    // One leaf that every ray enters.
+    // Adds one leaf that every ray enters.
     void add_lone(const Run& run, uint32_t level) {
         const uint64_t place = size++;
         spheres_node node{};
@@ -116,7 +117,7 @@ class Plan {
     const bool top_level_;
 };
 
-// Copies a group's primitives and finds its meshes. lone: spheres are to be tried one by one.
+// Copies the primitives of a group to `items`, and returns its meshes. `lone`: rays test spheres one by one, without a tree.
 std::vector<Run> gather(const rt_build_input& input, const rt_group& group, bool lone, std::vector<Item>& items) {
     std::vector<Run> runs;
     for (rt_u32 i = group.first; i < group.first + group.count; ++i) {

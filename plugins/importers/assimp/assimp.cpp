@@ -1,6 +1,7 @@
-// assimp.cpp -- importer plugin: FBX first of all, glTF, COLLADA, 3DS and what else the Open Asset Import Library reads.
+// assimp.cpp -- the importer plugin for FBX, glTF, COLLADA, 3DS and other formats that the Open Asset Import Library reads.
 //
-// The scene comes over as the file stores it: undeformed, in its own units and axes, polygons whole, a mesh once however many
+// The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. A mesh is imported once,
+// no matter how many nodes show it.
 // nodes show it.
 #include <assimp/config.h>
 #include <assimp/scene.h>
@@ -25,7 +26,8 @@
 namespace assimp_import {
 namespace {
 
-// assimp reports 0..0.5 while it reads the file and goes on to 1 in its post-processing, which is hardly used here.
+// The share of assimp in the progress. assimp reports 0..0.5 while it reads the file, and up to 1 in its post-processing, which
+// is hardly used here.
 constexpr float kReadShare = 0.8f;
 
 class HostProgress : public Assimp::ProgressHandler {
@@ -64,7 +66,7 @@ Format format_of(const std::string& extension) {
     return extension == "gltf" || extension == "glb" || extension == "vrm" ? Format::gltf : Format::other;
 }
 
-// What the file says of its axes and unit.
+// The axes and the unit that the file declares.
 struct Units {
     rt_u32 up_axis = 1;
     double unit_scale = 0;
@@ -80,7 +82,7 @@ Units units_of(aiScene& scene, Format format, const std::string& extension, cons
         if (scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) units.up_axis = static_cast<rt_u32>(up);
         if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) units.unit_scale = 0.01 * centimetres;
     } else if (extension == "dae" && scene.mRootNode) {
-        // The importer scales the root to metres: take that back, and report it instead.
+        // assimp scales the root node to metres. Undo that, and report the unit instead.
         const std::string text(head.begin(), head.end());
         if (text.find("Z_UP") != text.npos) units.up_axis = 2;
         if (text.find("X_UP") != text.npos) units.up_axis = 0;
@@ -98,7 +100,7 @@ void warn(const rt_scene_sink& sink, const std::string& text) {
     sink.warn(sink.ctx, text.c_str());
 }
 
-// One instance for each node that shows polygons. mend: FBX only.
+// Adds one instance for each node with polygons. `mend` is set for FBX only.
 void add_instances(const NodeTree& tree, const FbxMend* mend, MeshTable& meshes, const rt_host* host,
                    const rt_scene_sink& sink) {
     size_t done = 0, strayed = 0;
@@ -121,21 +123,22 @@ void add_instances(const NodeTree& tree, const FbxMend* mend, MeshTable& meshes,
                        [](double x) { return static_cast<float>(x); });
         rt::id(sink.instance(sink.ctx, &out));
     }
-    if (strayed) warn(sink, "nodes left out for transforms that are not finite: " + std::to_string(strayed));
+    if (strayed) warn(sink, "nodes left out because their transforms are not finite: " + std::to_string(strayed));
 }
 
-// Says what was left out; throws if that was everything.
+// Warns about everything that was left out. Throws if nothing is left.
 void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes, const std::vector<std::string>& errors,
             const rt_host* host, const rt_scene_sink& sink) {
-    for (const std::string& error : errors) warn(sink, "assimp left something out: " + error);
+    for (const std::string& error : errors) warn(sink, "assimp could not read a part of the file: " + error);
     if (meshes.broken_faces()) {
-        warn(sink, "faces left out for vertices that are missing or not finite: " + std::to_string(meshes.broken_faces()));
+        warn(sink,
+             "faces left out because of vertices that are missing or not finite: " + std::to_string(meshes.broken_faces()));
     }
     if (meshes.faces() > 0) {
         if (meshes.points_and_lines()) warn(sink, "points and lines skipped: " + std::to_string(meshes.points_and_lines()));
         return;
     }
-    // What lost its polygons on the way is damaged; what never had any (NURBS, curves, cameras) is not.
+    // A file that lost its polygons during the import is damaged. A file that never had any (NURBS, curves, cameras) is not.
     if (!errors.empty()) throw rt::fail(host, "contains no usable polygons: " + errors.front());
     if (tree.nodes().size() <= 1 && scene.mNumMeshes == 0) {
         throw rt::fail(host, "contains no nodes: they form a cycle, hang from nothing, or were never written");
@@ -195,7 +198,7 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
     return certainty(head, bytes);
 }
 
-// Formats that users expect; assimp reads more, of which many are rare, unsafe or not meshes.
+// The formats that users expect. assimp reads more; many of those are rare, unsafe or not meshes.
 constexpr const char* extensions[] = {"fbx",  "gltf", "glb",     "dae",  "3ds", "blend",   "ac",  "ase", "b3d",
                                       "bvh",  "dxf",  "hmp",     "ifc",  "irr", "irrmesh", "lwo", "lws", "lxo",
                                       "md2",  "md3",  "md5mesh", "ms3d", "nff", "q3o",     "smd", "ter", "vrm",

@@ -1,4 +1,4 @@
-// complaints.hpp -- what assimp only logs: the objects of a file that it gave up on while it went on with the rest.
+// complaints.hpp -- collects errors that assimp only logs: parts of a file that it gave up on while it read the rest.
 #pragma once
 #include <assimp/DefaultLogger.hpp>
 #include <assimp/LogStream.hpp>
@@ -7,7 +7,8 @@
 
 namespace assimp_import {
 
-// Lives around one ReadFile. assimp's logger is one per process: imports within one process must not run side by side.
+// Collects while it exists; create it around one ReadFile(). assimp has one logger per process, so imports in one process must
+// not run at the same time.
 class Complaints {
  public:
     Complaints() {
@@ -18,7 +19,7 @@ class Complaints {
     Complaints(const Complaints&) = delete;
     Complaints& operator=(const Complaints&) = delete;
 
-    // Errors, each once, at most eight.
+    // The errors without repetitions, at most eight.
     const std::vector<std::string>& errors() const { return errors_; }
 
  private:
@@ -34,7 +35,7 @@ class Complaints {
     void add(std::string line) {
         while (!line.empty() && (line.back() == '\n' || line.back() == '\r')) line.pop_back();
         if (const size_t at = line.find("T0: "); at != line.npos) line.erase(0, at + 4);
-        // A mesh without material is no error to anybody but assimp.
+        // assimp reports a mesh without a material as an error. It is none.
         if (line.find("setting default material") != line.npos) return;
         for (const std::string& known : errors_) {
             if (known == line) return;

@@ -21,7 +21,7 @@ std::string_view name_of(const aiNode& node) {
 bool is_helper(const aiNode& node) {
     return name_of(node).find(kHelperTag) != std::string_view::npos;
 }
-// "PreRotation"; empty for a node of the file's own.
+// Returns the part that a helper node stands for, for example "PreRotation"; empty for a node of the file itself.
 std::string_view part_of(const aiNode& node) {
     const size_t at = name_of(node).rfind(kHelperTag);
     return at == std::string_view::npos ? std::string_view() : name_of(node).substr(at + kHelperTag.size());
@@ -39,7 +39,7 @@ FbxOutline read_outline(const std::string& path) {
         if (file >= 0) ::close(file);
         return outline;
     }
-    // Mapped, since arrays, which are most of the file, are passed over.
+    // The file is mapped, not read: most of it are arrays, which are skipped.
     const size_t size = static_cast<size_t>(about.st_size);
     void* bytes = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, file, 0);
     ::close(file);
@@ -53,7 +53,7 @@ aiVector3D vector(const std::array<double, 3>& v) {
     return {static_cast<ai_real>(v[0]), static_cast<ai_real>(v[1]), static_cast<ai_real>(v[2])};
 }
 
-// About x, then y, then z; degrees.
+// Rotates about x, then y, then z. Angles in degrees.
 aiMatrix4x4 rotation_xyz(const std::array<double, 3>& degrees) {
     const auto radians = [&](int k) { return static_cast<ai_real>(degrees[k] * 0.017453292519943295); };
     aiMatrix4x4 x, y, z;
@@ -69,7 +69,7 @@ std::string material_name(const aiScene& scene, unsigned index) {
     return name.C_Str();
 }
 
-// As assimp would have made it.
+// Makes the material that assimp would have made.
 aiMaterial* make_material(const FbxOutline::Material& from) {
     auto material = std::make_unique<aiMaterial>();
     const auto number = [&](const char* key, double otherwise) {
@@ -116,17 +116,17 @@ FbxMend::FbxMend(aiScene& scene, const std::string& path) {
     mend_materials(scene);
 }
 
-// The file's models beside the nodes that assimp made of them, in step; gives up at the first difference.
+// Walks through the file's models and assimp's nodes in parallel, and pairs them. Returns false at the first difference.
 bool FbxMend::match(const aiScene& scene) {
     struct Step {
-        aiNode* node;  // whose children are to match
+        aiNode* node;  // its children are paired with `models`
         const std::vector<int64_t>* models;
     };
     std::vector<Step> stack = {{scene.mRootNode, &outline_.roots}};
     while (!stack.empty()) {
         Step step = stack.back();
         stack.pop_back();
-        // A node's geometric transforms are undone in front of its children.
+        // Skip the helper nodes that undo a node's geometric transforms for its children.
         while (step.node->mNumChildren == 1 && is_inverse(*step.node->mChildren[0])) step.node = step.node->mChildren[0];
         if (step.node->mNumChildren != step.models->size()) return false;
         for (size_t i = step.models->size(); i > 0; --i) {
@@ -141,7 +141,7 @@ bool FbxMend::match(const aiScene& scene) {
             stack.push_back({node, &model->second.children});
         }
     }
-    // Parents first, siblings in order: as assimp went when it chose whose materials a shared mesh gets.
+    // Parents first, siblings in order. assimp used this order when it chose which node gives a shared mesh its materials.
     std::vector<aiNode*> open = {scene.mRootNode};
     while (!open.empty()) {
         aiNode* node = open.back();
@@ -156,7 +156,7 @@ void FbxMend::mend_rotations() {
     for (aiNode* node : order_) {
         const FbxOutline::Model& model = *models_.at(node);
         const auto helpers = helpers_.find(node);
-        if (helpers == helpers_.end()) {  // translation, rotation and scaling in one
+        if (helpers == helpers_.end()) {  // the node has translation, rotation and scaling in one
             if (model.rotation_active || model.rotation_order == 0) continue;
             aiMatrix4x4 translation, scaling;
             aiMatrix4x4::Translation(vector(model.translation), translation);
@@ -174,7 +174,7 @@ void FbxMend::mend_rotations() {
     }
 }
 
-// Of one of the file's materials within the scene's; those that no first node has are added.
+// Returns the scene's index of a material of the file. Adds the material to the scene if assimp left it out.
 unsigned FbxMend::material_index(aiScene& scene, int64_t id) {
     const auto known = material_indices_.find(id);
     if (known != material_indices_.end()) return known->second;
@@ -184,7 +184,7 @@ unsigned FbxMend::material_index(aiScene& scene, int64_t id) {
     for (unsigned i = 0; is_unique && i < scene.mNumMaterials; ++i) {
         if (material_name(scene, i) == material.name) return material_indices_[id] = i;
     }
-    auto** grown = new aiMaterial*[scene.mNumMaterials + 1];  // owned and freed by the scene
+    auto** grown = new aiMaterial*[scene.mNumMaterials + 1];  // owned and deleted by the scene
     std::copy(scene.mMaterials, scene.mMaterials + scene.mNumMaterials, grown);
     delete[] scene.mMaterials;
     scene.mMaterials = grown;
@@ -205,10 +205,11 @@ void FbxMend::mend_materials(aiScene& scene) {
             if (mesh >= scene.mNumMeshes) return;
             unsigned index = scene.mMeshes[mesh]->mMaterialIndex;
             const std::string name = material_name(scene, index);
-            // The mesh's parts name slots of the node's list; which slot it was shows by the first node's material.
+            // The parts of the mesh refer to slots of the node's material list. The first node's material tells which slot this
+            // part uses.
             size_t slot = 0;
             while (slot < first.materials.size() && outline_.materials.at(first.materials[slot]).name != name) ++slot;
-            // Where the first node had no material at all, the mesh's one part can only mean the first slot.
+            // If the first node had no material at all, the only part of the mesh must use the first slot.
             if (first.materials.empty() && meshes.size() == 1) slot = 0;
             if (slot < model.materials.size()) index = material_index(scene, model.materials[slot]);
             chosen.push_back(index);

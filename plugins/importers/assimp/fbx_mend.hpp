@@ -1,4 +1,4 @@
-// fbx_mend.hpp -- what assimp 5.2 gets wrong in FBX scenes and the file's outline can put right.
+// fbx_mend.hpp -- corrects errors of assimp 5.2 in FBX scenes with the help of the file's outline.
 #pragma once
 #include <assimp/scene.h>
 
@@ -10,15 +10,19 @@
 
 namespace assimp_import {
 
-// - Pre- and post-rotation and the rotation order count only where RotationActive is set; else the order is XYZ.
-// - GeometricRotation is turned in the node's rotation order; it is always XYZ.
-// - Nodes that share a mesh all get the materials of the first.
+// What the file means, and what assimp does instead:
+// - Pre- and post-rotation and the rotation order count only if RotationActive is set; otherwise the order is XYZ. assimp
+//   always applies them.
+// - The order of GeometricRotation is always XYZ. assimp uses the node's rotation order.
+// - Each node has its own materials. assimp gives all nodes that share a mesh the materials of the first one.
 class FbxMend {
  public:
-    // Looks into `path` again. Corrects rotations in the scene, and adds materials to it that assimp left out.
+    // Reads `path` again, corrects rotations in the scene, and adds materials that assimp left out. If the outline does not
+    // match the scene, nothing changes.
     FbxMend(aiScene& scene, const std::string& path);
 
-    // For each of the node's meshes the material that this node gives it (an index into the scene's); empty: as assimp says.
+    // Returns the material (index in the scene) that this node gives to each of its meshes. Empty: the materials of assimp's
+    // meshes are right.
     std::vector<unsigned> materials(const aiNode& node) const;
 
  private:
@@ -30,7 +34,7 @@ class FbxMend {
     FbxOutline outline_;
     std::unordered_map<const aiNode*, const FbxOutline::Model*> models_;
     std::vector<aiNode*> order_;                                       // nodes with a model, parents first
-    std::unordered_map<const aiNode*, std::vector<aiNode*>> helpers_;  // of a node's transform, outermost first
+    std::unordered_map<const aiNode*, std::vector<aiNode*>> helpers_;  // nodes that make up a node's transform, outermost first
     std::unordered_map<const aiNode*, std::vector<unsigned>> materials_;
     std::unordered_map<int64_t, unsigned> material_indices_;
 };

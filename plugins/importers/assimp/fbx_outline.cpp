@@ -6,17 +6,17 @@
 namespace assimp_import {
 namespace {
 
-// A value of a record: text or number.
+// One value of a record: a text or a number.
 struct Value {
     std::string_view text;
     double number = 0;
     int64_t integer = 0;
 };
 
-// Takes records in file order and keeps what the outline wants.
+// Takes records in the order of the file and keeps those that belong to the outline.
 class Collector {
  public:
-    // depth 0: top level. Returns whether the record's children are of interest.
+    // Takes one record; depth 0 is the top level. Returns true if the children of the record are needed.
     bool record(int depth, std::string_view name, const std::vector<Value>& values) {
         if (depth == 0) {
             section_ = name == "Objects"       ? Section::objects
@@ -66,15 +66,15 @@ class Collector {
     enum class Section { other, definitions, objects, connections };
     struct Connection {
         int64_t from, to;
-        bool is_property;  // "DiffuseColor"
+        bool is_property;  // a connection to the property "DiffuseColor"
     };
-    // "Name\0\1Model" in binary files, "Model::Name" in text.
+    // An object's name is "Name\0\1Model" in binary files and "Model::Name" in text files.
     static std::string object_name(std::string_view text) {
         if (const size_t end = text.find('\0'); end != text.npos) return std::string(text.substr(0, end));
         if (const size_t colons = text.find("::"); colons != text.npos) return std::string(text.substr(colons + 2));
         return std::string(text);
     }
-    // The properties of a Model that does not say otherwise: ObjectType "Model" > PropertyTemplate > Properties70.
+    // Reads the default properties of a Model: ObjectType "Model" > PropertyTemplate > Properties70.
     bool definition(int depth, std::string_view name, const std::vector<Value>& values) {
         if (depth == 1) return name == "ObjectType" && !values.empty() && values[0].text == "Model";
         if (depth < 4) return name == "PropertyTemplate" || name == "Properties70";
@@ -99,7 +99,7 @@ class Collector {
         }
         return model_ || material_ || texture_;
     }
-    // {name, type, label, flags, value...}
+    // A property record: {name, type, label, flags, value...}.
     void property(const std::vector<Value>& values) {
         std::array<double, 3> numbers{};
         for (size_t k = 0; k < 3 && 4 + k < values.size(); ++k) numbers[k] = values[4 + k].number;
@@ -124,8 +124,9 @@ class Collector {
     std::vector<Connection> connections_;
 };
 
-// ---- binary: records {end, value count, value bytes, name length, name, values, children}, offsets of 32 bits, from 7.5 on of
-// 64
+// ---- binary files
+// Records are {end, value count, value bytes, name length, name, values, children}. The offsets have 32 bits, from version 7.5
+// on 64 bits.
 
 class BinaryReader {
  public:
@@ -133,14 +134,14 @@ class BinaryReader {
 
     void read(Collector& collector) {
         size_t at = 27;
-        std::vector<size_t> ends;  // of the records around
+        std::vector<size_t> ends;  // ends of the enclosing records
         std::vector<Value> values;
         while (at < bytes_.size()) {
             const size_t head = is_wide_ ? 25 : 13;
             if (bytes_.size() - at < head) return;
             const uint64_t end = offset(at), count = offset(at + (is_wide_ ? 8 : 4)),
                            value_bytes = offset(at + (is_wide_ ? 16 : 8));
-            if (end == 0) {  // the mark behind the children
+            if (end == 0) {  // mark at the end of the children
                 if (ends.empty()) return;
                 at = ends.back();
                 ends.pop_back();
@@ -170,7 +171,7 @@ class BinaryReader {
     }
     uint64_t offset(size_t at) const { return is_wide_ ? load<uint64_t>(at) : load<uint32_t>(at); }
 
-    // Scalars and strings; stops at the first array or what does not fit.
+    // Reads numbers and strings. Stops at the first array, or at a value that does not fit.
     void read_values(size_t at, size_t end, uint64_t count, std::vector<Value>& values) const {
         values.clear();
         while (values.size() < count && values.size() < 8 && at < end) {
@@ -204,14 +205,15 @@ class BinaryReader {
     bool is_wide_;
 };
 
-// ---- text: `Name: value, value {` on one line
+// ---- text files
+// A record is `Name: value, value {` on one line.
 
 class TextReader {
  public:
     explicit TextReader(std::string_view text) : rest_(text) {}
 
     void read(Collector& collector) {
-        int depth = 0, wanted = 0;  // records down to this depth are of interest
+        int depth = 0, wanted = 0;  // wanted: records down to this depth are needed
         std::vector<Value> values;
         while (!rest_.empty()) {
             const size_t end = rest_.find('\n');

@@ -8,7 +8,8 @@
 namespace assimp_import {
 namespace {
 
-// Binary FBX starts with this, 0x00, 0x1A, then 0 for little-endian or 1 for big-endian, 0, and the version as 32 bits.
+// A binary FBX file starts with this text, then 0x00, 0x1A, 0 for little-endian or 1 for big-endian, 0, and the version as a
+// 32-bit integer.
 constexpr std::string_view kFbxMagic = "Kaydara FBX Binary  ";
 constexpr size_t kFbxEndianAt = 22, kFbxVersionAt = 23, kFbxHeaderBytes = 27;
 
@@ -20,7 +21,7 @@ bool starts_with(std::string_view text, std::string_view start) {
     return text.substr(0, start.size()) == start;
 }
 
-// Without a byte order mark and leading white space.
+// Returns the text without a byte order mark and leading white space.
 std::string_view trimmed(std::string_view text) {
     if (starts_with(text, "\xEF\xBB\xBF")) text.remove_prefix(3);
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.front()))) text.remove_prefix(1);
@@ -39,7 +40,7 @@ uint32_t read_u32(const uint8_t* p, bool big_endian) {
                       : uint32_t(p[3]) << 24 | uint32_t(p[2]) << 16 | uint32_t(p[1]) << 8 | p[0];
 }
 
-// What a file really is that bears the wrong extension; nullptr: unknown.
+// Returns what the file really is if its extension is wrong; nullptr: unknown.
 const char* other_kind(std::string_view text) {
     struct Kind {
         std::string_view magic;
@@ -77,7 +78,7 @@ int fbx_version(const uint8_t* head, size_t bytes) {
         if (bytes < kFbxHeaderBytes) return 0;
         return static_cast<int>(std::min(read_u32(head + kFbxVersionAt, head[kFbxEndianAt] == 1), 99999u));
     }
-    // `FBXVersion: 7400` is what readers obey; the comment `; FBX 7.4.0 project file` is all that very old files have.
+    // Readers obey `FBXVersion: 7400`. Very old files have only the comment `; FBX 7.4.0 project file`.
     int version = 0;
     const auto digit = [&](size_t i) { return i < text.size() && std::isdigit(static_cast<unsigned char>(text[i])); };
     if (const size_t key = text.find("FBXVersion:"); key != text.npos) {
@@ -112,7 +113,7 @@ std::string fbx_refusal(const uint8_t* head, size_t bytes) {
     }
     const int version = fbx_version(head, bytes);
     if (version > 0 && version < 7100) {
-        // Up to FBX 5 the header counts the container's format, not the version.
+        // Up to FBX 5, the header holds the version of the container format, not of FBX.
         return (version < 5800 ? std::string("FBX 5 or older") : version_text(version)) +
                "; this importer reads FBX 7.1 and later: open it in a modelling program or FBX Converter and export it as FBX "
                "2014 "

@@ -30,7 +30,7 @@ class Placement {
     std::map<std::string, size_t> seen_;
 };
 
-// False for a vector without length.
+// Scales the vector to unit length. Returns false, and changes nothing, if its length is 0 or not finite.
 bool normalize(Vec& v) {
     const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
     if (!(length > 1e-30) || !std::isfinite(length)) return false;
@@ -85,7 +85,8 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
         }
         if (all_finite(out.position)) lights.push_back(desc);
     }
-    // Physical intensities (watts, candela) count on falloff, and light here has none: the brightest light becomes 1.
+    // Physical intensities (watts, candela) assume falloff with distance. Lights here have no falloff, so all of them are
+    // scaled until the brightest is 1.
     if (brightest > 1) {
         rt::log(&host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest));
         for (rt_light_desc& light : lights) {
@@ -106,13 +107,14 @@ void add_cameras(const aiScene& scene, const NodeTree& tree, Format format, cons
         rt_camera out{};
         out.struct_bytes = sizeof out;
         out.name = camera.mName.C_Str();
-        // For glTF assimp 5.2 stores the node's translation once more as the camera's position.
+        // For glTF, assimp 5.2 stores the node's translation again as the camera's position.
         const Vec eye = transform_point(world, format == Format::gltf ? aiVector3D() : camera.mPosition);
         store(eye, out.eye);
         store({eye[0] + forward[0], eye[1] + forward[1], eye[2] + forward[2]}, out.target);
         store(up, out.up);
         if (!all_finite(out.eye) || !all_finite(out.target)) continue;
-        // mHorizontalFOV is the whole angle, whatever its comment says; for glTF assimp stores yfov times aspect.
+        // mHorizontalFOV is the whole angle, whatever the comment in its header says. For glTF, assimp stores yfov times the
+        // aspect.
         const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? camera.mAspect
                               : format == Format::gltf                            ? 1
                                                                                   : 4.0 / 3;

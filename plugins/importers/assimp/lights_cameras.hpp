@@ -1,4 +1,4 @@
-// lights_cameras.hpp -- lights and cameras, placed by the nodes of their names.
+// lights_cameras.hpp -- converts lights and cameras. The node with the same name gives each its place.
 #pragma once
 #include <assimp/scene.h>
 

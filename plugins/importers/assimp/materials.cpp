@@ -33,7 +33,7 @@ float brightest(const aiColor3D& c) {
     return std::max({c.r, c.g, c.b});
 }
 
-// glTF and other metallic-roughness materials: a smooth metal mirrors, a rough one stays diffuse in its colour.
+// Converts metallic-roughness materials (glTF and others): a smooth metal mirrors, a rough one stays diffuse in its own colour.
 void apply_metallic(const aiMaterial& m, rt_material& out) {
     const float metallic = finite(number(m, AI_MATKEY_METALLIC_FACTOR, 0), 0, 1, 0);
     const float roughness = finite(number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1), 0, 1, 1);
@@ -50,12 +50,13 @@ void apply_phong(const aiMaterial& m, rt_material& out) {
     const float strength = finite(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
     store(specular * strength, 1, out.specular);
     out.shininess = finite(number(m, AI_MATKEY_SHININESS, 0), 1, 10000, 1);
-    // FBX and COLLADA keep a reflection colour beside its factor; black is how "no reflection" is written.
+    // FBX and COLLADA store a reflection colour beside its factor. A black colour means no reflection.
     out.reflect =
         finite(number(m, AI_MATKEY_REFLECTIVITY, 0) * brightest(color(m, AI_MATKEY_COLOR_REFLECTIVE, {0, 0, 0})), 0, 1, 0);
 }
 
-// Opacity and transmission become refraction: bent only if the file names an index of refraction or says "transmission".
+// Converts opacity and transmission to refraction. Rays are bent only if the file gives an index of refraction or a
+// transmission.
 void apply_transparency(const aiMaterial& m, Format format, rt_material& out) {
     float opacity = finite(number(m, AI_MATKEY_OPACITY, 1), 0, 1, 1);
     if (format == Format::gltf) {
@@ -69,7 +70,7 @@ void apply_transparency(const aiMaterial& m, Format format, rt_material& out) {
     if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
 }
 
-// What stands behind the last slash of either kind.
+// Returns the text behind the last slash.
 std::string base_name(const std::string& path) {
     const size_t slash = path.find_last_of('/');
     return slash == path.npos ? path : path.substr(slash + 1);
@@ -104,13 +105,13 @@ rt_u32 MaterialTable::id(unsigned material) {
     desc.struct_bytes = sizeof desc;
     aiString name;
     if (m.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name.length > 0) desc.name = name.C_Str();
-    // What assimp makes up where the file has none is the host's default material.
+    // assimp adds a material where the file has none. The host's default material takes its place.
     if (std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME) return RT_NONE;
     rt_material& out = desc.values;
     out.texture = texture(m);
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);
-    // In FBX a texture takes the colour's place (programs leave any value there); elsewhere the two are multiplied.
+    // In FBX, a texture replaces the colour (programs leave any value there). In other formats, the two are multiplied.
     if (format_ == Format::fbx && out.texture != RT_NONE) base = {1, 1, 1};
     store(base, 1, out.color);
     aiColor3D emission = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
@@ -175,7 +176,7 @@ rt_u32 MaterialTable::embedded_texture(const aiTexture& texture) {
     rt_texture_desc desc{};
     desc.struct_bytes = sizeof desc;
     if (!texture.pcData || texture.mWidth == 0) return RT_NONE;
-    if (texture.mHeight == 0) {  // encoded, mWidth is its size in bytes
+    if (texture.mHeight == 0) {  // an encoded picture; mWidth is its size in bytes
         desc.bytes = reinterpret_cast<const uint8_t*>(texture.pcData);
         desc.byte_count = texture.mWidth;
         return sink_.texture(sink_.ctx, &desc);
@@ -194,7 +195,8 @@ rt_u32 MaterialTable::embedded_texture(const aiTexture& texture) {
     return sink_.texture(sink_.ctx, &desc);
 }
 
-// Files name textures as the author's machine had them: look where modelling programs put them beside the scene.
+// Files often hold texture paths of the author's machine. So look also in the places beside the scene where modelling programs
+// put textures.
 std::string MaterialTable::existing_path(const std::string& reference) const {
     std::string path = reference;
     std::replace(path.begin(), path.end(), '\\', '/');

@@ -1,4 +1,4 @@
-// materials.hpp -- assimp's material properties as Whitted materials and textures.
+// materials.hpp -- converts assimp's materials and textures to Whitted materials of the host.
 #pragma once
 #include <assimp/scene.h>
 
@@ -10,7 +10,7 @@
 
 namespace assimp_import {
 
-// Where a material's colour texture takes its coordinates.
+// Which uv channel the colour texture of a material uses, and how its coordinates are transformed.
 struct TextureMapping {
     unsigned channel = 0;
     bool has_transform = false;
@@ -19,7 +19,7 @@ struct TextureMapping {
 
 enum class Format { fbx, gltf, other };
 
-// Hands materials to the sink when they are first used.
+// Converts materials and passes each to the sink when it is first used.
 class MaterialTable {
  public:
     MaterialTable(const aiScene& scene, Format format, const std::string& file, const rt_scene_sink& sink);

@@ -10,10 +10,10 @@
 namespace assimp_import {
 namespace {
 
-// Position, normal, uv; compared bit by bit.
+// Position, normal, uv. Vertices are compared bit by bit.
 using Vertex = std::array<float, 8>;
 
-// Gives equal vertices one index: open addressing over the list itself.
+// Gives equal vertices the same index: a hash table with open addressing over the list of vertices.
 class VertexSet {
  public:
     explicit VertexSet(size_t expected) {
@@ -51,7 +51,7 @@ bool is_finite(const aiVector3D& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-// assimp's order: rotated about the picture's centre, then scaled and moved.
+// Transforms a uv in assimp's order: rotation about the centre of the picture, then scaling, then translation.
 void transform_uv(const aiUVTransform& t, float& u, float& v) {
     const float c = std::cos(t.mRotation), s = std::sin(t.mRotation);
     const float x = u - 0.5f, y = v - 0.5f;
@@ -88,7 +88,7 @@ class CornerReader {
     const aiVector3D* uvs_ = nullptr;
 };
 
-// In range and finite.
+// True if all indices of the face are in range and its vertices are finite.
 bool is_sound(const aiMesh& mesh, const aiFace& face) {
     for (unsigned i = 0; i < face.mNumIndices; ++i) {
         if (face.mIndices[i] >= mesh.mNumVertices || !is_finite(mesh.mVertices[face.mIndices[i]])) return false;
@@ -108,7 +108,8 @@ MeshTable::Placed MeshTable::place(const aiNode& node, const std::vector<unsigne
     }
     if (own.empty()) return {};
     if (wanted == own) return {id(own, node), RT_NONE};
-    // Another material for all of it belongs to the instance; anything else needs a mesh of its own.
+    // If the node changes all materials to the same one, the instance gets that material. Otherwise the node needs a mesh of
+    // its own.
     const bool is_uniform =
         std::all_of(wanted.begin(), wanted.end(), [&](const Part& p) { return p.second == wanted[0].second; });
     const rt_u32 material = is_uniform ? materials_.id(wanted[0].second) : RT_NONE;

@@ -1,4 +1,4 @@
-// meshes.hpp -- the meshes of a node as one mesh of the host, shared by all nodes that have the same.
+// meshes.hpp -- joins the meshes of a node to one mesh of the host, which nodes with the same meshes share.
 #pragma once
 #include <assimp/scene.h>
 
@@ -12,26 +12,27 @@
 
 namespace assimp_import {
 
-// assimp splits a mesh by material; here the parts become one mesh with a material per face again. Corners that agree in all
-// they have become one vertex (the FBX importer hands out one per corner).
+// assimp splits a mesh by material. This class joins the parts again, with one material per face. Corners with equal attributes
+// become one vertex (assimp's FBX importer makes one vertex per corner).
 class MeshTable {
  public:
     MeshTable(const aiScene& scene, MaterialTable& materials, const rt_scene_sink& sink)
         : scene_(scene), materials_(materials), sink_(sink) {}
     struct Placed {
-        rt_u32 mesh = RT_NONE;      // RT_NONE: the node shows no polygons
-        rt_u32 material = RT_NONE;  // of the whole instance; RT_NONE: the mesh's own
+        rt_u32 mesh = RT_NONE;      // RT_NONE: the node has no polygons
+        rt_u32 material = RT_NONE;  // of the whole instance; RT_NONE: the mesh has its own materials
     };
-    // The mesh made of a node's meshes. `materials`: one for each of them instead of their own, or empty.
+    // Returns the mesh made of the node's meshes. `materials` holds one material for each of them; if it is empty, they keep
+    // their own.
     Placed place(const aiNode& node, const std::vector<unsigned>& materials);
 
-    // What was left out.
+    // Numbers of elements that were left out, and of faces that were not.
     uint64_t points_and_lines() const { return points_and_lines_; }
     uint64_t broken_faces() const { return broken_faces_; }
     uint64_t faces() const { return faces_; }
 
  private:
-    // A mesh of the scene and its material.
+    // Index of a mesh of the scene, and of its material.
     using Part = std::pair<unsigned, unsigned>;
     rt_u32 id(const std::vector<Part>& parts, const aiNode& node);
     rt_u32 add(const std::vector<Part>& parts, const char* name);

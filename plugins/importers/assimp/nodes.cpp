@@ -15,7 +15,7 @@ Transform from_assimp(const aiMatrix4x4& m) {
 
 enum class Part { whole, pivot, geometric, geometric_inverse };
 
-// A node of the FBX importer's own making is known by the end of its name.
+// Helper nodes that assimp's FBX importer adds are recognised by the end of their names.
 Part part_of(const aiNode& node) {
     constexpr std::string_view tag = "_$AssimpFbx$_";
     const std::string_view name(node.mName.data, node.mName.length);
@@ -59,8 +59,8 @@ bool is_finite(const Transform& m) {
 NodeTree::NodeTree(const aiScene& scene, bool is_fbx) {
     struct Pending {
         const aiNode* node;
-        Transform parent;     // inherited
-        Transform geometric;  // parts seen since the last whole node
+        Transform parent;     // inherited by the node
+        Transform geometric;  // product of the geometric parts since the last whole node
     };
     std::vector<Pending> stack;
     if (scene.mRootNode) stack.push_back({scene.mRootNode, kIdentity, kIdentity});
@@ -71,7 +71,7 @@ NodeTree::NodeTree(const aiScene& scene, bool is_fbx) {
         const Part part = is_fbx ? part_of(*at.node) : Part::whole;
         PlacedNode placed;
         placed.node = at.node;
-        Transform geometric = kIdentity;  // for the children
+        Transform geometric = kIdentity;  // passed on to the children
         switch (part) {
             case Part::whole:
                 placed.world = multiply(at.parent, local);
@@ -89,7 +89,7 @@ NodeTree::NodeTree(const aiScene& scene, bool is_fbx) {
                 break;
         }
         nodes_.push_back(placed);
-        // Onto the stack in reverse, so that siblings come in the file's order.
+        // The children go onto the stack in reverse, so that siblings come out in the order of the file.
         for (unsigned i = at.node->mNumChildren; i > 0; --i) {
             if (const aiNode* child = at.node->mChildren[i - 1]) stack.push_back({child, placed.world, geometric});
         }

@@ -1,4 +1,4 @@
-// nodes.hpp -- where the nodes of an imported scene stand in the world.
+// nodes.hpp -- computes the world transforms of the nodes of an imported scene.
 #pragma once
 #include <assimp/scene.h>
 
@@ -9,30 +9,31 @@
 
 namespace assimp_import {
 
-// Row-major 3x4, in double: chains of many small rotations stay exact to float.
+// A 3x4 matrix, row-major, in double precision, so that chains of many small rotations stay exact to float precision.
 using Transform = std::array<double, 12>;
-Transform multiply(const Transform& a, const Transform& b);  // a after b
+Transform multiply(const Transform& a, const Transform& b);  // applies b first, then a
 std::array<double, 3> transform_point(const Transform& m, const aiVector3D& p);
 std::array<double, 3> transform_vector(const Transform& m, const aiVector3D& v);
 bool is_finite(const Transform& m);
 
 struct PlacedNode {
     const aiNode* node = nullptr;
-    Transform world{};           // what children, lights and cameras inherit
-    Transform world_geometry{};  // of the node's own meshes
+    Transform world{};           // inherited by children, lights and cameras
+    Transform world_geometry{};  // for the node's own meshes
 };
 
-// All nodes of the tree, parents first, without recursion (files may nest as deep as they like).
+// All nodes of the tree, parents first. It is built without recursion, because files may nest without limit.
 //
-// FBX: with preserved pivots assimp gives one node per part of a node's transform, named `<node>_$AssimpFbx$_<part>`. Geometric
-// transforms belong to a node's meshes only. assimp 5.2 undoes them for the children by further nodes, but in an order that is
-// wrong for a rotation with a scaling; here they are kept out of what is inherited, and the undoing nodes are skipped.
+// FBX: with preserved pivots, assimp makes one node for each part of a node's transform, with the name
+// `<node>_$AssimpFbx$_<part>`. Geometric transforms apply only to the meshes of a node. assimp 5.2 undoes them for the children
+// by further nodes, but in an order that is wrong for a rotation with a scaling. So geometric transforms are not inherited
+// here, and the undoing nodes are skipped.
 class NodeTree {
  public:
     NodeTree(const aiScene& scene, bool is_fbx);
     const std::vector<PlacedNode>& nodes() const { return nodes_; }
-    // The n-th node of a name in file order, for lights and cameras, which refer to nodes by name only (and FBX names need not
-    // be unique). The last one if there are fewer; nullptr if there is none.
+    // Returns the n-th node with a name in the order of the file, the last one if there are fewer, or nullptr if there is none.
+    // Lights and cameras refer to nodes by name only, and FBX names need not be unique.
     const PlacedNode* find(const std::string& name, size_t n) const;
 
  private:

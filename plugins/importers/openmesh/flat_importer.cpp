@@ -8,7 +8,8 @@
 namespace openmesh_import {
 namespace {
 
-// Beyond so many sets of attributes on one vertex (a fan's hub) new ones are no longer looked up.
+// Limit of the search among the attribute sets of one vertex (for example at the hub of a fan). Beyond it, a new copy of the
+// vertex is made without a further search.
 constexpr int kMaxChain = 32;
 
 }  // namespace
@@ -69,7 +70,8 @@ void FlatImporter::store(rt_u32 vertex, const Attributes& values) {
     if (!uvs.empty()) std::copy(values.uv, values.uv + 2, &uvs[2 * size_t(vertex)]);
 }
 
-// The vertex with these attributes: the file's own the first time, then copies of it.
+// Returns a vertex at the same position with these attributes: the file's own vertex for the first set, a copy for each further
+// set.
 rt_u32 FlatImporter::variant_of(rt_u32 vertex, const Attributes& values) {
     if (variants_.size() < positions.size() / 3) {
         variants_.resize(positions.size() / 3);
@@ -125,7 +127,7 @@ void FlatImporter::report_broken(int vertex) {
     if (broken_faces++ > 0) return;
     const size_t line = line_number ? line_number() : 0;
     if (line > 0) first_broken = "line " + std::to_string(line) + ": ";
-    // OBJ, the format with line numbers here, counts from 1; the others from 0.
+    // Vertex numbers in messages: OBJ (the only format here with attributes of corners) counts from 1, the others from 0.
     const bool exists = vertex >= 0 && size_t(vertex) < file_vertices_;
     first_broken += "vertex " + std::to_string(vertex + (attributes_of_corners_ ? 1 : 0));
     first_broken += exists ? " is not finite" : ", and there are " + std::to_string(file_vertices_);
@@ -178,7 +180,7 @@ void FlatImporter::set_next(HalfedgeHandle halfedge, HalfedgeHandle next) {
 }
 
 void FlatImporter::follow_halfedges() {
-    // Each half-edge bounds one face at most, so a sound file cannot need more steps than it has half-edges.
+    // Each half-edge bounds at most one face. So a valid file needs at most as many steps as it has half-edges.
     size_t steps = 0;
     VHandles vertices;
     const std::vector<int> starts = std::move(face_halfedges_);

@@ -1,7 +1,7 @@
-// flat_importer.hpp -- OpenMesh's readers without its mesh: vertices and faces into flat arrays.
+// flat_importer.hpp -- receives vertices and faces from OpenMesh's readers in flat arrays, without OpenMesh's mesh.
 //
-// A half-edge mesh cannot hold three faces at an edge, so OpenMesh drops such faces; arrays hold every face of the file, and
-// take a fraction of the memory and time.
+// A half-edge mesh cannot hold three faces at one edge, so OpenMesh would drop such faces. Arrays hold every face of the file,
+// and take a fraction of the memory and time.
 #pragma once
 #include <OpenMesh/Core/IO/importer/BaseImporter.hh>
 #include <cstdint>
@@ -13,7 +13,8 @@
 
 namespace openmesh_import {
 
-// Where readers store what they know no place for (PLY's own properties); the counts say how much room to make.
+// Stores properties that the readers have no other place for (custom properties of PLY). The counts tell how many values to
+// make room for.
 class PropertyStore : public OpenMesh::BaseKernel {
  public:
     size_t n_vertices() const override { return vertices; }
@@ -32,30 +33,33 @@ class FlatImporter : public OpenMesh::IO::BaseImporter {
     using Vec2f = OpenMesh::Vec2f;
     using Vec3f = OpenMesh::Vec3f;
 
-    // Normals and uvs belong to the corners of the next face (OBJ) or to vertices (all else).
+    // attributes_of_corners: normals and uvs belong to the corners of the next face (OBJ) instead of to vertices (all other
+    // formats).
     explicit FlatImporter(bool attributes_of_corners) : attributes_of_corners_(attributes_of_corners) {}
 
     PropertyStore properties;
-    std::function<rt_u32()> material_of_next_face;  // or empty
-    std::function<size_t()> line_number;            // or empty; for messages
+    std::function<rt_u32()> material_of_next_face;  // may be empty
+    std::function<size_t()> line_number;            // may be empty; line of the file, for messages
 
-    // This vertex's coordinates are a stand-in: faces must not use it.
+    // Marks a vertex with coordinates that could not be read. Faces must not use it.
     void mark_unusable(size_t vertex);
-    // uvs per corner, in the order of the faces: what PLY keeps in lists. Sizes that differ from the face's are ignored.
+    // Sets uvs per corner, in the order of the faces; PLY stores them in lists. A list whose size differs from the face's is
+    // ignored.
     void set_corner_uvs(const std::function<const std::vector<float>*(size_t face)>& uvs_of_face);
-    // After reading: faces from half-edges (OM), and faces without corners go.
+    // Call it after reading: it makes faces of half-edges (OM), and removes faces without corners.
     void finish_faces();
 
-    // Filled; see rt_mesh.
+    // The results; see rt_mesh.
     std::vector<float> positions, normals, uvs;
     std::vector<rt_u32> indices, face_sizes, face_materials;
 
     size_t face_count() const { return face_sizes.size(); }
-    // Faces that name a vertex that is missing or not finite; they are left without corners. What is wrong with the first one.
+    // broken_faces counts faces that refer to a missing vertex or one that is not finite. They stay without corners until
+    // finish_faces(). first_broken describes the first of them.
     uint64_t broken_faces = 0;
     std::string first_broken;
 
-    // ---- for the readers
+    // ---- called by the readers
     VertexHandle add_vertex(const Vec3f& point) override;
     VertexHandle add_vertex() override { return add_vertex(Vec3f(0, 0, 0)); }
     FaceHandle add_face(const VHandles& vertices) override;
@@ -63,21 +67,22 @@ class FlatImporter : public OpenMesh::IO::BaseImporter {
     void set_normal(VertexHandle v, const Vec3f& normal) override;
     void set_normal(VertexHandle v, const OpenMesh::Vec3d& normal) override { set_normal(v, Vec3f(normal)); }
     void set_texcoord(VertexHandle v, const Vec2f& uv) override;
-    void set_texcoord(VertexHandle, const Vec3f&) override {}  // 3D; the 2D one comes first
+    // 3D texture coordinates are ignored; the reader sets 2D ones first.
+    void set_texcoord(VertexHandle, const Vec3f&) override {}
     OpenMesh::BaseKernel* kernel() override { return &properties; }
     void reserve(unsigned vertices, unsigned edges, unsigned faces) override;
     size_t n_vertices() const override { return file_vertices_; }
     size_t n_faces() const override { return face_sizes.size() + face_halfedges_.size(); }
     size_t n_edges() const override { return halfedges_.size() / 2; }
 
-    // Half-edges, as OM 2 stores its faces.
+    // Half-edges. OM 2 stores its faces as half-edges.
     HalfedgeHandle add_edge(VertexHandle from, VertexHandle to) override;
     FaceHandle add_face(HalfedgeHandle halfedge) override;
     void set_next(HalfedgeHandle halfedge, HalfedgeHandle next) override;
     void set_face(HalfedgeHandle, FaceHandle) override {}
     void set_halfedge(VertexHandle, HalfedgeHandle) override {}
 
-    // Not wanted.
+    // Data that the importer does not need.
     void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<Vec2f>&) override {}
     void add_face_texcoords(FaceHandle, VertexHandle, const std::vector<Vec3f>&) override {}
     void set_face_texindex(FaceHandle, int) override {}
@@ -111,13 +116,13 @@ class FlatImporter : public OpenMesh::IO::BaseImporter {
     struct Attributes {
         float normal[3] = {0, 0, 0}, uv[2] = {0, 0};
     };
-    // Attributes of a corner of the face that is being read.
+    // The attributes of one corner of the next face.
     struct Corner {
         int vertex = -1;
         bool has_normal = false, has_uv = false;
         Attributes values;
     };
-    // One vertex of the file with one set of attributes; further sets hang on `next`.
+    // One vertex with one set of attributes. `next` links to the vertex with the next set.
     struct Variant {
         Attributes values;
         rt_u32 next = RT_NONE;
@@ -133,8 +138,8 @@ class FlatImporter : public OpenMesh::IO::BaseImporter {
     size_t file_vertices_ = 0;
     std::vector<bool> unusable_;
     std::vector<Corner> corners_;
-    std::vector<Variant> variants_;  // parallel to the vertices, if attributes belong to corners
-    std::vector<bool> is_used_;      // a first variant's attributes are set
+    std::vector<Variant> variants_;  // one per vertex, if attributes belong to corners
+    std::vector<bool> is_used_;      // true: variants_ holds the attributes of the vertex
     std::vector<Halfedge> halfedges_;
     std::vector<int> face_halfedges_;
 };

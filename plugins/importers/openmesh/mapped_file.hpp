@@ -1,4 +1,4 @@
-// mapped_file.hpp -- a file's bytes in memory, read-only.
+// mapped_file.hpp -- maps a file into memory, read-only.
 #pragma once
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -15,7 +15,7 @@ namespace openmesh_import {
 
 class MappedFile {
  public:
-    // Throws std::runtime_error that says why (without the file's name).
+    // Maps the whole file. Throws std::runtime_error with the reason (without the file's name).
     explicit MappedFile(const std::string& path) {
         const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
         if (file < 0) throw std::runtime_error(std::string("cannot open the file: ") + std::strerror(errno));

@@ -8,7 +8,7 @@
 namespace openmesh_import {
 namespace {
 
-// As written; what was not written stays at these values.
+// The statements of one material as written. Statements that are missing keep these defaults.
 struct Statements {
     float diffuse[3] = {0.8f, 0.8f, 0.8f}, specular[3] = {0, 0, 0}, emission[3] = {0, 0, 0}, filter[3] = {1, 1, 1};
     float exponent = 1, ior = 1, dissolve = 1;
@@ -20,12 +20,12 @@ struct Statements {
 void read_color(std::string_view rest, float out[3]) {
     float rgb[3];
     if (!parse_float(next_word(rest), rgb[0])) return;
-    // One number stands for all three.
+    // One number stands for all three channels.
     if (!parse_float(next_word(rest), rgb[1]) || !parse_float(next_word(rest), rgb[2])) rgb[1] = rgb[2] = rgb[0];
     for (int k = 0; k < 3; ++k) out[k] = std::clamp(rgb[k], 0.0f, 10000.0f);
 }
 
-// `-s 1 1 1 -clamp on wood grain.png`: options first, then a name that may hold spaces.
+// Reads, for example, `-s 1 1 1 -clamp on wood grain.png`: options first, then a file name that may contain spaces.
 std::string read_file_name(std::string_view rest) {
     rest = trim(rest);
     while (!rest.empty() && rest.front() == '-') {
@@ -46,7 +46,7 @@ float largest(const float c[3]) {
     return std::max({c[0], c[1], c[2]});
 }
 
-// Wavefront's illumination models: 3 and 5 mirror, 8 mirrors without rays, 4, 6, 7 and 9 are glass.
+// Converts a material. Wavefront's illumination models: 3, 5 and 8 (without ray tracing) mirror; 4, 6, 7 and 9 are glass.
 ObjMaterial finish(const Statements& s) {
     ObjMaterial m;
     m.texture = s.texture;
@@ -66,8 +66,8 @@ ObjMaterial finish(const Statements& s) {
     if (is_glass) {
         out.ior = s.ior > 1 ? std::min(s.ior, 10.0f) : 1.5f;
         if (!s.has_dissolve || s.dissolve >= 1) {
-            // Glass that says nothing of its opacity: clear, in the hue of the transmission filter (its strength is written in
-            // either sense by different programs). The diffuse colour keeps its share.
+            // Glass without an opacity is clear. Its hue is that of the transmission filter; the filter's strength is ignored,
+            // because programs write it in either sense. The diffuse colour keeps its share of the light.
             out.refract = 1 - largest(out.color);
             const float strongest = std::max(largest(s.filter), 1e-6f);
             for (int k = 0; k < 3; ++k) out.color[k] = s.filter[k] / strongest;

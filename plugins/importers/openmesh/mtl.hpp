@@ -1,4 +1,4 @@
-// mtl.hpp -- Wavefront material files. OpenMesh reads of them no more than a face colour and a texture's name.
+// mtl.hpp -- reads Wavefront material files. OpenMesh reads only a face colour and the name of a texture from them.
 #pragma once
 #include <map>
 #include <string>
@@ -9,10 +9,10 @@ namespace openmesh_import {
 
 struct ObjMaterial {
     rt_material values{};  // .texture is not set
-    std::string texture;   // map_Kd as the file has it, or empty
+    std::string texture;   // map_Kd as in the file, or empty
 };
 
-// Adds the materials of one file to `materials`, by name. Lines that make no sense are skipped, as all programs do.
+// Adds the materials of one file to `materials`, by name. Lines that cannot be understood are skipped, as other programs do.
 void parse_mtl(std::string_view text, std::map<std::string, ObjMaterial>& materials);
 
 }  // namespace openmesh_import

@@ -1,5 +1,5 @@
-// obj.cpp -- Wavefront OBJ: each line is looked at before OpenMesh sees it, so that numbering stays whole, a broken line costs
-// that line only, and the material of a face is known.
+// obj.cpp -- reads Wavefront OBJ. Each line is checked before OpenMesh reads it. So a broken line costs only that line, the
+// numbers of later vertices stay right, and the material of each face is known.
 #include <map>
 #include <optional>
 #include <string>
@@ -13,7 +13,7 @@
 namespace openmesh_import {
 namespace {
 
-// `7`, `7/1`, `7//3`, `7/1/3`, `-1/-1/-1`.
+// True for the corner of a face: `7`, `7/1`, `7//3`, `7/1/3`, `-1/-1/-1`.
 bool is_corner(std::string_view word) {
     for (int part = 0; part < 3; ++part) {
         const size_t slash = word.find('/');
@@ -31,7 +31,7 @@ class ObjLines {
  public:
     ObjLines(const Source& source, FlatImporter& mesh) : source_(source), mesh_(mesh) {}
 
-    // The reader goes through the file twice: for vertices, then for faces.
+    // Edits one line for OpenMesh; false drops the line. The reader goes through the file twice: for vertices, then for faces.
     bool edit(std::string_view line, int pass, std::string& out) {
         line = trim(before_comment(line));
         const std::string_view word = next_word(line);
@@ -59,7 +59,7 @@ class ObjLines {
     LineBuffer* buffer = nullptr;
 
  private:
-    // A vertex that cannot be read keeps its number and may not be used.
+    // A vertex that cannot be read keeps its number, but faces must not use it.
     void vertex(std::string_view rest, std::string& out) {
         const std::string_view numbers = trim(rest);
         float xyz[3];
@@ -98,7 +98,7 @@ class ObjLines {
     }
 
     void library(std::string_view rest) {
-        // Several files may stand on one line; a name may hold spaces. The whole is tried first.
+        // A line may list several files, and a name may contain spaces. The whole rest of the line is tried first.
         const std::string folder = source_.path.substr(0, source_.path.find_last_of('/') + 1);
         if (open_library(folder, std::string(trim(rest)))) return;
         bool found = false;
@@ -106,7 +106,9 @@ class ObjLines {
             found = open_library(folder, std::string(word)) || found;
             if (!found) missing_ = std::string(word);
         }
-        if (!found) warn(source_, "the material file " + quoted(missing_) + " is not there or not readable: default material");
+        if (!found)
+            warn(source_,
+                 "the material file " + quoted(missing_) + " cannot be read: its materials become the default material");
         has_missing_library_ = has_missing_library_ || !found;
     }
     bool open_library(const std::string& folder, std::string name) {
@@ -173,7 +175,7 @@ void read_obj(const Source& source, FlatImporter& mesh) {
 
     if (lines.bad_faces > 0) {
         const std::string text =
-            counted(lines.bad_faces, "face") + " left out that cannot be read, the first at " + lines.first_bad_face;
+            counted(lines.bad_faces, "face") + " left out because they cannot be read, the first at " + lines.first_bad_face;
         if (lines.bad_faces == lines.faces) throw std::runtime_error(text);
         warn(source, text);
     }

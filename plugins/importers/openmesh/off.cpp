@@ -1,5 +1,5 @@
-// off.cpp -- OFF: written anew without comments and colours before OpenMesh reads it, since it takes a colour behind a face for
-// the next face, a comment for the end, and counts on the first line for nothing.
+// off.cpp -- reads OFF. The text is rewritten without comments and colours before OpenMesh reads it. OpenMesh would take a
+// colour behind a face for the next face, a comment for the end of the file, and ignore counts on the first line.
 #include <stdexcept>
 #include <string>
 
@@ -9,7 +9,7 @@
 namespace openmesh_import {
 namespace {
 
-// [ST][C][N]OFF; what stands behind a vertex's position is left out, but for normals.
+// The header word, [ST][C][N]OFF. Of the data behind a vertex's position, only normals are kept.
 struct Kind {
     bool has_normals = false, is_four_dimensional = false, is_binary = false;
 };
@@ -38,16 +38,16 @@ class OffText {
         if (parse_kind(next_word(ahead), kind)) {
             line = trim(ahead);
             if (line.substr(0, 6) == "BINARY")
-                throw std::runtime_error("is a binary OFF file, which is not read: convert it to text");
+                throw std::runtime_error("is a binary OFF file, which is not supported: convert it to text");
             if (line.empty()) line = content();
         }
         if (kind.is_four_dimensional)
-            throw std::runtime_error("has vertices of other than three dimensions, which is not read");
+            throw std::runtime_error("has vertices that are not three-dimensional, which is not supported");
         long long vertices = -1, faces = -1;
         if (!parse_integer(next_word(line), vertices) || !parse_integer(next_word(line), faces) || vertices < 0 || faces < 0) {
-            throw std::runtime_error(where() + "the numbers of vertices and faces are due: is it an OFF file?");
+            throw std::runtime_error(where() + "expected the numbers of vertices and faces: is it an OFF file?");
         }
-        // "0 0 0\n" is a vertex at least, "3 0 1 2\n" a face.
+        // The shortest vertex is "0 0 0\n" with 6 bytes. A face takes at least 2 bytes.
         std::string why = too_large("vertex", static_cast<unsigned long long>(vertices), 6, size_);
         if (why.empty()) why = too_large("face", static_cast<unsigned long long>(faces), 2, size_);
         if (!why.empty()) throw std::runtime_error(why);
@@ -60,7 +60,7 @@ class OffText {
     std::vector<float> normals;
 
  private:
-    // The next line with anything on it.
+    // The next line that is not blank.
     std::string_view content() {
         while (!rest_.empty()) {
             ++line_number_;
@@ -80,7 +80,8 @@ class OffText {
         std::string_view words[3];
         for (int k = 0; k < 3; ++k) {
             words[k] = next_word(line);
-            if (words[k].empty()) throw std::runtime_error(where() + "a vertex with fewer than three coordinates");
+            if (words[k].empty())
+                throw std::runtime_error(where() + "a vertex has fewer than three coordinates; expected x y z");
             good = parse_float(words[k], xyz[k]) && good;
         }
         if (!good) mesh.mark_unusable(static_cast<size_t>(index));
@@ -98,20 +99,20 @@ class OffText {
         long long corners = 0;
         const std::string_view first = next_word(line);
         if (!parse_integer(first, corners) || corners < 0) {
-            throw std::runtime_error(where() + quoted(first) + " where a face's number of corners is due");
+            throw std::runtime_error(where() + quoted(first) + " instead of the number of corners of a face");
         }
         out.append(first);
         for (long long i = 0; i < corners; ++i) {
             long long vertex;
             std::string_view word = next_word(line);
-            if (word.empty()) {  // a face may go on in the next line
+            if (word.empty()) {  // a face may continue on the next line
                 line = content();
                 word = next_word(line);
             }
             if (!parse_integer(word, vertex))
                 throw std::runtime_error(where() + "a face of " + std::to_string(corners) + " corners has " +
                                          std::to_string(i));
-            // Out of range in a way that OpenMesh's unsigned numbers can carry.
+            // Any index out of range is written as one that fits into OpenMesh's numbers; faces with it are reported later.
             out.append(" ").append(vertex < 0 || vertex > 2147483647 ? "2147483647" : word);
         }
         out += '\n';

@@ -1,4 +1,4 @@
-// om.cpp -- OM, OpenMesh's own binary format.
+// om.cpp -- reads OM, OpenMesh's own binary format.
 #include <cstring>
 #include <stdexcept>
 
@@ -6,7 +6,7 @@
 
 namespace openmesh_import {
 
-// "OM", 'T' | 'Q' | 'P', version, then the numbers of vertices, faces and edges as 32 bits, little-endian.
+// The header: "OM", 'T' | 'Q' | 'P', version, then the numbers of vertices, faces and edges as 32-bit little-endian integers.
 void read_om(const Source& source, FlatImporter& mesh) {
     constexpr size_t header_bytes = 16;
     if (source.bytes.size() < header_bytes || source.bytes.substr(0, 2) != "OM" || !std::strchr("TQP", source.bytes[2])) {
@@ -32,7 +32,7 @@ void read_om(const Source& source, FlatImporter& mesh) {
     try {
         whole = run_reader("om", buffer, true, false, false, mesh);
     } catch (const std::ios_base::failure&) {
-        // Files of before version 2 have no mark at their end, and are read until nothing is left.
+        // Files before version 2 have no end mark, and are read until no data is left.
     }
     if (mesh.n_vertices() != counts[0] || mesh.n_faces() != counts[1] || (counts[1] > 0 && mesh.n_faces() == 0)) {
         throw std::runtime_error("has " + std::to_string(mesh.n_vertices()) + " of " + std::to_string(counts[0]) +

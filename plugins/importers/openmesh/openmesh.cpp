@@ -1,4 +1,5 @@
-// openmesh.cpp -- importer plugin: OBJ, PLY, STL, OFF and OM through OpenMesh's readers, every face of the file.
+// openmesh.cpp -- the importer plugin for OBJ, PLY, STL, OFF and OM. It uses OpenMesh's readers and keeps every face of the
+// file.
 #include <OpenMesh/Core/IO/IOManager.hh>
 #include <OpenMesh/Core/IO/Options.hh>
 #include <OpenMesh/Core/System/omstream.hh>
@@ -25,7 +26,7 @@ bool run_reader(const char* extension, std::streambuf& buffer, bool stop_at_erro
     Options options = Options::VertexNormal | Options::VertexTexCoord;
     if (is_binary) options += Options::Binary;
     if (custom_properties) options += Options::Custom;
-    // What it would print about single faces is told by us, counted.
+    // OpenMesh would print a line for each bad face. We count such faces and report them once.
     omerr().disable();
     omlog().disable();
     std::istream stream(&buffer);
@@ -36,7 +37,7 @@ bool run_reader(const char* extension, std::streambuf& buffer, bool stop_at_erro
 
 std::string too_large(const char* what, unsigned long long count, unsigned long long least_bytes,
                       unsigned long long available) {
-    // Indices of OpenMesh are signed.
+    // OpenMesh's indices are signed.
     if (count <= available / least_bytes && count < 0x7FFFFFFFull) return {};
     return "declares " + std::to_string(count) + " elements '" + what + "' of at least " + std::to_string(least_bytes) +
            " bytes and has " + std::to_string(available) + " bytes for them: it is cut off or damaged";
@@ -44,7 +45,7 @@ std::string too_large(const char* what, unsigned long long count, unsigned long 
 
 namespace {
 
-// Reading takes the most of it; the rest is the host's copy.
+// The share of reading in the progress. The rest is the host's copy.
 constexpr float kReadShare = 0.9f;
 
 std::string lower_extension(const std::string& path) {
@@ -54,7 +55,7 @@ std::string lower_extension(const std::string& path) {
     return extension;
 }
 
-// A PLY, OFF or OM file is known by its first bytes; the others by their extension.
+// PLY, OFF and OM files without a known extension are recognised by their first bytes.
 std::string format_of(const std::string& path, std::string_view bytes) {
     const std::string extension = lower_extension(path);
     if (extension == "stla" || extension == "stlb") return "stl";
@@ -135,8 +136,9 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     rt::progress(host, kReadShare);
 
     if (mesh.broken_faces > 0) {
-        const std::string text = counted(mesh.broken_faces, "face") +
-                                 " left out for vertices that are missing or not finite, the first: " + mesh.first_broken;
+        const std::string text =
+            counted(mesh.broken_faces, "face") +
+            " left out because of vertices that are missing or not finite, the first: " + mesh.first_broken;
         if (mesh.face_count() == 0) throw std::runtime_error("contains no usable polygons: " + text);
         warn(source, text);
     }

@@ -1,4 +1,5 @@
-// ply.cpp -- PLY: binary as it is, ASCII line by line, so that OpenMesh sees what the header declares and nothing else.
+// ply.cpp -- reads PLY. Binary data goes to OpenMesh unchanged; ASCII is checked line by line, so that OpenMesh sees only what
+// the header declares.
 #include <algorithm>
 #include <istream>
 #include <stdexcept>
@@ -14,8 +15,8 @@ using ply::Element;
 using ply::Header;
 using ply::Property;
 
-// Goes along the values as the header orders them. What a line has beyond its element is dropped (MeshLab writes such lines);
-// an element may go on in the next line.
+// Follows the values in the order of the header. Values behind the end of an element on its line are dropped (MeshLab writes
+// such lines). An element may continue on the next line.
 class AsciiLines {
  public:
     AsciiLines(const Header& header, FlatImporter& mesh) : header_(header), mesh_(mesh) {}
@@ -44,7 +45,7 @@ class AsciiLines {
         }
         return !out.empty();
     }
-    // Of the element that is read.
+    // Names the line and the element that is read, for messages.
     std::string where() const {
         const std::string line = "line " + std::to_string(line_number_) + ": ";
         if (element_ == header_.elements.size()) return line;
@@ -59,7 +60,7 @@ class AsciiLines {
         if (property.is_list() && list_left_ == 0 && !list_is_open_) {
             long long count = 0;
             if (!parse_integer(word, count) || count < 0)
-                throw std::runtime_error(where() + quoted(word) + " where a count is due");
+                throw std::runtime_error(where() + quoted(word) + " instead of the length of a list");
             out.append(word);
             list_left_ = static_cast<unsigned long long>(count);
             list_is_open_ = true;
@@ -78,17 +79,17 @@ class AsciiLines {
                 out.append(word.front() == '+' ? word.substr(1) : word);
                 return;
             }
-            if (!is_odd_number(word)) throw std::runtime_error(where() + quoted(word) + " where a number is due");
+            if (!is_odd_number(word)) throw std::runtime_error(where() + quoted(word) + " instead of a number");
             if (element().name == "vertex" && property.name.size() == 1 && property.name[0] >= 'x') mesh_.mark_unusable(item_);
             out += '0';
             return;
         }
         long long integer = 0;
-        if (!parse_integer(word, integer)) throw std::runtime_error(where() + quoted(word) + " where an integer is due");
-        // Out of range in a way that OpenMesh's numbers can carry.
+        if (!parse_integer(word, integer)) throw std::runtime_error(where() + quoted(word) + " instead of an integer");
+        // Any integer out of range is written as one that fits into OpenMesh's numbers; faces with it are reported later.
         out.append(integer < 0 || integer > 2147483647 ? "2147483647" : word);
     }
-    // nan, inf, -1.#IND, 1e999: numbers that are none.
+    // True for words such as nan, inf, -1.#IND and 1e999, which programs write for numbers that are not finite.
     static bool is_odd_number(std::string_view word) {
         if (!word.empty() && (word.front() == '-' || word.front() == '+')) word.remove_prefix(1);
         if (word.empty()) return false;
@@ -104,7 +105,7 @@ class AsciiLines {
     unsigned long long item_ = 0, list_left_ = 0;
 };
 
-// MeshLab: `property list uchar float texcoord`, two numbers per corner.
+// MeshLab writes uvs as `property list uchar float texcoord`, two numbers per corner.
 void take_texcoords(FlatImporter& mesh) {
     OpenMesh::FPropHandleT<std::vector<float>> lists;
     if (!mesh.properties.get_property_handle(lists, "texcoord")) return;
@@ -130,7 +131,7 @@ std::string read_ply(const Source& source, FlatImporter& mesh) {
     try {
         run_reader("ply", header.is_ascii() ? static_cast<std::streambuf&>(text) : binary, true, false, has_lists, mesh);
     } catch (const std::ios_base::failure&) {
-        // Handled below: not all arrived.
+        // The check below reports that not all elements were read.
     }
     if (mesh.n_vertices() < vertices->count || mesh.face_count() < faces->count) {
         throw std::runtime_error("ends after " + std::to_string(mesh.n_vertices()) + " of " + std::to_string(vertices->count) +

@@ -22,7 +22,7 @@ const Type& type_of(std::string_view word) {
     for (const Type& type : kTypes) {
         if (word == type.name || word == type.other_name) return type;
     }
-    throw std::runtime_error("the PLY header names a type " + quoted(word) + ", which PLY does not have");
+    throw std::runtime_error("the PLY header uses the type " + quoted(word) + ", which PLY does not have");
 }
 
 Property parse_property(std::string_view rest) {
@@ -30,12 +30,14 @@ Property parse_property(std::string_view rest) {
     std::string_view word = next_word(rest);
     if (word == "list") {
         property.count_type = &type_of(next_word(rest));
-        if (property.count_type->is_float) throw std::runtime_error("the PLY header counts list entries in fractions");
+        if (property.count_type->is_float)
+            throw std::runtime_error(
+                "the PLY header gives the length of a list a floating-point type; expected an integer type");
         word = next_word(rest);
     }
     property.type = &type_of(word);
     property.name = std::string(next_word(rest));
-    // Other programs' names for texture coordinates.
+    // Names of texture coordinates in files of other programs.
     if (property.name == "texture_u") property.name = "u";
     if (property.name == "texture_v") property.name = "v";
     if (property.name.empty()) throw std::runtime_error("the PLY header has a property without a name");
@@ -79,7 +81,7 @@ Header parse_header(std::string_view bytes) {
 
 namespace {
 
-// The fewest bytes that one element can take.
+// The smallest number of bytes that one element can take.
 unsigned long long least_bytes(const Element& element, bool ascii) {
     unsigned long long bytes = 0;
     for (const Property& p : element.properties) {
@@ -98,30 +100,31 @@ void check(const Header& header) {
     if (!vertices) throw std::runtime_error("the PLY header has no element 'vertex'");
     if (!faces) {
         const bool strips = header.find("tristrips") != nullptr;
-        throw std::runtime_error(strips ? "holds triangle strips, which are not read: convert them to faces"
+        throw std::runtime_error(strips ? "holds triangle strips, which are not supported: convert them to faces"
                                         : "contains no polygons: it is a point cloud");
     }
-    if (vertices > faces) throw std::runtime_error("has its faces before its vertices, which is not read");
+    if (vertices > faces) throw std::runtime_error("has its faces before its vertices, which is not supported");
     for (const char* axis : {"x", "y", "z"}) {
         const auto named = [&](const Property& p) { return p.name == axis; };
         const auto found = std::find_if(vertices->properties.begin(), vertices->properties.end(), named);
         if (found == vertices->properties.end()) throw std::runtime_error(std::string("its vertices have no ") + axis);
         if (found->is_list() || (!found->type->is_float && !header.is_ascii())) {
-            throw std::runtime_error("its vertices are not of type float or double, which is not read");
+            throw std::runtime_error("its vertices are not of type float or double, which is not supported");
         }
     }
     const auto indices =
         std::find_if(faces->properties.begin(), faces->properties.end(), [](auto& p) { return p.is_indices(); });
     if (indices == faces->properties.end()) throw std::runtime_error("its faces have no list 'vertex_indices'");
     if (indices != faces->properties.begin())
-        throw std::runtime_error("its faces have properties before 'vertex_indices', which is not read");
-    if (indices->type->is_float) throw std::runtime_error("its faces name vertices by fractions");
-    // The last number of a text needs nothing behind it.
+        throw std::runtime_error("its faces have properties before 'vertex_indices', which is not supported");
+    if (indices->type->is_float)
+        throw std::runtime_error("the vertex indices of its faces have a floating-point type; expected an integer type");
+    // The last number of a text needs no separator behind it.
     unsigned long long available = header.body.size() + (header.is_ascii() ? 1 : 0);
     for (const Element& element : header.elements) {
         for (const Property& p : element.properties) {
             if (p.is_list() && &element != faces) {
-                throw std::runtime_error("has a list in element " + quoted(element.name) + ", which is not read");
+                throw std::runtime_error("has a list in element " + quoted(element.name) + ", which is not supported");
             }
         }
         const unsigned long long each = least_bytes(element, header.is_ascii());
@@ -134,8 +137,8 @@ void check(const Header& header) {
 
 namespace {
 
-// In ASCII one-byte integers would be read as characters, and in either form OpenMesh knows few types of counts; the sign of a
-// count does not matter.
+// The types that rewrite() writes. In ASCII, OpenMesh would read one-byte integers as characters. In both forms it knows only a
+// few types for the length of a list. The sign of the length type does not matter.
 std::string_view type_text(const Type& type, bool ascii) {
     return ascii && !type.is_float ? "int" : type.name;
 }

@@ -1,8 +1,7 @@
-// ply_header.hpp -- the header of a PLY file: checked against the file's size, and written anew in the words that OpenMesh
-// knows.
+// ply_header.hpp -- parses the header of a PLY file, checks it against the file's size, and rewrites it for OpenMesh.
 //
-// OpenMesh 9 loops for ever on a header without an end, reserves memory for whatever count it is told, knows four of the eight
-// list-count types, and reads lists right only where the mesh can store them as properties.
+// OpenMesh 9 loops for ever on a header without an end, reserves memory for any count that it reads, knows four of the eight
+// types of list lengths, and reads lists correctly only if the mesh can store them as properties.
 #pragma once
 #include <algorithm>
 #include <string>
@@ -19,7 +18,7 @@ struct Type {
 struct Property {
     std::string name;
     const Type* type = nullptr;
-    const Type* count_type = nullptr;  // of a list; nullptr: a scalar
+    const Type* count_type = nullptr;  // type of the list's length; nullptr: not a list
     bool is_list() const { return count_type != nullptr; }
     bool is_indices() const { return is_list() && (name == "vertex_indices" || name == "vertex_index"); }
 };
@@ -41,10 +40,12 @@ struct Header {
     }
 };
 
-// Throws std::runtime_error that says what is wrong.
+// Parses the header. Throws std::runtime_error with the reason.
 Header parse_header(std::string_view bytes);
-// Throws if the file cannot hold what the header declares, or what it declares cannot be read.
+// Throws std::runtime_error if the file is too short for what the header declares, or if the header declares something that is
+// not supported.
 void check(const Header& header);
+// Returns a header with the same meaning in words that OpenMesh knows.
 std::string rewrite(const Header& header);
 
 }  // namespace openmesh_import::ply

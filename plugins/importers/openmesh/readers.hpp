@@ -1,4 +1,4 @@
-// readers.hpp -- one function per format: from a file's bytes into a FlatImporter, through OpenMesh's reader.
+// readers.hpp -- one function per format. Each reads the bytes of a file into a FlatImporter, through OpenMesh's reader.
 #pragma once
 #include <string>
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace openmesh_import {
 
-// What a reader is given. Failures are exceptions that say why (without the file's name).
+// The input of a reader. Readers throw std::runtime_error with the reason (without the file's name).
 struct Source {
     std::string path;
     std::string_view bytes;
@@ -21,18 +21,19 @@ struct Source {
 void warn(const Source& source, const std::string& text);
 
 void read_obj(const Source& source, FlatImporter& mesh);
-// Texture of the whole mesh (MeshLab's "comment TextureFile"), or empty.
+// Returns the texture of the whole mesh (MeshLab's "comment TextureFile"), or an empty string.
 std::string read_ply(const Source& source, FlatImporter& mesh);
 void read_stl(const Source& source, FlatImporter& mesh);
 void read_off(const Source& source, FlatImporter& mesh);
 void read_om(const Source& source, FlatImporter& mesh);
 
-// Runs OpenMesh's reader of a format. `stop_at_errors`: the stream throws at the first thing that it cannot read.
-// False: the reader gave up.
+// Runs OpenMesh's reader of a format. Returns false if the reader gave up. stop_at_errors: the stream throws
+// std::ios_base::failure at the first datum that cannot be read.
 bool run_reader(const char* extension, std::streambuf& buffer, bool stop_at_errors, bool is_binary, bool custom_properties,
                 FlatImporter& mesh);
 
-// "4294967295 vertices need at least 48 GB, the file has 12 bytes for them" if so; empty if they fit.
+// Returns a message such as "declares 4294967295 elements 'vertex' of at least 12 bytes ..." if `available` bytes cannot hold
+// that many elements, or an empty string if they can.
 std::string too_large(const char* what, unsigned long long count, unsigned long long least_bytes, unsigned long long available);
 
 }  // namespace openmesh_import

@@ -1,4 +1,4 @@
-// stl.cpp -- STL, ASCII and binary.
+// stl.cpp -- reads STL, ASCII and binary.
 #include <cstdint>
 #include <cstring>
 #include <stdexcept>
@@ -9,7 +9,7 @@
 namespace openmesh_import {
 namespace {
 
-// 80 bytes of anything, the count of facets as 32 bits, little-endian, then 50 bytes a facet.
+// A binary file: 80 bytes of free text, the number of facets as a 32-bit little-endian integer, then 50 bytes per facet.
 constexpr size_t kHeaderBytes = 84, kFacetBytes = 50;
 
 uint32_t declared_count(std::string_view bytes) {
@@ -22,7 +22,8 @@ bool has(std::string_view text, const char* lower, const char* upper) {
     return text.find(lower) != text.npos || text.find(upper) != text.npos;
 }
 
-// Binary files may start with "solid" too; only the words that ASCII needs decide.
+// A binary file may start with "solid" too. So the file is ASCII only if it has the words that ASCII needs, and not the exact
+// size of a binary file.
 bool is_ascii(std::string_view bytes) {
     const std::string_view head = bytes.substr(0, 4096);
     if (bytes.size() >= kHeaderBytes && bytes.size() == kHeaderBytes + kFacetBytes * size_t(declared_count(bytes)))
@@ -33,7 +34,7 @@ bool is_ascii(std::string_view bytes) {
 
 void read_binary(const Source& source, FlatImporter& mesh) {
     if (source.bytes.size() < kHeaderBytes)
-        throw std::runtime_error("not an STL file: too short for a binary one, no text of one");
+        throw std::runtime_error("not an STL file: it is too short for a binary one and has no keyword of a text one");
     const uint32_t count = declared_count(source.bytes);
     const size_t room = (source.bytes.size() - kHeaderBytes) / kFacetBytes;
     if (count > room) {
@@ -63,7 +64,7 @@ void read_ascii(const Source& source, FlatImporter& mesh) {
             const std::string_view number = next_word(line);
             if (!parse_float(number, x)) {
                 throw std::runtime_error("line " + std::to_string(line_number) + ": " + quoted(number) +
-                                         " where a coordinate is due");
+                                         " instead of a coordinate");
             }
         }
         return true;

@@ -7,7 +7,7 @@
 namespace openmesh_import {
 namespace {
 
-constexpr size_t kWindowBytes = 1 << 20;  // between two reports of progress
+constexpr size_t kWindowBytes = 1 << 20;  // bytes between two progress reports
 constexpr size_t kWindowLines = 1 << 14;
 
 }  // namespace
@@ -31,7 +31,7 @@ bool BytesBuffer::show(size_t position) {
     const std::string_view part = in_front ? std::string_view(front_) : bytes_;
     const size_t at = std::min(position - base, part.size());
     const size_t first = at / kWindowBytes * kWindowBytes, count = std::min(kWindowBytes, part.size() - first);
-    char* start = const_cast<char*>(part.data()) + first;  // the get area is never written
+    char* start = const_cast<char*>(part.data()) + first;  // the get area is never written to
     setg(start, start + (at - first), start + count);
     window_first_ = base + first;
     return at - first < count;

@@ -1,7 +1,8 @@
-// streams.hpp -- what OpenMesh's readers read from: bytes in memory, or lines that are looked at (and mended) on their way.
+// streams.hpp -- the streams that OpenMesh's readers read from: bytes in memory, or lines that are checked and corrected on the
+// way.
 //
-// OpenMesh 9 trusts its files: it goes on at the end of the data (one crafted PLY keeps it busy for minutes), leaves out a
-// vertex that it cannot parse (all later indices then name the wrong one), and knows comments in some places only.
+// OpenMesh 9 trusts its files. It continues behind the end of the data (one crafted PLY keeps it busy for minutes). It drops a
+// vertex that it cannot parse, so all later indices refer to wrong vertices. It knows comments in some places only.
 #pragma once
 #include <functional>
 #include <streambuf>
@@ -10,14 +11,14 @@
 
 namespace openmesh_import {
 
-// 0..1; throws to cancel.
+// Takes the progress, 0..1. Throws to cancel.
 using ReportProgress = std::function<void(float)>;
 
-// `front`, then `bytes`, as one stream. Seekable.
+// `front` followed by `bytes`, as one stream. Seekable. `bytes` must outlive the stream.
 class BytesBuffer : public std::streambuf {
  public:
     BytesBuffer(std::string front, std::string_view bytes, ReportProgress progress);
-    // Position of the next byte, counted in `bytes`.
+    // The position of the next byte, relative to the start of `bytes`.
     size_t position() const;
 
  protected:
@@ -26,23 +27,24 @@ class BytesBuffer : public std::streambuf {
     pos_type seekpos(pos_type position, std::ios_base::openmode which) override;
 
  private:
-    bool show(size_t position);  // makes the window around it the get area
+    bool show(size_t position);  // makes the window around `position` the get area; false at the end
     size_t next() const;
 
     std::string front_;
     std::string_view bytes_;
     ReportProgress progress_;
-    size_t window_first_ = 0;  // of the get area
+    size_t window_first_ = 0;  // position of the first byte of the get area
 };
 
-// Hands out a text line by line; `edit` may change a line or drop it (return false). Rewinding starts a new pass.
+// Passes a text on line by line. `edit` may change a line, or drop it by returning false. Rewinding the stream starts a new
+// pass.
 class LineBuffer : public std::streambuf {
  public:
-    // pass counts from 0.
+    // `pass` counts from 0.
     using Edit = std::function<bool(std::string_view line, int pass, std::string& out)>;
-    // join_continued: a backslash at the end of a line goes on in the next.
+    // join_continued: a backslash at the end of a line joins it with the next line. pass_count is for the progress only.
     LineBuffer(std::string_view text, bool join_continued, Edit edit, int pass_count, ReportProgress progress);
-    // Number of the line handed out last, from 1.
+    // The number of the last line that was passed on, from 1.
     size_t line_number() const { return line_number_; }
 
  protected:

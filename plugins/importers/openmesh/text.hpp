@@ -1,4 +1,4 @@
-// text.hpp -- lines, words and numbers of text formats.
+// text.hpp -- splits text formats into lines and words, and parses numbers.
 #pragma once
 #include <charconv>
 #include <cmath>
@@ -19,7 +19,7 @@ inline std::string_view trim(std::string_view text) {
     return text;
 }
 
-// Takes the first word off `text`; empty when there is none.
+// Removes the first word from `text` and returns it; empty if there is none.
 inline std::string_view next_word(std::string_view& text) {
     size_t start = 0;
     while (start < text.size() && is_blank(text[start])) ++start;
@@ -30,7 +30,7 @@ inline std::string_view next_word(std::string_view& text) {
     return word;
 }
 
-// Takes the first line off `text`, without its end (\n, \r\n).
+// Removes the first line from `text` and returns it without its end (\n or \r\n).
 inline std::string_view next_line(std::string_view& text) {
     const size_t end = text.find('\n');
     std::string_view line = text.substr(0, end);
@@ -43,7 +43,8 @@ inline std::string_view before_comment(std::string_view line) {
     return line.substr(0, line.find('#'));
 }
 
-// All of `word` as a finite float; values too small for one count as 0. False for nan, inf, 1e999, words.
+// Parses the whole word as a finite float. Values too small for a float become 0. Returns false for nan, inf, 1e999 and other
+// words.
 inline bool parse_float(std::string_view word, float& value) {
     if (!word.empty() && word.front() == '+') word.remove_prefix(1);
     double wide = 0;
@@ -65,12 +66,12 @@ inline bool parse_integer(std::string_view word, long long& value) {
     return error == std::errc() && end == word.data() + word.size() && !word.empty();
 }
 
-// "1 face", "3 faces".
+// Returns, for example, "1 face" or "3 faces".
 inline std::string counted(unsigned long long count, const char* what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// For messages: short, printable, in quotes.
+// Returns the text for a message: shortened, printable, in quotes.
 inline std::string quoted(std::string_view text) {
     std::string out = "'";
     for (const char c : trim(text).substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';

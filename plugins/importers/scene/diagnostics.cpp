@@ -6,15 +6,16 @@
 namespace scene_format {
 namespace {
 
-constexpr size_t kMaxShown = 40;     // bytes of what was read that a message shows
-constexpr size_t kMaxCompared = 32;  // longer words are no near-miss of a keyword
+constexpr size_t kMaxShown = 40;     // bytes of the user's text that a message shows at most
+constexpr size_t kMaxCompared = 32;  // bytes; longer words are not compared with the keywords
 
 char lower(char c) {
     return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
 }
 
 size_t edit_distance(std::string_view a, std::string_view b) {
-    std::array<std::array<size_t, kMaxCompared + 1>, 3> rows{};  // two before, before, now
+    // The row before the previous one, the previous row, the current row.
+    std::array<std::array<size_t, kMaxCompared + 1>, 3> rows{};
     for (size_t j = 0; j <= b.size(); ++j) rows[1][j] = j;
     for (size_t i = 1; i <= a.size(); ++i) {
         rows[2][0] = i;
@@ -50,7 +51,7 @@ std::string located(std::string_view file, const Diagnostic& diagnostic) {
 std::string quoted(std::string_view text) {
     if (text.size() <= kMaxShown) return "`" + std::string(text) + "`";
     size_t end = kMaxShown;
-    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // never inside a character
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // do not cut inside a character
     return "`" + std::string(text.substr(0, end)) + "...`";
 }
 
@@ -70,7 +71,7 @@ std::string suggestion(std::string_view read, const std::vector<std::string_view
     for (const std::string_view word : words) {
         if (word.size() > kMaxCompared) continue;
         const size_t distance = edit_distance(read, word);
-        // A third of the letters may be wrong: of `up`, none, of `eye`, one, of `radius`, two.
+        // A third of the letters may be wrong: none of `up`, one of `eye`, two of `radius`.
         if (distance <= std::max(read.size(), word.size()) / 3 && distance < nearest_distance) {
             nearest = word;
             nearest_distance = distance;

@@ -1,4 +1,4 @@
-// document.hpp -- what a scene file says, before names are resolved.
+// document.hpp -- the contents of a scene file before its names are resolved.
 #pragma once
 #include <array>
 #include <string>
@@ -11,7 +11,7 @@ namespace scene_format {
 
 using Vec3 = std::array<float, 3>;
 
-// A name as it is defined, or used on another line (which may come first). Empty: none was given.
+// A name where it is defined, or where it is used (possibly on an earlier line). Empty: no name was given.
 struct Name {
     std::string text;
     Position position;
@@ -20,7 +20,7 @@ struct Name {
 struct Camera {
     Name name;
     Vec3 eye{0, 0, 5}, target{0, 0, 0}, up{0, 1, 0};
-    float fov_deg = 45;  // vertical
+    float fov_deg = 45;  // vertical, degrees
 };
 struct Light {
     std::string name;
@@ -29,7 +29,7 @@ struct Light {
 struct Material {
     Name name;
     rt_material values{};
-    std::string texture;  // path, or empty
+    std::string texture;  // path as in the file; empty: no texture
 };
 struct Sphere {
     Vec3 center{0, 0, 0};
@@ -37,12 +37,12 @@ struct Sphere {
     Name material;
 };
 struct Plane {
-    Vec3 normal{0, 1, 0};  // unit
+    Vec3 normal{0, 1, 0};  // unit length
     float offset = 0;      // distance from the origin along the normal
     Name material;
 };
 struct Polygon {
-    std::vector<float> corners;  // 3 per corner
+    std::vector<float> corners;  // three numbers (x, y, z) per corner
     Name material;
 };
 struct Triangle {
@@ -51,7 +51,7 @@ struct Triangle {
 };
 struct Load {
     std::string path;
-    Position position;  // of the path
+    Position position;  // of the path in the file
     Name name;
     std::array<float, 12> world_from_object{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row-major 3x4
     Name material;
@@ -60,7 +60,7 @@ struct Load {
 enum class ItemKind : uint8_t { sphere, plane, polygon, triangle, load };
 struct Item {
     ItemKind kind;
-    uint32_t index;  // in the array of its kind
+    uint32_t index;  // index in the array of its kind
     Position position;
 };
 
@@ -73,10 +73,10 @@ struct Document {
     std::vector<Polygon> polygons;
     std::vector<Triangle> triangles;
     std::vector<Load> loads;
-    std::vector<Item> items;  // all of the geometry in the order of the file, which numbers the primitives
+    std::vector<Item> items;  // all geometry in the order of the file; this order numbers the primitives
     std::vector<Name> animated;
     Vec3 background{}, ambient{};
-    Position background_position, ambient_position;  // line 0: not said
+    Position background_position, ambient_position;  // line 0: the file does not set it
     uint32_t statement_count = 0;
     bool has_degenerate_triangle = false;
 };

@@ -27,7 +27,7 @@ class Emitter {
     void info() const;
     bool materials();
     bool lights_and_cameras();
-    // One item, or a run of triangles; moves `at` behind it.
+    // Emits one item, or a run of consecutive triangles as one mesh. Moves `at` behind them.
     bool item(size_t& at);
     Position position() const { return position_; }
 
@@ -40,7 +40,7 @@ class Emitter {
     const std::string file_;
     const rt_scene_sink& sink_;
     std::unordered_map<std::string, rt_u32> material_ids_;
-    Position position_;  // of what is being handed over
+    Position position_;  // of the statement that is emitted; used when the sink refuses it
 };
 
 void Emitter::info() const {
@@ -63,7 +63,7 @@ bool Emitter::materials() {
             if (is_new) {
                 auto texture = sized<rt_texture_desc>();
                 texture.path = material.texture.c_str();
-                known->second = sink_.texture(sink_.ctx, &texture);  // RT_NONE: the host has warned
+                known->second = sink_.texture(sink_.ctx, &texture);  // RT_NONE: the host has already warned
             }
             desc.values.texture = known->second;
         }
@@ -179,7 +179,7 @@ int32_t emit(const Document& document, std::string_view file, const rt_host& hos
         ok = emitter.item(at);
     }
     if (ok) return RT_OK;
-    if (!is_load) {  // the error of a load names the place already
+    if (!is_load) {  // the error of a load names its place already
         const std::string where = located(file, {emitter.position(), "the import stopped at this statement"});
         host.log(host.ctx, RT_LOG_WARNING, where.c_str());
     }

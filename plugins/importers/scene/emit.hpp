@@ -1,4 +1,4 @@
-// emit.hpp -- hands a sound Document to the host's sink.
+// emit.hpp -- passes a Document without errors to the host's sink.
 #pragma once
 #include <string_view>
 
@@ -6,7 +6,8 @@
 
 namespace scene_format {
 
-// RT_OK, RT_FAILED (the sink has recorded why; a log line tells where in `file`) or RT_CANCELLED.
+// Returns RT_OK, RT_CANCELLED, or RT_FAILED. If it fails, the sink has recorded the reason, and a log line names the statement
+// in `file`.
 int32_t emit(const Document& document, std::string_view file, const rt_host& host, const rt_scene_sink& sink);
 
 }  // namespace scene_format

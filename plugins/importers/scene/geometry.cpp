@@ -33,7 +33,8 @@ double box_size(const float* corners, size_t count) {
     return size;
 }
 
-// Twice the vector area (Newell), about the first corner so that a polygon far from the origin loses no digits.
+// Twice the vector area (Newell's method). Coordinates are relative to the first corner, so that a polygon far from the origin
+// loses no precision.
 Double3 newell_normal(const float* corners, size_t count) {
     const Double3 origin{corners[0], corners[1], corners[2]};
     Double3 sum{};

@@ -1,4 +1,4 @@
-// geometry.hpp -- checks of polygons, and the transform of a loaded file.
+// geometry.hpp -- checks polygons, and computes the transform of a loaded file.
 #pragma once
 #include <string>
 #include <vector>
@@ -7,20 +7,21 @@
 
 namespace scene_format {
 
-// A corner may lie this part of the polygon's size (largest side of its box) off its plane.
+// Largest distance of a corner from the polygon's plane, as a fraction of the polygon's size (the largest side of its box).
 inline constexpr double kPlanarTolerance = 1e-4;
-// A polygon of less area than this part of its size squared is degenerate.
+// A polygon is degenerate if its area is below this fraction of its squared size.
 inline constexpr double kAreaTolerance = 1e-9;
 
-// What keeps these corners (3 floats each, 3 corners or more) from being a planar polygon; empty: nothing.
+// Returns the reason why these corners (3 floats each, at least 3 corners) do not form a planar polygon, or an empty string if
+// they do.
 std::string polygon_fault(const std::vector<float>& corners);
 bool triangle_is_degenerate(const std::array<float, 9>& corners);
 
-// Scale, then the rotations in their order, then the translation.
+// The transform of a loaded file: first scale, then the rotations in their order, then the translation.
 class Placement {
  public:
     void scale(const Vec3& factors) { scale_ = factors; }
-    void rotate(const Vec3& unit_axis, float degrees);  // counter-clockwise, seen from the axis' tip
+    void rotate(const Vec3& unit_axis, float degrees);  // in degrees, counter-clockwise seen from the tip of the axis
     void translate(const Vec3& by) { translate_ = by; }
     std::array<float, 12> world_from_object() const;  // row-major 3x4
 

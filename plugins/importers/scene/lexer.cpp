@@ -7,7 +7,8 @@
 namespace scene_format {
 namespace {
 
-// Bytes of the UTF-8 character at the start of text; 0 if it is malformed (RFC 3629: no overlong forms, no surrogates).
+// Returns the length in bytes of the UTF-8 character at the start of `text`, or 0 if it is malformed (RFC 3629: no overlong
+// forms, no surrogates).
 size_t character_bytes(std::string_view text) {
     const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
     const auto continues = [&](size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
@@ -33,7 +34,7 @@ std::string byte_text(char c) {
     return text;
 }
 
-// Moves over the characters of one line and counts columns.
+// Moves over the characters of one line and counts columns. Throws StatementError at a character that is not allowed.
 struct Cursor {
     std::string_view line;
     Position position;
@@ -117,7 +118,7 @@ void Lexer::split(std::string_view line, std::vector<Token>& tokens) {
             cursor.step();
             const size_t start = cursor.at;
             while (!cursor.done() && cursor.look() != '"') {
-                // Names go into messages and listings, where a tab would be taken for a separator.
+                // Names go into messages and listings, where a tab would look like a separator.
                 if (cursor.look() == '\t') throw StatementError{cursor.position, "a tab inside quotes; expected a space"};
                 cursor.step();
             }
@@ -143,7 +144,7 @@ void Lexer::split(std::string_view line, std::vector<Token>& tokens) {
 }
 
 Number parse_number(std::string_view text) {
-    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars knows no plus sign
+    if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);  // from_chars does not accept a plus sign
     double value = 0;
     const auto [end, status] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (status == std::errc::invalid_argument) return {0, NumberError::not_a_number};

@@ -1,4 +1,4 @@
-// Names may be used before the line that defines them, so they are resolved when all lines are read (check_names).
+// A name may be used before the line that defines it. So check_names() resolves names after all lines have been read.
 #include "parser.hpp"
 
 #include <map>
@@ -41,7 +41,7 @@ void read_statement(Statement& statement, const Token& first, Document& document
                                              " (statements: " + listed(words) + ")"};
 }
 
-// Positions of names, each of which may be defined once.
+// The positions at which names are defined. Each name may be defined once.
 using Names = std::map<std::string, Position, std::less<>>;
 
 template <class Things>

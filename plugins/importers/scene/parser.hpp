@@ -1,4 +1,4 @@
-// parser.hpp -- from the text of a scene file to a Document.
+// parser.hpp -- parses the text of a scene file into a Document.
 #pragma once
 #include <functional>
 #include <string_view>
@@ -7,8 +7,9 @@
 
 namespace scene_format {
 
-// Reads all of it, also behind errors, up to Diagnostics::kMaxErrors. `proceed` hears how far (0..1), and stops the reading by
-// returning false; the result is then false and incomplete.
+// Reads the whole text and continues after errors, up to Diagnostics::kMaxErrors. Calls `proceed` with the fraction that is
+// done (0..1). If `proceed` returns false, parsing stops and the function returns false; the document is then incomplete.
+// Otherwise it returns true, also if there were errors.
 bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, const std::function<bool(float)>& proceed);
 
 }  // namespace scene_format

@@ -1,4 +1,4 @@
-// The importer `scene`: the text format of docs/scene_format.md.
+// The importer plugin `scene`, for the text format of docs/scene_format.md.
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -17,7 +17,7 @@ struct FileCloser {
     void operator()(std::FILE* file) const { std::fclose(file); }
 };
 
-// Empty on success, else why not.
+// Returns an empty string on success, else the reason of the failure.
 std::string read_file(const char* path, std::string& text) {
     const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path, "rb"));
     if (!file) return std::string("cannot open the file: ") + std::strerror(errno);
@@ -36,7 +36,7 @@ std::string read_file(const char* path, std::string& text) {
     }
 }
 
-// The first error is the one that the user is told; the others, which the same reading found, go to the log.
+// Reports the first error to the user, and writes the others to the log.
 int32_t report(const Diagnostics& diagnostics, const char* path, const rt_host& host) {
     const std::vector<Diagnostic> errors = diagnostics.errors();
     for (size_t i = 1; i < errors.size(); ++i) host.log(host.ctx, RT_LOG_WARNING, located(path, errors[i]).c_str());

@@ -1,4 +1,4 @@
-// statement.hpp -- reads the words of one statement: names, numbers, `key value ...` pairs in any order.
+// statement.hpp -- reads the words of one statement: names, numbers, and `key value ...` pairs in any order.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -17,35 +17,36 @@ struct Key {
 
 class Statement {
  public:
-    // The first token is the statement's word; what follows is read by the calls below. All of them throw StatementError.
+    // The first token is the word of the statement. The calls below read the following tokens, and all of them throw
+    // StatementError.
     Statement(const std::vector<Token>& tokens, Position end);
 
     std::string_view word() const { return tokens_[0].text; }
     Position position() const { return tokens_[0].position; }
-    // Where the word read last stands.
+    // The position of the last word that was read.
     Position last() const { return tokens_[at_ - 1].position; }
     bool done() const { return at_ == tokens_.size(); }
 
-    // Sets the keys that this statement takes: `key()` returns the index of the next one, and words of them end lists of
-    // numbers.
+    // Sets the keys of this statement. key() returns the index of the next one. A list of numbers ends where one of these keys
+    // follows.
     void expect_keys(std::vector<Key> keys);
     size_t key();
     bool given(size_t key) const { return (seen_ & (1u << key)) != 0; }
 
-    // `what` tells in errors what it is: "the material's name".
+    // `what` names the expected thing in error messages, for example "the material's name".
     Name name(std::string_view what);
     std::string path(std::string_view what);
-    // One of these words; its index.
+    // Reads one of these words and returns its index.
     size_t choice(std::string_view what, const std::vector<std::string_view>& words);
 
-    // `what`: "`center` (x y z)"; the number's place is told as "number 2 of 3".
+    // `what` is, for example, "`center` (x y z)". Errors name the position in a list as "number 2 of 3".
     float number(std::string_view what, size_t index = 0, size_t count = 1);
     float number_between(std::string_view what, float least, float most);
     Vec3 vector(std::string_view what);
-    Vec3 direction(std::string_view what);             // unit length; zero is an error
-    Vec3 color(std::string_view what, float most);     // 3 numbers or one grey, 0..most
-    Vec3 scale(std::string_view what);                 // 3 numbers or one for all, none zero
-    std::vector<float> points(std::string_view what);  // 3 numbers each, up to the next key
+    Vec3 direction(std::string_view what);             // returns unit length; zero is an error
+    Vec3 color(std::string_view what, float most);     // 3 numbers, or one for grey; each 0..most
+    Vec3 scale(std::string_view what);                 // 3 numbers, or one for all axes; none may be zero
+    std::vector<float> points(std::string_view what);  // 3 numbers per point, up to the next key
 
     void expect_end();
     [[noreturn]] void fail_at_last(const std::string& message) const { throw StatementError{last(), message}; }

@@ -94,7 +94,7 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
     }
     for (float& c : color) c = std::min(c * intensity, kMaxNumber);
     copy(color, light.values.color);
-    // The renderer wants the way to the light.
+    // The renderer stores the direction towards the light.
     copy(is_point ? position : Vec3{-direction[0], -direction[1], -direction[2]}, light.values.position);
     document.lights.push_back(std::move(light));
 }
@@ -119,11 +119,11 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
     enum { kColor, kReflect, kRefract, kIor, kSpecular, kShininess, kEmission, kTexture, kChecker };
     s.expect_keys(
         {{"color"}, {"reflect"}, {"refract"}, {"ior"}, {"specular"}, {"shininess"}, {"emission"}, {"texture"}, {"checker"}});
-    // Known from here on: a mistake behind its name must not make every use of it a mistake.
+    // Register the name before the keys are read, so that an error in a key does not make every use of the name an error.
     Material& material = document.materials.emplace_back();
     material.name = s.name("the material's name");
     rt_material& values = material.values;
-    // The same as the host's material for objects that name none.
+    // The same values as the host's material for objects without one.
     copy({0.7f, 0.7f, 0.7f}, values.color);
     copy({0.15f, 0.15f, 0.15f}, values.specular);
     values.ior = 1.5f;
@@ -162,11 +162,11 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
                 break;
         }
     }
-    // A texture multiplies the colour: alone, it shows as it is.
+    // The texture is multiplied by the colour. Without a given colour, white leaves the texture unchanged.
     if (!material.texture.empty() && !s.given(kColor)) copy({1, 1, 1}, values.color);
     const float sum = values.reflect + values.refract;
     if (sum > 1) {
-        // .1 + .9 is not exactly 1: what only rounding adds is no reason to complain.
+        // .1 + .9 is not exactly 1, so a small excess is no reason for a warning.
         if (sum > 1.0001f) {
             char text[160];
             std::snprintf(text, sizeof text,
@@ -268,7 +268,7 @@ void read_triangle(Statement& s, Document& document, Diagnostics& diagnostics) {
         }
     }
     if (!s.given(kVertices)) throw StatementError{start, "a triangle without `vertices`; expected x y z of 3 corners"};
-    // Meshes have such triangles too, and no ray meets them; one warning for the file is enough.
+    // Meshes contain such triangles too, and no ray hits them. One warning per file is enough.
     if (triangle_is_degenerate(triangle.corners) && !document.has_degenerate_triangle) {
         diagnostics.warning(start, "a triangle without area is invisible (further ones are not reported)");
         document.has_degenerate_triangle = true;

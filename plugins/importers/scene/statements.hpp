@@ -1,12 +1,12 @@
-// statements.hpp -- one function for each statement; docs/scene_format.md is their reference.
+// statements.hpp -- one function for each statement. Their reference is docs/scene_format.md.
 #pragma once
 #include "document.hpp"
 #include "statement.hpp"
 
 namespace scene_format {
 
-// All of them read the rest of the statement into the document, or throw StatementError; the document is then only good for
-// finding further errors.
+// Each function reads the rest of its statement into the document. It throws StatementError if it cannot; the document may then
+// only be used to find further errors.
 void read_camera(Statement&, Document&, Diagnostics&);
 void read_light(Statement&, Document&, Diagnostics&);
 void read_background(Statement&, Document&, Diagnostics&);

@@ -1,4 +1,5 @@
-// assign_places_test.cpp -- which child goes to which slot, against looking through all pairs, with each instruction set.
+// assign_places_test.cpp -- compares the assignment of children to slots with a search through all pairs, for each instruction
+// set.
 #include <gtest/gtest.h>
 
 #include <random>
@@ -9,7 +10,7 @@ using namespace bvh2;
 
 namespace {
 
-// A number that carries the tag of a pair.
+// Returns the number with the tag of a pair in its lowest bits.
 float tagged(float value, uint32_t tag) {
     uint32_t bits;
     std::memcpy(&bits, &value, sizeof bits);

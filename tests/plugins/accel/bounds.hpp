@@ -1,4 +1,4 @@
-// bounds.hpp -- boxes in double precision, for checks of trees of boxes.
+// bounds.hpp -- boxes in double precision, for checks of trees.
 #pragma once
 #include <algorithm>
 #include <cmath>

@@ -65,7 +65,7 @@ class Checker : Findings {
         Bounds b0, b1;
         b0.add(node.box0, node.box0 + 3);
         b1.add(node.box1, node.box1 + 3);
-        // The builder compares in float, and a line has no area to speak of.
+        // The builder compares areas in float, and boxes around a line have almost no area.
         if (larger_first_ && !is_empty_child(node.child1) && b0.area() < 0.99 * b1.area() && b0.longest() < 0.99 * b1.longest())
             say() << "child 0 of node " << index << " is the smaller one";
         visit_child(index, node.box0, node.child0, depth, both);

@@ -1,4 +1,4 @@
-// bvh2_quality_test.cpp -- bins lose next to nothing against the best that the heuristic can do.
+// bvh2_quality_test.cpp -- compares trees made with bins with the best that the heuristic can find: bins lose almost nothing.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -24,7 +24,8 @@ struct Bounds {
     }
 };
 
-// Cost times area of the tree that tries every plane between two primitives, on every axis, in every node; leaves of up to 4.
+// Returns cost times area of the tree that tries every plane between two primitives, on every axis, in every node. Leaves hold
+// up to 4 primitives.
 double full_sweep(std::vector<rt_prim>& prims, size_t begin, size_t end) {
     const size_t count = end - begin;
     Bounds whole;
@@ -80,7 +81,7 @@ TEST(Bvh2Quality, IsThatOfAFullSweep) {
 }
 
 TEST(Bvh2Quality, PartsALineEvenly) {
-    // Points on a line have no surface at all, and neither do boxes around them: without care every plane looks as good.
+    // Boxes around points on a line have no surface. Without the padding of areas, every plane would look equally good.
     Input input;
     std::vector<rt_prim> prims;
     for (rt_u32 i = 0; i < 4096; ++i) {
@@ -94,7 +95,7 @@ TEST(Bvh2Quality, PartsALineEvenly) {
 }
 
 TEST(Bvh2Quality, HalvesByCountAreEvenAndCostMore) {
-    for (const uint32_t count : {1000u, 40000u}) {  // one task, and split by levels
+    for (const uint32_t count : {1000u, 40000u}) {  // one task, and several levels
         Input input;
         input.add_group(bumpy_sphere(count));
         const Options halves{{{"split", 1}}, 2, {}};

@@ -1,4 +1,4 @@
-// bvh2_test.cpp -- the binned SAH builder: sound trees from any input, the same ones on any machine, and good ones.
+// bvh2_test.cpp -- the binned SAH builder: its trees are valid for any input, equal on any machine, and good.
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -57,7 +57,7 @@ TEST(Bvh2, KeepsToItsParameters) {
     const Input input = one_group(bumpy_sphere(20000));
     for (int max_leaf = 1; max_leaf <= 7; ++max_leaf) expect_sound(input, {{{"max_leaf", max_leaf}}, 2, {}});
     for (const int bins : {2, 3, 5, 16, 31, 32}) expect_sound(input, {{{"bins", bins}}, 2, {}});
-    // Costs decide how large leaves are.
+    // The costs determine how large leaves become.
     const Built cheap_nodes = build(bvh2(), input, {{{"traversal_cost", 0.1}, {"max_leaf", 7}}, 2, {}});
     const Built dear_nodes = build(bvh2(), input, {{{"traversal_cost", 10}, {"max_leaf", 7}}, 2, {}});
     EXPECT_GT(cheap_nodes.stats.at("leaves"), 1.5 * dear_nodes.stats.at("leaves"));
@@ -88,20 +88,20 @@ TEST(Bvh2, BuildsManyGroups) {
 }
 
 TEST(Bvh2, SplitsWhatTheHeuristicCannot) {
-    // The same box, the same point, a line of points, boxes around one centre.
+    // All the same box; all the same point; points on a line; boxes around one centre.
     expect_sound(one_group(make(100000, [](uint32_t i) { return cube(1, 2, 3, 4, i); })));
     expect_sound(one_group(make(100000, [](uint32_t i) { return cube(1, 2, 3, 0, i); })));
     expect_sound(one_group(make(50000, [](uint32_t i) { return cube(static_cast<float>(i), 0, 0, 0, i); })));
     expect_sound(one_group(make(50000, [](uint32_t i) {
         return cube(-static_cast<float>(i), -static_cast<float>(i), -static_cast<float>(i), 2.0f * static_cast<float>(i), i);
     })));
-    // All but one in the same place.
+    // All boxes but one in the same place.
     expect_sound(one_group(make(50000, [](uint32_t i) { return cube(i == 77 ? 1e6f : 0.0f, 0, 0, 1, i); })));
 }
 
 TEST(Bvh2, BoundsItsDepth) {
-    // Each a fraction of the last: a heuristic peels them off one by one, and would need a stack for each. 30 of each size, so
-    // that there are more than the numbers of a float have exponents.
+    // Each size is a fraction of the one before. The heuristic alone would split them off one by one, and the stack would need
+    // an entry for each. There are 30 boxes of each size, because the sizes alone are limited by the exponents of a float.
     const auto shrinking = [](uint32_t i) {
         const float size = std::ldexp(1.0f, 120 - static_cast<int>(i / 30));
         return cube(size, 0, 0, size * 0.5f, i);
@@ -114,10 +114,10 @@ TEST(Bvh2, BoundsItsDepth) {
 TEST(Bvh2, TakesHugeAndTinyCoordinates) {
     for (const float size : {1e-44f, 1e-38f, 1e-30f, 1e-10f, 1e10f, 1e19f, 1e30f, 1e37f, 3e38f})
         expect_sound(one_group(scattered(40000, size, 0, 3)));
-    // Far from the origin, where neighbours share a number.
+    // Far from the origin, where neighbouring boxes round to the same coordinates.
     expect_sound(one_group(scattered(40000, 1, 1e7f, 3)));
     expect_sound(one_group(scattered(40000, 1, 1e9f, 3)));
-    // From end to end of what a float can say: centroids and extents overflow.
+    // Coordinates over the whole range of a float: centroids and extents overflow.
     expect_sound(one_group(make(40000, [](uint32_t i) {
         const float x = FLT_MAX * (static_cast<float>(i % 200) / 100 - 1),
                     y = FLT_MAX * (static_cast<float>(i / 200) / 100 - 1);
@@ -141,7 +141,7 @@ TEST(Bvh2, SurvivesBoxesThatAreNone) {
     std::swap(prims[50].lo, prims[50].hi);
     const Input input = one_group(prims);
     const Built built = build(bvh2(), input);
-    // What is no number reaches to the end of space, what is the wrong way round is turned.
+    // NaN bounds become the farthest ones, and bounds in the wrong order are swapped.
     Input meant = input;
     meant.prims[10].lo[0] = meant.prims[40].lo[2] = -FLT_MAX;
     meant.prims[20].hi[1] = meant.prims[30].lo[0] = meant.prims[30].hi[0] = FLT_MAX;
@@ -226,7 +226,7 @@ TEST(Bvh2, ShowsItsLevels) {
     EXPECT_EQ(volumes(bvh2(), built, 0, 1).size(), 2u);
     EXPECT_EQ(volumes(bvh2(), built, 0, 3).size(), 8u);
     EXPECT_TRUE(volumes(bvh2(), built, 0, 1000).empty());
-    // Nothing of an empty group; the box of a lone primitive is root and leaf.
+    // An empty group has no boxes. The box of a single primitive is root and leaf.
     EXPECT_TRUE(volumes(bvh2(), built, 1, 0).empty());
     EXPECT_TRUE(volumes(bvh2(), built, 1, RT_LEVEL_BOTTOM).empty());
     ASSERT_EQ(volumes(bvh2(), built, 2, 0).size(), 1u);

@@ -53,7 +53,7 @@ class Checker : Findings {
  private:
     struct Visited {
         Bounds bounds;
-        uint32_t stack = 0;  // children put off at most, this node's included
+        uint32_t stack = 0;  // largest number of deferred children, including this node's
     };
 
     Visited visit(rt_u32 index, uint32_t depth) {
@@ -68,7 +68,7 @@ class Checker : Findings {
         const bvh8_node& node = built_.slot<bvh8_node>()[index];
         if (reinterpret_cast<uintptr_t>(&node) % 32 != 0) say() << "node " << index << " is not aligned";
         uint32_t children = 0, below = 0;
-        std::vector<std::pair<rt_u32, int>> nodes;  // in the order in which they stand
+        std::vector<std::pair<rt_u32, int>> nodes;  // in the order of their indices
         for (int slot = 0; slot < BVH8_WIDTH; ++slot) {
             const rt_u32 child = node.child[slot];
             float box[6];
@@ -124,7 +124,7 @@ class Checker : Findings {
     const uint32_t max_leaf_;
     const double traversal_cost_, intersection_cost_;
     uint32_t group_ = 0, depth_ = 0, stack_ = 0;
-    rt_u32 next_ = 0;  // node that should come next
+    rt_u32 next_ = 0;  // index that the next node should have
     double leaf_count_ = 0, child_count_ = 0, area_cost_ = 0, cost_ = 0, weight_ = 0;
     LeafTally leaves_;
 };

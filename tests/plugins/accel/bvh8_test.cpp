@@ -1,4 +1,4 @@
-// bvh8_test.cpp -- the collapsed tree: sound from any input, the same on any machine, and as cheap as it can be had.
+// bvh8_test.cpp -- the collapsed tree: it is valid for any input, equal on any machine, and as cheap as possible.
 #include "bvh8_check.hpp"
 
 #include <gtest/gtest.h>
@@ -61,7 +61,8 @@ double area(const float* box) {
     return 2 * (x * y + y * z + z * x);
 }
 
-// Nodes of the usual collapse of a binary tree, weighted by their areas: the largest child is opened until there are eight.
+// Returns the area of all inner nodes of the usual greedy collapse of a binary tree: the child with the largest area is opened
+// until there are eight children.
 double greedy_node_area(const bvh2_node* nodes, rt_u32 root) {
     struct Child {
         const float* box;
@@ -110,28 +111,28 @@ TEST(Bvh8, KeepsToItsParameters) {
     }
     for (const int bins : {2, 3, 5, 16, 31, 32}) expect_sound(input, {{{"bins", bins}}, 2, {}});
     expect_sound(input, {{{"traversal_cost", 2.5}, {"intersection_cost", 0.5}}, 2, {}});
-    // Costs decide how large leaves are.
+    // The costs determine how large leaves become.
     const Built cheap_nodes = build(bvh8(), input, {{{"traversal_cost", 0.1}, {"max_leaf", 7}}, 2, {}});
     const Built dear_nodes = build(bvh8(), input, {{{"traversal_cost", 10}, {"max_leaf", 7}}, 2, {}});
     EXPECT_GT(cheap_nodes.stats.at("leaves"), 1.5 * dear_nodes.stats.at("leaves"));
 }
 
 TEST(Bvh8, TakesNoMoreMemoryThanItsPeers) {
-    // Embree 3.13 in its usual quality: 66 bytes a triangle.
+    // The baseline, Embree 3.13 in its usual quality, takes 66 bytes a triangle.
     EXPECT_LT(build(bvh8(), one_group(bumpy_sphere(100000))).stats.at("bytes_per_primitive"), 70);
 }
 
 TEST(Bvh8, CollapsesNoWorseThanByOpeningTheLargestChild) {
     for (const std::vector<rt_prim>& prims : {bumpy_sphere(30000), scattered(20000, 1, 0, 6)}) {
         const Input input = one_group(prims);
-        // Both from the same binary tree, and with leaves of one primitive, so that only nodes differ.
+        // Both collapse the same binary tree, with one primitive per leaf, so that they differ in the inner nodes only.
         const Built binary = build(load("bvh2"), input, {{{"max_leaf", 1}}, 2, {}}),
                     wide = build(bvh8(), input, {{{"max_leaf", 1}}, 2, {}});
         ASSERT_EQ(binary.leaves, wide.leaves);
         const double greedy = greedy_node_area(binary.slot<bvh2_node>(), binary.roots[0]),
                      chosen = node_area(wide.slot<bvh8_node>(), wide.roots[0]);
         EXPECT_LT(chosen, 0.99 * greedy);
-        EXPECT_GT(chosen, 0.5 * greedy);  // else the two were not of one kind
+        EXPECT_GT(chosen, 0.5 * greedy);  // else the two trees would not be comparable
     }
 }
 
@@ -172,7 +173,7 @@ TEST(Bvh8, BuildsManyGroups) {
 }
 
 TEST(Bvh8, SplitsWhatTheHeuristicCannot) {
-    // The same box, the same point, a line of points, boxes around one centre, all but one in the same place.
+    // All the same box; all the same point; points on a line; boxes around one centre; all but one in the same place.
     expect_sound(one_group(make(100000, [](uint32_t i) { return cube(1, 2, 3, 4, i); })));
     expect_sound(one_group(make(100000, [](uint32_t i) { return cube(1, 2, 3, 0, i); })));
     expect_sound(one_group(make(50000, [](uint32_t i) { return cube(static_cast<float>(i), 0, 0, 0, i); })));
@@ -180,7 +181,7 @@ TEST(Bvh8, SplitsWhatTheHeuristicCannot) {
         return cube(-static_cast<float>(i), -static_cast<float>(i), -static_cast<float>(i), 2.0f * static_cast<float>(i), i);
     })));
     expect_sound(one_group(make(50000, [](uint32_t i) { return cube(i == 77 ? 1e6f : 0.0f, 0, 0, 1, i); })));
-    // Each a fraction of the last, so that a heuristic peels them off one by one.
+    // Each is a fraction of the one before, so that the heuristic alone would split them off one by one.
     expect_sound(one_group(make(30 * 240, [](uint32_t i) {
         const float size = std::ldexp(1.0f, 120 - static_cast<int>(i / 30));
         return cube(size, 0, 0, size * 0.5f, i);
@@ -189,12 +190,12 @@ TEST(Bvh8, SplitsWhatTheHeuristicCannot) {
 
 TEST(Bvh8, CoincidentBoxesStillFillNodes) {
     const Built built = build(bvh8(), one_group(make(100000, [](uint32_t i) { return cube(1, 2, 3, 4, i); })));
-    EXPECT_LE(built.stats.at("depth"), 17);  // halved by count; 5.3 would be the least
+    EXPECT_LE(built.stats.at("depth"), 17);  // halved by count; the minimum would be 5.3
     EXPECT_GT(built.stats.at("children"), 3);
 }
 
 #if defined(__SSE2__)
-// As Embree sets the threads that it has used: what is smaller than the least normal number counts as 0.
+// Embree makes the threads that it has used treat denormal numbers as 0.
 TEST(Bvh8, LosesNothingWhereDenormalsAreZero) {
     Input input = one_group(make(40, [](uint32_t i) { return cube(float(i % 5) - 2.5f, -0.5f, -0.5f, 1, i); }));
     number(input);

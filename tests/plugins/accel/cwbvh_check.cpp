@@ -35,7 +35,7 @@ class Checker : Findings {
  private:
     struct Visited {
         Bounds bounds;
-        uint32_t stack = 0;  // children put off at most, this node's included
+        uint32_t stack = 0;  // largest number of deferred children, including this node's
     };
 
     void expect_stack(const char* name, uint32_t entries) {

@@ -1,17 +1,18 @@
-// cwbvh_check.hpp -- looks at every node of a compressed tree and says what is wrong with it.
+// cwbvh_check.hpp -- checks every node of a compressed tree.
 #pragma once
 #include <string>
 
 #include "harness.hpp"
-// after rt_types.h, whose types it uses:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "cwbvh_types.h"
 
 namespace accel_test {
 
-// Every primitive of each group is in exactly one leaf of its tree; each slot's box holds what is below it with the margin that
-// kernels count on, and no plane lies more than a cell and that margin outside; siblings stand in a row in the order of their
-// slots, nodes as well as primitives; nodes belong to one tree; empty slots are out of reach; figures and stacks are those of
-// the trees. Empty: all is well.
+// Returns the faults that were found; empty if there are none. It checks that every primitive of each group is in exactly one
+// leaf of its tree; that each slot's box contains its contents with the margin that kernels rely on, and no plane lies more
+// than a cell beyond that margin; that siblings (nodes and primitives) are stored together in the order of their slots; that
+// each node belongs to one tree; that no ray can hit an empty slot; and that the reported statistics and stack sizes match the
+// trees.
 std::string check_cwbvh(const Input& input, const Built& built, uint32_t max_leaf = 4);
 
 }  // namespace accel_test

@@ -1,4 +1,4 @@
-// cwbvh_test.cpp -- the compressed tree: bvh8's, with boxes that are never too small and hardly too wide.
+// cwbvh_test.cpp -- the compressed tree: it is bvh8's tree, with boxes that are never too small and hardly larger.
 #include "cwbvh_check.hpp"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ void expect_sound(const Input& input, const Options& options = {}) {
               "");
 }
 
-// Boxes all over a box of that size around a place.
+// Returns boxes that are spread over a volume of the given size around `at`.
 std::vector<rt_prim> spread(uint32_t count, const double at[3], const double size[3]) {
     std::vector<rt_prim> prims = scattered(count, 1, 0, count);
     for (rt_prim& prim : prims)
@@ -66,8 +66,8 @@ TEST(Cwbvh, GroupsOfFewPrimitivesHaveANode) {
     expect_sound(one_group({}));
 }
 
-// Grids at every scale and place: tiny boxes far from the origin have cells finer than their coordinates, flat ones cells of
-// hardly any extent, and the largest floats an axis without a grid.
+// Grids at every scale and position. Tiny boxes far from the origin get cells finer than their coordinates, flat boxes get
+// cells of almost no extent, and the largest floats make an axis without a grid.
 TEST(Cwbvh, GridsAtEveryScale) {
     for (const double size : {1e-35, 1e-20, 1e-3, 1.0, 1e10, 1e30, 1e37})
         for (const double at : {0.0, 1e-30, -1.0, 12345.678, -1e20, 3e37})
@@ -80,7 +80,7 @@ TEST(Cwbvh, GridsAtEveryScale) {
     expect_sound(one_group({box_prim(lo, hi, 0)}));
 }
 
-// 55 bytes a triangle where the same tree in floats takes 68, and an octant order that is the same.
+// The compressed tree takes 55 bytes a triangle where bvh8 takes 68, and has the same order of octants.
 TEST(Cwbvh, IsTheTreeOfBvh8) {
     const Input input = one_group(bumpy_sphere(100000));
     const Options same_costs{{{"max_leaf", 4}, {"intersection_cost", 1}}, 2, {}};
@@ -97,7 +97,7 @@ TEST(Cwbvh, IsTheTreeOfBvh8) {
     }
 }
 
-// What a plane that is a byte too generous costs: areas of all boxes, which is how often rays meet them.
+// The cost of rounding the planes to bytes, as the area of all leaf boxes; rays hit boxes in proportion to it.
 TEST(Cwbvh, BoxesAreHardlyWider) {
     const Input input = one_group(bumpy_sphere(50000));
     const Options same_costs{{{"max_leaf", 4}, {"intersection_cost", 1}}, 2, {}};

@@ -1,4 +1,4 @@
-// findings.hpp -- what is wrong with a structure, collected in one sentence.
+// findings.hpp -- collects the faults of a structure in one line.
 #pragma once
 #include <cmath>
 #include <sstream>
@@ -12,7 +12,7 @@ class Findings {
  protected:
     explicit Findings(const Built& built) : built_(built) {}
 
-    // To be told what is wrong.
+    // Returns the stream to which the caller writes the next fault.
     std::ostream& say() {
         if (!none()) why_ << "; ";
         return why_;

@@ -86,7 +86,7 @@ void* alloc(void* ctx, rt_u32 slot, uint64_t count) {
 
 rt_u32* leaves(void* ctx, uint64_t count) {
     auto* out = static_cast<OutputContext*>(ctx);
-    out->built->leaves.reserve(count + 1);  // so that none of them is not NULL
+    out->built->leaves.reserve(count + 1);  // so that the array exists even for no leaves
     out->built->leaves.assign(count, RT_NONE);
     return out->built->leaves.data();
 }
@@ -202,7 +202,7 @@ std::vector<rt_prim> scattered(uint32_t count, float size, float center, unsigne
     for (uint32_t i = 0; i < count; ++i) {
         float lo[3], hi[3];
         for (int a = 0; a < 3; ++a) {
-            // Not std::uniform_real_distribution: its sequence differs between libraries.
+            // Not std::uniform_real_distribution: its sequence differs between standard libraries.
             lo[a] = center + size * (static_cast<float>(random()) / 4294967296.0f - 0.5f);
             hi[a] = lo[a] + 0.01f * size * (static_cast<float>(random()) / 4294967296.0f);
         }

@@ -1,5 +1,5 @@
-// harness.hpp -- runs an acceleration structure's builder as the host does, without a device: loads the library, hands it
-// primitives in groups, keeps what it writes.
+// harness.hpp -- runs the builder of an acceleration structure as the host does, but without a device: it loads the library,
+// passes it primitives in groups, and keeps the results.
 #pragma once
 #include <atomic>
 #include <functional>
@@ -13,18 +13,18 @@
 
 namespace accel_test {
 
-// The library of a plugin of this build. Throws std::runtime_error with the loader's reason.
+// Loads the library of a plugin of this build. Throws std::runtime_error with the loader's reason.
 const rt_plugin& load(const std::string& id, const std::string& file = {});
 
-// What a builder is given. Group 0 exists always.
+// The input of a builder. Group 0 always exists.
 struct Input {
     std::vector<rt_prim> prims;
     std::vector<rt_group> groups;
-    std::vector<rt_packed_prim> triangles;  // by ref index, for builders that cut them; may be empty
+    std::vector<rt_packed_prim> triangles;  // by the index of the ref, for builders that cut them; may be empty
     void add_group(const std::vector<rt_prim>& more);
 };
 
-// What it made of it.
+// The results of a builder.
 struct Built {
     int32_t status = RT_OK;
     std::string why;
@@ -44,26 +44,26 @@ struct Built {
 };
 
 struct Options {
-    std::map<std::string, double> params;  // others take their defaults; an unknown key throws
-    unsigned threads = 2;                  // of parallel_for
-    std::function<bool(float)> progress;   // false: cancel
+    std::map<std::string, double> params;  // parameters that are not listed have their defaults; an unknown key throws
+    unsigned threads = 2;                  // number of threads of parallel_for
+    std::function<bool(float)> progress;   // returns false to cancel
 };
 
 Built build(const rt_plugin& plugin, const Input& input, const Options& options = {});
 
-// The volumes of a level.
+// One of the volumes of a level.
 struct Volume {
-    float lo[3], hi[3];            // box
-    float center[3], radius = -1;  // sphere, if radius >= 0
+    float lo[3], hi[3];            // for a box
+    float center[3], radius = -1;  // for a sphere, if radius >= 0
 };
 std::vector<Volume> volumes(const rt_plugin& plugin, const Built& built, rt_u32 group, rt_u32 level);
 
-// ---- primitives to build from
+// ---- primitives for tests
 
 rt_prim box_prim(const float lo[3], const float hi[3], rt_u32 ref, rt_u32 mesh = 0);
-// Triangles of a bumpy sphere, about `count` of them, as boxes; corners (9 floats each) if asked for.
+// Returns the boxes of about `count` triangles of a bumpy sphere. Fills `corners` (9 floats per triangle) unless it is null.
 std::vector<rt_prim> bumpy_sphere(uint32_t count, std::vector<float>* corners = nullptr);
-// Small boxes all over a cube of the given size and centre.
+// Returns small boxes that are spread over a cube with the given size and centre.
 std::vector<rt_prim> scattered(uint32_t count, float size, float center, unsigned seed);
 
 }  // namespace accel_test

@@ -1,4 +1,5 @@
-// leaf_tally.hpp -- which primitives a tree's leaves have held so far: each of a group's once, and none of another's.
+// leaf_tally.hpp -- tracks which primitives the leaves of a tree hold: each primitive of a group once, and none of another
+// group.
 #pragma once
 #include <string>
 #include <unordered_map>
@@ -15,7 +16,8 @@ class LeafTally {
         for (uint32_t i = 0; i < input.prims.size(); ++i) prim_of_ref_[input.prims[i].ref] = i;
     }
 
-    // A leaf of a group: bounds of what stands from `first` on. why: what is wrong with it, if anything.
+    // Records a leaf of a group and returns the bounds of its primitives, which begin at `first` in leaf order. `why` receives
+    // the fault, if there is one.
     Bounds visit(rt_u32 first, uint32_t count, uint32_t group_index, std::string& why) {
         Bounds below;
         for (uint32_t i = first; i < first + count; ++i) {
@@ -31,13 +33,13 @@ class LeafTally {
                 return below;
             }
             const rt_prim& prim = input_.prims[found->second];
-            prim_of_ref_.erase(found);  // seen: a second one is an error
+            prim_of_ref_.erase(found);  // a second one is a fault
             below.add(prim.lo, prim.hi);
         }
         return below;
     }
 
-    // What is in no leaf; empty: nothing.
+    // Returns a message if a position is in no leaf, else an empty string.
     std::string missing() const {
         for (size_t i = 0; i < seen_.size(); ++i)
             if (!seen_[i]) return "position " + std::to_string(i) + " is in no leaf";

@@ -1,8 +1,8 @@
-// linear_test.cpp -- the list keeps everything, in order.
+// linear_test.cpp -- the list keeps all primitives in their order.
 #include <gtest/gtest.h>
 
 #include "harness.hpp"
-// after rt_types.h, whose types it uses:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "linear_types.h"
 
 using namespace accel_test;

@@ -1,4 +1,4 @@
-// morton_test.cpp -- the fast builder: sound trees from any input, in the order of the curve, the same on any machine.
+// morton_test.cpp -- the fast builder: its trees are valid for any input, follow the curve, and are equal on any machine.
 #include <gtest/gtest.h>
 
 #include <cfloat>
@@ -12,7 +12,7 @@ using namespace accel_test;
 
 namespace {
 
-constexpr double kMorton = 1;  // of parameter `builder`
+constexpr double kMorton = 1;  // value of the parameter `builder`
 
 Options fast(double max_leaf = 4, unsigned threads = 2) {
     return {{{"builder", kMorton}, {"max_leaf", max_leaf}}, threads, {}};
@@ -60,7 +60,7 @@ TEST(Morton, TakesWhatHasNoExtentOrTooMuch) {
 }
 
 TEST(Morton, LeavesFollowTheCurve) {
-    // Cubes on a grid of 8 x 8 x 8: the curve visits an octant before the next one.
+    // Cubes on a grid of 8 x 8 x 8. The curve visits one octant after the other.
     std::vector<rt_prim> prims;
     for (rt_u32 i = 0; i < 512; ++i) {
         const float lo[3] = {static_cast<float>(i % 8), static_cast<float>(i / 8 % 8), static_cast<float>(i / 64)},
@@ -75,7 +75,8 @@ TEST(Morton, LeavesFollowTheCurve) {
 }
 
 TEST(Morton, TheLongestSideOfACellIsCutFirst) {
-    // 32 cubes in a row, 4 x 4 rows: three cuts across the rows come first, then each eighth is all there is for a while.
+    // 4 x 4 rows of 32 cubes. The first three cuts go across the rows. So each eighth of the leaf order holds one eighth of all
+    // rows.
     std::vector<rt_prim> prims;
     for (rt_u32 i = 0; i < 512; ++i) {
         const float lo[3] = {static_cast<float>(i / 32 % 4), static_cast<float>(i % 32), static_cast<float>(i / 128)},
@@ -89,7 +90,7 @@ TEST(Morton, TheLongestSideOfACellIsCutFirst) {
 }
 
 TEST(Morton, WhatIsSmallInALargeSceneIsPartedToo) {
-    // A sphere in one cell of the curve of all: its leaves must be as small as if it were alone.
+    // All of the sphere is in one cell of the scene's curve. Its leaves must be as small as in a scene of its own.
     const std::vector<rt_prim> sphere = bumpy_sphere(60000);
     std::vector<rt_prim> stadium = sphere;
     for (const float at : {-3e6f, 5e6f}) {
@@ -120,7 +121,7 @@ TEST(Morton, WhatIsSmallInALargeSceneIsPartedToo) {
 }
 
 TEST(Morton, IsNeverTooDeep) {
-    // Clusters in clusters, each in one cell of the last one's curve.
+    // Nested clusters, each in one cell of the curve of the cluster around it.
     std::vector<rt_prim> prims;
     for (int level = 0; level < 30; ++level)
         for (rt_prim prim : scattered(5000, std::pow(16.0f, static_cast<float>(-level)), 0, static_cast<uint32_t>(level))) {

@@ -1,4 +1,5 @@
-// share_roots_test.cpp -- the inner step of the collapse against trying every share, with each instruction set.
+// share_roots_test.cpp -- compares the inner step of the collapse with a search through all divisions, for each instruction
+// set.
 #include <gtest/gtest.h>
 
 #include <cmath>

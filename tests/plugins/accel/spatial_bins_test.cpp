@@ -1,4 +1,4 @@
-// spatial_bins_test.cpp -- parts of triangles between planes: bounds that hold all of them, and little more.
+// spatial_bins_test.cpp -- the bounds of the parts of triangles between planes: they contain the parts, and are tight.
 #include "spatial_bins.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(SpatialBins, PartsAreTight) {
 }
 
 TEST(SpatialBins, CountsWhatEntersAndLeaves) {
-    // One triangle across all slices, one within the third.
+    // One triangle crosses all slices, one lies within the third.
     Record records[2];
     rt_packed_prim triangles[2] = {};
     triangles[0].b[0] = kSpatialBins;
@@ -100,5 +100,5 @@ TEST(SpatialBins, CountsWhatEntersAndLeaves) {
     EXPECT_EQ(bins.box[5][0].hi(0), 6.0f);
     const SpatialSplit split = find_spatial_split(bins, AreaScale(space));
     EXPECT_LT(split.cost, INFINITY);
-    EXPECT_EQ(split.left_count + split.right_count, 3u);  // whichever plane: it cuts the first only
+    EXPECT_EQ(split.left_count + split.right_count, 3u);  // every plane cuts the first triangle only
 }

@@ -1,5 +1,4 @@
-// spatial_test.cpp -- trees whose triangles were cut: nothing of any triangle is lost, memory keeps to its bound, and rays
-// gain.
+// spatial_test.cpp -- trees with spatial splits: no part of any triangle is lost, the memory limit holds, and rays get cheaper.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +8,7 @@
 #include <random>
 
 #include "harness.hpp"
-// after rt_types.h, whose types they use:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "bvh2_types.h"
 #include "bvh8_types.h"
 
@@ -17,7 +16,7 @@ using namespace accel_test;
 
 namespace {
 
-constexpr double kSah = 0, kSpatial = 2;  // of parameter `builder`
+constexpr double kSah = 0, kSpatial = 2;  // values of the parameter `builder`
 
 Options with(double builder, double duplicates = 0.5, unsigned threads = 2) {
     return {{{"builder", builder}, {"duplicates", duplicates}}, threads, {}};
@@ -42,7 +41,7 @@ void add(Input& input, std::vector<rt_prim>& group, const rt_packed_prim& t) {
     group.push_back(box_prim(lo, hi, t.ref));
 }
 
-// Long thin triangles in all directions, whose boxes are mostly air, within `size`.
+// Returns long thin triangles in all directions within `size`. Their boxes are mostly empty.
 Input sticks(uint32_t count, float size) {
     std::mt19937 random(7);
     const auto number = [&] { return size * (static_cast<float>(random() % 20001) / 10000 - 1); };
@@ -67,7 +66,7 @@ std::vector<Leaf> leaves_of(const Built& built, bool wide) {
         if (!(child & BVH2_LEAF) || BVH2_LEAF_COUNT(child) == 0) return;
         Leaf leaf;
         std::memcpy(leaf.box, box, sizeof leaf.box);
-        leaf.first = BVH2_LEAF_FIRST(child);  // bvh8 codes them alike
+        leaf.first = BVH2_LEAF_FIRST(child);  // bvh8 has the same leaf codes
         leaf.count = BVH2_LEAF_COUNT(child);
         leaves.push_back(leaf);
     };
@@ -88,7 +87,8 @@ std::vector<Leaf> leaves_of(const Built& built, bool wide) {
     return leaves;
 }
 
-// Every place in leaf order is in one leaf; every point of a triangle, in the box of some leaf that holds it.
+// Checks that every position in leaf order is in exactly one leaf, and that every sampled point of a triangle is in the box of
+// a leaf that holds the triangle.
 void expect_sound(const Input& input, const Built& built, bool wide) {
     ASSERT_EQ(built.status, RT_OK) << built.why;
     std::vector<int> seen(built.leaves.size());
@@ -107,7 +107,7 @@ void expect_sound(const Input& input, const Built& built, bool wide) {
         float size = 0;
         for (int k = 0; k < 3; ++k) size = std::max({size, std::fabs(tri.a[k]), std::fabs(tri.b[k]), std::fabs(tri.c[k])});
         for (int sample = 0; sample < 40; ++sample) {
-            // The corners themselves, then points on edges, then anywhere.
+            // Samples: first the corners, then points on edges, then points anywhere.
             double w[3] = {double(sample == 0), double(sample == 1), double(sample == 2)};
             if (sample > 2) {
                 for (double& x : w) x = static_cast<double>(random() % 1001) / 1000;
@@ -116,7 +116,7 @@ void expect_sound(const Input& input, const Built& built, bool wide) {
                 if (!(sum > 0)) continue;
                 for (double& x : w) x /= sum;
             }
-            const double room = sample < 3 ? 0 : 1e-9 * size;  // of double arithmetic
+            const double room = sample < 3 ? 0 : 1e-9 * size;  // rounding error of double arithmetic
             const bool held = std::any_of(of_triangle[t].begin(), of_triangle[t].end(), [&](const Leaf& leaf) {
                 for (int k = 0; k < 3; ++k) {
                     const double x = w[0] * tri.a[k] + w[1] * tri.b[k] + w[2] * tri.c[k];
@@ -153,7 +153,7 @@ TEST(Spatial, KeepsToItsShareOfDuplicates) {
         EXPECT_GE(references, last);
         last = references;
     }
-    EXPECT_GT(last, 1.3 * 20000);  // the room that there is serves
+    EXPECT_GT(last, 1.3 * 20000);  // the allowed duplicates are really used
 }
 
 TEST(Spatial, GainsWhereBoxesAreMostlyAir) {
@@ -166,7 +166,7 @@ TEST(Spatial, GainsWhereBoxesAreMostlyAir) {
 }
 
 TEST(Spatial, LeavesOtherPrimitivesWhole) {
-    // Spheres and instances among sticks: each stands in one leaf.
+    // Spheres and instances among long triangles: each is in exactly one leaf.
     Input input = sticks(2000, 1);
     std::vector<rt_prim> group = input.prims;
     for (rt_u32 i = 0; i < 500; ++i) {

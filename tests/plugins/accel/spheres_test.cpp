@@ -1,4 +1,4 @@
-// spheres_test.cpp -- trees of bounding spheres: sound order, true bounds, even halves, one tree a mesh.
+// spheres_test.cpp -- trees of bounding spheres: valid order, correct bounds, even halves, one tree per mesh.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "harness.hpp"
-// after rt_types.h, whose types it uses:
+// needs the types of rt_types.h, so it must follow the headers above:
 #include "spheres_types.h"
 
 using namespace accel_test;
@@ -21,7 +21,7 @@ const rt_plugin& spheres() {
     return plugin;
 }
 
-// Walks one group's trees as the traversal does when everything is entered, and as trees.
+// Walks the trees of a group, both as a traversal that enters every node and as trees.
 class Checker {
  public:
     Checker(const Input& input, const Built& built, uint32_t max_leaf, uint32_t max_depth)
@@ -31,7 +31,7 @@ class Checker {
         for (uint32_t i = 0; i < input.prims.size(); ++i) by_ref_[input.prims[i].ref] = i;
     }
 
-    // Roots that follow the head of a group.
+    // roots: number of trees that follow the head of the group.
     uint32_t roots = 0, sphere_count = 0;
     std::multiset<uint32_t> leaf_sizes;
 
@@ -78,7 +78,7 @@ class Checker {
                 if (!deeper.empty()) return deeper;
             }
         }
-        // Every corner of every box below lies within.
+        // Every corner of every box below is inside.
         for (size_t b = first_below; b < below_.size(); ++b) {
             const rt_prim& prim = input_.prims[below_[b]];
             for (int corner = 0; corner < 8; ++corner) {
@@ -148,7 +148,7 @@ TEST(Spheres, HalvesAreEven) {
     const Built built = build(spheres(), input, {{{"max_leaf", 8}}, 2, {}});
     Checker checker(input, built, 8, 32);
     ASSERT_EQ(checker.check(0), "");
-    EXPECT_EQ(checker.leaf_sizes.size(), 128u);  // 1000 / 128 is 7.8: all leaves have 7 or 8
+    EXPECT_EQ(checker.leaf_sizes.size(), 128u);  // 1000 / 128 is 7.8, so all leaves have 7 or 8
     EXPECT_EQ(*checker.leaf_sizes.begin(), 7u);
     EXPECT_EQ(*checker.leaf_sizes.rbegin(), 8u);
 }
@@ -168,7 +168,7 @@ TEST(Spheres, OneTreeForEachMeshAndNoneAbove) {
     ASSERT_EQ(with_top.check(0), "");
     EXPECT_EQ(with_top.roots, 1u);
     EXPECT_EQ(volumes(spheres(), above, 0, 0).size(), 1u);
-    EXPECT_EQ(volumes(spheres(), above, 0, 2).size(), 4u);  // the meshes' roots
+    EXPECT_EQ(volumes(spheres(), above, 0, 2).size(), 4u);  // the roots of the meshes
 }
 
 TEST(Spheres, LoneOnesAreOneLeafThatAllEnter) {
@@ -192,9 +192,9 @@ TEST(Spheres, LoneOnesAreOneLeafThatAllEnter) {
     for (rt_u32 i = 0; i < 30; ++i) found.insert(built.leaves[nodes[second].first + i]);
     EXPECT_EQ(found.size(), 30u);
     for (const rt_u32 ref : found) EXPECT_EQ(RT_REF_KIND(ref), RT_REF_SPHERE);
-    // Nothing is drawn for what bounds nothing.
+    // The leaf that every ray enters bounds nothing, so it is not drawn.
     for (const Volume& volume : volumes(spheres(), built, 0, RT_LEVEL_BOTTOM)) EXPECT_LT(volume.radius, 10);
-    // With a tree above meshes they get a tree as ever.
+    // With a tree above the meshes, the spheres get a tree too.
     const Built above = build(spheres(), input, {{{"lone_spheres", 1}, {"top_level", 1}}, 2, {}});
     ASSERT_EQ(above.status, RT_OK);
     for (uint64_t i = 0; i < above.slot_counts[0]; ++i) EXPECT_LT(above.slot<spheres_node>()[i].radius, 10);
@@ -214,7 +214,7 @@ TEST(Spheres, GroupsMayBeEmptyOrMany) {
 }
 
 TEST(Spheres, BoundTruly) {
-    // Sizes and places where centres and radii round.
+    // Sizes and positions at which centres and radii are rounded.
     for (const float size : {1e-38f, 1e-10f, 1e10f, 1e30f}) {
         const Input input = meshes({500, 300}, size);
         expect_sound(input, build(spheres(), input));

@@ -1,5 +1,5 @@
-// traversal_test.cpp -- rays find in a tree what they find by trying everything. The primitives are the boxes themselves, and
-// the traversals are written once more, plainly and in double precision; those of the kernels are tested on devices.
+// traversal_test.cpp -- rays find the same hits in a tree as by testing everything. The primitives are the boxes themselves.
+// The traversals are simple ones in double precision, written for this test; the kernels' traversals are tested on devices.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct Ray {
     double o[3], d[3];
 };
 
-// Where the ray enters a box; +inf: it does not.
+// Returns the distance at which the ray enters a box, or +inf if it misses.
 double enter(const float* lo, const float* hi, const Ray& ray) {
     double in = 0, out = INFINITY;
     for (int a = 0; a < 3; ++a) {
@@ -100,7 +100,7 @@ std::vector<Ray> rays(int count) {
     std::vector<Ray> result;
     for (int i = 0; i < count; ++i) {
         Ray ray{{2 * uniform(), 2 * uniform(), 2 * uniform()}, {}};
-        for (int a = 0; a < 3; ++a) ray.d[a] = uniform() - ray.o[a];  // towards the middle
+        for (int a = 0; a < 3; ++a) ray.d[a] = uniform() - ray.o[a];  // towards the middle of the scene
         if (i % 5 == 0) ray.d[i % 3] = 0;
         if (i % 7 == 0) ray.d[0] = ray.d[1] = 0;
         if (i % 11 == 0) ray.d[1] = ray.d[2] = 0;
@@ -123,7 +123,7 @@ class Traversal : public ::testing::TestWithParam<int> {
             case 2:
                 return scattered(1, 1, 0, 8);
             default: {
-                std::vector<rt_prim> same = scattered(200, 1e-6f, 0, 8);  // all but coincident
+                std::vector<rt_prim> same = scattered(200, 1e-6f, 0, 8);  // nearly coincident
                 return same;
             }
         }
@@ -143,7 +143,7 @@ TEST_P(Traversal, FindsWhatTryingEverythingFinds) {
         ASSERT_EQ(trace_spheres(scene, spheres, ray), t);
     }
     if (GetParam() < 2) {
-        EXPECT_GT(hits, 50u);  // else this test says little
+        EXPECT_GT(hits, 50u);  // else the test would prove little
     }
     EXPECT_LT(deepest, bvh2.defines.at("BVH2_STACK"));
 }

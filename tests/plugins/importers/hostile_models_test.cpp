@@ -1,4 +1,4 @@
-// hostile_models_test.cpp -- files made to hurt: each costs one message, seconds at most, and not the program.
+// hostile_models_test.cpp -- files made to do harm. Each may cost one message and a few seconds, but must not end the program.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -14,7 +14,7 @@ constexpr double kSecondsAtMost = 10;
 
 class HostileModel : public testing::Test {
  protected:
-    // The message of the failed import; empty if it was imported.
+    // Returns the message of the failed import, or an empty string if the file was imported.
     std::string refusal(const std::string& name, const std::string& bytes) {
         const std::string path = folder_.write(name, bytes);
         const auto start = std::chrono::steady_clock::now();
@@ -110,7 +110,7 @@ TEST_F(HostileModel, OmCountsBeyondTheFile) {
 }
 
 TEST_F(HostileModel, OmChunkOfAnotherKind) {
-    // Positions of two dimensions: Debian's OpenMesh ends the process by an assertion.
+    // The positions have two dimensions. Debian's OpenMesh ends the process by an assertion.
     const std::string header("OMPB\3\0\0\0\1\0\0\0\3\0\0\0", 16), chunk("\0\x0E\0\0", 4);
     expect_refused("chunk.om", header + chunk + std::string(96, '\0'), "chunk.om: ");
 }

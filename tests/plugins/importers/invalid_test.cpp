@@ -1,4 +1,5 @@
-// invalid_test.cpp -- damaged and hostile files: one clear line, or an honest part of them; soon, and in little memory.
+// invalid_test.cpp -- damaged and hostile files: the import gives one clear line, or a part of the file with a warning, within
+// limits of time and memory.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
@@ -48,7 +49,7 @@ TEST_P(Invalid, CostsOneMessage) {
         if (scene.triangle_count() > 0) {
             EXPECT_TRUE(std::isfinite(scene.surface_area()));
         }
-        // Something is missing from it, or it was read as others read it.
+        // If a part is missing, a warning must say so, unless another importer reads the same part.
         const json& truth = record["truth"];
         const json& expected = truth.contains("static") ? truth["static"] : truth;
         const bool is_whole =

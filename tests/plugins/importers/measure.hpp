@@ -1,4 +1,4 @@
-// measure.hpp -- imports for tests, and what can be measured of a scene.
+// measure.hpp -- imports files for tests, and measures scenes.
 #pragma once
 #include <nlohmann/json.hpp>
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace clarity::test {
 
-// Through the built plugins, in the worker process. Throws what import_scene throws.
+// Imports through the built plugins, in the worker process. Throws what import_scene() throws.
 Scene import_file(const std::string& path);
 
-// In the system's folder for temporary files; removed with all that is in it.
+// A folder in the system's folder for temporary files. The destructor removes it and its contents.
 class TemporaryFolder {
  public:
     TemporaryFolder();
@@ -19,20 +19,20 @@ class TemporaryFolder {
     TemporaryFolder(const TemporaryFolder&) = delete;
     TemporaryFolder& operator=(const TemporaryFolder&) = delete;
     std::string path(const std::string& name) const { return path_ + "/" + name; }
-    // The new file's path.
+    // Writes a file and returns its path.
     std::string write(const std::string& name, const std::string& bytes) const;
 
  private:
     std::string path_;
 };
 
-// The shared test scenes' folder, with a slash at its end; empty where there are none.
+// Returns the folder of the shared test scenes with a slash at its end, or an empty string if there is none.
 std::string shared_scenes();
-// Names of a folder's files that end so, sorted.
+// Returns the sorted names of the files in a folder that end with `ending`.
 std::vector<std::string> files_in(const std::string& folder, const std::string& ending);
 nlohmann::json read_json(const std::string& path);
 
-// Whether the plugin for a file of this extension was built.
+// True if the importer plugin for this file's extension was built.
 bool has_importer_for(const std::string& path);
 
 struct InstanceMeasure {
@@ -41,13 +41,13 @@ struct InstanceMeasure {
     double area = 0;
     Bounds bounds;
 };
-// World space.
+// Measures the instances in world space.
 std::vector<InstanceMeasure> measure_instances(const Scene& scene);
 
-// Largest difference of any coordinate, in parts of the truth's diagonal. truth: [[min], [max]].
+// Returns the largest difference of any coordinate, divided by the diagonal of the truth. truth: [[min], [max]].
 double bounds_error(const Bounds& bounds, const nlohmann::json& truth);
 
-// For names of parameterised tests: letters and digits only.
+// Makes a name for a parameterised test: letters and digits only.
 std::string test_name(const std::string& text);
 
 }  // namespace clarity::test

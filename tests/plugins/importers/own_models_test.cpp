@@ -1,4 +1,4 @@
-// own_models_test.cpp -- the importers on small models of our own, value by value.
+// own_models_test.cpp -- compares the import of our own small models with the expected values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ const Instance& instance_named(const Scene& scene, const std::string& name) {
     throw std::runtime_error("no instance " + name);
 }
 
-// Of a triangle as the instance shows it.
+// Returns the material of a triangle as the instance shows it.
 std::string material_of(const Scene& scene, const Instance& instance, rt_u32 triangle) {
     const rt_u32 own = scene.triangle_materials[scene.meshes[instance.mesh].first_triangle + triangle];
     return scene.materials[instance.material != RT_NONE ? instance.material : own].name;
@@ -56,7 +56,7 @@ TEST(ObjModel, KeepsEveryFaceInFileOrder) {
     NEEDS_IMPORTER("polygons.obj");
     const Scene scene = import_file(data("polygons.obj"));
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
-    EXPECT_EQ(scene.triangle_count(), 12u);  // 4 + 3 + 5, three of them at one edge
+    EXPECT_EQ(scene.triangle_count(), 12u);  // 4 + 3 + 5; three of the faces share an edge
     EXPECT_NEAR(scene.surface_area(), 24.5, 1e-5);
     const char* const materials[12] = {"paint",  "paint", "paint", "paint", "mirror", "mirror",
                                        "mirror", "glass", "glass", "foil",  "lamp",   "lamp"};
@@ -91,7 +91,7 @@ TEST(ObjModel, KeepsAttributesPerCorner) {
     const Scene scene = import_file(data("polygons.obj"));
     ASSERT_EQ(scene.normals.size(), scene.positions.size());
     ASSERT_EQ(scene.uvs.size() / 2, scene.positions.size() / 3);
-    // f 12/1/1 13/2/1 14/3/1, then f 12/3/2 13//2 14/1: the same positions.
+    // The faces are f 12/1/1 13/2/1 14/3/1, then f 12/3/2 13//2 14/1, at the same positions.
     const float uvs[6][2] = {{0, 0}, {1, 0}, {0.5f, 1}, {0.5f, 1}, {0, 0}, {0, 0}};
     const float normals[6] = {1, 1, 1, -1, -1, 0};
     for (int i = 0; i < 6; ++i) {
@@ -111,7 +111,7 @@ TEST(ObjModel, LeavesOutOnlyWhatIsBroken) {
 #ifdef CLARITY_HAVE_OPENMESH
     const Scene scene = import_file(path);
     ASSERT_EQ(scene.triangle_count(), 2u);
-    EXPECT_NEAR(scene.surface_area(), 1, 1e-6);  // vertices keep their numbers behind the broken one
+    EXPECT_NEAR(scene.surface_area(), 1, 1e-6);  // vertices behind the broken one keep their numbers
     ASSERT_EQ(scene.warnings.size(), 2u);
     EXPECT_NE(scene.warnings[0].find("line 11"), std::string::npos) << scene.warnings[0];
     EXPECT_NE(scene.warnings[1].find("line 8"), std::string::npos) << scene.warnings[1];
@@ -136,7 +136,7 @@ TEST(StlModel, AsciiAndBinaryAgree) {
     EXPECT_EQ(ascii.triangle_count(), 2u);
     EXPECT_NEAR(ascii.surface_area(), 1, 1e-6);
 
-    // A binary one that starts like text, and has bytes behind its facets.
+    // A binary file that starts like text, and has extra bytes behind its facets.
     std::string bytes = "solid but binary";
     bytes.resize(80, ' ');
     const auto put = [&](const void* value, size_t size) { bytes.append(static_cast<const char*>(value), size); };
@@ -163,12 +163,12 @@ TEST(PlyModel, ReadsListsAttributesAndOddLines) {
     GTEST_SKIP() << "SKIPPED: lists of texture coordinates need the importer openmesh";
 #endif
     const Scene scene = import_file(data("roof.ply"));
-    EXPECT_EQ(scene.triangle_count(), 3u);  // a square and a triangle; the third face names a vertex that is not finite
+    EXPECT_EQ(scene.triangle_count(), 3u);  // a square and a triangle; the third face uses a vertex that is not finite
     EXPECT_NEAR(scene.surface_area(), 1.5, 1e-6);
     ASSERT_EQ(scene.warnings.size(), 1u);
     ASSERT_EQ(scene.uvs.size() / 2, scene.positions.size() / 3);
-    EXPECT_FLOAT_EQ(scene.uvs[2 * size_t(scene.triangles[1])], 2);  // of the square's second corner
-    EXPECT_FLOAT_EQ(scene.uvs[2 * size_t(scene.triangles[7])], 1);  // of the same vertex in the triangle
+    EXPECT_FLOAT_EQ(scene.uvs[2 * size_t(scene.triangles[1])], 2);  // the square's second corner
+    EXPECT_FLOAT_EQ(scene.uvs[2 * size_t(scene.triangles[7])], 1);  // the same vertex in the triangle
     EXPECT_FLOAT_EQ(scene.uvs[2 * size_t(scene.triangles[7]) + 1], 0);
     EXPECT_FLOAT_EQ(scene.normals[3 * size_t(scene.triangles[7]) + 2], 1);
 }
@@ -186,7 +186,7 @@ std::string binary_ply(bool big_endian, const char* count_type, size_t count_byt
     const float positions[5][2] = {{0, 0}, {3, 0}, {3, 2}, {0, 2}, {1, 5}};
     for (const auto& p : positions) {
         const double z = 7;
-        const uint8_t quality = 10;  // a line's end, if it were text
+        const uint8_t quality = 10;  // would be the end of a line in a text file
         put(&p[0], 4);
         put(&p[1], 4);
         put(&z, 8);
@@ -242,11 +242,11 @@ TEST(FbxModel, PlacesNodesAsTheFileMeansThem) {
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
     const std::vector<InstanceMeasure> measures = measure_instances(scene);
     ASSERT_EQ(measures.size(), 2u);
-    // The geometric transform stays with the parent's mesh and turns about x before y, whatever the node's order is.
+    // The geometric transform applies to the parent's mesh only, and rotates about x before y, whatever the node's order is.
     EXPECT_EQ(measures[0].name, "Parent");
     expect_bounds(measures[0].bounds, {10, 0, 90}, {16, 0, 100});
     EXPECT_NEAR(measures[0].area, 4 * 6, 1e-4);
-    // The child inherits the translation only; its pre-rotation does not count, since RotationActive is not set.
+    // The child inherits the translation only. Its pre-rotation does not count, because RotationActive is not set.
     EXPECT_EQ(measures[1].name, "Child");
     expect_bounds(measures[1].bounds, {5, 5, 0}, {10, 8, 0});
     EXPECT_EQ(scene.up_axis, 2u);
@@ -287,9 +287,9 @@ TEST(GltfModel, KeepsInstancesMaterialsAndCamera) {
     expect_bounds(scene.bounds(), {-2, 0, 0}, {1, 1, 3});
     const rt_material steel = material_named(scene, "steel").values;
     EXPECT_FLOAT_EQ(steel.reflect, 0.75f);
-    EXPECT_EQ(steel.refract, 0);  // alpha counts only where alphaMode says so
+    EXPECT_EQ(steel.refract, 0);  // alpha counts only if alphaMode says so
     EXPECT_EQ(scene.unit_scale, 1);
-    // (0, 1) of glTF is the bottom left of the picture, here (0, 0).
+    // (0, 1) in glTF is the bottom left of the picture, which is (0, 0) here.
     for (size_t v = 0; v < scene.positions.size() / 3; ++v) {
         EXPECT_FLOAT_EQ(scene.uvs[2 * v], scene.positions[3 * v]);
         EXPECT_FLOAT_EQ(scene.uvs[2 * v + 1], scene.positions[3 * v + 1]);

@@ -1,4 +1,4 @@
-// truth_test.cpp -- every importable file of the shared scenes against what independent importers measured in it.
+// truth_test.cpp -- compares the import of every readable shared scene with the measurements of independent importers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,8 @@ namespace {
 
 using nlohmann::json;
 
-// Files that differ from the truth, each with its reason. Each is asserted to differ: this list shrinks when they are mended.
+// Files that differ from the truth, with the reasons. The test asserts that each of them differs, so an entry must go when its
+// file is read correctly.
 enum class Differs { area, lights_or_cameras, instances };
 const std::map<std::string, std::pair<Differs, const char*>> kDeviations = {
     {"fbx/maya_node_attribute_zoo_7500_binary.fbx",
@@ -32,7 +33,7 @@ bool deviates(const std::string& file, Differs how) {
     return found != kDeviations.end() && found->second.first == how;
 }
 
-// Truth files of all but the invalid set.
+// Returns the truth files except those of invalid models.
 std::vector<std::string> truth_names() {
     std::vector<std::string> names;
     if (shared_scenes().empty()) return names;
@@ -42,7 +43,7 @@ std::vector<std::string> truth_names() {
     return names;
 }
 
-// The file to import: unpacked beside nothing of the project, if it is gzipped.
+// The file to import. A gzipped file is unpacked to a temporary folder.
 class ModelFile {
  public:
     explicit ModelFile(const std::string& file) : path_(shared_scenes() + file) {
@@ -65,7 +66,7 @@ class ModelFile {
 class Truth : public testing::TestWithParam<std::string> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Truth);
 
-// What assimp 5.2 cannot read must be named for what it is.
+// A file that assimp 5.2 cannot read must be refused with its version and byte order.
 void expect_clear_refusal(const std::string& path, const json& truth) {
     const bool is_big_endian = truth["big_endian"];
     try {
@@ -94,7 +95,7 @@ void expect_area(const std::string& file, const Scene& scene, const json& truth)
         return;
     }
     EXPECT_GT(error, 1e-3) << "no longer differs: take it from the list";
-    // Still between the flattest and the most folded way to cut the polygons, up to rounding.
+    // The area must lie between those of the flattest and the most folded triangulation, except for rounding.
     EXPECT_GE(scene.surface_area(), 0.999 * truth["area_newell"].get<double>());
     EXPECT_LE(scene.surface_area(), 1.001 * std::max(area, truth["area_fan"].get<double>()));
 }
@@ -105,7 +106,7 @@ void expect_same_or_listed(const std::string& file, Differs how, bool is_same, c
     }
 }
 
-// Node by node, where names are unique: errors that cancel out in the whole show here.
+// Compares node by node where names are unique. This finds errors that cancel out in the whole scene.
 void expect_nodes(const Scene& scene, const json& nodes) {
     std::map<std::string, std::vector<const json*>> by_name;
     for (const json& node : nodes) {

@@ -1,4 +1,4 @@
-// Broken inputs, and what the user is told: where, what was read, what was expected.
+// Faulty scene files and their messages: where the error is, what was read, and what was expected.
 #include <gtest/gtest.h>
 
 #include "recorder.hpp"
@@ -7,7 +7,7 @@ namespace {
 
 struct Case {
     const char* text;
-    const char* message;  // behind "test.scene:"
+    const char* message;  // the part after "test.scene:"
 };
 
 #define STATEMENTS \
@@ -139,7 +139,7 @@ TEST(SceneFormatErrors, TenAreEnough) {
 }
 
 TEST(SceneFormatErrors, AFaultyLineDoesNotHideNamesItDefines) {
-    // One mistake, one error: the material is known although its line is broken.
+    // One mistake gives one error: the material is known although its line has an error.
     const Recording r = import_text("material glass radious 1\nsphere material glass\n");
     EXPECT_TRUE(r.log.empty()) << r.log[0];
     EXPECT_NE(r.why.find("test.scene:1:16: unknown key `radious`"), std::string::npos) << r.why;
@@ -155,7 +155,7 @@ TEST(SceneFormatErrors, LongWordsAreCut) {
     const Recording r = import_text("sphere " + std::string(100000, 'x') + "\n");
     EXPECT_EQ(r.why,
               "test.scene:1:8: unknown key `" + std::string(40, 'x') + "...` (keys of sphere: center, radius, material)");
-    // Never inside a character.
+    // A character is never cut.
     std::string umlauts;
     for (int i = 0; i < 100; ++i) umlauts += "\xC3\xBC";
     const Recording cut = import_text("sphere x" + umlauts + "\n");

@@ -1,5 +1,5 @@
-// Mutations of sound scenes and plain noise, the same on every run: whatever the bytes, the importer answers with a sound scene
-// or with errors that have a place, and soon. Sanitizer builds run this test, too.
+// Mutations of valid scenes, and noise; both the same in every run. For any bytes, the importer must soon return a valid scene,
+// or errors with their places. Builds with sanitizers run this test too.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -118,7 +118,7 @@ class Mutator {
     std::mt19937 random_;
 };
 
-// "test.scene:LINE:COLUMN: message", on a line that the file has, without characters that would spoil a terminal or a log.
+// True for "test.scene:LINE:COLUMN: message" on a line that the file has, without control characters.
 bool is_located(const std::string& text, size_t line_count) {
     const std::string prefix = "test.scene:";
     if (text.compare(0, prefix.size(), prefix) != 0) return false;
@@ -133,7 +133,8 @@ bool is_located(const std::string& text, size_t line_count) {
 void check(const std::string& text, const std::string& which) {
     const std::clock_t start = std::clock();
     const Recording r = import_text(text);
-    const double cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;  // others may keep the machine busy
+    // CPU time, because other processes may keep the machine busy.
+    const double cpu_s = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
     EXPECT_LT(cpu_s, 2.0) << which;
     const size_t line_count =
         1 + static_cast<size_t>(std::count_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }));

@@ -122,7 +122,7 @@ void show_as_test_scene(const std::string& path, std::string& text) {
 }  // namespace
 
 void import_text(const std::string& text, Recording& recording) {
-    // A file in memory: thousands of them would keep a disk busy.
+    // The file is in memory, because thousands of files would keep a disk busy.
     static const int file = memfd_create("test.scene", 0);
     static const std::string path = "/proc/self/fd/" + std::to_string(file);
     if (ftruncate(file, 0) != 0 || pwrite(file, text.data(), text.size(), 0) != static_cast<ssize_t>(text.size())) std::abort();

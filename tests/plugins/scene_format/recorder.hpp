@@ -1,4 +1,4 @@
-// recorder.hpp -- a host and a sink that write down what the scene importer says and hands over.
+// recorder.hpp -- a host and a sink that record everything that the scene importer reports and passes on.
 #pragma once
 #include <array>
 #include <string>
@@ -34,7 +34,7 @@ struct RecordedLight {
 };
 struct RecordedCamera {
     std::string name;
-    rt_camera values;  // its name is not valid any more
+    rt_camera values;  // its name pointer is not valid any more
 };
 struct RecordedLoad {
     std::string path, name;
@@ -56,18 +56,19 @@ struct Recording {
     std::vector<RecordedLight> lights;
     std::vector<RecordedCamera> cameras;
     std::vector<RecordedLoad> loads;
-    std::vector<std::string> order;  // "sphere", "mesh", "load", ... as they came
+    std::vector<std::string> order;  // "sphere", "mesh", "load", ... in the order of the calls
     bool has_background = false, has_ambient = false;
     std::array<float, 3> background{}, ambient{};
 
-    // What the sink and the host answer.
+    // The answers of the sink and the host.
     bool refuse_textures = false, refuse_loads = false, refuse_spheres = false;
     int32_t reports_before_cancel = -1;  // negative: never
 
-    // Everything that was said or handed over is sound: finite numbers, known ids, texts without control characters.
+    // Returns the first fault in the recording, or an empty string: numbers must be finite, ids known, and texts free of
+    // control characters.
     std::string unsound() const;
 };
 
-// Imports a file with this content (its name is test.scene in every message) into `recording`.
+// Imports a file with this content into `recording`. All messages call the file test.scene.
 void import_text(const std::string& text, Recording& recording);
 Recording import_text(const std::string& text);

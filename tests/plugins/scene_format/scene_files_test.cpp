@@ -1,4 +1,4 @@
-// The project's own scenes through the built plugins and the worker process, and what a user sees of broken ones.
+// The project's own scenes through the built plugins and the worker process, and the messages that a user sees for broken ones.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -27,16 +27,16 @@ Scene import_file(const std::string& path) {
     return import_scene(plugins, {path}, options, progress);
 }
 
-// Counted and measured from the files by other means: words of the scene files, assimp's own loading of the models with its
-// node transforms baked in, areas of spheres and polygons by formula. Some faces of spot.obj are not planar: their area depends
-// on how they are cut.
+// The expected values come from other sources: statements of the scene files, assimp's own loading of the models with their
+// node transforms applied, and formulas for the areas of spheres and polygons. Some faces of spot.obj are not planar; their
+// area depends on the triangulation.
 struct Golden {
     const char* file;
     size_t meshes, instances, spheres, planes, polygons, lights, cameras, textures;
     uint64_t triangles;
     double area, area_tolerance;  // relative
     std::array<float, 3> min, max;
-    bool has_models;  // needs more than the scene importer
+    bool has_models;  // true: the scene needs other importers too
 };
 
 void PrintTo(const Golden& golden, std::ostream* out) {
@@ -105,7 +105,7 @@ TEST(SceneFolder, DegenerateSceneIsKeptAndFinite) {
     EXPECT_NE(scene.warnings[0].find("degenerate.scene:12:"), std::string::npos) << scene.warnings[0];
 }
 
-// Files of one test, in a folder of their own.
+// Writes the files of one test into a folder of its own.
 class Scenes : public testing::Test {
  protected:
     void SetUp() override { fs::create_directories(folder_ / "parts"); }

@@ -1,4 +1,4 @@
-// What each statement hands over, its defaults, and how names and transforms work: docs/scene_format.md.
+// The result of each statement, its defaults, and how names and transforms work: see docs/scene_format.md.
 #include <gtest/gtest.h>
 
 #include <clocale>
@@ -122,9 +122,9 @@ TEST(SceneFormat, ReadsEveryMaterialKey) {
     const rt_material& b = r.materials.at(1).values;
     expect_near(b.specular, {0.1f, 0.2f, 0.3f});
     EXPECT_EQ(b.texture, 0u);
-    expect_near(b.color, {1, 1, 1});  // a texture alone shows as it is
+    expect_near(b.color, {1, 1, 1});  // a texture without a colour is shown unchanged
     expect_near(r.materials.at(2).values.color, {0.5f, 0.5f, 0.5f});
-    EXPECT_EQ(r.textures, std::vector<std::string>{"my wood.png"});  // read once
+    EXPECT_EQ(r.textures, std::vector<std::string>{"my wood.png"});  // the importer asks for a texture only once
 }
 
 TEST(SceneFormat, MissingTextureIsNoError) {
@@ -160,7 +160,7 @@ TEST(SceneFormat, PlaneNormalIsNormalised) {
 }
 
 TEST(SceneFormat, PlacesAsScaleThenRotationsThenTranslation) {
-    // The same whatever the order of the keys; only rotations keep theirs.
+    // The order of the keys does not matter, except among rotations.
     const char* lines[] = {"load a.obj translate 1 2 3 rotate 0 0 1 90 scale 2 3 4\n",
                            "load a.obj scale 2 3 4 translate 1 2 3 rotate 0 0 1 90\n"};
     for (const char* line : lines) {
@@ -223,7 +223,7 @@ TEST(SceneFormat, QuotedNamesHoldAnything) {
 TEST(SceneFormat, NumbersDoNotDependOnLocale) {
     const char* old = std::setlocale(LC_NUMERIC, nullptr);
     const std::string saved = old != nullptr ? old : "C";
-    std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // where it is not installed, the test still reads numbers
+    std::setlocale(LC_NUMERIC, "de_DE.UTF-8");  // if the locale is not installed, the test still parses numbers
     const Recording r = import_good("sphere radius 2.5 center +1.5 -.25 1e-2\n");
     std::setlocale(LC_NUMERIC, saved.c_str());
     EXPECT_EQ(r.spheres.at(0).radius, 2.5f);
