@@ -1,12 +1,12 @@
-# Finds what Clarity stands on. A part whose library is missing is left out, and the report at the end of the configuration
-# says which and why; the libraries in the first part are required. Everything is used through its imported target.
+# Finds the libraries that Clarity uses, each through its imported target. The libraries in the first part are required. If one of
+# the others is missing, the part of Clarity that needs it is left out, and the report at the end of the configuration says so.
 set(CLARITY_LEFT_OUT "")
 function(clarity_left_out what why)
   set(CLARITY_LEFT_OUT "${CLARITY_LEFT_OUT};${what}: ${why}" CACHE INTERNAL "")
 endfunction()
 set(CLARITY_LEFT_OUT "" CACHE INTERNAL "")
 
-# clarity_require(TARGET DEBIAN_PACKAGE): stops where TARGET was not found.
+# clarity_require(TARGET DEBIAN_PACKAGE): stops the configuration if TARGET was not found.
 function(clarity_require target package)
   if(NOT TARGET ${target})
     message(FATAL_ERROR "${target} not found: install ${package} (or pass its prefix in CMAKE_PREFIX_PATH)")
@@ -16,7 +16,7 @@ endfunction()
 find_package(Threads REQUIRED)
 find_package(OpenCL REQUIRED)
 find_package(PkgConfig REQUIRED)
-find_package(OpenCLHeaders CONFIG QUIET)  # the C++ headers need them, and do not look for them
+find_package(OpenCLHeaders CONFIG QUIET)  # the C++ headers need the C headers but do not search for them
 clarity_require(OpenCL::Headers opencl-c-headers)
 find_package(OpenCLHeadersCpp CONFIG QUIET)
 clarity_require(OpenCL::HeadersCpp opencl-clhpp-headers)
@@ -34,7 +34,7 @@ pkg_check_modules(SECCOMP QUIET IMPORTED_TARGET libseccomp)
 clarity_require(PkgConfig::SECCOMP libseccomp-dev)
 pkg_check_modules(STB QUIET IMPORTED_TARGET stb)
 clarity_require(PkgConfig::STB libstb-dev)
-# For code that compiles stb into itself and must not be linked with the library.
+# Headers only, for code that compiles stb into itself and must not be linked with the library.
 add_library(clarity_stb_headers INTERFACE)
 target_include_directories(clarity_stb_headers SYSTEM INTERFACE ${STB_INCLUDE_DIRS})
 

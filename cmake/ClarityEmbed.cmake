@@ -1,6 +1,6 @@
-# clarity_embed(target NAME name FILES file...): text files as C strings.
-# Generates ${NAME}.inc in the target's binary folder with, for each file, `{"relative/path", R"...(text)..."},` rows;
-# long files are split into pieces, since compilers limit the length of one literal.
+# clarity_embed(target NAME name BASE folder FILES file...): embeds text files as C strings.
+# Generates NAME.inc in the target's binary folder. It has one row for each file, `{"path relative to BASE", R"...(text)..."},`.
+# Long files are split into several literals, because compilers limit the length of one literal.
 set(CLARITY_EMBED_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/embed_text.cmake)
 function(clarity_embed target)
   cmake_parse_arguments(arg "" "NAME;BASE" "FILES" ${ARGN})

@@ -1,5 +1,5 @@
-# What `cmake --install` puts where, besides the program and the plugins, and the package that find_package(clarity) finds:
-# target clarity::sdk, clarity_add_plugin() and clarity_embed(). Nothing in it names the prefix, so the tree may be moved.
+# Installs everything besides the program and the plugins: the SDK, its pages, and the package for find_package(clarity), which
+# provides the target clarity::sdk, clarity_add_plugin() and clarity_embed(). No file contains the prefix, so the tree may be moved.
 include(CMakePackageConfigHelpers)
 
 set_target_properties(clarity_sdk PROPERTIES EXPORT_NAME sdk)
@@ -15,7 +15,7 @@ file(STRINGS ${PROJECT_SOURCE_DIR}/host/sdk/rt_plugin.h CLARITY_ABI_VERSION REGE
 string(REGEX REPLACE "^#define RT_ABI_VERSION ([0-9]+)u$" "\\1" CLARITY_ABI_VERSION "${CLARITY_ABI_VERSION}")
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/clarityConfig.cmake.in ${PROJECT_BINARY_DIR}/package/clarityConfig.cmake
   INSTALL_DESTINATION ${package} NO_CHECK_REQUIRED_COMPONENTS_MACRO)
-# Plugins are bound to the ABI version, which the host checks, and not to the program's.
+# Plugins depend on the ABI version, which the host checks, and not on the program's version.
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/clarityConfigVersion.cmake COMPATIBILITY SameMajorVersion
   ARCH_INDEPENDENT)
 install(FILES ${PROJECT_BINARY_DIR}/package/clarityConfig.cmake ${PROJECT_BINARY_DIR}/package/clarityConfigVersion.cmake

@@ -1,9 +1,10 @@
-# clarity_add_plugin(accel|importer ID [LIBRARIES lib...]): one folder, one plugin, one shared library.
+# clarity_add_plugin(accel|importer ID [LIBRARIES lib...]): builds the current folder as one plugin, which is one shared library.
 #
-# Compiles every .cpp/.c of the folder. For an accel plugin, ID.cl and ID_types.h are embedded: the plugin includes
-# "ID.inc", rows of {path, text}. The library lands in lib/clarity/plugins/{importers,accel} beside bin/; out of tree, where this
-# file came with find_package(clarity), below the build folder: name build/lib/clarity/plugins in CLARITY_PLUGIN_PATH.
-# `cmake --install build --prefix ~/.local` puts an out-of-tree plugin where clarity finds it by itself.
+# Compiles every .cpp and .c file of the folder. For an accel plugin, ID.cl and ID_types.h are embedded: the plugin includes
+# "ID.inc", which has rows of {path, text}. The library is written to lib/clarity/plugins/{importers,accel} beside bin/.
+# Outside of clarity's tree (with find_package(clarity)) that folder is in the plugin's build folder: add
+# build/lib/clarity/plugins to CLARITY_PLUGIN_PATH, or run `cmake --install build --prefix ~/.local`, which installs the plugin
+# where clarity looks for it.
 set(CLARITY_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/rt_plugin.map)
 function(clarity_add_plugin kind id)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
@@ -26,7 +27,7 @@ function(clarity_add_plugin kind id)
     LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/clarity/plugins/${folder} LINK_DEPENDS ${CLARITY_PLUGIN_EXPORTS})
   target_compile_features(${target} PRIVATE cxx_std_17)
   target_link_libraries(${target} PRIVATE clarity::sdk ${arg_LIBRARIES})
-  # The map keeps the templates of libstdc++, which hidden visibility does not reach, out of the library's symbols.
+  # The map also hides the templates of libstdc++, which stay visible in spite of hidden visibility.
   target_link_options(${target} PRIVATE -Wl,--no-undefined "-Wl,--version-script=${CLARITY_PLUGIN_EXPORTS}")
   file(GLOB embedded CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_types.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}.cl)
   if(embedded)
@@ -37,15 +38,15 @@ function(clarity_add_plugin kind id)
   endif()
 endfunction()
 
-# clarity_quiet_vectors(TARGET...): for code that passes vectors and 32-byte records by value. GCC notes at each that it was done
-# otherwise before 4.6, which concerns nobody.
+# clarity_quiet_vectors(TARGET...): for code that passes vectors and 32-byte records by value. GCC otherwise notes at each of them
+# that versions before 4.6 passed them differently, which does not matter here.
 function(clarity_quiet_vectors)
   foreach(target IN LISTS ARGN)
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
   endforeach()
 endfunction()
 
-# Every folder under plugins/{importers,accel} that has a CMakeLists.txt; nobody edits a list.
+# Adds every folder under plugins/{importers,accel} that has a CMakeLists.txt, so that there is no list to edit.
 function(clarity_add_all_plugins)
   file(GLOB lists CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/plugins/*/*/CMakeLists.txt)
   foreach(list IN LISTS lists)

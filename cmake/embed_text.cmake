@@ -1,4 +1,4 @@
-# Writes FILES (separated by |) as C rows {"path relative to BASE", "text" "text" ...}, into OUT.
+# Writes each of FILES (separated by |) as a row {"path relative to BASE", "text" "text" ...} of C code into OUT.
 string(REPLACE "|" ";" files "${FILES}")
 set(text "")
 foreach(file IN LISTS files)

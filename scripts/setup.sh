@@ -1,18 +1,19 @@
-# setup.sh -- what ./run and ./test share: the Debian packages, the configuration, the build. Sourced, from the source folder.
+# setup.sh -- functions of ./run, ./test and scripts/full_test: Debian packages, configuration, build. To be sourced in the source
+# folder.
 
 build_dir=build/release
 
-# The compiler and its tools (make is for plugins out of tree: cmake's default there); what the program is built from; what it
-# needs to run. libgl1-mesa-dri: OpenGL without a driver of the machine's own, so that the window also opens on a virtual display.
+# Compiler and tools (make: cmake's default for plugins outside of the tree), the libraries for the build, and the packages that the
+# program needs at run time. libgl1-mesa-dri: OpenGL in software, so that the window also opens on a virtual display.
 build_packages="g++ cmake ninja-build make pkg-config
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
     libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
     libgl1-mesa-dri fonts-dejavu-core"
-# Tests compare with Embree, on PoCL, in a window on a virtual display.
+# The tests compare with Embree, run kernels on PoCL and oclgrind, and open the window on a virtual display.
 test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format
     xvfb xauth xdotool imagemagick"
 
-# What scripts/full_test adds.
+# Additional packages for scripts/full_test.
 check_packages="clang-tidy"
 
 say() { printf '%s\n' "$*" >&2; }
@@ -23,12 +24,12 @@ die() {
 
 is_debian() { command -v dpkg-query >/dev/null 2>&1 && command -v apt-get >/dev/null 2>&1; }
 
-# Any OpenCL driver serves; PoCL is the one that needs nothing but a CPU.
+# Any OpenCL driver will do. If there is none, install PoCL, which needs only a CPU.
 driver_packages() {
     if ! ls "${OCL_ICD_VENDORS:-/etc/OpenCL/vendors}"/*.icd >/dev/null 2>&1; then echo pocl-opencl-icd; fi
 }
 
-# installed PACKAGE... -> lines "name version" of those that are installed. dpkg-query fails when one is unknown: that is an answer.
+# installed PACKAGE...: prints a line "name version" for each one that is installed. It is no error if dpkg-query does not know one.
 installed() { dpkg-query -W -f '${db:Status-Status} ${Package} ${Version}\n' "$@" 2>/dev/null | sed -n 's/^installed //p'; }
 
 as_root() {
@@ -41,14 +42,14 @@ as_root() {
     fi
 }
 
-# On a terminal apt-get shows its progress; elsewhere only what went wrong.
+# On a terminal apt-get shows its progress; elsewhere it prints only errors.
 apt() {
     local out=/dev/null
     [ ! -t 2 ] || out=/dev/stderr
     as_root env DEBIAN_FRONTEND=noninteractive apt-get -y -q -o Dpkg::Use-Pty=0 "$@" </dev/null >"$out"
 }
 
-# install_packages PACKAGE...: those that are missing, through apt-get.
+# install_packages PACKAGE...: installs those that are missing with apt-get.
 install_packages() {
     local have missing="" package
     if ! is_debian; then
@@ -62,7 +63,7 @@ install_packages() {
     done
     [ -n "$missing" ] || return 0
     say "Installing with apt-get:$missing"
-    # The lists of packages may be missing, or so old that their files are gone: then fetch them, and only then.
+    # Fetch the lists of packages only if that is necessary: if they are missing, or so old that the files they name are gone.
     if ! apt-get -s -q install --no-install-recommends $missing </dev/null >/dev/null 2>&1 ||
         ! apt install --no-install-recommends $missing; then
         say "Fetching the lists of packages first (apt-get update)"
@@ -71,8 +72,8 @@ install_packages() {
     fi
 }
 
-# configure PACKAGE...: again only when the build folder is new, a package came, went or changed, or CLARITY_WERROR asks for
-# another configuration. Ninja looks after everything else.
+# configure PACKAGE...: configures the build folder if it is new, if a package was installed, removed or updated, or if
+# CLARITY_WERROR asks for another configuration. Ninja detects everything else.
 configure() {
     local stamp="$build_dir/packages" now=""
     if is_debian; then now="$(installed "$@")"; fi
@@ -90,9 +91,9 @@ werror=${CLARITY_WERROR:-as it is}"
     printf '%s\n' "$now" >"$stamp"
 }
 
-# build TARGET...
+# build TARGET...: builds the targets, or all without one.
 build() {
-    # Ninja counts on a terminal; elsewhere a long build says at least that it is one.
+    # On a terminal Ninja shows its progress; elsewhere tell at least that a long build has begun.
     [ -t 2 ] || [ -x "$build_dir/bin/clarity" ] || say "Building (some minutes on a small machine)"
     ninja -C "$build_dir" -j "$(nproc)" $([ -t 2 ] || echo --quiet) "$@" >&2 || die "the build failed, see above"
 }

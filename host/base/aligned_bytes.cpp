@@ -11,16 +11,18 @@
 namespace clarity {
 namespace {
 
-constexpr size_t kMapped = 1u << 17;  // from this size on memory is mapped: cleared by whoever touches a page first
-constexpr size_t kLargePage = 1u << 21, kPage = 1u << 16;  // no machine's ordinary pages are larger than this
+constexpr size_t kMapped = 1u << 17;  // bytes; blocks from this size on are mapped, so that each page is cleared on first use
+constexpr size_t kLargePage = 1u << 21, kPage = 1u << 16;  // bytes; ordinary pages are at most kPage on any machine
 
-// A last large page is worth having when half of it is used.
+// Bytes to map for a block. The last large page is used whole if at least half of it is needed; otherwise the size is rounded
+// up to kPage.
 size_t mapped_bytes(size_t bytes) {
     const size_t step = (bytes + kLargePage / 2) % kLargePage < kLargePage / 2 ? kLargePage : kPage;
     return (bytes + step - 1) / step * step;
 }
 
-// At a multiple of a large page: a build faults once where it would 512 times. nullptr: there is no room.
+// Maps memory that begins at a multiple of a large page, so that a build faults once where it would fault 512 times. Returns
+// nullptr if the system has no room.
 void* map_large(size_t bytes) {
     void* const p = mmap(nullptr, bytes + kLargePage, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (p == MAP_FAILED) return nullptr;
@@ -28,11 +30,12 @@ void* map_large(size_t bytes) {
     const size_t before = (kLargePage - reinterpret_cast<uintptr_t>(p) % kLargePage) % kLargePage;
     if (before > 0) munmap(first, before);
     munmap(first + before + bytes, kLargePage - before);
-    madvise(first + before, bytes, MADV_HUGEPAGE);  // advice: may fail
+    madvise(first + before, bytes, MADV_HUGEPAGE);  // only advice: it may fail
     return first + before;
 }
 
-// Blocks that were freed, the latest last. A size fits itself only: a scene that is built again asks for the same ones.
+// Freed blocks, the latest one last. A block is reused only for exactly its size: a scene which is built again asks for the
+// same sizes. Thread-safe.
 class SpareBlocks {
  public:
     void* take(size_t bytes) {
@@ -79,7 +82,7 @@ class SpareBlocks {
     size_t count_ = 0, sum_ = 0;
 };
 
-// Never destroyed: memory may be freed by whatever goes last.
+// Never destroyed, because static objects may still free memory after main.
 SpareBlocks& spare_blocks() {
     static SpareBlocks& blocks = *new SpareBlocks;
     return blocks;

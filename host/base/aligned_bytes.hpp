@@ -1,5 +1,5 @@
-// aligned_bytes.hpp -- memory for what is large, comes and goes as a whole and is filled by all threads: structures and what
-// they are built from.
+// aligned_bytes.hpp -- memory for large arrays which all threads fill and which are freed as a whole: acceleration structures
+// and the input of their builders.
 #pragma once
 #include <cstddef>
 #include <memory>
@@ -9,27 +9,31 @@
 
 namespace clarity {
 
+// Deleter of the memory of AlignedBytes.
 struct FreeMemory {
-    size_t mapped = 0;  // bytes; 0: from the heap
+    size_t mapped = 0;  // size of the mapping in bytes; 0: the memory is from the heap
     void operator()(void* p) const;
 };
 
-// Storage aligned to 128 bytes, as buffers of devices are (OpenCL's largest type); never grows.
+// Owns a block of memory that never grows. It is aligned to 128 bytes, the size of OpenCL's largest type, as device buffers
+// are.
 class AlignedBytes {
  public:
     AlignedBytes() = default;
+    // `zero`: the memory is cleared. Throws std::bad_alloc.
     explicit AlignedBytes(size_t bytes, bool zero);
     void* data() { return data_.get(); }
     const void* data() const { return data_.get(); }
     size_t bytes() const { return bytes_; }
 
-    // For owners of another kind, which give back what they took with `free`.
+    // For owners of another type: release() hands the block over, and they return it with free(data, bytes).
     void* release() { return data_.release(); }
     static void free(void* data, size_t bytes);
 
-    // Of what was freed the latest blocks are kept, for the next build of the same scene: the system would have to clear them
-    // anew.
+    // Freed mapped blocks are kept for the next build of the same scene, the latest ones first, up to kKept bytes in all: the
+    // system would have to clear new pages.
     static constexpr size_t kKept = size_t{64} << 20;
+    // Bytes of the freed blocks that are kept now.
     static size_t kept();
 
  private:
@@ -37,7 +41,7 @@ class AlignedBytes {
     size_t bytes_ = 0;
 };
 
-// For vectors that are filled before they are read, by many threads: their elements are not cleared first, on one.
+// For vectors that many threads fill before anyone reads them: one thread need not clear all elements first.
 template <class T>
 struct DefaultInitAllocator {
     using value_type = T;

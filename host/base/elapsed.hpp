@@ -1,4 +1,4 @@
-// elapsed.hpp -- time that has gone by.
+// elapsed.hpp -- elapsed time in milliseconds.
 #pragma once
 #include <chrono>
 

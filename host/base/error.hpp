@@ -1,11 +1,11 @@
-// error.hpp -- how the host fails: one exception type that carries the program's exit code.
+// error.hpp -- the one exception type of the host. It carries the program's exit code.
 #pragma once
 #include <stdexcept>
 #include <string>
 
 namespace clarity {
 
-// Exit codes of the program, part of its contract.
+// Exit codes of the program. Users rely on them (docs and scripts), so they do not change.
 enum class Exit {
     done = 0,
     failed = 1,
@@ -16,22 +16,22 @@ enum class Exit {
     interrupted = 130
 };
 
-// A place in a text file, and what is wrong there.
+// A position in a text file, and what is wrong there.
 struct SourceLocation {
-    std::string file;               // a path, if the text was read from disk; empty: no place is known
-    unsigned line = 0, column = 0;  // from 1; column 0: not known
+    std::string file;               // path, or a name if the text was not read from disk; empty: the position is not known
+    unsigned line = 0, column = 0;  // both count from 1; column 0: not known
     std::string message;            // "use of undeclared identifier 'x'"
 };
 
-// A failure that a person reads: what was tried, on which file or device, why it failed and what to do.
+// A failure which a person reads. The message says what was tried, on which file or device, why it failed and what to do.
 class Error : public std::runtime_error {
  public:
     Error(Exit code, const std::string& message, std::string details = {}, SourceLocation location = {})
         : std::runtime_error(message), code_(code), details_(std::move(details)), location_(std::move(location)) {}
     Exit code() const { return code_; }
-    // More than a line: a compiler's log, say. May be empty.
+    // Text of several lines, such as a compiler's log. May be empty.
     const std::string& details() const { return details_; }
-    // Where an author has to look; the first place of several.
+    // Position of the error in the author's file; of several, the first.
     const SourceLocation& location() const { return location_; }
 
  private:
@@ -40,7 +40,7 @@ class Error : public std::runtime_error {
     SourceLocation location_;
 };
 
-// Thrown where work stopped because Progress said so.
+// Thrown where work stopped because Progress::cancelled() is true.
 struct Cancelled : Error {
     Cancelled() : Error(Exit::interrupted, "cancelled") {}
 };

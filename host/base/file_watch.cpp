@@ -16,16 +16,17 @@
 namespace clarity {
 namespace {
 
-constexpr int kLookEvery_ms = 500;  // 40 files: 40 calls of stat, some 50 us
-constexpr int kQuiet_ms = 50;       // a burst is over when nothing came for so long
+constexpr int kLookEvery_ms = 500;  // looking at 40 files takes 40 calls of stat, about 50 us
+constexpr int kQuiet_ms = 50;       // a burst of events is over after this time without an event
 constexpr int kLongestBurst_ms = 1000;
 constexpr uint64_t kLarge_bytes = 1 << 20;
 
-// No IN_MODIFY: a file that is being written is not finished.
+// IN_MODIFY is left out: it comes while a file is still being written.
 constexpr uint32_t kEvents =
     IN_CLOSE_WRITE | IN_MOVED_TO | IN_MOVED_FROM | IN_CREATE | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR;
 
-// FNV-1a, 64 bits: told apart must be what one person saved one after the other.
+// Hash of a file's content (FNV-1a, 64 bits); 0 if it cannot be read. It only has to tell one save from the next, not to resist
+// an attacker.
 uint64_t hash_of(const std::string& path) {
     uint64_t hash = 14695981039346656037u;
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
@@ -51,7 +52,7 @@ bool FileWatch::State::same_file(const State& other) const {
     return device == other.device && inode == other.inode && bytes == other.bytes && modified_ns == other.modified_ns;
 }
 
-// All but the hash.
+// Reads the state of a file without its hash.
 FileWatch::State FileWatch::look(const std::string& path) {
     struct stat status {};
     State state;
@@ -75,14 +76,14 @@ FileWatch::FileWatch(std::vector<std::string> files, std::function<void()> chang
     watches_.assign(folders_.size(), -1);
     stop_ = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
     if (stop_ < 0) throw std::system_error(errno, std::generic_category(), "watching files for changes: no eventfd");
-    inotify_ = inotify_init1(IN_CLOEXEC | IN_NONBLOCK);  // may fail: then times are compared
+    inotify_ = inotify_init1(IN_CLOEXEC | IN_NONBLOCK);  // may fail; then only file times are compared
     add_folders();
     thread_ = std::thread([this] { run(); });
 }
 
 FileWatch::~FileWatch() {
     const uint64_t one = 1;
-    if (write(stop_, &one, sizeof one) < 0) std::terminate();  // a new eventfd takes it
+    if (write(stop_, &one, sizeof one) < 0) std::terminate();  // cannot fail on a new eventfd
     thread_.join();
     close(stop_);
     if (inotify_ >= 0) close(inotify_);
@@ -103,7 +104,7 @@ void FileWatch::add_folders() {
     prompt_ = all;
 }
 
-// Takes all events that wait; false if there was none. A folder that went away is watched again once it is back.
+// Reads all pending events; returns false if there was none. A folder that was removed is watched again once it is back.
 bool FileWatch::drain() {
     alignas(inotify_event) char buffer[4096];
     bool any = false;
@@ -125,7 +126,7 @@ bool FileWatch::times_differ() const {
     return false;
 }
 
-// Waits for the end of a burst: several files saved at once, or one that is removed, written and renamed.
+// Waits for the end of a burst: an editor may save several files at once, or remove, write and rename one.
 void FileWatch::settle() {
     const auto end = std::chrono::steady_clock::now() + std::chrono::milliseconds(kLongestBurst_ms);
     const auto look_at_all = [this] {
@@ -150,7 +151,8 @@ void FileWatch::compare() {
     std::vector<std::string> differ;
     for (size_t i = 0; i < paths_.size(); ++i) {
         State now = look(paths_[i]);
-        // Times do not tell all: two saves within a tick of the file system's clock look alike. Large files take longer.
+        // Times are not enough: two saves within one tick of the file system's clock look alike. A large
+        // file takes longer than a tick to write, so it is read again only if its times have changed.
         const bool known = now.same_file(states_[i]) && now.bytes > kLarge_bytes;
         now.hash = known ? states_[i].hash : now.inode ? hash_of(paths_[i]) : 0;
         if (now.hash != states_[i].hash) differ.push_back(paths_[i]);
@@ -166,7 +168,7 @@ void FileWatch::compare() {
 }
 
 void FileWatch::run() {
-    pollfd waits[2] = {{stop_, POLLIN, 0}, {inotify_, POLLIN, 0}};  // a negative descriptor is left out
+    pollfd waits[2] = {{stop_, POLLIN, 0}, {inotify_, POLLIN, 0}};  // poll ignores a negative descriptor
     for (;;) {
         poll(waits, 2, kLookEvery_ms);
         if (waits[0].revents) return;

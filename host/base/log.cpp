@@ -1,4 +1,4 @@
-// The log is small enough to be ours: a core that needs no compiled library but an OpenCL loader builds everywhere.
+// A log of our own, because the core should need no compiled library besides the OpenCL loader.
 #include "base/log.hpp"
 
 #include <unistd.h>
@@ -26,11 +26,11 @@ struct LogState {
     LogLevel least = LogLevel::info;
     std::unique_ptr<std::FILE, CloseFile> file;
     std::string file_path;
-    // Shared, so that a listener may replace itself, or log, while it is being called.
+    // Shared, so that a listener may log or replace itself while it is being called.
     std::shared_ptr<const std::function<void(LogLevel, const std::string&)>> listener;
 };
 
-// Never destroyed: threads that outlive main may still log.
+// Never destroyed, because threads that outlive main may still log.
 LogState& state() {
     static LogState* const only = new LogState;
     return *only;
@@ -64,7 +64,8 @@ const char* level_color(LogLevel level) {
     return "";
 }
 
-// A terminal that moves its cursor; "dumb" ones (an editor's shell buffer) show escapes as text.
+// True if stderr is a terminal that understands escape sequences. "dumb" terminals (an editor's shell buffer) show them as
+// text.
 bool stderr_is_terminal() {
     const char* term = std::getenv("TERM");
     return isatty(STDERR_FILENO) && term && *term && std::strcmp(term, "dumb") != 0;
@@ -78,7 +79,7 @@ bool stderr_has_color() {
 std::string stderr_line(LogLevel level, const std::string& text) {
     static const bool terminal = stderr_is_terminal(), color = stderr_has_color();
     std::string line;
-    if (terminal) line += "\r\033[K";  // a progress bar may stand on this row
+    if (terminal) line += "\r\033[K";  // clears the row: a progress bar may stand there
     if (level != LogLevel::info) {
         if (color) line += level_color(level);
         line += level_name(level);

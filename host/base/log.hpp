@@ -1,4 +1,4 @@
-// log.hpp -- the program's log: lines on stderr (and in --log-file, and in the window's log).
+// log.hpp -- the program's log: lines on stderr, in the file of --log-file and in the window's log.
 #pragma once
 #include <functional>
 #include <string>
@@ -7,14 +7,15 @@ namespace clarity {
 
 enum class LogLevel { debug, info, warning, error };
 
-// Thread-safe. Colour only on a terminal and without NO_COLOR. Control characters of `text` are written as \xNN, on stderr and
-// in the file; listeners get the text as it is.
+// Writes a line to the log. Thread-safe. Colours are used only on a terminal and if NO_COLOR is not set. Control characters of
+// `text` are written as \xNN on stderr and in the file; the listener gets the text unchanged.
 void log(LogLevel level, const std::string& text);
-// -q: warning, default: info, -v: debug.
+// Sets the lowest level that is written. -q: warning, default: info, -v: debug.
 void set_log_level(LogLevel least);
-// Throws Error if the file cannot be opened.
+// Also appends the log to this file. Throws Error if the file cannot be opened.
 void set_log_file(const std::string& path);
-// Called with every line of whatever level, from any thread; for the window and tests. Replaces the last one.
+// The listener is called with every line of every level, from any thread. It replaces the previous one. For the window and
+// tests.
 void set_log_listener(std::function<void(LogLevel, const std::string&)> listener);
 
 }  // namespace clarity

@@ -1,4 +1,4 @@
-// memory_text.hpp -- amounts of memory for a person.
+// memory_text.hpp -- amounts of memory as text.
 #pragma once
 #include <cstdint>
 #include <string>

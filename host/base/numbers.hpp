@@ -1,4 +1,4 @@
-// numbers.hpp -- numbers in words, and back, whatever the locale.
+// numbers.hpp -- converts numbers to text and back, independent of the locale.
 #pragma once
 #include <charconv>
 #include <cmath>
@@ -8,14 +8,14 @@
 
 namespace clarity {
 
-// The shortest text that reads back as the same number.
+// The shortest text that converts back to the same number.
 template <class Number>
 std::string exact_text(Number value) {
     char text[32];
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-// Whether all of `text` is one number, a finite one of that type; else `value` is whatever it is.
+// Returns true and sets `value` if all of `text` is one finite number of this type. Otherwise `value` is undefined.
 template <class Number>
 bool read_number(std::string_view text, Number& value) {
     const char* const end = text.data() + text.size();
@@ -25,7 +25,7 @@ bool read_number(std::string_view text, Number& value) {
     return true;
 }
 
-// The double that prints as the float does: 0.1, not 0.10000000149011612.
+// The double with the same shortest text as the float: 0.1, not 0.10000000149011612.
 inline double short_double(float value) {
     double result = value;
     read_number(exact_text(value), result);

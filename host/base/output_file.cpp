@@ -24,7 +24,7 @@ bool is_stream(const std::string& path) {
     return stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode) && !S_ISDIR(status.st_mode);
 }
 
-// A link keeps pointing where it points: the file that it leads to is the one to replace.
+// A link stays a link: the file that it leads to is replaced. Returns the path of that file.
 std::string follow_links(const std::string& path) {
     char* real = realpath(path.c_str(), nullptr);
     if (!real) return path;
@@ -38,12 +38,13 @@ std::string folder_of(const std::string& path) {
     return slash == std::string::npos ? "./" : path.substr(0, slash + 1);
 }
 
-// The name by which another process, or linkat(), reaches a file that has none.
+// The path by which linkat() or another process reaches an open file that has no name.
 std::string descriptor_path(int file) {
     return "/proc/self/fd/" + std::to_string(file);
 }
 
-// ".clarity-PID-N.tmp": the dot hides it, the program's name explains what a power cut left behind.
+// ".clarity-PID-N.tmp": the dot hides the file, and the program's name explains where a file that was left by a power cut comes
+// from.
 constexpr const char *kPrefix = ".clarity-", *kSuffix = ".tmp";
 std::string next_temporary_name(const std::string& folder) {
     static std::atomic<unsigned> number{0};
@@ -55,8 +56,8 @@ bool is_temporary_name(const std::string& name) {
            name.compare(name.size() - suffix, suffix, kSuffix) == 0;
 }
 
-// Removes what killed processes left in `folder`. A living writer holds a lock on its file, which the system takes away when
-// the process ends, on whatever machine that shares the folder. Failures do no harm: another write tries again.
+// Removes temporary files of killed processes from `folder`. A running writer holds a lock on its file. The system releases the
+// lock when the process ends, also on another machine that shares the folder. Failures are ignored: the next write tries again.
 void remove_leftovers(const std::string& folder) {
     const std::unique_ptr<DIR, int (*)(DIR*)> all(opendir(folder.c_str()), closedir);
     if (!all) return;
@@ -69,7 +70,7 @@ void remove_leftovers(const std::string& folder) {
     }
 }
 
-// Once a folder: a sequence of pictures would otherwise list its growing folder for each of them.
+// Only once per folder: a sequence of pictures would otherwise list its growing folder for every picture.
 void remove_leftovers_once(const std::string& folder) {
     static std::mutex& mutex = *new std::mutex;
     static std::set<std::string>& done = *new std::set<std::string>;
@@ -80,21 +81,22 @@ void remove_leftovers_once(const std::string& folder) {
     remove_leftovers(folder);
 }
 
-// Opens a new file in `folder`; -1 with errno set if that fails. `name` stays empty where the file system can hold a file
-// without a name, which vanishes with its writer; elsewhere (NFS, FAT) it is the file's temporary name.
+// Opens a new file in `folder`; returns -1 and sets errno if that fails. Normally the file has no name, and `name` stays empty:
+// the file vanishes with its writer. Some file systems (NFS, FAT) do not support that; then `name` is the temporary name.
 int create_temporary(const std::string& folder, std::string& name) {
     name.clear();
     const int nameless = open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
     if (nameless >= 0) {
         if (access(descriptor_path(nameless).c_str(), F_OK) == 0) return nameless;
-        ::close(nameless);  // /proc is not mounted: the file could never get a name
+        ::close(nameless);  // /proc is not mounted, so the file could never get a name
     }
     for (;;) {
         name = next_temporary_name(folder);
         const int file = open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
         if (file < 0 && errno == EEXIST) continue;
         if (file < 0) return -1;
-        // Another process may have taken it for a leftover before the lock was set: then wait until it has removed the name.
+        // Another process may have taken the file for a leftover before it was locked. Then wait until that process has removed
+        // it.
         while (flock(file, LOCK_EX) != 0 && errno == EINTR) {
         }
         struct stat status {};
@@ -103,7 +105,7 @@ int create_temporary(const std::string& folder, std::string& name) {
     }
 }
 
-// What rename() would refuse, found before any work is done. Empty if nothing.
+// Finds what rename() would refuse before any work is done. Returns an empty text if nothing is wrong.
 std::string why_not_writable(const std::string& path) {
     if (path.empty()) return "the name is empty";
     struct stat status {};
@@ -159,21 +161,23 @@ void OutputFile::commit() {
     struct stat replaced {};
     const bool replaces = !stream_ && stat(path_.c_str(), &replaced) == 0;
     if (replaces) {
-        // The old file's rights stay. A file system without rights refuses them, which does no harm.
+        // The new file gets the permissions of the old one. A file system without permissions refuses, which does no harm.
         const bool kept = fchmod(file_, replaced.st_mode & 07777) == 0;
-        if (!kept && errno != EPERM && errno != ENOTSUP) fail("cannot be given the rights of the file that it replaces", errno);
+        if (!kept && errno != EPERM && errno != ENOTSUP)
+            fail("cannot be given the permissions of the file that it replaces", errno);
     }
-    // A link never replaces a file: then the file needs a name for the moment until rename().
+    // linkat() never replaces a file. To replace one, the file needs a temporary name until rename().
     if (!stream_ && temporary_.empty() && (replaces || !link_to(path_))) {
         if (!replaces && errno != EEXIST) fail("cannot be put in place", errno);
-        flock(file_, LOCK_EX | LOCK_NB);  // so that nobody takes it for a leftover
+        flock(file_, LOCK_EX | LOCK_NB);  // other processes would otherwise take it for a leftover
         std::string name;
         do {
             name = next_temporary_name(folder_of(path_));
         } while (!link_to(name) && errno == EEXIST);
         temporary_ = name;
     }
-    // Network file systems report a full disk when a descriptor is closed, which has to be known before the old file goes.
+    // Network file systems report a full disk when a descriptor is closed. Close a duplicate, so that this is known before the
+    // old file is replaced.
     const int other = dup(file_);
     if (other >= 0 && ::close(other) != 0 && errno != EINTR) fail("cannot be written", errno);
     if (!temporary_.empty() && rename(temporary_.c_str(), path_.c_str()) != 0) fail("cannot be put in place", errno);

@@ -1,15 +1,15 @@
-// output_file.hpp -- files that appear whole or not at all.
+// output_file.hpp -- writes files which appear complete or not at all.
 #pragma once
 #include <cstddef>
 #include <string>
 
 namespace clarity {
 
-// A file that nobody sees until commit() gives it its name, or replaces an older file of that name. What is not committed
-// leaves nothing behind, even if the process is killed; where the file system cannot hold files without a name (NFS, FAT), a
-// killed process leaves `.clarity-PID-N.tmp`, which the next process that writes into the folder removes. Every failure throws
-// Error(failed) that names the file and the reason. `path` may also be a device or a pipe (/dev/stdout), which is written
-// straight away. One thread at a time.
+// A new file. Nobody sees it until commit() gives it its name or replaces an older file of that name. A file that is not
+// committed leaves nothing behind, even if the process is killed. Exception: where the file system has no files without a name
+// (NFS, FAT), a killed process leaves `.clarity-PID-N.tmp`; the next process that writes into the folder removes it. `path` may
+// also be a device or a pipe (/dev/stdout), which is written directly. Every failure throws Error(failed), which names the file
+// and the reason. For one thread at a time.
 class OutputFile {
  public:
     explicit OutputFile(std::string path);
@@ -18,23 +18,25 @@ class OutputFile {
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(const void* data, size_t bytes);
+    // Finishes the file: afterwards it is complete and has its name.
     void commit();
 
  private:
     [[noreturn]] void fail(const char* what, int error) const;
-    bool link_to(const std::string& name) const;  // errno says why not
+    bool link_to(const std::string& name) const;  // on failure errno gives the reason
     void close();
 
     std::string path_;
-    std::string temporary_;  // name of the file until commit(); empty: it has none
+    std::string temporary_;  // name of the file until commit(); empty if it has none
     int file_ = -1;
-    bool stream_ = false;  // a device or a pipe
+    bool stream_ = false;  // the path is a device or a pipe
 };
 
+// Writes a file in one call, as OutputFile does.
 void write_text_file(const std::string& path, const std::string& text);
 
-// Throws Error(usage) if `path` cannot become a file: its folder is missing or not writable, it is a folder itself, its name is
-// too long. Leaves nothing behind, and an old file as it is.
+// Throws Error(usage) if `path` cannot be written as a file: its folder is missing or not writable, it is itself a folder, or
+// its name is too long. Creates nothing and does not change an existing file.
 void check_writable(const std::string& path);
 
 }  // namespace clarity

@@ -10,10 +10,10 @@
 namespace clarity {
 namespace {
 
-// The exception of the lowest index, so that a failing loop reports the same one on every run.
+// Keeps the exception of the lowest index, so that a failing loop reports the same exception on every run.
 class FirstException {
  public:
-    // False: a body before this one failed, its result can no longer matter.
+    // False if a body with a lower index failed: the result of this one does not matter any more.
     bool wanted(uint32_t i) const { return i < index_.load(std::memory_order_relaxed); }
     void keep(uint32_t i) {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -45,8 +45,8 @@ void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body) {
             first.keep(i);
         }
     };
-    // Isolated: a thread that waits for this loop takes no iteration of an outer one. A body may hold a lock or a
-    // thread-local scratch across its inner loop.
+    // Isolated: a thread that waits for this loop does not run iterations of an outer loop. A body may therefore hold a lock or
+    // use thread-local scratch memory across its inner loop.
     tbb::this_task_arena::isolate([&] { tbb::parallel_for(uint32_t{0}, count, guarded); });
     first.rethrow();
 }

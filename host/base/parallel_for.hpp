@@ -1,12 +1,13 @@
-// parallel_for.hpp -- a loop on all cores.
+// parallel_for.hpp -- a parallel loop.
 #pragma once
 #include <cstdint>
 #include <functional>
 
 namespace clarity {
 
-// body(i) for i in [0, count), on all cores; returns when all are done. Nests. An exception of a body is rethrown here; of
-// several, the one of the lowest i, however the threads ran (bodies beyond it may then have been left out).
+// Calls body(i) for every i in [0, count) on all cores and returns when all calls are done. Calls may be nested. If bodies
+// throw, the exception of the lowest i is rethrown here, independent of the order of the threads; bodies of higher indices may
+// then be skipped.
 void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body);
 
 }  // namespace clarity

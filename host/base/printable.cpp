@@ -7,7 +7,8 @@
 namespace clarity {
 namespace {
 
-// Bytes of the valid UTF-8 sequence at the start of `text`; 0 if there is none (RFC 3629: no overlong forms, no surrogates).
+// Length in bytes of the valid UTF-8 sequence at the start of `text`; 0 if it is invalid (RFC 3629: no overlong forms, no
+// surrogates).
 size_t utf8_length(std::string_view text) {
     const auto byte = [&](size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
     const auto continues = [&](size_t i) { return (byte(i) & 0xC0u) == 0x80u; };
@@ -25,7 +26,7 @@ size_t utf8_length(std::string_view text) {
     return 0;
 }
 
-// C0, DEL, and C1 (U+0080 to U+009F), which terminals obey too.
+// True for C0, DEL and C1 (U+0080 to U+009F): terminals obey C1 too.
 bool is_control(std::string_view text, size_t length) {
     const auto first = static_cast<unsigned char>(text[0]);
     if (length == 1) return first < 0x20 || first == 0x7F;

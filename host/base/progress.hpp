@@ -1,17 +1,17 @@
-// progress.hpp -- how long work tells where it stands and learns that it is no longer wanted.
+// progress.hpp -- reports the progress of long work, and cancels it.
 #pragma once
 #include <atomic>
 #include <string>
 
 namespace clarity {
 
-// Called from any thread. The default says nothing and goes on.
+// The work calls it from any thread; the default ignores what is reported.
 class Progress {
  public:
     virtual ~Progress() = default;
-    // A new stage: "importing car.fbx", "building bvh2".
+    // A new stage begins: "importing car.fbx", "building bvh2".
     virtual void stage(const std::string&) {}
-    // 0..1 within the stage; negative: unknown. Returns false once the work is cancelled.
+    // Progress within the stage, 0..1; negative: unknown. Returns false once the work is cancelled.
     virtual bool report(float) { return !cancelled(); }
     void cancel() { cancelled_ = true; }
     bool cancelled() const { return cancelled_; }

@@ -16,7 +16,7 @@ std::string cannot_be_read(int error) {
            (error == ENOENT || error == ENOTDIR ? "; check the name and the folder" : "");
 }
 
-// 16 MiB; below one MiB in bytes, since "0 MiB" would help nobody.
+// "16 MiB"; sizes below one MiB are given in bytes, because "0 MiB" would not help.
 std::string size_text(uint64_t bytes) {
     return bytes >> 20 ? std::to_string(bytes >> 20) + " MiB" : std::to_string(bytes) + " bytes";
 }
@@ -47,8 +47,8 @@ std::string try_read_file(const std::string& path, uint64_t limit_bytes, std::st
         "is larger than " + size_text(limit_bytes) + ", the most that is read of such a file; is it the right one?";
     const auto size = static_cast<uint64_t>(status.st_size);
     if (size > limit_bytes) return too_large;
-    // The file may grow meanwhile, and files of /proc say 0: its end is where read() says so. One byte more than its size tells
-    // the end in one call.
+    // Read until read() returns 0: the file may grow meanwhile, and files of /proc claim to be empty. With one byte more than
+    // the file's size one call usually finds the end.
     content.resize(static_cast<size_t>(std::min(size, limit_bytes)) + 1);
     size_t filled = 0;
     for (;;) {

@@ -1,4 +1,4 @@
-// scoped_fp_mode.hpp -- the rules of floating point as a program starts with them, for a while.
+// scoped_fp_mode.hpp -- sets the default floating-point mode for a scope.
 #pragma once
 #include <cfenv>
 #ifdef __SSE2__
@@ -7,15 +7,16 @@
 
 namespace clarity {
 
-// Embree, and whoever else wants speed, lets a thread flush denormals to zero for good. Builders keep indices in lanes of float
-// vectors, where a small index is a denormal: flushed, primitives would be lost from a tree without a word.
+// Restores the mode (rounding, exceptions, denormals) that a program starts with, until the end of the scope. Libraries such as
+// Embree let a thread flush denormals to zero and leave it so. Our builders keep indices in lanes of float vectors, where a
+// small index is a denormal: if it were flushed, the tree would silently lose primitives.
 class ScopedFpMode {
  public:
     ScopedFpMode(const ScopedFpMode&) = delete;
     ScopedFpMode& operator=(const ScopedFpMode&) = delete;
 #ifdef __SSE2__
-    // One register holds the rules, and as a rule they are the usual ones; fesetenv() would take 50 ns, in every body of a
-    // loop.
+    // One register (MXCSR) holds the mode, and it is nearly always the default one already. fesetenv() would take 50 ns in
+    // every body of a loop.
     ScopedFpMode() : before_(_mm_getcsr()) {
         if ((before_ & kRules) != kDefault) _mm_setcsr(kDefault);
     }
@@ -24,7 +25,7 @@ class ScopedFpMode {
     }
 
  private:
-    static constexpr unsigned kRules = 0xffc0, kDefault = 0x1f80;  // without what has happened so far; all exceptions masked
+    static constexpr unsigned kRules = 0xffc0, kDefault = 0x1f80;  // mode bits (no exception flags); all exceptions masked
     const unsigned before_;
 #else
     ScopedFpMode() {

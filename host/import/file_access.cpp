@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
     throw Error(Exit::import_failed, path + ": " + why);
 }
 
-// Folders of `path` and their order decide; "" if it cannot be resolved.
+// Canonical path of `path`; empty if it cannot be resolved.
 std::string canonical_or_empty(const fs::path& path) {
     std::error_code error;
     const fs::path real = fs::canonical(path, error);

@@ -1,16 +1,16 @@
-// file_access.hpp -- which files an import may read, and where a path in a model leads.
+// file_access.hpp -- decides which files an import may read, and resolves the paths that a model contains.
 #pragma once
 #include <string>
 #include <vector>
 
 namespace clarity::import {
 
-// Throws Error(import_failed) "FILE: why" for what no importer could read: missing, unreadable, a folder, a device, empty,
-// gzipped.
+// Throws Error(import_failed) "FILE: why" if no importer could read the file: it is missing, unreadable, a folder, a device,
+// empty or compressed with gzip.
 void check_model_file(const std::string& path);
 
-// Models name other files: textures, included scenes. Only the folders of the files that the user named, and the search paths,
-// are open to them; symbolic links are followed first and judged by where they lead.
+// A model may name other files: textures and included scenes. It may only read from the folders of the files that the user
+// named, and from the search paths. Symbolic links are resolved first; the target decides.
 class FileAccess {
  public:
     FileAccess(const std::vector<std::string>& files, const std::vector<std::string>& search_paths);
@@ -22,10 +22,11 @@ class FileAccess {
         std::string path;  // canonical; empty if there is none
         std::string why;   // "no such file", "lies outside of ..."
     };
-    // `path` as file `from` has it: relative to the folder of `from`, then to the search paths. Backslashes count as slashes.
+    // Resolves `path`, which stands in file `from`: first relative to the folder of `from`, then to the search paths.
+    // Backslashes count as slashes.
     Found find(const std::string& from, const std::string& path) const;
-    // As find; failing that, the bare file name beside `from`, in `textures` there, and in the search paths, since modelling
-    // programs write paths of the machine that they ran on.
+    // Same as find(). If that fails, looks for the bare file name beside `from`, in its folder `textures`, and in the search
+    // paths, because modelling programs write paths of the machine on which they ran.
     Found find_texture(const std::string& from, const std::string& path) const;
 
  private:

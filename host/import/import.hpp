@@ -1,4 +1,4 @@
-// import.hpp -- from files to a Scene, through importer plugins in a worker process.
+// import.hpp -- reads files into a Scene. Importer plugins run in a worker process.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,20 +11,21 @@
 namespace clarity::import {
 
 struct ImportOptions {
-    bool in_process = false;                // for debugging a plugin; a crash is then ours
-    double time_limit_s = 600;              // of CPU time and of wall-clock time without progress
-    uint64_t memory_limit_bytes = 0;        // address space of the worker; 0: by the file's size
-    std::vector<std::string> search_paths;  // folders besides the file's own that it may read from
+    bool in_process = false;                // for debugging a plugin; a crash then ends this program
+    double time_limit_s = 600;              // seconds of CPU time, and of wall-clock time without progress
+    uint64_t memory_limit_bytes = 0;        // of the worker's address space; 0: chosen by the file's size
+    std::vector<std::string> search_paths;  // folders that it may read from, besides the folder of each file
     bool log_warnings = true;               // false: the caller shows Scene::warnings itself
-    std::string worker;                     // program to run as worker; empty: this one (or CLARITY_WORKER)
+    std::string worker;                     // program that runs as the worker; empty: CLARITY_WORKER, or this program
 };
 
-// Several files become one scene. Throws Error(import_failed) "FILE: why", or Cancelled. The scene is validated.
-// Its warnings are in Scene::warnings, and in the log: callers do not log them again.
+// Reads several files into one scene. The result is validated. Warnings are in Scene::warnings and also in the log (see
+// log_warnings), so callers do not log them again. Throws Error(import_failed) "FILE: why", or Cancelled.
 Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                    Progress& progress);
 
-// Entry of the worker process (`clarity import-worker ...`, not for people); never returns to the caller's normal path.
+// Main function of the worker process (`clarity import-worker ...`, which people do not call). Returns only if its arguments
+// are wrong.
 int import_worker_main(int argc, char** argv);
 
 }  // namespace clarity::import

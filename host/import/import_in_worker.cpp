@@ -23,11 +23,11 @@ namespace clarity::import {
 namespace {
 
 constexpr double kPollSeconds = 0.02;
-constexpr double kGreetingSeconds = 5;  // a program of ours greets within milliseconds, also on a loaded machine
+constexpr double kGreetingSeconds = 5;  // our worker sends its greeting within milliseconds, also on a loaded machine
 constexpr double kCancelGraceSeconds = 0.05;
 constexpr size_t kMaxOutputLines = 200;
 
-// What a worker may use, by the sizes of the files that it has come to read, those that files load included.
+// Limits of a worker. They grow with the sizes of all files that it reads, included files too.
 class Limits {
  public:
     explicit Limits(const ImportOptions& options) : options_(options) {}
@@ -36,7 +36,8 @@ class Limits {
         const uint64_t size = std::filesystem::file_size(path, error);
         if (!error) file_bytes_ += std::min(size, uint64_t(1) << 50);
     }
-    // Small files are read in milliseconds. A damaged one that sends a parser round in circles must be over within ten seconds.
+    // Seconds without progress. Small files are read in milliseconds; a damaged file that puts a parser into an endless loop
+    // must be stopped within ten seconds.
     double idle_s() const { return std::min(7 + 2 * static_cast<double>(file_bytes_) / (1 << 20), options_.time_limit_s); }
     uint64_t cpu_s() const { return static_cast<uint64_t>(std::ceil(std::clamp(options_.time_limit_s, 1.0, 1e9))); }
     uint64_t memory_bytes() const {
@@ -68,13 +69,13 @@ std::string in_words(double seconds) {
     return std::to_string(tenths / 10) + (tenths % 10 != 0 ? "." + std::to_string(tenths % 10) : "") + " s";
 }
 
-// One import: follows the worker until it is done or dead.
+// Supervises one import: follows the worker until it is done or dead.
 class Supervisor {
  public:
     Supervisor(WorkerProcess& worker, Limits limits, std::string first_file, std::string program, Progress& progress)
         : worker_(worker), limits_(limits), program_(std::move(program)), progress_(progress), file_(std::move(first_file)) {}
 
-    // Returns once the result lies in shared memory. Throws Error(import_failed) or Cancelled.
+    // Returns once the result is in shared memory. Throws Error(import_failed) or Cancelled.
     void follow() {
         while (!done_) {
             std::array<pollfd, 2> ready = {pollfd{worker_.channel(), POLLIN, 0}, pollfd{worker_.output(), POLLIN, 0}};
@@ -92,10 +93,10 @@ class Supervisor {
     [[noreturn]] void fail(const std::string& why) const { throw Error(Exit::import_failed, file_ + ": " + why); }
     std::string importer() const { return importer_.empty() ? "the importer" : "the importer " + importer_; }
 
-    // False once the worker has closed its end, which happens when it dies.
+    // Returns false once the worker has closed its end, which happens when it dies.
     bool read_messages() {
         Message message;
-        // A flood of messages must not keep us from looking at the clock.
+        // Read a limited number, so that a flood of messages cannot keep us from checking the time.
         for (int i = 0; i < 1000 && !done_; ++i) {
             switch (receive_message(worker_.channel(), message)) {
                 case Received::nothing:
@@ -136,7 +137,7 @@ class Supervisor {
                 idle_s_ = 0;
                 break;
             case MessageKind::progress:
-                // Reports that do not move are no progress.
+                // A report counts as progress only if the fraction has grown.
                 if (std::isfinite(message.fraction) && message.fraction > fraction_ + 0.001f) {
                     fraction_ = message.fraction;
                     idle_s_ = 0;
@@ -160,7 +161,7 @@ class Supervisor {
         }
     }
 
-    // What libraries print is worth a line only to those who look for it.
+    // Logs what libraries print, at level debug.
     void forward_output() {
         std::array<char, 4096> buffer;
         for (ssize_t bytes = 0; output_open_ && (bytes = read(worker_.output(), buffer.data(), buffer.size())) != -1;) {
@@ -171,7 +172,7 @@ class Supervisor {
                 line_.erase(0, end == std::string::npos ? text.size() : end + 1);
                 if (++output_lines_ <= kMaxOutputLines) log(LogLevel::debug, importer() + " printed: " + text);
             }
-            if (output_lines_ > kMaxOutputLines) break;  // one read a round, so that a flood does not hold us
+            if (output_lines_ > kMaxOutputLines) break;  // read once per round only, so that a flood cannot hold us up
         }
     }
 
@@ -189,7 +190,7 @@ class Supervisor {
     }
 
     void watch() {
-        // Time in which this process itself did not run (suspended, stopped in a terminal) is not the worker's.
+        // Time in which this process itself did not run (suspended, stopped in a terminal) does not count against the worker.
         const auto now = std::chrono::steady_clock::now();
         const double passed_s = std::min(std::chrono::duration<double>(now - last_look_).count(), 0.5);
         last_look_ = now;
@@ -201,9 +202,9 @@ class Supervisor {
         }
         if (idle_s_ > limits_.idle_s()) {
             fail(importer() + " made no progress for " + in_words(limits_.idle_s()) +
-                 " and was stopped; the file is damaged or too much for the library that reads it");
+                 " and was stopped; the file is damaged, or too complex for the library that reads it");
         }
-        // The address space is limited in the worker; this is the net under that.
+        // The worker's address space is limited already. Its resident memory is checked as well, as a second safeguard.
         memory_look_s_ += passed_s;
         if (memory_look_s_ < 0.1) return;
         memory_look_s_ = 0;

@@ -1,10 +1,10 @@
-// import_in_worker.hpp -- runs importers in a process of their own, which may crash, hang or run wild there.
+// import_in_worker.hpp -- runs importers in a process of their own, so that a crash or a hang does not harm this one.
 #pragma once
 #include "import/import.hpp"
 
 namespace clarity::import {
 
-// As import_scene, whose options it obeys; the scene is as the worker left it, not yet validated.
+// Same as import_scene(), with the same options. The scene is returned as the worker sent it and is not validated.
 Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                        Progress& progress);
 

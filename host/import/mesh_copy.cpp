@@ -19,7 +19,7 @@ std::string check_description(const rt_mesh& m) {
         if (m.uvs && bad_stride(m.uv_stride, 8)) return "uv_stride " + std::to_string(m.uv_stride);
     }
     if (m.index_count > 0 && !m.indices) return "it has faces but no indices";
-    // Every corner and every face takes 4 bytes of the plugin's memory, so more than this is a count gone wrong.
+    // Every corner and every face takes 4 bytes of the plugin's memory, so a larger number is a wrong count.
     if (m.index_count > uint64_t(1) << 40 || m.face_count > uint64_t(1) << 40) {
         return std::to_string(std::max(m.index_count, m.face_count)) + " indices or faces are absurd";
     }
@@ -38,7 +38,7 @@ std::string check_description(const rt_mesh& m) {
     return {};
 }
 
-// Copies `width` floats per element; false if one of them is not usable.
+// Copies `width` floats per element. Returns false if one of them is not usable.
 bool copy_strided(const float* from, rt_u32 stride, rt_u32 count, rt_u32 width, float* to) {
     if (stride == 4 * width) {
         std::memcpy(to, from, size_t(count) * stride);
@@ -52,7 +52,7 @@ bool copy_strided(const float* from, rt_u32 stride, rt_u32 count, rt_u32 width, 
     return good;
 }
 
-// Normals and uvs exist for all vertices of a scene or for none: those of earlier meshes become zeros.
+// A scene has normals and uvs either for all vertices or for none: earlier meshes without them get zeros.
 void copy_attribute(const float* from, rt_u32 stride, rt_u32 first, rt_u32 count, rt_u32 width, std::vector<float>& to) {
     if (!from && to.empty()) return;
     to.resize(size_t(width) * (size_t(first) + count), 0.f);
@@ -64,7 +64,7 @@ void copy_attribute(const float* from, rt_u32 stride, rt_u32 first, rt_u32 count
     }
 }
 
-// Material ids of a mesh's faces, as scene materials.
+// Maps the material ids of a mesh's faces to scene materials.
 class FaceMaterials {
  public:
     FaceMaterials(const rt_mesh& mesh, const std::vector<rt_u32>& known) : mesh_(mesh), known_(known) {}
@@ -84,7 +84,8 @@ class FaceMaterials {
  private:
     bool valid(rt_u32 id) const { return id == RT_NONE || id < known_.size(); }
     std::string unknown(rt_u32 id) const {
-        return "material id " + std::to_string(id) + " of " + std::to_string(known_.size()) + " given out";
+        return "material id " + std::to_string(id) + " of " + std::to_string(known_.size()) +
+               " is unknown: pass an id that the sink returned";
     }
     const rt_mesh& mesh_;
     const std::vector<rt_u32>& known_;
@@ -92,7 +93,8 @@ class FaceMaterials {
 
 constexpr const char* kTooManyTriangles = "more than 268435455 triangles in all, which is what a scene can hold";
 
-// Triangles only and nothing wrong with them: the common case of large scans, at the speed of memory.
+// Fast path for the common case of large scans: all faces are sound triangles. It copies at the speed of memory. Returns false
+// if the mesh needs the general path.
 bool copy_all_triangles(const rt_mesh& m, rt_u32 first_vertex, const FaceMaterials& materials, Scene& scene) {
     if (m.face_count == 0) return true;
     rt_u32 highest = 0;
@@ -117,7 +119,7 @@ std::string copy_faces(const rt_mesh& m, rt_u32 first_vertex, const std::vector<
         const rt_u32 size = m.face_sizes ? m.face_sizes[face] : 3;
         const rt_u32* begin = corners;
         corners += size;
-        if (size < 3) continue;  // points and lines
+        if (size < 3) continue;  // a point or a line
         ++faces.all;
         if (std::any_of(begin, corners, [&](rt_u32 v) { return v >= m.vertex_count; })) {
             ++faces.out_of_range;

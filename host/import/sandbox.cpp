@@ -22,7 +22,7 @@
 namespace clarity::import {
 namespace {
 
-// Sanitizers reserve terabytes of address space; there the parent's watch over resident memory must do.
+// Sanitizers reserve terabytes of address space. In such builds only the parent's check of resident memory limits the worker.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitAddressSpace = false;
 #else
@@ -52,7 +52,7 @@ void limit(int resource, uint64_t soft, uint64_t hard, const char* what, std::ve
 std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, const std::vector<std::string>& files,
                                        const WorkerLimits& limits) {
     std::vector<std::string> notes;
-    // Threads: small stacks and few malloc arenas, or a machine of many cores would spend the address space on them.
+    // Small thread stacks and few malloc arenas: on a machine with many cores they would otherwise use up the address space.
     pthread_attr_t attributes;
     pthread_attr_init(&attributes);
     pthread_attr_setstacksize(&attributes, 2u << 20);
@@ -63,7 +63,7 @@ std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, 
     limit(RLIMIT_STACK, limits.stack_bytes, limits.stack_bytes, "the stack", notes);
     limit(RLIMIT_CORE, 0, 0, "the core file", notes);
     limit(RLIMIT_NOFILE, 64, 64, "the number of open files", notes);
-    // One second from the signal that says why to the one that cannot be caught.
+    // At the soft limit the process gets SIGXCPU, which tells the parent the reason; SIGKILL follows one second later.
     if (limits.cpu_s > 0) limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1, "processor time", notes);
     signal(SIGXFSZ, SIG_IGN);
     const uint64_t most = std::max(limits.memory_bytes, limits.most_memory_bytes);
@@ -88,7 +88,7 @@ void allow_writing_result() {
     rlimit now{};
     getrlimit(RLIMIT_FSIZE, &now);
     now.rlim_cur = now.rlim_max;
-    // Not through the C library, which may use prlimit64, and the sandbox lets no process set limits that way.
+    // A direct system call: the C library may use prlimit64, and the sandbox forbids setting limits with it.
     syscall(SYS_setrlimit, RLIMIT_FSIZE, &now);
 }
 
@@ -97,7 +97,7 @@ std::string detail::restrict_files(const std::vector<std::string>& folders, cons
     const long version = syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
     if (version < 1) return std::string("Landlock is not available: ") + std::strerror(errno);
     landlock_ruleset_attr ruleset{};
-    // All thirteen rights of the first version, by bit; the later ones where this kernel knows them: 2 moves and links between
+    // All thirteen rights of Landlock's first version, one bit each. Later versions add one each: 2 moving and linking between
     // folders, 3 truncation.
     ruleset.handled_access_fs = (1u << 13) - 1;
     if (version >= 2) ruleset.handled_access_fs |= 1u << 13;
@@ -108,7 +108,7 @@ std::string detail::restrict_files(const std::vector<std::string>& folders, cons
         landlock_path_beneath_attr rule{};
         rule.allowed_access = rights;
         rule.parent_fd = open(path.c_str(), O_PATH | O_CLOEXEC);
-        if (rule.parent_fd < 0) return;  // then it is not readable, which is on the safe side
+        if (rule.parent_fd < 0) return;  // then the path is not readable, which is safe
         syscall(SYS_landlock_add_rule, fd, LANDLOCK_RULE_PATH_BENEATH, &rule, 0);
         close(rule.parent_fd);
     };

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr size_t kMaxDepth = 16;
-// A few files that load each other twice could place more than any machine holds.
+// Bounds the number of placed objects: a few files that each load another one twice could place more than any machine can hold.
 constexpr uint64_t kMaxPlaced = 1u << 22;
 constexpr size_t kMaxWarnings = 100;
 
@@ -41,7 +41,7 @@ std::string known_extensions(const PluginRegistry& plugins) {
     return list;
 }
 
-// Without the prefix "PATH: ", which a plugin may have written itself to add line and column.
+// The message without the prefix "PATH: ". A plugin may have written it itself, to add line and column.
 std::string without_path(const std::string& why, const std::string& path) {
     return why.compare(0, path.size() + 2, path + ": ") == 0 ? why.substr(path.size() + 2) : why;
 }
@@ -92,7 +92,7 @@ void SceneBuilder::set_info(const rt_scene_info& info) {
     scene_.unit_scale = std::isfinite(info.unit_scale) && info.unit_scale > 0 ? info.unit_scale : 0;
 }
 
-// Runs the importer of a file, once. Nested calls come from the sink's `load`.
+// Returns the content of a file and runs its importer on first use. The sink's `load` calls this recursively.
 const FileContent& SceneBuilder::content_of(const std::string& path, const std::string& canonical) {
     const auto known = files_.find(canonical);
     if (known != files_.end()) return *known->second;
@@ -119,7 +119,7 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     } catch (const Error& e) {
         if (sink.cancelled()) throw Cancelled();
         const std::string why = without_path(without_path(e.what(), path), path);
-        // "main.scene:3:9: ..." names the file already.
+        // "main.scene:3:9: ..." contains the file's name already.
         if (why.compare(0, path.size() + 1, path + ":") == 0) throw Error(Exit::import_failed, why);
         fail(path, why);
     }
@@ -142,7 +142,8 @@ std::string SceneBuilder::include(const std::string& from, const std::string& pa
         return what + "files load each other in a circle: " + cycle + file_name(found.path);
     }
     if (open_.size() >= kMaxDepth) return what + "files load each other more than " + std::to_string(kMaxDepth) + " deep";
-    // As people wrote it, which is also where their relative paths start from, unless a search path was needed.
+    // Show the path as the author wrote it: the file's own relative paths start there. If a search path was needed, show the
+    // path that was found.
     const fs::path beside = fs::path(from).parent_path() / path;
     std::error_code error;
     const std::string shown = fs::equivalent(beside, found.path, error) ? beside.string() : found.path;
@@ -184,7 +185,7 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string&
 
 namespace {
 
-// The factor by which lengths grow, in the mean of the three axes.
+// The geometric mean of the scale factors along the three axes. uniform: they are equal.
 float mean_scale(const Affine& m, bool& uniform) {
     double lengths[3];
     for (int j = 0; j < 3; ++j) {
@@ -247,7 +248,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
     Affine inverse;
     const bool invertible = invert(m, inverse);
     for (const Plane& own : content.planes) {
-        // dot(n, x) = d with x = M^-1 y: the normal goes by the inverse transpose.
+        // dot(n, x) = d with x = M^-1 y, so the normal is transformed by the inverse transpose.
         Plane plane = own;
         plane.material = material_of(own.material);
         float offset = own.offset;
@@ -303,7 +304,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
     }
 }
 
-// An instance needs the inverse of its transform, which one that flattens it has not: such a mesh is copied, flattened.
+// Instances need an invertible transform. If a transform flattens its mesh, the mesh is copied and transformed here.
 void SceneBuilder::bake_flattened_instances() {
     Affine inverse;
     for (Instance& instance : world_.instances) {
@@ -324,7 +325,7 @@ void SceneBuilder::bake_flattened_instances() {
             const std::array<float, 3> p = transform_point(instance.world_from_object, &scene_.positions[3 * v]);
             scene_.positions.insert(scene_.positions.end(), p.begin(), p.end());
         }
-        // A flattened mesh has the normals of its triangles.
+        // The copy has no vertex normals; it is shaded with the normals of its triangles.
         if (!scene_.normals.empty()) scene_.normals.resize(scene_.positions.size(), 0.f);
         if (!scene_.uvs.empty()) repeat(scene_.uvs, 2 * size_t(source.first_vertex), 2 * size_t(source.vertex_count));
         repeat(scene_.triangle_materials, source.first_triangle, source.triangle_count);

@@ -1,4 +1,4 @@
-// scene_builder.hpp -- from files to one Scene, in this process: finds importers, runs them, places what they bring.
+// scene_builder.hpp -- reads files into one Scene, in this process: finds the importers, runs them and places their objects.
 #pragma once
 #include <map>
 #include <memory>
@@ -13,8 +13,8 @@
 
 namespace clarity::import {
 
-// What one file places in its own space. Meshes, materials and textures are in the Scene already, once, however often the file
-// is placed.
+// The objects that one file places in its own space. Meshes, materials and textures are in the Scene already, and only once,
+// however often the file is placed.
 struct FileContent {
     struct PolygonCorners {
         std::vector<float> corners;  // 3 each
@@ -24,18 +24,19 @@ struct FileContent {
     std::vector<Sphere> spheres;
     std::vector<Plane> planes;
     std::vector<PolygonCorners> polygons;
-    std::vector<Light> lights, included_lights;     // included: of files that this one loads, so that
-    std::vector<Camera> cameras, included_cameras;  // the first camera is the file's own
+    // included: those of files that this file loads. They are kept apart so that the first camera is the file's own.
+    std::vector<Light> lights, included_lights;
+    std::vector<Camera> cameras, included_cameras;
 };
 
-// How a file is placed into another one.
+// How a file is placed in another file.
 struct Placement {
-    std::string name;  // of the instance; or the first part of the names, if the file brings several
+    std::string name;  // name of the instance; if the file has several, the first part of their names
     Affine world_from_object = kIdentity;
-    rt_u32 material = RT_NONE;  // a scene material, for all of it
+    rt_u32 material = RT_NONE;  // scene material for all of it; RT_NONE: the file's own materials
 };
 
-// Told before an importer runs: whoever watches from outside knows what to blame.
+// Called before an importer runs, so that the parent process knows which importer and file failed.
 class ImportObserver {
  public:
     virtual ~ImportObserver() = default;
@@ -47,9 +48,9 @@ class SceneBuilder {
     SceneBuilder(const PluginRegistry& plugins, const FileAccess& access, Progress& progress,
                  ImportObserver* observer = nullptr);
 
-    // Adds a file that the user named. Throws Error(import_failed) "FILE: why".
+    // Adds a file that the user named, with everything that it loads. Throws Error(import_failed) "FILE: why".
     void add_root(const std::string& path);
-    // The finished scene; sound unless there is a bug here, which callers still check with validate().
+    // Returns the finished scene. It is sound, but callers still check it with validate(), as a safeguard against bugs here.
     Scene take();
 
     // ---- for SceneSink
@@ -57,11 +58,12 @@ class SceneBuilder {
     Triangulator& triangulator() { return triangulator_; }
     const FileAccess& access() const { return access_; }
     void warn(const std::string& file, const std::string& text);
-    // Background, axes and units are those of the first file that the user named and that says them.
+    // Background, axes and units come from the first file that states them.
     void set_info(const rt_scene_info& info);
-    // Loads another file into `into`; empty on success, else why not. Throws Cancelled.
+    // Loads another file and places it into `into`. Returns an empty text on success, otherwise why it failed. Throws
+    // Cancelled.
     std::string include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into);
-    // A scene-wide texture of a path, RT_NONE (after a warning) if there is none.
+    // Index of the scene's texture for a path; RT_NONE (after a warning) if it cannot be read.
     rt_u32 texture_of_file(const std::string& from, const std::string& path);
 
  private:
@@ -78,8 +80,8 @@ class SceneBuilder {
     Triangulator triangulator_;
     std::map<std::string, std::unique_ptr<FileContent>> files_;  // by canonical path
     std::map<std::string, rt_u32> textures_;                     // by canonical path
-    std::vector<std::string> open_;                              // canonical paths being imported, outermost first
-    uint64_t placed_ = 0;                                        // objects of included files, each time that they are placed
+    std::vector<std::string> open_;  // canonical paths of the files being imported now, outermost first
+    uint64_t placed_ = 0;            // number of objects from included files, counted each time they are placed
     size_t warnings_left_out_ = 0;
     bool knows_axes_ = false, knows_background_ = false, knows_ambient_ = false;
 };

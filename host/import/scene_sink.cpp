@@ -23,7 +23,7 @@ double squared_length(const float* v) {
     return double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
 }
 
-// Names are for people: no line breaks or escape sequences of hostile files, and not endless.
+// Names are shown to people: control characters of hostile files are removed, and the length is limited.
 std::string clean_name(const char* name) {
     std::string text;
     for (const char* c = name ? name : ""; *c && text.size() < 256; ++c) {
@@ -36,7 +36,7 @@ std::string too_small(const char* what) {
     return std::string("struct_bytes of ") + what + " is too small: rebuild the plugin against this SDK";
 }
 
-// Clamps what a shader could not live with; false if something was not a number.
+// Clamps values to what the shading can handle. Returns false if a value was not a number; it is replaced by the default.
 bool make_sound(rt_material& m) {
     const rt_material usual = default_material();
     const bool good = usable(m.color) && usable(m.emission) && usable(m.specular) && is_usable(m.reflect) &&
@@ -73,14 +73,14 @@ bool make_sound(Camera& camera) {
     const float across[3] = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
                              forward[0] * up[1] - forward[1] * up[0]};
     if (usable(up, 3) && squared_length(across) > 1e-10 * distance2 * squared_length(up)) return true;
-    int axis = 1;  // any axis that the camera does not look along
+    int axis = 1;  // any axis which is not along the view direction
     if (std::abs(forward[1]) > 0.9 * std::sqrt(distance2)) axis = 2;
     camera.up = {};
     camera.up[axis] = 1;
     return true;
 }
 
-// Exceptions end here: the plugin that calls may be C.
+// Catches all exceptions, because the plugin that calls may be written in C.
 template <class Result, class Body>
 Result SceneSink::guarded(void* ctx, Result failed, const Body& body) {
     auto* self = static_cast<SceneSink*>(ctx);
@@ -143,7 +143,7 @@ rt_u32 SceneSink::fail(const std::string& why) {
 bool SceneSink::scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material) {
     if (id != RT_NONE && id >= materials_.size()) {
         fail(std::string(of) + ": material id " + std::to_string(id) + " of " + std::to_string(materials_.size()) +
-             " given out");
+             " is unknown: pass an id that the sink returned");
         return false;
     }
     material = id == RT_NONE ? if_none : materials_[id];
@@ -179,12 +179,13 @@ rt_u32 SceneSink::material(const rt_material_desc& d) {
     if (d.values.texture != RT_NONE) {
         if (d.values.texture >= textures_.size()) {
             return fail("material '" + material.name + "': texture id " + std::to_string(d.values.texture) + " of " +
-                        std::to_string(textures_.size()) + " given out");
+                        std::to_string(textures_.size()) + " is unknown: pass an id that the sink returned");
         }
         material.values.texture = textures_[d.values.texture];
     }
     if (!make_sound(material.values)) {
-        builder_.warn(path_, "material '" + material.name + "' has values that are not finite numbers; usual ones are taken");
+        builder_.warn(path_,
+                      "material '" + material.name + "' has values that are not finite numbers; they are replaced by defaults");
     }
     Scene& scene = builder_.scene();
     materials_.push_back(static_cast<rt_u32>(scene.materials.size()));
@@ -207,7 +208,7 @@ rt_u32 SceneSink::instance(const rt_instance_desc& d) {
     instance.name = clean_name(d.name);
     if (d.mesh >= meshes_.size()) {
         return fail("instance '" + instance.name + "': mesh id " + std::to_string(d.mesh) + " of " +
-                    std::to_string(meshes_.size()) + " given out");
+                    std::to_string(meshes_.size()) + " is unknown: pass an id that the sink returned");
     }
     if (!scene_material(d.material, "instance", RT_NONE, instance.material)) return kFailed;
     instance.mesh = meshes_[d.mesh];
@@ -242,7 +243,7 @@ rt_u32 SceneSink::plane(const float* normal, float offset, rt_u32 material) {
     }
     if (!scene_material(material, "plane", 0, plane.material)) return kFailed;
     for (int i = 0; i < 3; ++i) plane.normal[i] = static_cast<float>(normal[i] / length);
-    // The plane is dot(normal, x) = offset as given: dividing both sides keeps the points.
+    // The plane dot(normal, x) = offset keeps its points if both sides are divided by the length.
     plane.offset = static_cast<float>(offset / length);
     content_.planes.push_back(plane);
     return static_cast<rt_u32>(content_.planes.size() - 1);

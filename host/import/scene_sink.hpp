@@ -1,4 +1,4 @@
-// scene_sink.hpp -- the rt_scene_sink of one file: checks what an importer hands over and copies it.
+// scene_sink.hpp -- the rt_scene_sink of one file: checks and copies what an importer delivers.
 #pragma once
 #include <exception>
 #include <string>
@@ -11,12 +11,12 @@
 
 namespace clarity::import {
 
-// Replaces an unusable up vector or field of view; false if the camera looks nowhere.
+// Replaces an unusable up vector or field of view. Returns false if the camera has no view direction.
 bool make_sound(Camera& camera);
 
-// Lives for one call of rt_importer.load. Ids given to the plugin count within this file. A bug of the plugin (an unknown id,
-// no positions) fails the import; what a damaged file can contain (bad indices, numbers that are not finite) is left out with a
-// warning, and fails it if nothing remains.
+// Exists for one call of rt_importer.load. The ids that it gives to the plugin count within this file. A bug of the plugin (an
+// unknown id, no positions) fails the import. Damage in the file itself (bad indices, numbers that are not finite) is left out
+// with a warning; the import fails only if nothing remains.
 class SceneSink {
  public:
     SceneSink(SceneBuilder& builder, HostServices& services, std::string path, FileContent& content);
@@ -25,7 +25,8 @@ class SceneSink {
 
     const rt_scene_sink* sink() const { return &sink_; }
     bool cancelled() const { return cancelled_; }
-    // After the plugin's success: warns of what was left out; why the import fails all the same, or empty.
+    // Call after the plugin has succeeded. Warns about everything that was left out. Returns an empty text, or why the import
+    // fails nevertheless.
     std::string finish();
 
  private:
@@ -42,7 +43,7 @@ class SceneSink {
     int32_t load(const rt_load& load);
 
     rt_u32 fail(const std::string& why);
-    // The scene's material of an id; records an error and returns false if the id was never given out.
+    // Finds the scene material of an id. If the plugin never received this id, records an error and returns false.
     bool scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material);
     template <class Result, class Body>
     static Result guarded(void* ctx, Result failed, const Body& body);

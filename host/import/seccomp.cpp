@@ -1,5 +1,5 @@
-// seccomp.cpp -- the system calls that a file parser needs; all others fail with EPERM. Calls newer than this list fail with
-// ENOSYS, after which the C library falls back on older ones.
+// seccomp.cpp -- allows the system calls that a file parser needs; all others fail with EPERM. Calls newer than this list fail
+// with ENOSYS, after which the C library uses older ones instead.
 #include <fcntl.h>
 #include <sched.h>
 #include <seccomp.h>
@@ -19,16 +19,16 @@
 namespace clarity::import {
 namespace {
 
-// libseccomp skips those that the processor's architecture does not have.
+// libseccomp skips the calls that this architecture does not have.
 const int kAllowed[] = {
-    // reading files that are open; the rest of open() is below
+    // reading; open() itself is restricted below
     SCMP_SYS(read), SCMP_SYS(readv), SCMP_SYS(pread64), SCMP_SYS(preadv), SCMP_SYS(lseek), SCMP_SYS(close), SCMP_SYS(fstat),
     SCMP_SYS(newfstatat), SCMP_SYS(statx), SCMP_SYS(faccessat), SCMP_SYS(readlinkat), SCMP_SYS(getdents64), SCMP_SYS(getcwd),
     SCMP_SYS(dup), SCMP_SYS(fadvise64), SCMP_SYS(fcntl), SCMP_SYS(statfs), SCMP_SYS(fstatfs), SCMP_SYS(ppoll), SCMP_SYS(stat),
     SCMP_SYS(lstat), SCMP_SYS(access), SCMP_SYS(readlink), SCMP_SYS(getdents), SCMP_SYS(poll), SCMP_SYS(time),
-    // the result and the messages: only what is open may be written to, and nothing can be opened for it
+    // writing the result and the messages: only files that are open already, since none can be opened for writing
     SCMP_SYS(write), SCMP_SYS(writev),
-    // memory (executable mappings are below)
+    // memory (executable mappings are restricted below)
     SCMP_SYS(brk), SCMP_SYS(munmap), SCMP_SYS(mremap), SCMP_SYS(madvise), SCMP_SYS(msync), SCMP_SYS(mincore), SCMP_SYS(mlock),
     SCMP_SYS(munlock), SCMP_SYS(get_mempolicy), SCMP_SYS(membarrier),
     // threads and time
@@ -36,20 +36,21 @@ const int kAllowed[] = {
     SCMP_SYS(sched_getaffinity), SCMP_SYS(sched_getparam), SCMP_SYS(sched_getscheduler), SCMP_SYS(getcpu), SCMP_SYS(gettid),
     SCMP_SYS(getpid), SCMP_SYS(getppid), SCMP_SYS(nanosleep), SCMP_SYS(clock_nanosleep), SCMP_SYS(clock_gettime),
     SCMP_SYS(clock_getres), SCMP_SYS(gettimeofday), SCMP_SYS(times), SCMP_SYS(getrusage), SCMP_SYS(arch_prctl),
-    // signals to oneself, and the end
+    // the process's own signals, and its end
     SCMP_SYS(rt_sigaction), SCMP_SYS(rt_sigprocmask), SCMP_SYS(rt_sigreturn), SCMP_SYS(rt_sigpending), SCMP_SYS(sigaltstack),
     SCMP_SYS(restart_syscall), SCMP_SYS(exit), SCMP_SYS(exit_group),
-    // harmless, and the way in which the undefined-behaviour sanitizer finds out what memory may be read
+    // harmless; the undefined-behaviour sanitizer uses it to find out which memory is readable
     SCMP_SYS(pipe2), SCMP_SYS(pipe),
-    // questions
+    // queries
     SCMP_SYS(uname), SCMP_SYS(sysinfo), SCMP_SYS(getrlimit), SCMP_SYS(getuid), SCMP_SYS(geteuid), SCMP_SYS(getgid),
     SCMP_SYS(getegid), SCMP_SYS(getrandom)};
 
-// From here on all architectures number alike; nothing above is newer but statx, getrandom, membarrier and rseq. Today's
-// last call is about 470. Each number costs a rule: 600 of them took 7 ms at every import, these take 1 ms.
+// From this number on all architectures use the same numbers. All calls above are older, except statx, getrandom, membarrier
+// and rseq. The last call today is about 470. Each number costs one rule: 600 of them took 7 ms at every import, these take 1
+// ms.
 constexpr int kFirstUnified = 424, kEndUnified = 512;
 
-// Collects rules; the first failure counts.
+// Collects rules; remembers the first error.
 class Filter {
  public:
     Filter() : context_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), seccomp_release) {
@@ -58,8 +59,8 @@ class Filter {
             return;
         }
         set(SCMP_FLTATR_ACT_BADARCH, SCMP_ACT_KILL_PROCESS);
-        set(SCMP_FLTATR_CTL_TSYNC, 1);     // all threads: a plugin's library may have started some when it was loaded
-        set(SCMP_FLTATR_CTL_OPTIMIZE, 2);  // a binary search, not one comparison after the other
+        set(SCMP_FLTATR_CTL_TSYNC, 1);     // for all threads: a plugin's library may have started some when it was loaded
+        set(SCMP_FLTATR_CTL_OPTIMIZE, 2);  // binary search instead of one comparison after the other
     }
     void add(uint32_t action, int call) {
         if (error_ == 0) error_ = -seccomp_rule_add_array(context_.get(), action, call, 0, nullptr);
@@ -68,11 +69,11 @@ class Filter {
     void allow_if(int call, scmp_arg_cmp condition) {
         if (error_ == 0) error_ = -seccomp_rule_add_array(context_.get(), SCMP_ACT_ALLOW, call, 1, &condition);
     }
-    // Allowed if (argument & mask) == value.
+    // Allows the call if (argument & mask) == value.
     void allow_if(int call, unsigned argument, uint32_t mask, uint32_t value) {
         allow_if(call, scmp_arg_cmp{argument, SCMP_CMP_MASKED_EQ, mask, value});
     }
-    // 0 or an errno.
+    // Installs the filter. Returns 0 or an errno.
     int load() {
         if (error_ == 0) error_ = -seccomp_load(context_.get());
         return error_;
@@ -102,10 +103,11 @@ std::string detail::restrict_system_calls() {
     filter.allow_if(SCMP_SYS(kill), 0, kAll, self);
     filter.allow_if(SCMP_SYS(tgkill), 0, kAll, self);
     for (const uint32_t request : {uint32_t(TCGETS), uint32_t(FIONREAD)}) filter.allow_if(SCMP_SYS(ioctl), 1, kAll, request);
-    constexpr uint32_t kNameMemory = 0x53564D41;  // PR_SET_VMA, by which newer C libraries label their memory
+    constexpr uint32_t kNameMemory = 0x53564D41;  // PR_SET_VMA: newer C libraries name their memory with it
     for (const uint32_t option : {uint32_t(PR_SET_NAME), uint32_t(PR_GET_NAME), kNameMemory})
         filter.allow_if(SCMP_SYS(prctl), 0, kAll, option);
-    // To ask for limits, not to set them; but the result must become writable, below a hard limit.
+    // Limits may be read but not set. Exception: the limit on file sizes, so that the result can be written; its hard limit
+    // still holds.
     filter.allow_if(SCMP_SYS(prlimit64), scmp_arg_cmp{2, SCMP_CMP_EQ, 0, 0});
     filter.allow_if(SCMP_SYS(setrlimit), 0, kAll, RLIMIT_FSIZE);
     for (int call = kFirstUnified; call < kEndUnified; ++call) filter.add(SCMP_ACT_ERRNO(ENOSYS), call);

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <memory>
 
-// Static: the window's libraries may bring a copy of their own.
+// Static, because the window's libraries may contain their own copy of stb_image.
 #define STB_IMAGE_STATIC
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_NO_STDIO
@@ -17,12 +17,12 @@
 namespace clarity::import {
 namespace {
 
-// Empty if a picture of this size may still be added.
+// Returns an empty text if a picture of this size may still be added, otherwise why not.
 std::string check_size(uint64_t width, uint64_t height, const std::vector<uint32_t>& texels) {
     const std::string size = std::to_string(width) + " x " + std::to_string(height) + " pixels";
     if (width == 0 || height == 0) return size + ": it is empty";
     if (width > kMaxTextureSide || height > kMaxTextureSide) {
-        return size + " are more than " + std::to_string(kMaxTextureSide) + " a side";
+        return size + ": at most " + std::to_string(kMaxTextureSide) + " are possible along each side";
     }
     if (4 * (texels.size() + width * height) > kMaxTexelBytes) {
         return size + ": the scene's textures would take more than " + std::to_string(kMaxTexelBytes >> 20) + " MiB";
@@ -43,7 +43,8 @@ std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vecto
     const int count = static_cast<int>(byte_count);
     int width = 0, height = 0, channels = 0;
     const auto reason = [] { return std::string(stbi_failure_reason() ? stbi_failure_reason() : "unknown format"); };
-    if (!stbi_info_from_memory(bytes, count, &width, &height, &channels)) return "not a picture that is read here: " + reason();
+    if (!stbi_info_from_memory(bytes, count, &width, &height, &channels))
+        return "its format is not supported (PNG, JPEG, BMP, TGA, PSD, GIF, HDR and PNM are): " + reason();
     std::string why = check_size(static_cast<uint64_t>(width), static_cast<uint64_t>(height), texels);
     if (!why.empty()) return why;
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(stbi_load_from_memory(bytes, count, &width, &height, &channels, 4),
@@ -57,7 +58,7 @@ std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width
                          rt_texture& texture) {
     std::string why = check_size(width, height, texels);
     if (!why.empty()) return why;
-    if (byte_count < 4 * uint64_t(width) * height) return "its picture in memory is shorter than its size says";
+    if (byte_count < 4 * uint64_t(width) * height) return "its data in memory is shorter than its width and height need";
     append(bytes, width, height, texels, texture);
     return {};
 }

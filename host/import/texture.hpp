@@ -1,4 +1,4 @@
-// texture.hpp -- encoded pictures into texels.
+// texture.hpp -- decodes pictures into texels.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -9,13 +9,14 @@
 namespace clarity::import {
 
 inline constexpr rt_u32 kMaxTextureSide = 16384;
-inline constexpr uint64_t kMaxTexelBytes = 256u << 20;  // of one scene, decoded
+inline constexpr uint64_t kMaxTexelBytes = 256u << 20;  // bytes of all decoded textures of one scene
 
-// Appends the picture (PNG, JPEG, BMP, TGA, PSD, GIF, HDR, PNM; `bytes` as in the file) to `texels`, RGBA8, top row first, and
-// describes it in `texture`. Empty on success, else why not; nothing is appended then.
+// Decodes a picture (PNG, JPEG, BMP, TGA, PSD, GIF, HDR, PNM; `bytes` as in the file), appends it to `texels` as RGBA8 with the
+// top row first, and describes it in `texture`. Returns an empty text on success; otherwise the reason, and nothing is
+// appended.
 std::string decode_texture(const uint8_t* bytes, uint64_t byte_count, std::vector<uint32_t>& texels, rt_texture& texture);
 
-// As decode_texture, for width x height RGBA8 in memory.
+// Same as decode_texture(), for a picture of width x height RGBA8 texels in memory.
 std::string copy_texture(const uint8_t* bytes, uint64_t byte_count, rt_u32 width, rt_u32 height, std::vector<uint32_t>& texels,
                          rt_texture& texture);
 

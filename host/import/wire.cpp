@@ -1,6 +1,6 @@
-// Layout: a Header, then sections at multiples of 64 bytes, each the array of one member of Scene, in the order of `visit`.
-// Elements with names are split: plain data with the name's length in a section of their kind, the names of all, one after the
-// other, in the last one.
+// Layout: a Header, then sections at multiples of 64 bytes. Each section is the array of one member of Scene, in the order of
+// `visit`. Elements with a name are split: their plain data, with the length of the name, is in a section of their kind; all
+// names, one after the other, are in the last section.
 #include "import/wire.hpp"
 
 #include <fcntl.h>
@@ -56,7 +56,7 @@ struct WireCamera {
     float fov_y_rad;
 };
 
-// What Scene does not hold as plain arrays.
+// The members of Scene which are not plain arrays, converted to plain arrays.
 struct Converted {
     std::vector<WireGlobals> globals;
     std::vector<WireMesh> meshes;
@@ -64,11 +64,11 @@ struct Converted {
     std::vector<WireMaterial> materials;
     std::vector<WireLight> lights;
     std::vector<WireCamera> cameras;
-    std::vector<uint32_t> warnings;  // lengths
+    std::vector<uint32_t> warnings;  // length of each text in `names`, in bytes
     std::vector<char> names;
 };
 
-// One list for both directions, so that they cannot differ.
+// Writing and reading use the same list of sections, so that they always agree.
 template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {
     v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.triangles), v(s.triangle_materials), v(c.meshes), v(c.instances);
@@ -94,7 +94,7 @@ Converted convert(const Scene& s) {
     return c;
 }
 
-// False if the names are shorter than their lengths say.
+// Converts back to a Scene. Returns false if the names do not match their lengths.
 bool convert_back(const Converted& c, Scene& s) {
     size_t at = 0;
     bool good = c.globals.size() == 1;
@@ -123,7 +123,7 @@ bool convert_back(const Converted& c, Scene& s) {
     return good && at == c.names.size();
 }
 
-// A write may stop anywhere, and takes 2 GiB at most.
+// Writes all pieces in a loop: write() may stop early, and writes at most 2 GiB per call.
 std::string write_all(int fd, std::vector<iovec> pieces) {
     for (size_t at = 0; at < pieces.size();) {
         iovec piece = pieces[at];
@@ -141,7 +141,7 @@ std::string write_all(int fd, std::vector<iovec> pieces) {
     return {};
 }
 
-// Large arrays on large pages, where the system gives them on request: half of the time of reading goes into page faults.
+// Reserves memory and asks for large pages where it spans some, because half of the reading time is spent on page faults.
 template <class T>
 void reserve_on_large_pages(std::vector<T>& array, size_t count) {
     constexpr uintptr_t kLargePage = 2u << 20;
@@ -225,7 +225,7 @@ std::string read_scene(int fd, Scene& scene) {
         reserve_on_large_pages(array, s.bytes / sizeof(Element));
         array.assign(first, first + s.bytes / sizeof(Element));
     });
-    if (why.empty() && !convert_back(converted, scene)) why = "the names in the shared memory do not fit";
+    if (why.empty() && !convert_back(converted, scene)) why = "the names in the shared memory do not match their lengths";
     return why;
 }
 

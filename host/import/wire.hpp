@@ -1,4 +1,4 @@
-// wire.hpp -- a Scene as one flat file in memory, from the worker process to us.
+// wire.hpp -- passes a Scene from the worker process to its parent, as one flat file in memory.
 #pragma once
 #include <string>
 
@@ -6,11 +6,13 @@
 
 namespace clarity::import {
 
-// Writes the scene into an empty memfd and seals it against any later change. Empty on success, else why not.
+// Writes the scene into an empty memfd and seals it against any later change. Returns an empty text on success, otherwise the
+// reason.
 std::string write_scene(int fd, const Scene& scene);
 
-// Reads what write_scene wrote, from a worker that nobody trusts: refuses a file that is not sealed, and checks every size
-// against the file's own. Indices and numbers are for validate() to judge. Empty on success, else why not.
+// Reads a scene that write_scene() wrote. The worker is not trusted: a file that is not sealed is refused, and every size is
+// checked against the file's size. Indices and numbers are not checked here but by validate(). Returns an empty text on
+// success, otherwise the reason.
 std::string read_scene(int fd, Scene& scene);
 
 }  // namespace clarity::import

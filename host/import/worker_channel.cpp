@@ -1,4 +1,5 @@
-// Packet: PacketHead, then the text. Plain read and write, since the worker's sandbox has no socket calls.
+// A packet is a PacketHead followed by the text. It is sent with plain read and write, because the worker's sandbox forbids
+// socket calls.
 #include "import/worker_channel.hpp"
 
 #include <poll.h>

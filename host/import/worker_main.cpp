@@ -1,5 +1,5 @@
-// worker_main.cpp -- the worker's own side: loads the importers, locks itself in, imports, leaves the scene in shared
-// memory.
+// worker_main.cpp -- main function of the worker process: loads the importers, enters the sandbox, imports, and leaves the
+// scene in shared memory.
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
@@ -29,9 +29,9 @@
 namespace clarity::import {
 namespace {
 
-// ---- last words: what the parent cannot see from outside
+// ---- cause of death: reported by the worker where the parent cannot see it from outside
 
-// Sanitizers handle crashes themselves, and say more.
+// Sanitizers handle crashes themselves and report more.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kHasCrashReports = true;
 #else
@@ -52,7 +52,7 @@ void on_crash(int signal, siginfo_t* info, void* context) {
     const auto address = reinterpret_cast<uintptr_t>(info->si_addr);
     const uintptr_t distance = address > stack_pointer ? address - stack_pointer : stack_pointer - address;
     if (stack_pointer != 0 && distance < (1u << 20)) send_short(kChannelFd, MessageKind::death, "stack overflow");
-    // Returning repeats the faulty access, now without a handler.
+    // After the return the faulty access repeats, now without a handler.
     std::signal(signal, SIG_DFL);
 }
 
@@ -68,7 +68,7 @@ void on_crash(int signal, siginfo_t* info, void* context) {
     std::abort();
 }
 
-// Sent once; who asked for memory may live with the refusal, but if the worker dies then this is why.
+// Sent once. The code that asked for memory may survive the refusal; if the worker dies instead, this was the reason.
 void on_no_memory() {
     static bool said = false;
     if (!said) send_short(kChannelFd, MessageKind::death, "out of memory");
@@ -88,12 +88,12 @@ void prepare_last_words() {
     for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
 }
 
-// ---- talking to the parent
+// ---- messages to the parent
 
 class ChannelProgress : public Progress, public ImportObserver {
  public:
     void stage(const std::string& text) override { send(MessageKind::stage, 0, text); }
-    // Importers report as often as they like; the parent hears of it forty times a second.
+    // Importers report as often as they like; at most forty reports a second are sent to the parent.
     bool report(float fraction) override {
         const std::lock_guard<std::mutex> lock(mutex_);
         const auto now = std::chrono::steady_clock::now();
@@ -168,7 +168,7 @@ bool parse(int argc, char** argv, Arguments& arguments) {
 std::string import_files(const Arguments& arguments, ChannelProgress& progress) {
     const FileAccess access(arguments.files, arguments.search_paths);
     const PluginRegistry plugins = PluginRegistry::of(arguments.plugins);
-    // A file that the user named may be a link to elsewhere; what lies beside its target stays closed.
+    // A file that the user named may be a link to another folder. Only the target itself may be read, not the files beside it.
     std::vector<std::string> named;
     for (const std::string& file : arguments.files) named.push_back(std::filesystem::canonical(file).string());
     for (const std::string& note : enter_sandbox(access.folders(), named, arguments.limits)) {
@@ -208,7 +208,8 @@ int import_worker_main(int argc, char** argv) {
         std::fprintf(stderr, "import-worker is started by clarity itself; to import a file, run `clarity info FILE`\n");
         return static_cast<int>(Exit::usage);
     }
-    // Whoever asked is gone: nobody wants the result. The check after the call covers a parent that died before it.
+    // The worker ends when its parent dies, because nobody wants the result then. The check after the call covers a parent that
+    // died before it.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (arguments.parent != 0 && getppid() != arguments.parent) _exit(1);
 #ifdef SYS_close_range
@@ -220,7 +221,7 @@ int import_worker_main(int argc, char** argv) {
     prepare_last_words();
     send_message(kChannelFd, {MessageKind::greeting, 0, 0, kWorkerGreeting});
     const int status = run(arguments);
-    // Without destructors: the kernel frees faster, and a library's own clean-up could still crash.
+    // Exit without destructors: the kernel frees memory faster, and the clean-up of a library could still crash.
     _exit(status);
 }
 

@@ -32,7 +32,7 @@ int checked(int fd, const char* what) {
     return fd;
 }
 
-// Out of the way of the numbers that the worker's descriptors get.
+// Moves a descriptor to a number above those that the worker's descriptors get.
 FileDescriptor moved_up(int fd) {
     const int moved = fcntl(fd, F_DUPFD_CLOEXEC, 10);
     const int error = errno;
@@ -76,7 +76,8 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::vector<std::
     posix_spawn_file_actions_adddup2(&files.actions, their_output.get(), 2);
     posix_spawn_file_actions_adddup2(&files.actions, their_channel.get(), kChannelFd);
     posix_spawn_file_actions_adddup2(&files.actions, result_.get(), kResultFd);
-    // A process group of its own: Ctrl-C is for us to turn into a cancel. Signals as they are by default.
+    // The worker gets a process group of its own, so that Ctrl-C reaches only us and we turn it into a cancel. Its signals have
+    // the default handlers.
     Attributes spawn;
     sigset_t none, all;
     sigemptyset(&none);

@@ -1,4 +1,4 @@
-// worker_process.hpp -- a worker process and its descriptors.
+// worker_process.hpp -- starts and ends a worker process, and owns its descriptors.
 #pragma once
 #include <sys/types.h>
 #include <cstdint>
@@ -9,6 +9,7 @@
 
 namespace clarity::import {
 
+// Owns a file descriptor and closes it.
 class FileDescriptor {
  public:
     explicit FileDescriptor(int fd = -1) : fd_(fd) {}
@@ -25,10 +26,10 @@ class FileDescriptor {
     int fd_;
 };
 
-// Killed, if it still runs, and waited for when it goes out of scope.
+// A worker process. The destructor kills it if it still runs, and waits for its end.
 class WorkerProcess {
  public:
-    // Starts `program import-worker ARGUMENTS...`. Throws Error(import_failed) if that cannot be done.
+    // Starts `program import-worker ARGUMENTS...`. Throws Error(import_failed) if that fails.
     WorkerProcess(const std::string& program, const std::vector<std::string>& arguments);
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess&) = delete;
@@ -36,13 +37,14 @@ class WorkerProcess {
 
     int channel() const { return channel_.get(); }
     int result() const { return result_.get(); }
-    // What it and its libraries print; does not block.
+    // Pipe with everything that the worker and its libraries print; non-blocking.
     int output() const { return output_.get(); }
     void kill_now();
-    // Waits for the end; status as waitpid gives it.
+    // Waits until the process has ended; returns the status of waitpid().
     int wait();
+    // Resident memory in bytes; 0 if it is not known.
     uint64_t resident_bytes() const;
-    // Lets it map that much more than it may now, up to its own hard limit.
+    // Lets the worker map this many bytes more than now, up to its own hard limit.
     void raise_memory_limit(uint64_t more_bytes) const;
 
  private:

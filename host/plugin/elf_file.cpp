@@ -1,4 +1,4 @@
-// Format: "System V Application Binary Interface", chapters 4 and 5, and the GNU hash section as glibc's loader reads it.
+// Formats: "System V Application Binary Interface", chapters 4 and 5; the GNU hash section as the loader of glibc reads it.
 #include "plugin/elf_file.hpp"
 
 #include <elf.h>
@@ -20,16 +20,17 @@ using Segment = ElfW(Phdr);
 using Dynamic = ElfW(Dyn);
 using Symbol = ElfW(Sym);
 
-// Chains hold a handful of symbols, dynamic sections some dozens of entries; this bounds the walk along hostile ones.
+// Hash chains have a handful of symbols and dynamic sections some dozens of entries. The limit ends the walk through hostile
+// ones.
 constexpr uint32_t kMaxSteps = 4096;
 constexpr uint64_t kMaxName = 4096;
 
-// A regular file, read piece by piece. A mapping would be shorter, but would raise SIGBUS if a linker rewrote the file
+// A regular file, read piece by piece. A mapping would need less code, but would raise SIGBUS if a linker rewrote the file
 // meanwhile.
 class File {
  public:
     explicit File(const std::string& path) {
-        fd_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe of that name must not block
+        fd_ = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // opening a pipe of that name must not block
         if (fd_ < 0) {
             why_ = std::string("cannot be opened: ") + std::strerror(errno);
             return;
@@ -52,7 +53,7 @@ class File {
 
     const std::string& why() const { return why_; }
     uint64_t bytes() const { return bytes_; }
-    // False if any of it lies outside of the file.
+    // Returns false if a part of the range lies outside of the file.
     bool read(uint64_t offset, void* to, uint64_t count) const {
         if (offset > bytes_ || count > bytes_ - offset) return false;
         auto* out = static_cast<char*>(to);
@@ -100,16 +101,17 @@ std::string machine_name(unsigned machine) {
     }
 }
 
-// The header of this very program: the one sure source of what the machine can load.
+// Reads the ELF header of the running program: this machine can certainly load a library with the same values.
 bool read_own_header(Header& header) {
     return File("/proc/self/exe").read(0, header);
 }
 
-// Dynamic tables give addresses; the loaded segments say where in the file these lie.
+// Translates addresses: dynamic tables contain addresses, and the loaded segments tell where in the file they are.
 class Image {
  public:
     Image(const File& file, std::vector<Segment> segments) : file_(file), segments_(std::move(segments)) {}
-    // False where the address is not mapped from the file. The zeroed tail of a segment reads as zeros.
+    // Reads memory as it would be loaded; the zeroed tail of a segment reads as zeros. Returns false if the address is not
+    // mapped from the file.
     bool read(uint64_t address, void* to, uint64_t count) const {
         for (const Segment& segment : segments_) {
             if (segment.p_type != PT_LOAD || address < segment.p_vaddr) continue;
@@ -135,13 +137,13 @@ struct DynamicTables {
     uint64_t symbols = 0, strings = 0, string_bytes = 0, gnu_hash = 0, hash = 0;
 };
 
-// Looks for a symbol as the loader's dlsym does: by the GNU hash table, else by the older one.
+// Finds a symbol as dlsym does: with the GNU hash table, otherwise with the older one.
 class SymbolLookup {
  public:
     SymbolLookup(const Image& image, const DynamicTables& tables, const char* name)
         : image_(image), tables_(tables), name_(name) {}
 
-    // 1 found, 0 not there, -1 the tables are broken.
+    // Returns 1 if the symbol is found, 0 if it is not there, -1 if the tables are broken.
     int find(Symbol& found) const {
         if (tables_.symbols == 0 || tables_.strings == 0) return 0;
         if (tables_.gnu_hash != 0) return by_gnu_hash(found);
@@ -150,7 +152,8 @@ class SymbolLookup {
     }
 
  private:
-    // Addresses are 64-bit sums of hostile numbers: they may wrap, and are then found to be unmapped.
+    // Addresses are 64-bit sums of numbers from a file that may be hostile. They may wrap around, and are then found to be
+    // unmapped.
     int matches(uint32_t index, Symbol& symbol) const {
         if (!image_.read(tables_.symbols + uint64_t{index} * sizeof(Symbol), symbol)) return -1;
         const uint64_t bytes = std::strlen(name_) + 1;
@@ -161,7 +164,7 @@ class SymbolLookup {
     }
 
     int by_gnu_hash(Symbol& found) const {
-        uint32_t head[4];  // bucket count, number of the first hashed symbol, bloom words, bloom shift
+        uint32_t head[4];  // number of buckets, index of the first hashed symbol, number of bloom words, bloom shift
         if (!image_.read(tables_.gnu_hash, head)) return -1;
         const uint64_t buckets = tables_.gnu_hash + sizeof head + uint64_t{head[2]} * sizeof(ElfW(Addr));
         const uint64_t chains = buckets + uint64_t{head[0]} * 4;
@@ -173,7 +176,7 @@ class SymbolLookup {
         if (index == 0) return 0;
         if (index < head[1]) return -1;
         for (uint32_t step = 0; step < kMaxSteps; ++step, ++index) {
-            uint32_t chained = 0;  // the hash, its lowest bit is set in the last of the chain
+            uint32_t chained = 0;  // the hash; its lowest bit is set in the last symbol of the chain
             if (!image_.read(chains + uint64_t{index - head[1]} * 4, chained)) return -1;
             if ((chained | 1) == (hash | 1))
                 if (const int match = matches(index, found)) return match;
@@ -183,7 +186,7 @@ class SymbolLookup {
     }
 
     int by_hash(Symbol& found) const {
-        uint32_t head[2];  // bucket count, chain count
+        uint32_t head[2];  // number of buckets, number of chains
         if (!image_.read(tables_.hash, head)) return -1;
         uint32_t hash = 0;
         for (const char* c = name_; *c; ++c) {
@@ -242,7 +245,7 @@ std::string read_segments(const File& file, const Header& header, std::vector<Se
         return "is truncated: its program headers lie outside of the file; copy or build it again";
     for (const Segment& segment : segments) {
         if (segment.p_type != PT_LOAD && segment.p_type != PT_DYNAMIC) continue;
-        // The loader would map such a segment and die of SIGBUS on the first touch.
+        // The loader would map such a segment, and the program would die of SIGBUS on first access.
         if (segment.p_offset > file.bytes() || segment.p_filesz > file.bytes() - segment.p_offset)
             return "is truncated: a segment of " + std::to_string(segment.p_filesz) + " bytes at " +
                    std::to_string(segment.p_offset) + " does not fit into its " + std::to_string(file.bytes()) +

@@ -23,8 +23,8 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
     host_.struct_bytes = sizeof(rt_host);
     host_.ctx = this;
     host_.fail = host_fail;
-    // No exception of ours may unwind through a plugin, which may be C: a log line or a report can be lost, a call cannot
-    // throw.
+    // No exception of the host may pass through a plugin, which may be written in C. If these functions fail, a log line or a
+    // progress report is lost.
     host_.log = [](void* ctx, int32_t level, const char* text) {
         try {
             const LogLevel known = level <= RT_LOG_DEBUG  ? LogLevel::debug
@@ -32,7 +32,7 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
                                                           : LogLevel::warning;
             const std::string& who = static_cast<HostServices*>(ctx)->who_;
             const std::string said = text ? text : "";
-            // "main.scene:3:9: ..." names its file already.
+            // "main.scene:3:9: ..." contains the file's name already.
             log(known, said.compare(0, who.size() + 1, who + ":") == 0 ? said : who + ": " + said);
         } catch (...) {
         }
@@ -41,7 +41,7 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
         auto* self = static_cast<HostServices*>(ctx);
         bool go_on = false;
         try {
-            // Written so that NaN becomes 0.
+            // The comparison is written so that NaN becomes 0.
             go_on = self->progress_.report(fraction > 0 ? std::min(fraction, 1.0f) : 0.0f);
         } catch (const std::exception& e) {
             self->fail(std::string("the host could not report progress: ") + e.what());
@@ -51,7 +51,7 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
         if (!go_on) self->told_to_stop_ = true;
         return go_on ? 1 : 0;
     };
-    // What a body throws is the plugin's own and goes back to it.
+    // An exception of a body is the plugin's own, so it passes back to the plugin.
     host_.parallel_for = [](void*, uint32_t count, void (*body)(void*, rt_u32), void* user) {
         if (!body) return;
         clarity::parallel_for(count, [body, user](uint32_t i) {
@@ -67,7 +67,7 @@ void HostServices::fail(const std::string& why) {
     failed_ = true;
     try {
         why_ = why;
-    } catch (const std::bad_alloc&) {  // then check() says that no reason is known
+    } catch (const std::bad_alloc&) {  // no room for the text: check() then says that no reason is known
     }
 }
 
@@ -87,7 +87,7 @@ void HostServices::check(int exit_code, const std::function<int32_t()>& call) {
     std::string thrown;
     try {
         status = call();
-    } catch (const Error&) {  // the host's own, from inside the call
+    } catch (const Error&) {  // from the host itself, during the call
         throw;
     } catch (const std::bad_alloc&) {
         thrown = "out of memory";

@@ -1,4 +1,4 @@
-// host_services.hpp -- what the host offers a plugin during one call (rt_host): errors, log, progress, threads.
+// host_services.hpp -- the services of the host during one call of a plugin (rt_host): errors, log, progress, threads.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -11,23 +11,22 @@
 
 namespace clarity {
 
-// Lives for one call of a plugin.
+// Exists for one call of a plugin.
 class HostServices {
  public:
-    // who: "accel bvh2", for log lines.
+    // who: name of the plugin in log lines, "accel bvh2".
     HostServices(std::string who, Progress& progress);
     HostServices(const HostServices&) = delete;
     HostServices& operator=(const HostServices&) = delete;
 
     const rt_host* host() const { return &host_; }
-    // Records the first reason only; thread-safe.
+    // Records why the call failed. Only the first reason is kept. Thread-safe.
     void fail(const std::string& why);
     bool failed() const;
     std::string why() const;
 
-    // Runs a call of the plugin, and turns its status, an exception that escaped it, or a call that reports success after
-    // fail() into an Error with the given exit code: "<who>: <why>". Cancelled if the plugin returned RT_CANCELLED after it was
-    // told so.
+    // Calls the plugin. Throws Error(exit_code) "<who>: <why>" if the call returns a failure, throws an exception, or returns
+    // success after fail(). Throws Cancelled if the plugin returns RT_CANCELLED after progress told it to stop.
     void check(int exit_code, const std::function<int32_t()>& call);
 
  private:
@@ -37,7 +36,7 @@ class HostServices {
     mutable std::mutex mutex_;
     std::string why_;
     bool failed_ = false;
-    std::atomic<bool> told_to_stop_{false};  // progress answered 0
+    std::atomic<bool> told_to_stop_{false};  // progress has returned 0
 };
 
 }  // namespace clarity

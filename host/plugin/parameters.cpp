@@ -34,7 +34,8 @@ bool parse_bool(std::string_view text, double& value) {
 bool parse_choice(const rt_param& param, std::string_view text, double& value) {
     for (int i = 0; param.choices[i]; ++i)
         if (text == param.choices[i]) return value = i, true;
-    // An index is taken only where no choice has that name: "8" may be one of "2", "4", "8".
+    // Names come first, because "8" may be a choice's name (of "2", "4", "8"). A number is an index only if no choice has that
+    // name.
     double index = 0;
     if (!parse_number(text, index) || index != std::floor(index) || index < param.min || index > param.max) return false;
     value = index;

@@ -1,4 +1,4 @@
-// parameters.hpp -- a plugin's parameters as values: parsing "bvh2,max_leaf=4", ranges, defaults.
+// parameters.hpp -- values of a plugin's parameters: defaults, ranges, and parsing of "bvh2,max_leaf=4".
 #pragma once
 #include <string>
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace clarity {
 
-// Values in the order declared.
+// Values in the order in which the plugin declares its parameters.
 using ParameterValues = std::vector<double>;
 
 ParameterValues default_parameters(const rt_plugin& plugin);
-// Sets one by key; BOOL takes 0/1/true/false/on/off, ENUM a choice's name or index. Throws Error(usage) that lists the keys,
-// the range or the choices.
+// Sets the parameter `key`. BOOL takes 0/1/true/false/on/off, ENUM takes the name or index of a choice. Throws Error(usage),
+// which lists the keys, the range or the choices.
 void set_parameter(const rt_plugin& plugin, ParameterValues& values, const std::string& key, const std::string& value);
-// "max_leaf=4" / "split=sah": as set_parameter reads it.
+// A parameter as text, "max_leaf=4" or "split=sah", which set_parameter() can read.
 std::string parameter_text(const rt_plugin& plugin, const ParameterValues& values, size_t index);
 
-// "bvh2,max_leaf=4" -> id and key=value pairs. Throws Error(usage) on a malformed one.
+// A plugin's id with key=value pairs, as in "bvh2,max_leaf=4". Parsing throws Error(usage) if the text is malformed.
 struct PluginChoice {
     std::string id;
     std::vector<std::pair<std::string, std::string>> settings;

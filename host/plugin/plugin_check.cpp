@@ -9,7 +9,7 @@
 namespace clarity {
 namespace {
 
-// Far above what any plugin needs, far below what a random word holds.
+// Far more than any plugin needs, and far less than a random word is likely to hold.
 constexpr rt_u32 kMaxParams = 64, kMaxSlots = 16, kMaxChoices = 64, kMaxExtensions = 256, kMaxStructBytes = 4096;
 constexpr size_t kMaxText = 4096;
 
@@ -19,7 +19,7 @@ std::string hex(uint32_t word) {
     return text;
 }
 
-// Shown on terminals and in the window: one line, no control bytes.
+// Texts are shown on terminals and in the window, so they must be one line without control characters.
 std::string check_text(const char* what, const char* text, bool required) {
     if (!text) return required ? std::string(what) + " is missing (NULL)" : "";
     const size_t bytes = strnlen(text, kMaxText);
@@ -30,7 +30,7 @@ std::string check_text(const char* what, const char* text, bool required) {
     return {};
 }
 
-// "uint", "float4", "bvh2_node", "unsigned int": identifiers with single blanks between them.
+// A type is one or more identifiers with single blanks between them: "uint", "float4", "bvh2_node", "unsigned int".
 bool is_type_name(const char* text) {
     const size_t bytes = text ? strnlen(text, kMaxText) : 0;
     if (bytes == 0 || bytes > 128) return false;

@@ -32,7 +32,7 @@ std::string dlopen_advice(const std::string& error) {
 PluginRecord load_checked(const std::string& path) {
     PluginRecord record;
     record.path = path;
-    // From the file first: dlopen would run the library's constructors before anyone could look at its version.
+    // Read the version from the file first: dlopen would run the library's constructors before the check.
     ElfSymbol symbol;
     record.why = read_elf_symbol(path, kSymbol, symbol);
     if (record.why.empty() && !symbol.found)
@@ -44,7 +44,7 @@ PluginRecord load_checked(const std::string& path) {
     if (record.why.empty()) record.why = check_plugin_head(symbol.head, symbol.bytes);
     if (!record.why.empty()) return record;
 
-    const std::string full = fs::absolute(path).string();  // a bare name would be looked up in the system's library folders
+    const std::string full = fs::absolute(path).string();  // dlopen would look up a bare name in the system's library folders
     void* library = dlopen(full.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         const char* error = dlerror();
@@ -54,10 +54,12 @@ PluginRecord load_checked(const std::string& path) {
     }
     const auto* plugin = static_cast<const rt_plugin*>(dlsym(library, kSymbol));
     if (!plugin) {
-        record.why = std::string("exports no symbol ") + kSymbol + " once loaded";
+        record.why =
+            std::string("exports no symbol ") + kSymbol + " after loading, although its file contains it; build it again";
         return record;
     }
-    // Again, on what is really mapped: the file may have been replaced in between, and a constructor may have written to it.
+    // Check again what is really mapped: the file may have been replaced in between, and a constructor may have changed the
+    // data.
     uint32_t head[4];
     std::memcpy(head, plugin, sizeof head);
     record.why = check_plugin_head(head, symbol.bytes);
@@ -77,7 +79,8 @@ std::string executable_folder() {
     return error ? "" : program.parent_path().string();
 }
 
-// The ones of one folder, by name. `missing_ok`: the folder is a place where plugins may lie, nobody named it.
+// The libraries in one folder, sorted by name. `missing_ok`: the folder is only a usual place for plugins; the user did not
+// name it.
 std::vector<std::string> libraries_in(const fs::path& folder, bool missing_ok) {
     std::vector<std::string> found;
     std::error_code error;
@@ -94,7 +97,7 @@ std::vector<std::string> libraries_in(const fs::path& folder, bool missing_ok) {
     return found;
 }
 
-// Collects libraries, each file once however many ways lead to it.
+// Collects libraries; a file that is found in several ways is collected once.
 class Search {
  public:
     void add_file(const std::string& path) {
@@ -102,7 +105,7 @@ class Search {
         const fs::path real = fs::canonical(path, error);
         if (seen_.insert(error ? path : real.string()).second) paths_.push_back(path);
     }
-    // A folder may also be laid out as the build's: libraries in importers/ and accel/ below it.
+    // A folder may also have the layout of the build folder, with libraries in importers/ and accel/ below it.
     void add_folder(const fs::path& folder, bool missing_ok) {
         for (const std::string& path : libraries_in(folder, missing_ok)) add_file(path);
         for (const char* kind : {"importers", "accel"})
@@ -119,7 +122,7 @@ void search_environment(Search& search) {
     const std::string list = environment("CLARITY_PLUGIN_PATH");
     for (size_t begin = 0; begin <= list.size();) {
         const size_t end = std::min(list.find(':', begin), list.size());
-        // An empty element would mean the working directory, as in PATH; never that.
+        // An empty element is ignored. In PATH it would mean the working directory, which is never searched here.
         if (end > begin) search.add_folder(list.substr(begin, end - begin), false);
         begin = end + 1;
     }
@@ -127,7 +130,7 @@ void search_environment(Search& search) {
 
 void search_user_data(Search& search) {
     std::string data = environment("XDG_DATA_HOME");
-    if (data.empty() || data[0] != '/') {  // the XDG specification ignores relative ones
+    if (data.empty() || data[0] != '/') {  // the XDG specification ignores relative paths
         const std::string home = environment("HOME");
         if (home.empty() || home[0] != '/') return;
         data = home + "/.local/share";
@@ -141,7 +144,7 @@ void search_own_folders(Search& search) {
 #ifdef CLARITY_LIBRARIES_FROM_PROGRAM
     search.add_folder((program / CLARITY_LIBRARIES_FROM_PROGRAM / "clarity" / "plugins").lexically_normal(), true);
 #endif
-    // The layout of the build.
+    // The layout of the build folder.
     search.add_folder((program / "../lib/clarity/plugins").lexically_normal(), true);
 }
 
@@ -160,7 +163,7 @@ std::string lower_extension(const std::string& path) {
 std::vector<uint8_t> read_head(const std::string& path) {
     std::vector<uint8_t> head(4096);
     size_t bytes = 0;
-    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // a pipe must not block
+    const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);  // opening a pipe must not block
     struct stat status {};
     if (file >= 0 && fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
         for (ssize_t got = 0; bytes < head.size(); bytes += static_cast<size_t>(got)) {
@@ -176,7 +179,7 @@ std::vector<uint8_t> read_head(const std::string& path) {
     return head;
 }
 
-// What a file begins with says more than its name; the name decides where the content says nothing.
+// Certainty that the importer can read a file. The first bytes say more than the name; the name decides if they say nothing.
 int certainty(const rt_importer& importer, const std::string& extension, const std::vector<uint8_t>& head) {
     constexpr int kByName = 30, kWithoutName = 50;
     bool named = false;
@@ -184,7 +187,7 @@ int certainty(const rt_importer& importer, const std::string& extension, const s
     int probed = 0;
     try {
         if (importer.probe && !head.empty()) probed = std::clamp(importer.probe(head.data(), head.size()), 0, 100);
-    } catch (...) {  // no plugin may throw, but one that does only loses its say
+    } catch (...) {  // plugins must not throw; one that does counts as undecided
         probed = 0;
     }
     if (named) return kByName + probed;

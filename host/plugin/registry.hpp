@@ -1,4 +1,4 @@
-// registry.hpp -- finds, checks and holds plugins.
+// registry.hpp -- finds, checks and owns plugins.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,34 +11,36 @@ namespace clarity {
 
 struct PluginRecord {
     std::string path;
-    const rt_plugin* plugin = nullptr;  // nullptr: refused; `why` says why
+    const rt_plugin* plugin = nullptr;  // nullptr: the library was refused, `why` tells the reason
     std::string why;                    // "ABI version 2, this host speaks 1: rebuild it against this SDK"
-    bool shadowed = false;              // loaded, but an earlier library has the same id; not used
+    bool shadowed = false;              // loaded but not used, because an earlier library has the same id
 };
 
-// Every library seen, in the order of discovery: --plugin files, CLARITY_PLUGIN_PATH (colon list of folders), then
-// $XDG_DATA_HOME/clarity/plugins, then ../lib/clarity/plugins/{importers,accel} relative to the executable (the libraries'
-// install folder too). Never the working directory. Libraries are loaded RTLD_NOW|RTLD_LOCAL and never closed.
+// All libraries that were found, in this order: --plugin files, the folders in CLARITY_PLUGIN_PATH (separated by colons),
+// $XDG_DATA_HOME/clarity/plugins, then the program's own plugins (in the library folder of the installation, or
+// ../lib/clarity/plugins/{importers,accel} relative to the executable in a build folder). The working directory is never
+// searched. Libraries are loaded with RTLD_NOW|RTLD_LOCAL and never closed.
 class PluginRegistry {
  public:
     static PluginRegistry discover(const std::vector<std::string>& plugin_files = {});
-    // Exactly these libraries, without a search: what a process that discovered them hands on to its worker.
+    // Loads exactly these libraries, without a search. A process that has found them passes them on to its import worker.
     static PluginRegistry of(const std::vector<std::string>& plugin_files);
 
     const std::vector<PluginRecord>& records() const { return records_; }
-    // nullptr if there is none of that id.
+    // Return nullptr if there is no usable plugin of that id.
     const rt_plugin* accel(std::string_view id) const;
     const rt_plugin* importer(std::string_view id) const;
-    std::vector<const rt_plugin*> accels() const;     // usable ones, by id
-    std::vector<const rt_plugin*> importers() const;  // usable ones, by id
-    // The importer most certain of a file, by extension and first bytes; nullptr if none takes it.
+    std::vector<const rt_plugin*> accels() const;     // usable ones, sorted by id
+    std::vector<const rt_plugin*> importers() const;  // usable ones, sorted by id
+    // The importer that is most certain of a file, judged by extension and first bytes; nullptr if no importer accepts it.
     const rt_plugin* importer_for(const std::string& path) const;
 
  private:
     std::vector<PluginRecord> records_;
 };
 
-// Loads one library and checks it: never throws, never runs its code. plugin == nullptr and `why` if it is refused.
+// Loads and checks one library; never throws and calls none of its functions. If it is refused, plugin is nullptr and `why`
+// tells the reason.
 PluginRecord load_plugin(const std::string& path);
 
 }  // namespace clarity

@@ -1,4 +1,4 @@
-// scene.cpp -- what a scene measures: bounds, areas, a camera that frames it; the default material.
+// scene.cpp -- bounds, areas and the framing camera of a scene, and the default material.
 #include "scene/scene.hpp"
 
 #include <algorithm>
@@ -39,7 +39,7 @@ Vec linear(const Affine& m, const Vec& v) {
             m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
 }
 
-// The factor by which a map scales every length, or a negative number if there is none.
+// The factor by which a map scales all lengths; negative if it does not scale uniformly.
 double uniform_scale(const Affine& m) {
     const Vec x = {m[0], m[4], m[8]}, y = {m[1], m[5], m[9]}, z = {m[2], m[6], m[10]};
     const double s = dot(x, x), tolerance = 1e-6 * s;
@@ -49,7 +49,7 @@ double uniform_scale(const Affine& m) {
     return uniform ? std::sqrt(s) : -1;
 }
 
-// Sum of a mesh's triangle areas under the linear part of a map.
+// Sum of the areas of a mesh's triangles after the linear part of a map.
 double mesh_area(const Scene& scene, const Mesh& mesh, const Affine& m) {
     double sum = 0;
     for (rt_u32 t = mesh.first_triangle; t < mesh.first_triangle + mesh.triangle_count; ++t) {
@@ -61,7 +61,8 @@ double mesh_area(const Scene& scene, const Mesh& mesh, const Affine& m) {
     return sum;
 }
 
-// The vertices that a mesh's triangles use, each once: files hold stray vertices that nobody sees.
+// Indices of the vertices that a mesh's triangles use, each once. Files may contain unused vertices, which must not enlarge the
+// bounds.
 std::vector<rt_u32> used_vertices(const Scene& scene, const Mesh& mesh) {
     std::vector<bool> used(mesh.vertex_count, false);
     const size_t first = 3 * size_t(mesh.first_triangle);
@@ -202,7 +203,7 @@ Camera framing_camera(const Scene& scene, float aspect) {
     const int up_axis = scene.up_axis < 3 ? static_cast<int>(scene.up_axis) : 1;
     Vec up{}, front{};
     up[up_axis] = 1;
-    // Modelling programs with Z up look along +Y from the front, all others along -Z.
+    // Programs with Z up look along +Y from the front, all others along -Z.
     if (up_axis == 2) {
         front[1] = -1;
     } else {
@@ -214,19 +215,19 @@ Camera framing_camera(const Scene& scene, float aspect) {
         center[i] = 0.5 * (double(box.min[i]) + box.max[i]);
         half[i] = 0.5 * (double(box.max[i]) - box.min[i]);
     }
-    const double raise = 0.35;  // 19 degrees above the horizon
+    const double raise = 0.35;  // slope; 19 degrees above the horizon
     const Vec forward = normalized({-front[0] - raise * up[0], -front[1] - raise * up[1], -front[2] - raise * up[2]});
     const Vec right = normalized(cross(forward, up)), above = cross(right, forward);
     const double tan_y = std::tan(0.5 * camera.fov_y_rad);
     const double tan_x = tan_y * (aspect > 0 && std::isfinite(aspect) ? double(aspect) : 1.0);
-    // The least distance at which all eight corners of the box are within the frustum.
+    // The smallest distance at which all eight corners of the box are inside the frustum.
     double distance = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const Vec offset = {corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1], corner & 4 ? half[2] : -half[2]};
         const double beside = std::max(std::abs(dot(offset, right)) / tan_x, std::abs(dot(offset, above)) / tan_y);
         distance = std::max(distance, beside - dot(offset, forward));
     }
-    // A point, or planes only: there is nothing to measure by, so stand where a scene in metres is seen from eye level.
+    // The bounds are a point or empty (planes only), so they give no distance: take eye level in a scene in metres.
     const bool pointlike = !(distance > 0);
     distance = pointlike ? 5 : 1.05 * distance;
     for (int i = 0; i < 3; ++i) {

@@ -1,4 +1,4 @@
-// scene.hpp -- a scene as the host holds it: flat arrays, the file's own units and axes, +Y up by convention of the cameras.
+// scene.hpp -- the host's scene: flat arrays in the file's own units and axes. Cameras take +Y as up by convention.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -9,10 +9,11 @@
 
 namespace clarity {
 
-// Row-major 3x4: x' = m[0] x + m[1] y + m[2] z + m[3].
+// Row-major 3x4 matrix: x' = m[0] x + m[1] y + m[2] z + m[3].
 using Affine = std::array<float, 12>;
 inline constexpr Affine kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
+// Axis-aligned box; min and max are valid unless `empty`.
 struct Bounds {
     std::array<float, 3> min{}, max{};
     bool empty = true;
@@ -24,15 +25,15 @@ struct Mesh {
     std::string name;
     rt_u32 first_vertex = 0, vertex_count = 0;
     rt_u32 first_triangle = 0, triangle_count = 0;
-    rt_u32 polygon_count = 0;  // faces of the file, before triangulation
+    rt_u32 polygon_count = 0;  // faces in the file, before triangulation
 };
 
 struct Instance {
     std::string name;
     rt_u32 mesh = 0;
-    rt_u32 material = RT_NONE;  // for the whole instance; RT_NONE: the mesh's own
+    rt_u32 material = RT_NONE;  // replaces the materials of the whole mesh; RT_NONE: the mesh keeps its own
     Affine world_from_object = kIdentity;
-    bool visible = true;  // else it is in no structure; its primitives keep their numbers
+    bool visible = true;  // false: in no acceleration structure, but its primitives keep their numbers
 };
 
 struct Sphere {
@@ -41,12 +42,12 @@ struct Sphere {
     rt_u32 material = 0;
 };
 struct Plane {
-    std::array<float, 3> normal{};  // unit
-    float offset = 0;               // dot(normal, x) = offset
+    std::array<float, 3> normal{};  // unit length
+    float offset = 0;               // dot(normal, x) = offset on the plane
     rt_u32 material = 0;
 };
 struct Polygon {
-    rt_u32 first_corner = 0, corner_count = 0;  // in Scene::polygon_corners, in corners
+    rt_u32 first_corner = 0, corner_count = 0;  // range in Scene::polygon_corners, counted in corners
     rt_u32 material = 0;
 };
 struct Material {
@@ -63,15 +64,16 @@ struct Camera {
     float fov_y_rad = 0.7853982f;
 };
 
-// Valid once `validate` accepted it: every index in range, every number finite, materials[0] the default material.
+// A scene is valid once validate() has accepted it: every index is in range, every number is finite, and materials[0] is the
+// default material.
 struct Scene {
     std::vector<float> positions;            // 3 per vertex
-    std::vector<float> normals;              // 3 per vertex, (0,0,0) where a mesh has none; or empty
+    std::vector<float> normals;              // 3 per vertex, (0,0,0) for meshes without normals; or empty
     std::vector<float> uvs;                  // 2 per vertex; or empty
     std::vector<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
     std::vector<rt_u32> triangle_materials;  // 1 per triangle
     std::vector<Mesh> meshes;
-    std::vector<Instance> instances;  // meshes without an instance are not in the world
+    std::vector<Instance> instances;  // a mesh without an instance is not in the world
     std::vector<Sphere> spheres;
     std::vector<Plane> planes;
     std::vector<Polygon> polygons;
@@ -83,42 +85,44 @@ struct Scene {
     std::vector<Camera> cameras;
     std::array<float, 3> background{0.12f, 0.16f, 0.22f}, ambient{0.08f, 0.08f, 0.08f};
     rt_u32 up_axis = 1;
-    double unit_scale = 0;  // metres per unit, 0: the file does not say
+    double unit_scale = 0;  // metres per unit; 0: the file does not say
     std::vector<std::string> warnings;
 
     rt_u32 vertex_count() const { return static_cast<rt_u32>(positions.size() / 3); }
     rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
-    // Triangles in the world: those of every instance.
+    // Number of triangles in the world: the sum over all instances.
     uint64_t placed_triangle_count() const;
-    // Everything finite, in world space; planes are left out.
+    // World-space box of everything finite; planes are left out.
     Bounds bounds() const;
-    // World space, of all instances' triangles and of the polygons and spheres.
+    // World-space area of the triangles of all instances, the polygons and the spheres.
     double surface_area() const;
 };
 
-// What carries the number that `prim` shows: triangles of all instances in order, then spheres, polygons, planes.
+// The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres, polygons
+// and planes.
 struct PrimPlace {
     enum class Kind { none, triangle, sphere, polygon, plane } kind = Kind::none;
-    rt_u32 index = 0;           // within its kind; a triangle: of the scene's
-    rt_u32 instance = RT_NONE;  // of a triangle
+    rt_u32 index = 0;           // within its kind; a triangle's index counts in Scene::triangles
+    rt_u32 instance = RT_NONE;  // of a triangle; RT_NONE for other kinds
     rt_u32 material = RT_NONE;
 };
 PrimPlace place_of_prim(const Scene& scene, rt_i32 prim);
 
-// Of one instance's vertices, in world space.
+// World-space box of one instance's vertices.
 Bounds instance_bounds(const Scene& scene, rt_u32 instance);
 
 rt_material default_material();
 
-// Empty if the scene is sound, else what is wrong ("triangle 12: vertex 99 of 80"). Linear in the scene's size.
+// Returns an empty text if the scene is sound, otherwise what is wrong ("triangle 12: vertex 99 of 80"). Linear in the scene's
+// size.
 std::string validate(const Scene& scene);
 
-// The camera that shows all of the scene from the front, a little from above.
+// A camera which shows the whole scene from the front and slightly from above.
 Camera framing_camera(const Scene& scene, float aspect);
 
 // ---- transforms
 std::array<float, 3> transform_point(const Affine& m, const float* p);
-Affine multiply(const Affine& a, const Affine& b);  // a after b
-bool invert(const Affine& m, Affine& inverse);      // false if singular
+Affine multiply(const Affine& a, const Affine& b);  // applies b first, then a
+bool invert(const Affine& m, Affine& inverse);      // false if m is singular
 
 }  // namespace clarity

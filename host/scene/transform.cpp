@@ -32,7 +32,8 @@ bool invert(const Affine& m, Affine& inverse) {
                                 a[5] * a[6] - a[3] * a[8], a[0] * a[8] - a[2] * a[6], a[2] * a[3] - a[0] * a[5],
                                 a[3] * a[7] - a[4] * a[6], a[1] * a[6] - a[0] * a[7], a[0] * a[4] - a[1] * a[3]};
     const double determinant = a[0] * cofactor[0] + a[1] * cofactor[3] + a[2] * cofactor[6];
-    // Singular is a matter of the columns' directions, not of their lengths: a model in micrometres has a tiny determinant.
+    // Compare the determinant with the product of the column lengths: a model in micrometres has a tiny determinant without
+    // being singular.
     double lengths = 1;
     for (int j = 0; j < 3; ++j) lengths *= std::sqrt(a[j] * a[j] + a[3 + j] * a[3 + j] + a[6 + j] * a[6 + j]);
     if (!(std::abs(determinant) > 1e-7 * lengths)) return false;

@@ -8,7 +8,7 @@ namespace {
 
 using Vec = std::array<double, 3>;
 
-constexpr rt_u32 kShaped = 64;  // corners of a face up to which ears are chosen by shape; it takes quadratic time
+constexpr rt_u32 kShaped = 64;  // up to this number of corners ears are chosen by shape, which takes quadratic time
 
 Vec corner_at(const float* positions, rt_u32 vertex) {
     const float* p = positions + 3 * size_t(vertex);
@@ -30,13 +30,13 @@ void fan(const rt_u32* corners, rt_u32 count, std::vector<rt_u32>& out) {
     }
 }
 
-// Of the two ways to cut a quad the one along the shorter diagonal, unless its triangles face apart: then the one that folds
-// less.
+// Cuts a quad along its shorter diagonal. If a diagonal makes the two triangles face away from each other, the one that folds
+// the quad less is taken instead.
 void split_quad(const float* positions, const rt_u32* corners, std::vector<rt_u32>& out) {
     Vec p[4];
     for (int i = 0; i < 4; ++i) p[i] = corner_at(positions, corners[i]);
     const Vec a = minus(p[2], p[0]), b = minus(p[3], p[1]);
-    // Cosine between the two triangles' normals, for each diagonal; 0 where one has no area.
+    // Cosine of the angle between the two triangles' normals; 0 if one of them has no area.
     const auto agreement = [](const Vec& m, const Vec& n) {
         const double lengths = std::sqrt(dot(m, m) * dot(n, n));
         return lengths > 0 ? dot(m, n) / lengths : 0;
@@ -61,7 +61,8 @@ void Triangulator::add(const float* positions, const rt_u32* corners, rt_u32 cor
         clip_ears(corners, out);
 }
 
-// The triangles of a fan add up to the area of the face's projection only if all lie in one plane.
+// True if the triangles of a fan lie in one plane: only then does the sum of their areas equal the area of the face's
+// projection.
 bool Triangulator::fan_is_flat(const float* positions, const rt_u32* corners, rt_u32 count) const {
     constexpr double kBend = 1e-4;  // relative
     const Vec origin = corner_at(positions, corners[0]);
@@ -76,12 +77,12 @@ bool Triangulator::fan_is_flat(const float* positions, const rt_u32* corners, rt
     return area <= (1 + kBend) * std::sqrt(dot(sum, sum));
 }
 
-// Into points_, counter-clockwise. False for a face without area, as seen along its Newell normal.
+// Projects the face along its Newell normal into points_, counter-clockwise. Returns false if the projection has no area.
 bool Triangulator::project(const float* positions, const rt_u32* corners, rt_u32 count) {
     const Vec origin = corner_at(positions, corners[0]);
     Vec normal{};
     double largest = 0, extent = 0;
-    Vec before{};  // relative to the first corner, for precision far from the world's origin
+    Vec before{};  // relative to the first corner, which keeps precision far from the world's origin
     for (rt_u32 i = 1; i < count; ++i) {
         const Vec absolute = corner_at(positions, corners[i]);
         const Vec p = minus(absolute, origin), n = cross(before, p);
@@ -97,7 +98,7 @@ bool Triangulator::project(const float* positions, const rt_u32* corners, rt_u32
     tolerance_ = 1e-6;
     if (!(area > extent * (1e-7 * extent + rounding_))) return false;
     normal = {normal[0] / area, normal[1] / area, normal[2] / area};
-    // A basis of the plane from the axis least along the normal.
+    // The axis that is least parallel to the normal gives a basis of the plane.
     int axis = 0;
     for (int k = 1; k < 3; ++k) {
         if (std::abs(normal[k]) < std::abs(normal[axis])) axis = k;
@@ -121,7 +122,8 @@ double Triangulator::turn(rt_u32 a, rt_u32 b, rt_u32 c) const {
     return (q[0] - p[0]) * (r[1] - q[1]) - (q[1] - p[1]) * (r[0] - q[0]);
 }
 
-// No right turn beyond rounding, and once around: a star turns left everywhere too, but twice around.
+// True if the outline makes no right turn (beyond rounding errors) and goes around once: a star polygon also turns left
+// everywhere, but goes around twice.
 bool Triangulator::is_convex() const {
     const rt_u32 n = static_cast<rt_u32>(points_.size());
     int changes = 0, direction = 0, first_direction = 0;
@@ -133,7 +135,7 @@ bool Triangulator::is_convex() const {
         const double slack = tolerance_ * e_length * f_length + rounding_ * (e_length + f_length);
         const double t = e[0] * f[1] - e[1] * f[0];
         if (t < -slack) return false;
-        // Doubling back on the same line is no right turn, yet not convex.
+        // An outline that doubles back on the same line makes no right turn, but is not convex.
         if (t <= slack && e[0] * f[0] + e[1] * f[1] < -slack) return false;
         const int sign = e[0] > rounding_ ? 1 : e[0] < -rounding_ ? -1 : 0;
         if (sign == 0) continue;
@@ -181,8 +183,9 @@ void Triangulator::build_grid() {
     }
 }
 
-// leniency 0: no reflex corner within or on the triangle (corners that coincide with its own do not count: keyholes around
-// holes have them); 1: none strictly within; 2: flat corners too; 3: any corner, for faces that cross themselves.
+// Whether the triangle at a corner may be cut off. leniency 0: no reflex corner lies inside or on it, except corners that
+// coincide with one of its own (keyholes around holes have those). 1: none lies strictly inside. 2: flat corners count as ears
+// too. 3: every corner does, for faces that cross themselves.
 bool Triangulator::is_ear(rt_u32 corner, int leniency) {
     if (leniency == 3) return true;
     const rt_u32 a = prev_[corner], c = next_[corner];
@@ -217,7 +220,7 @@ bool Triangulator::is_ear(rt_u32 corner, int leniency) {
     return true;
 }
 
-// How well an ear is shaped: higher the larger its smallest angle is.
+// Shape quality of an ear: it grows with the smallest angle.
 double Triangulator::shape(rt_u32 corner) const {
     const Point &p = points_[prev_[corner]], &q = points_[corner], &r = points_[next_[corner]];
     const auto square = [](const Point& a, const Point& b) {
@@ -229,7 +232,7 @@ double Triangulator::shape(rt_u32 corner) const {
     return std::isfinite(sharpest) ? 1 - sharpest : 0;
 }
 
-// From `at` on, the corner after it that makes the best ear; `at` itself if none does.
+// Searches all `left` corners from `at` on for the ear of the best shape; returns `at` if there is no ear.
 rt_u32 Triangulator::best_ear(rt_u32 at, rt_u32 left) {
     rt_u32 best = at;
     double best_shape = -1;
@@ -258,7 +261,7 @@ void Triangulator::clip_ears(const rt_u32* corners, std::vector<rt_u32>& out) {
     const auto emit = [&](rt_u32 a, rt_u32 b, rt_u32 c) {
         for (const rt_u32 corner : {a, b, c}) out.push_back(corners[corner]);
     };
-    // Small faces are bounded by their size, and must not come off worse for a monster before them.
+    // Small faces do not use the budget: their size bounds the time, and a huge face before them must not make them worse.
     const uint64_t budget = budget_;
     if (n <= kShaped) budget_ = ~uint64_t{0};
     rt_u32 at = 1, left = n, tried = 0;
@@ -277,9 +280,9 @@ void Triangulator::clip_ears(const rt_u32* corners, std::vector<rt_u32>& out) {
         emit(a, at, c);
         next_[a] = c;
         prev_[c] = a;
-        reflex_[at] = 0;  // gone, so it blocks no ear any more
-        // A corner that was convex may turn reflex only where the face crosses itself; it is then not in the grid, and the
-        // overlap that follows is the face's own.
+        reflex_[at] = 0;  // cut off, so it no longer blocks ears
+        // A convex corner can become reflex only where the face crosses itself. Such a corner is not in the grid, so ears may
+        // overlap there; but the face overlaps itself there anyway.
         for (const rt_u32 neighbour : {a, c}) reflex_[neighbour] = reflex_[neighbour] && is_reflex(neighbour);
         --left;
         tried = 0;

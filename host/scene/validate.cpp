@@ -1,5 +1,5 @@
-// validate.cpp -- is a scene sound? Linear in its size; the hot loops are reductions that the compiler vectorises, and only a
-// failed one is searched for its first offender.
+// validate.cpp -- checks whether a scene is sound, in linear time. The hot loops are reductions that the compiler vectorises;
+// only after one fails is its array searched for the first bad element.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -40,7 +40,7 @@ std::string check_arrays(const Scene& s) {
     if (s.triangles.size() % 3 != 0) return "triangles: " + std::to_string(s.triangles.size()) + " indices, not 3 per triangle";
     if (s.triangle_materials.size() != s.triangles.size() / 3) return "triangle materials: not one per triangle";
     if (s.polygon_corners.size() % 3 != 0) return "polygon corners: not 3 numbers per corner";
-    // A ref holds the index within its kind in 28 bits.
+    // A ref stores the index within its kind in 28 bits.
     for (const size_t count : {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size()}) {
         if (count > RT_REF_INDEX_MAX) return std::to_string(count) + " primitives of one kind are more than a ref can name";
     }

@@ -1,11 +1,12 @@
-// rt_plugin.hpp -- C++17 comfort over rt_plugin.h, for plugins. Header only; all of it is compiled into the plugin, so that
-// nothing but the C structs of rt_plugin.h crosses the seam.
+// rt_plugin.hpp -- C++17 helpers on top of rt_plugin.h, for plugins. They are header only and compiled into the plugin, so that
+// only the C structs of rt_plugin.h are shared with the host.
 //
 //   static int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) { ...may throw... }
 //   constexpr rt_accel accel = rt::accel(slots, types, traverse, rt::guarded<build>, nullptr, rt::Traits());
 //   const rt_plugin rt_plugin_v1 = rt::accel_plugin("mine", "My structure", "1.0.0", nullptr, params, accel);
 //
-// rt_plugin_v1 must be a constant (all that is here is constexpr): the host reads its first words from the file.
+// rt_plugin_v1 must be a constant, because the host reads its first words from the file. Everything that it needs here is
+// constexpr.
 #pragma once
 #include <atomic>
 #include <exception>
@@ -21,11 +22,11 @@ namespace rt {
 
 // ---- errors -----------------------------------------------------------------------------------------------------------------
 
-// Thrown where the host has recorded the reason already (alloc answered NULL): nothing more to say.
+// Thrown where the host has already recorded the reason (alloc returned NULL), so that none is added.
 struct Stopped : std::exception {
     const char* what() const noexcept override { return "stopped by the host"; }
 };
-// Thrown where the user cancelled.
+// Thrown when the user has cancelled.
 struct Cancelled : std::exception {
     const char* what() const noexcept override { return "cancelled"; }
 };
@@ -61,11 +62,11 @@ constexpr bool same_text(const char* a, const char* b) {
 
 }  // namespace detail
 
-// The function as the host may call it: what it throws becomes host->fail(what).
+// Wraps a plugin function for the host: an exception becomes host->fail(what) and a status.
 template <auto F>
 inline constexpr auto guarded = &detail::Guard<F>::call;
 
-// throw rt::fail(host, "vertex 7 is not finite") -- recorded by the host, and unwinds to `guarded`.
+// throw rt::fail(host, "vertex 7 is not finite"): the host records the reason, and the exception ends in `guarded`.
 [[nodiscard]] inline Stopped fail(const rt_host* host, const std::string& why) {
     host->fail(host->ctx, why.c_str());
     return {};
@@ -73,16 +74,18 @@ inline constexpr auto guarded = &detail::Guard<F>::call;
 
 // ---- services ---------------------------------------------------------------------------------------------------------------
 
+// Writes one line to the program's log. level: RT_LOG_...
 inline void log(const rt_host* host, int32_t level, const std::string& text) {
     host->log(host->ctx, level, text.c_str());
 }
 
-// 0..1; throws Cancelled once the user no longer wants the result.
+// Reports progress, 0..1. Throws Cancelled once the user no longer wants the result.
 inline void progress(const rt_host* host, float fraction) {
     if (!host->progress(host->ctx, fraction)) throw Cancelled();
 }
 
-// body(i) for i in [0, count) on all cores; nests. The first exception of a body ends the loop early and is thrown here.
+// Calls body(i) for every i in [0, count) on all cores. Calls may be nested. After an exception the remaining bodies are
+// skipped, and the first exception is thrown here.
 template <class Body>
 void parallel_for(const rt_host* host, rt_u32 count, Body&& body) {
     struct Loop {
@@ -121,7 +124,7 @@ constexpr rt_param bool_param(const char* key, const char* label, const char* he
                               int32_t effect = RT_EFFECT_REBUILD) {
     return {key, label, help, RT_PARAM_BOOL, effect, 0, 1, def ? 1.0 : 0.0, nullptr};
 }
-// choices: a static array that ends with nullptr.
+// choices: a static array of names which ends with nullptr.
 template <size_t N>
 constexpr rt_param enum_param(const char* key, const char* label, const char* help, const char* const (&choices)[N], int def,
                               int32_t effect = RT_EFFECT_REBUILD) {
@@ -130,7 +133,7 @@ constexpr rt_param enum_param(const char* key, const char* label, const char* he
 
 // ---- acceleration structures ------------------------------------------------------------------------------------------------
 
-// Element type and its size belong together: rt::slot<bvh2_node>("nodes", "bvh2_node").
+// Describes a slot. The element type in C++ also gives its size: rt::slot<bvh2_node>("nodes", "bvh2_node").
 template <class T>
 constexpr rt_slot slot(const char* name, const char* cl_type) {
     static_assert(std::is_trivially_copyable_v<T>, "slots are copied to a device byte by byte");
@@ -178,18 +181,21 @@ constexpr rt_accel accel(const rt_slot (&slots)[N], const rt_cl_file& types, con
             traits.ray_cost};
 }
 
-// Zeroed memory of the host for `count` elements of a slot; once per slot.
+// Allocates zeroed host memory for `count` elements of a slot. Call it once per slot. Throws Stopped if there is no memory.
 template <class T>
 T* alloc(const rt_build_output* out, rt_u32 slot, uint64_t count) {
     auto* memory = static_cast<T*>(out->alloc(out->ctx, slot, count));
     if (!memory) throw Stopped();
     return memory;
 }
+// Allocates the array of `count` primitive refs, which the builder fills in leaf order. Call it once per build. Throws Stopped
+// if there is no memory.
 inline rt_u32* leaves(const rt_build_output* out, uint64_t count) {
     rt_u32* refs = out->leaves(out->ctx, count);
     if (!refs) throw Stopped();
     return refs;
 }
+// The three functions below forward to the functions of rt_build_output, which rt_plugin.h explains.
 inline void root(const rt_build_output* out, rt_u32 group, rt_u32 node) {
     out->root(out->ctx, group, node);
 }
@@ -202,7 +208,8 @@ inline void stat(const rt_build_output* out, const char* label, double value) {
 
 // ---- importers --------------------------------------------------------------------------------------------------------------
 
-// An id, or Stopped: rt::id(sink->mesh(sink->ctx, &mesh)). Not for textures, which may be missing without an error.
+// Returns an id that the sink gave, or throws Stopped if it gave none: rt::id(sink->mesh(sink->ctx, &mesh)). Do not use it for
+// textures: a texture may be missing without an error.
 inline rt_u32 id(rt_u32 answer) {
     if (answer == RT_NONE) throw Stopped();
     return answer;

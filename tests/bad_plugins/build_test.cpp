@@ -1,4 +1,4 @@
-// What the host makes of a builder that breaks its contract: one clear error, no crash, and the next build works.
+// A builder that breaks its contract gets one clear error, causes no crash, and the next build works.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -12,7 +12,7 @@
 
 namespace {
 
-// A mesh of two triangles placed twice, so that there is a second group, a mesh placed once, and a sphere.
+// A mesh of two triangles that is placed twice, which makes a second group; a mesh that is placed once; and a sphere.
 clarity::Scene sample_scene() {
     clarity::Scene scene;
     scene.materials.push_back({"default", clarity::default_material()});
@@ -105,7 +105,8 @@ const Breach kBreaches[] = {
 INSTANTIATE_TEST_SUITE_P(Breaches, BadBuilder, testing::ValuesIn(kBreaches),
                          [](const testing::TestParamInfo<Breach>& info) { return info.param.defect; });
 
-// The same builder without a defect: the scene is sound, it is the breach that is refused above.
+// The same builder without a defect is accepted. This shows that the scene is sound and that the tests above fail because of
+// the defect.
 TEST(GoodBuilder, IsTaken) {
     clarity::Progress progress;
     const clarity::AccelData accel = build("none", progress);

@@ -1,4 +1,4 @@
-// What the loader refuses, and how well it says why.
+// Libraries that the loader refuses, and whether its message gives the reason.
 #include <dlfcn.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -26,7 +26,7 @@ std::string read_file(const std::string& path) {
     return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-// A folder that is gone after the test.
+// A folder that is removed after the test.
 class Scratch {
  public:
     Scratch() {
@@ -37,7 +37,7 @@ class Scratch {
     ~Scratch() { fs::remove_all(folder_); }
     std::string write(const std::string& name, const std::string& content) const {
         const std::string path = (folder_ / name).string();
-        fs::remove(path);  // some file systems flush a file that is written over, not a new one
+        fs::remove(path);  // some file systems flush a file that is overwritten, but not a new one
         std::ofstream(path, std::ios::binary) << content;
         return path;
     }
@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"enum_of_wrong_range", {"'split'", "range must be 0..1"}}, Refusal{"null_params", {"params is NULL"}}),
     [](const testing::TestParamInfo<Refusal>& info) { return info.param.file; });
 
-// The same parts without a defect are taken: it is the defect that is refused above.
+// The same parts without a defect are accepted. This shows that the libraries above are refused because of the defect.
 TEST(GoodPlugin, IsTaken) {
     for (const char* name : {"sound", "bad_builder", "unknown_capability"}) {
         const clarity::PluginRecord record = clarity::load_plugin(library(name));
@@ -117,12 +117,12 @@ TEST(GoodPlugin, MayComeFromALaterSdkWithLongerStructs) {
     EXPECT_GT(record.plugin->struct_bytes, sizeof(rt_plugin));
 }
 
-// Were it loaded, it would end this process; so its refusal above means that it was not.
+// If this library were loaded, it would end the process. So its refusal above proves that it was not loaded.
 TEST(AbortsWhenLoadedDeathTest, IsArmed) {
     EXPECT_DEATH(dlopen(library("aborts_when_loaded").c_str(), RTLD_NOW | RTLD_LOCAL), "");
 }
 
-// Every source beside this one is covered above: a defect that nobody tests would look like one that is refused.
+// Every source in the folder `libraries` must be tested above: an untested defect would look as if it were refused.
 TEST(BadPlugins, AllAreTested) {
     size_t libraries = 0, tests = 0;
     for (const auto& entry : fs::directory_iterator(fs::path(CLARITY_SOURCE_DIR) / "tests/bad_plugins/libraries"))
@@ -185,7 +185,7 @@ TEST(NoPlugin, OtherMachine) {
     EXPECT_NE(clarity::load_plugin(scratch.write("narrow.so", narrow)).why.find("another kind of machine"), std::string::npos);
 }
 
-// Cut anywhere, a library is either refused, or loaded because only what nobody needs (its section headers) is gone.
+// However a library is truncated, it is refused, or it is loaded because only unused parts (section headers) are missing.
 TEST(NoPlugin, TruncatedAnywhere) {
     const Scratch scratch;
     const std::string bytes = read_file(library("sound"));
@@ -204,7 +204,7 @@ TEST(NoPlugin, TruncatedAnywhere) {
     EXPECT_NE(half.why.find("truncated"), std::string::npos) << half.why;
 }
 
-// Reading the tables of a damaged file gives an answer, never a crash or an endless walk; nothing is loaded here.
+// Reading damaged tables must give an answer, without a crash or an endless loop. Nothing is loaded here.
 TEST(NoPlugin, DamagedTables) {
     const Scratch scratch;
     const std::string bytes = read_file(library("sound"));
@@ -212,7 +212,8 @@ TEST(NoPlugin, DamagedTables) {
     size_t refused = 0;
     for (int round = 0; round < 3000; ++round) {
         std::string damaged = bytes;
-        // The headers, the dynamic section and the hash tables lie at the ends; the text in the middle is not read.
+        // The headers, the dynamic section and the hash tables are at both ends of the file; the code in the middle is not
+        // read.
         const size_t changes = 1 + random() % 4;
         for (size_t i = 0; i < changes; ++i) {
             const size_t at = random() % 2 ? random() % 0x400 : random() % damaged.size();

@@ -21,7 +21,7 @@ bool all_are(const AlignedBytes& bytes, unsigned char value) {
 
 TEST(AlignedBytes, AreAlignedAndZeroedAndAllThere) {
     for (const size_t bytes : {size_t{0}, size_t{1}, kMiB - 1, kMiB, kMiB + 1, 3 * kMiB - 1, 3 * kMiB, 4 * kMiB, 5 * kMiB + 17})
-        for (int again = 0; again < 3; ++again) {  // what comes from the system, then what was written before
+        for (int again = 0; again < 3; ++again) {  // the first block comes from the system, later ones were written to before
             AlignedBytes memory(bytes, true);
             ASSERT_EQ(memory.bytes(), bytes);
             ASSERT_EQ(reinterpret_cast<uintptr_t>(memory.data()) % 128, 0u);
@@ -54,7 +54,7 @@ TEST(AlignedBytes, VectorsGiveBackWhatTheyTook) {
     const size_t before = AlignedBytes::kept();
     {
         UninitializedVector<uint32_t> numbers;
-        for (uint32_t i = 0; i < 3000000; ++i) numbers.push_back(i);  // through several sizes
+        for (uint32_t i = 0; i < 3000000; ++i) numbers.push_back(i);  // makes the vector grow several times
         for (uint32_t i = 0; i < 3000000; ++i) ASSERT_EQ(numbers[i], i);
     }
     EXPECT_LE(AlignedBytes::kept(), AlignedBytes::kKept);

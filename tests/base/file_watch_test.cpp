@@ -1,4 +1,4 @@
-// file_watch_test.cpp -- each save is one change, however it is made; what changes nothing is none.
+// file_watch_test.cpp -- every save is one change, however it is made; a save of the same content is none.
 #include "base/file_watch.hpp"
 
 #include <gtest/gtest.h>
@@ -33,12 +33,12 @@ class Watch : public ::testing::Test {
         const std::lock_guard<std::mutex> lock(mutex_);
         return calls_;
     }
-    // Generous: a busy machine is no failure, a change that is never seen is.
+    // Waits up to a generous limit: a busy machine must not fail the test, but a change that is never noticed must.
     bool called(int count) {
         std::unique_lock<std::mutex> lock(mutex_);
         return called_.wait_for(lock, std::chrono::seconds(20), [&] { return calls_ >= count; });
     }
-    // Longer than the watch compares times and waits for the end of a burst.
+    // Waits longer than the interval between two looks at the files plus the longest burst.
     static void wait_long() { std::this_thread::sleep_for(std::chrono::milliseconds(1500)); }
 
     Scratch scratch_;
@@ -60,7 +60,7 @@ TEST_F(Watch, SeesAFileWrittenInPlace) {
 
 TEST_F(Watch, SeesAFileRenamedOverIt) {
     open();
-    for (int i = 1; i <= 3; ++i) {  // each leaves another inode
+    for (int i = 1; i <= 3; ++i) {  // each save replaces the inode
         fs::rename(scratch_.write("cl/.a.cl.swp", "version " + std::to_string(i)), a_);
         ASSERT_TRUE(called(i)) << i;
     }
@@ -75,7 +75,7 @@ TEST_F(Watch, ABurstIsOneChange) {
     }
     ASSERT_TRUE(called(1));
     wait_long();
-    // Two, if the machine stood still in the middle of it.
+    // Two changes are possible if the machine stopped in the middle of the burst.
     EXPECT_LE(watch_->revision(), 2u);
     if (watch_->revision() == 1) {
         EXPECT_EQ(watch_->last_changed(), (std::vector<std::string>{a_, b_}));
@@ -92,7 +92,7 @@ TEST_F(Watch, DeletedAndMadeAgain) {
     ASSERT_TRUE(called(3));
     scratch_.write("cl/sub/b.h", "two");
     ASSERT_TRUE(called(4));
-    scratch_.write("cl/sub/b.h", "three");  // the folder that came back is watched again
+    scratch_.write("cl/sub/b.h", "three");  // the folder is watched again after it came back
     ASSERT_TRUE(called(5));
 }
 
@@ -125,11 +125,11 @@ TEST_F(Watch, SameContentAndOtherFilesAreNoChange) {
 TEST_F(Watch, EndsAtOnceAndCostsNothingWhileNothingHappens) {
     open();
     EXPECT_TRUE(watch_->prompt()) << "inotify is not to be had here";
-    const std::clock_t before = std::clock();  // of all threads
+    const std::clock_t before = std::clock();  // processor time of all threads
     wait_long();
     EXPECT_LT(double(std::clock() - before) / CLOCKS_PER_SEC, 0.1);
     scratch_.write("cl/a.cl", "in a burst");
-    watch_.reset();  // does not hang, whatever it is at
+    watch_.reset();  // must not hang, whatever the thread is doing
     FileWatch nothing({}, nullptr);
     EXPECT_EQ(nothing.revision(), 0u);
 }

@@ -64,7 +64,7 @@ TEST_F(Log, TheFileHasEveryLineWithItsTime) {
     clarity::log(LogLevel::error, "broken");
     testing::internal::GetCapturedStderr();
     const std::string text = text_of(path);
-    // Digits stand for any digit.
+    // In the expected shape a digit stands for any digit.
     std::string shape = text;
     for (char& c : shape)
         if (c >= '0' && c <= '9') c = '0';
@@ -82,7 +82,7 @@ TEST_F(Log, AFileThatCannotBeOpenedIsAnError) {
     }
 }
 
-// A full disk costs one warning, not the render.
+// A full disk causes one warning; rendering goes on.
 TEST_F(Log, AFullDiskEndsTheFileWithOneWarning) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
     clarity::set_log_file("/dev/full");

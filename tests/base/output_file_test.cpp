@@ -1,4 +1,4 @@
-// Files that appear whole or not at all: also when the writer is killed in the middle.
+// Files appear complete or not at all, also if the writer is killed in the middle.
 #include "base/output_file.hpp"
 
 #include <fcntl.h>
@@ -26,7 +26,7 @@ std::vector<std::string> names_in(const Scratch& scratch) {
     return names;
 }
 
-// Runs `work` in a process of its own, which kills itself after it.
+// Runs `work` in a child process, which then kills itself.
 template <class Work>
 void killed_after(const Work& work) {
     const pid_t child = fork();
@@ -92,7 +92,7 @@ TEST(OutputFile, ALinkStaysALink) {
     EXPECT_EQ(scratch.read("real.txt"), "new");
 }
 
-// After the kill nothing may be there, or at the latest nothing after the next write into the folder.
+// After the kill there is no leftover, or at the latest none after the next write into the folder.
 TEST(OutputFile, AKilledWriteLeavesNothingOnceTheFolderIsWrittenAgain) {
     const Scratch scratch;
     killed_after([&] {

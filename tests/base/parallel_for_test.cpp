@@ -31,7 +31,8 @@ TEST(ParallelFor, Nests) {
     EXPECT_EQ(sum, uint64_t{4096} * 4095 / 2);
 }
 
-// A body that waits in an inner loop with a lock held must not be handed another body of the outer one: it would lock again.
+// A body that holds a lock while it waits for an inner loop must not be given another iteration of the outer loop: it would
+// lock again.
 TEST(ParallelFor, AWaitingBodyIsNotHandedAnotherOuterOne) {
     static thread_local int depth = 0;
     std::atomic<int> deepest{0};
@@ -65,7 +66,7 @@ TEST(ParallelFor, MayBeCalledByManyThreads) {
     EXPECT_EQ(sum, 8u * 499500u);
 }
 
-// Nested loops share one budget: no more threads than cores at any moment, however deep.
+// Nested loops share the threads: however deep they are nested, never more threads run than there are cores.
 TEST(ParallelFor, NestsWithoutMoreThreadsThanCores) {
     std::atomic<int> running{0}, most{0};
     std::atomic<uint64_t> sum{0};

@@ -1,4 +1,4 @@
-// Text of files and libraries moves no cursor, sets no title and hides nothing.
+// Text from files and libraries cannot move the cursor, set the title or hide anything.
 #include "base/printable.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Whole files, up to a limit, and nothing that has no end.
+// Whole files are read up to a limit. Pipes and devices, which may have no end, are refused.
 #include "base/read_file.hpp"
 
 #include <gtest/gtest.h>

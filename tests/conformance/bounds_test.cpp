@@ -1,4 +1,4 @@
-// bounds_test.cpp -- boxes of placed meshes hold the triangles that rays meet, however much large coordinates cancel.
+// bounds_test.cpp -- boxes of placed meshes enclose the triangles that rays hit, however much large coordinates cancel.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,8 @@ Vec transformed(const Affine& m, const Vec& p) {
     return r;
 }
 
-// A turn about a slanted axis and a stretch, which bring the point `center` to the world's origin, as exactly as floats can.
+// A rotation about a slanted axis with a scale, which moves the point `center` to the world's origin as exactly as floats
+// allow.
 Affine brings_home(const Vec& center, double stretch) {
     const double turn[9] = {0.7071068, -0.5, 0.5, 0.5, 0.8535534, 0.1464466, -0.5, 0.1464466, 0.8535534};
     Affine m{};
@@ -36,7 +37,7 @@ Affine brings_home(const Vec& center, double stretch) {
     return m;
 }
 
-// A small box at `center`, placed `copies` times.
+// A small box at `center`, placed `copies` times by `place`.
 Scene far_box(const Vec& center, const Affine& place, unsigned copies) {
     TriangleMesh mesh = box(2);
     mesh.transform(1, center);
@@ -61,8 +62,8 @@ const Case kCases[] = {{{1e6, 1e6, 1e6}, 1},   {{-1e6, 1e6, 3e5}, 1},    {{1e6, 
                        {{3e6, 1e5, -1e6}, 40}, {{1e5, -1e5, 1e5}, 1e-3}, {{7e4, 2e4, -9e4}, 1000},
                        {{0, 0, 0}, 1},         {{1e3, 1e3, -1e3}, 2}};
 
-// In double precision a corner stands at world_from_object times it. Rays see it where object_from_world, in floats, takes it
-// from.
+// In double precision a corner is at world_from_object times the corner. Rays see it where the float matrix object_from_world
+// maps back to the corner. Both points must be inside.
 TEST(Bounds, HoldInstancesWhoseLargeCoordinatesCancel) {
     for (const Case& c : kCases) {
         SCOPED_TRACE("centre " + std::to_string(c.center[0]) + ", stretch " + std::to_string(c.stretch));
@@ -77,7 +78,7 @@ TEST(Bounds, HoldInstancesWhoseLargeCoordinatesCancel) {
         for (size_t v = 0; v < scene.positions.size(); v += 3) {
             const Vec corner = {scene.positions[v], scene.positions[v + 1], scene.positions[v + 2]};
             const Vec world = transformed(scene.instances[0].world_from_object, corner);
-            // Newton's method in double precision: where m x = corner.
+            // Newton's method in double precision solves m x = corner.
             Vec seen = world;
             for (int step = 0; step < 3; ++step) {
                 Affine inverse;
@@ -96,7 +97,7 @@ TEST(Bounds, HoldInstancesWhoseLargeCoordinatesCancel) {
     }
 }
 
-// Meshes placed once become triangles of the world: the boxes must hold the very floats that are traced.
+// Meshes that are placed once become triangles of the world: the boxes must enclose exactly the floats that are traced.
 TEST(Bounds, HoldTheTracedCornersOfFlattenedMeshes) {
     for (const Case& c : kCases) {
         SCOPED_TRACE("centre " + std::to_string(c.center[0]) + ", stretch " + std::to_string(c.stretch));
@@ -116,7 +117,7 @@ TEST(Bounds, HoldTheTracedCornersOfFlattenedMeshes) {
     }
 }
 
-// A box does not grow where nothing cancels.
+// Where nothing cancels, a box must not grow.
 TEST(Bounds, StayTightNearTheOrigin) {
     const Scene scene = far_box({0, 0, 0}, brings_home({0, 0, 0}, 1), 2);
     Progress progress;

@@ -8,7 +8,7 @@ namespace {
 
 constexpr size_t kLookedAt = 1000;
 
-// Two units in the last place of the origin's largest coordinate, along the ray.
+// Two units in the last place of the origin's largest coordinate, as a distance along the ray.
 double rounding_of_origin(const Ray& ray) {
     double largest = 0, dd = 0;
     for (int k = 0; k < 3; ++k) {
@@ -76,7 +76,7 @@ Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const 
         } else {
             continue;
         }
-        if (!agree && c.overruled + c.wrong() > kLookedAt) continue;  // each look takes milliseconds
+        if (!agree && c.overruled + c.wrong() > kLookedAt) continue;  // each exact answer takes milliseconds
         const Truth exact = oracle.exact(rays[i]);
         if (!agree && exact.hit() == ours && (!ours || std::fabs(t[i] - exact.t) <= kTolerance * std::fabs(exact.t))) {
             ++c.overruled;

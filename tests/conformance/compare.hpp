@@ -1,4 +1,4 @@
-// compare.hpp -- two answers to the same rays, and how far they may differ.
+// compare.hpp -- compares our answers to rays with the oracle's; says how far they may differ.
 #pragma once
 #include <string>
 
@@ -7,30 +7,30 @@
 
 namespace clarity::test {
 
-// t within this of the oracle's, relative, or as near as the origin's own coordinates are known (for rays that start close to
-// what they hit); anything else counts as a differing hit.
+// Largest relative difference of t from the oracle's. A difference below the rounding error of the origin's coordinates is also
+// allowed (for rays that start close to the surface they hit). Any other hit counts as differing.
 inline constexpr double kTolerance = 1e-5;
 
 struct Comparison {
     size_t rays = 0, hits = 0;
-    size_t missed = 0;      // the oracle hits and we do not
-    size_t invented = 0;    // we hit and the oracle does not
-    size_t elsewhere = 0;   // both hit, t differs by more than kTolerance
-    size_t grazing = 0;     // those of `elsewhere` that the rounding of the ray's direction explains: Oracle::within_rounding
-    size_t overruled = 0;   // differing, but all triangles in double precision say what we say
-    size_t other_prim = 0;  // t agrees, another primitive is named that does not lie there
-    size_t ties = 0;        // t agrees, another primitive is named that lies there too
-    double worst_t = 0;     // relative difference, of those that agree
-    std::string first;      // the first difference, in words
+    size_t missed = 0;      // the oracle hits, we do not
+    size_t invented = 0;    // we hit, the oracle does not
+    size_t elsewhere = 0;   // both hit, but t differs by more than kTolerance
+    size_t grazing = 0;     // of `elsewhere`: explained by the rounding of the ray's direction, see Oracle::within_rounding
+    size_t overruled = 0;   // differing, but testing all triangles in double precision agrees with us
+    size_t other_prim = 0;  // t agrees, but we name another primitive, which is not there
+    size_t ties = 0;        // t agrees, and we name another primitive, which is there too
+    double worst_t = 0;     // largest relative difference among the hits that agree
+    std::string first;      // describes the first difference
 
     size_t differing() const { return missed + invented + elsewhere; }
-    // Those that nothing excuses.
+    // Number of differences without an explanation.
     size_t wrong() const { return differing() - grazing - overruled; }
     void add(const Comparison& other);
     std::string text() const;
 };
 
-// Our t (infinite: missed), and where prims is not null the primitive numbers, against the truth of the rays.
+// Compares t (infinite: no hit) and, if prims is not null, the primitive numbers with the oracle's answers.
 Comparison compare(const Oracle& oracle, const std::vector<Truth>& truth, const std::vector<Ray>& rays,
                    const std::vector<float>& t, const std::vector<float>* prims);
 

@@ -8,13 +8,13 @@ Scene degenerate_scene() {
     TriangleMesh mesh;
     TriangleMesh cube = box(1);
     mesh.add(cube);
-    mesh.add(cube);  // duplicates: whichever is named, t is the same
+    mesh.add(cube);  // duplicates: either may be named, since t is the same
     cube.transform(0.5, {2, 0.5, 0});
-    mesh.add(cube);  // shares a part of a plane with the first one's
+    mesh.add(cube);  // partly in the same plane as a side of the first box
 
-    // Points and needles along each axis, in front of the boxes.
+    // Triangles that are points or needles along each axis, in front of the boxes.
     for (int axis = 0; axis < 3; ++axis) {
-        // Off the pixels' grid: a ray that meets a needle to the last bit may see it or not.
+        // Not on the grid of pixels, because a ray that hits a needle exactly may see it or not.
         std::array<double, 3> a{-1.53, 1.57, 1.51}, b = a;
         b[axis] += 1;
         const rt_u32 p = mesh.add_vertex(a[0], a[1], a[2]), q = mesh.add_vertex(b[0], b[1], b[2]);
@@ -24,7 +24,7 @@ Scene degenerate_scene() {
         mesh.add_triangle(p, middle, q);
     }
 
-    // A wall of axis-parallel squares whose corners lie on powers of two, so that centre rays run along their edges.
+    // A wall of axis-parallel squares. Their corners are powers of two, so that the central rays run along their edges.
     for (int x = -4; x < 4; ++x)
         for (int y = -4; y < 4; ++y) {
             const rt_u32 a = mesh.add_vertex(x, y, -4), b = mesh.add_vertex(x + 1, y, -4),
@@ -33,7 +33,7 @@ Scene degenerate_scene() {
             mesh.add_triangle(a, c, d);
         }
 
-    // Tiny ones, and a floor that reaches far beyond.
+    // Tiny triangles, and a floor that extends far beyond everything else.
     for (int i = 0; i < 64; ++i) {
         const double x = -2 + 1e-3 * (i % 8), y = 0.2 + 1e-3 * (i / 8);
         const rt_u32 a = mesh.add_vertex(x, y, 2), b = mesh.add_vertex(x + 1e-4, y, 2), c = mesh.add_vertex(x, y + 1e-4, 2);
@@ -47,8 +47,8 @@ Scene degenerate_scene() {
     return scene_of(mesh);
 }
 
-// Straight along -z from a round position, so that with an odd number of pixels the middle row and column run in the planes of
-// the axes.
+// Looks straight along -z from a round position. With an odd number of pixels, the middle row and column then lie in the planes
+// of the axes.
 View view_of_degenerate() {
     return view_from({0, 0, 8}, {0, 0, 0}, 60);
 }

@@ -1,11 +1,11 @@
-// degenerate.hpp -- a scene of what breaks ray tracers.
+// degenerate.hpp -- a scene of cases that are hard for ray tracers.
 #pragma once
 #include "support/generated.hpp"
 
 namespace clarity::test {
 
-// Zero-area triangles (points, needles, two equal corners), every triangle of a box twice, walls in the axes' planes that share
-// edges, a floor of 1e6 units and a cluster of triangles of 1e-4. Looks best from view_of_degenerate().
+// Triangles without area (points, needles, two equal corners), every triangle of a box twice, walls in the axes' planes with
+// common edges, a floor of 1e6 units and a cluster of triangles of 1e-4. view_of_degenerate() shows all of it.
 Scene degenerate_scene();
 View view_of_degenerate();
 

@@ -33,7 +33,7 @@ Vec vec(const float* p) {
     return {p[0], p[1], p[2]};
 }
 
-// Distance of a triangle widened by `slack` of its size; +inf: missed.
+// Distance to a triangle that is widened by `slack`, relative to its size; +inf if it is missed.
 double hit_triangle(const float* corners, const Ray& ray, double slack) {
     const Vec a = vec(corners), ab = vec(corners + 3) - a, ac = vec(corners + 6) - a;
     const Vec n = cross(ab, ac);
@@ -172,8 +172,8 @@ double Oracle::hit_polygon(size_t i, const Ray& ray) const {
     }
     const double t = dot(normal, centroid - ray.origin) / dot(normal, ray.direction);
     if (!(t > 0 && t >= ray.t_min && t <= ray.t_max)) return INFINITY;
-    // The sum of the angles under which the point sees the edges, in the polygon's plane: 0 or a multiple of a turn. The
-    // kernels count crossings instead.
+    // Winding number: the sum of the angles at which the point sees the edges, in the polygon's plane, is 0 or a multiple of a
+    // full turn. The kernels use another method; they count crossings.
     const Vec p = ray.origin + t * ray.direction, n = normalized(normal);
     double angle = 0;
     for (rt_u32 c = 0; c < count; ++c) {

@@ -1,4 +1,4 @@
-// oracle.hpp -- what rays hit by the word of others: Embree for triangles, plain double precision for everything else.
+// oracle.hpp -- independent answers to rays: Embree for triangles, simple code in double precision for everything else.
 #pragma once
 #include <embree3/rtcore.h>
 
@@ -10,9 +10,10 @@
 
 namespace clarity::test {
 
+// The nearest hit of a ray.
 struct Truth {
     double t = INFINITY;
-    int prim = -1;  // numbered as the renderer numbers: triangles of all instances, spheres, polygons, planes
+    int prim = -1;  // numbered as by the renderer: triangles of all instances, spheres, polygons, planes; -1: no hit
     bool hit() const { return std::isfinite(t); }
 };
 
@@ -22,10 +23,10 @@ struct Ray {
 };
 Ray widened(const rt_ray& ray);
 
-// The ray through the centre of pixel (x, y), y = 0 at the top, in double precision.
+// The ray through the centre of pixel (x, y), in double precision; y = 0 is the top row.
 Ray camera_ray(const Camera& camera, int width, int height, int x, int y);
 
-// World-space corners of every placed triangle, in the order of `prim`.
+// World-space corners of all placed triangles, in the order of `prim`.
 std::vector<float> world_corners(const Scene& scene);
 
 class Oracle {
@@ -36,16 +37,16 @@ class Oracle {
     Oracle& operator=(const Oracle&) = delete;
 
     Truth closest(const Ray& ray) const;
-    // One a pixel, top row first.
+    // One answer per pixel, top row first.
     std::vector<Truth> picture(const Camera& camera, int width, int height) const;
 
-    // Whether primitive `prim` may be said to lie at distance t on the ray: for the ties between neighbours and duplicates.
-    // slack: of t, relative; triangles are widened by 1e-3 of their size.
+    // True if primitive `prim` can be at distance t on the ray, so that naming it is right in a tie between neighbours or
+    // duplicates. slack: relative error of t; triangles are widened by 1e-3 of their size.
     bool lies_at(int prim, const Ray& ray, double t, double slack) const;
-    // Whether the plane of triangle `prim` is met at t by a ray that differs from this one by the rounding of its direction to
-    // floats (two units in the last place of 1): true for surfaces seen so flatly that no better answer can be had.
+    // True if rounding of the ray's direction to floats (two units in the last place of 1) can explain t as a hit of the plane
+    // of triangle `prim`. Surfaces at grazing angles allow no better answer.
     bool within_rounding(int prim, const Ray& ray, double t) const;
-    // Distance of the nearest triangle by trying all in double precision, for the cases where two programs disagree.
+    // The nearest triangle, found by testing all in double precision. Decides where two programs disagree.
     Truth exact(const Ray& ray) const;
 
  private:
@@ -56,7 +57,7 @@ class Oracle {
     double hit_plane(size_t i, const Ray& ray) const;
 
     std::shared_ptr<const Scene> scene_;
-    std::vector<float> corners_;  // 9 a triangle
+    std::vector<float> corners_;  // 9 floats per triangle
     int triangle_count_ = 0;
     RTCDevice device_ = nullptr;
     RTCScene embree_ = nullptr;

@@ -1,4 +1,5 @@
-// pictures_test.cpp -- `--aov t` and `prim` against Embree: real scenes, every structure, all lane counts and packets.
+// pictures_test.cpp -- compares `--aov t` and `prim` with Embree: real scenes, every structure, all lane counts and packet
+// sizes.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,13 +19,13 @@ Workbench& bench() {
     return Workbench::get();
 }
 
-// A scene, its camera and what the oracle sees at the two sizes that are compared.
+// A scene, its camera, and the oracle's answers at the two picture sizes.
 class Case {
  public:
     Case(ScenePtr scene, const std::string& camera) : Case(scene, make_view(*scene, 4.0f / 3, camera)) {}
     Case(ScenePtr scene, const View& view) : scene_(geometry_of(scene)), view_(view), oracle_(scene_) {}
 
-    // The AOVs of one configuration against the oracle.
+    // Compares the AOVs of one configuration with the oracle.
     Comparison picture(const Configuration& configuration, int width, int height, bool with_prims) {
         Settings settings = make_settings({{"aov", "t"}});
         configuration.apply(settings);
@@ -40,7 +41,7 @@ class Case {
         return compare(oracle_, truth_, rays_, t.pixels, with_prims ? &prims.pixels : nullptr);
     }
 
-    // A large picture by each of `large`, with primitives; then small ones in all configurations given.
+    // Compares a large picture with primitives for each of `large`, and then small pictures for all other configurations.
     void check(const std::vector<std::string>& large, const std::vector<Configuration>& small) {
         for (const std::string& accel : large) {
             const Configuration configuration{accel, 16, 4, 4};
@@ -54,7 +55,7 @@ class Case {
         for (const Configuration& configuration : small)
             expect(picture(configuration, 259, 193, turn++ % 4 == 0), configuration.text());
     }
-    // Surfaces seen flatly up to the horizon: what the rounding of rays explains is no difference.
+    // For scenes with surfaces at grazing angles up to the horizon: differences that the rounding of rays explains are allowed.
     Case& hostile() {
         hostile_ = true;
         return *this;

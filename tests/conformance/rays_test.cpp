@@ -1,4 +1,4 @@
-// rays_test.cpp -- rays of the caller's own: nearest and any hit, their limits, and directions that no camera makes.
+// rays_test.cpp -- rays of the caller: nearest and any hit, the limits of rays, and directions that no camera makes.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -35,7 +35,7 @@ rt_ray ray_of(const Point& origin, const Point& direction, float t_min = 0, floa
     return {{origin[0], origin[1], origin[2]}, t_min, {direction[0], direction[1], direction[2]}, t_max};
 }
 
-// Origins in and around the scene's box, directions all over the sphere, some of them not unit.
+// Origins in and around the scene's box, and directions all over the sphere; some directions are not unit vectors.
 std::vector<rt_ray> random_rays(const Scene& scene, size_t count, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<float> at(-0.3f, 1.3f), any(0, 1);
@@ -92,7 +92,7 @@ void expect_everywhere(const ScenePtr& scene, const Oracle& oracle, const std::v
         for (const int lanes : {1, 4, 8, 16}) expect_as_oracle(scene, oracle, rays, accel, lanes, allowed);
 }
 
-// A sphere, a torus and boxes that touch: small enough for structures that try everything.
+// A sphere, a torus and boxes that touch: few triangles, so that `linear`, which tests all of them, is fast enough.
 ScenePtr shapes() {
     static const ScenePtr scene = [] {
         TriangleMesh mesh = uv_sphere(1, 24, 16), ring = torus(1.6, 0.3, 24, 12), cube = box(0.5);
@@ -112,11 +112,12 @@ TEST(Rays, RandomOnesOnShapes) {
 }
 
 #ifdef __SSE__
-// Embree leaves threads in a mode where small indices in lanes of floats become 0: builders must not be met in it.
+// Embree leaves its threads in a mode which flushes denormals to zero, also small indices in lanes of float vectors. Builders
+// must work if they are called in that mode.
 TEST(Rays, NoPrimitiveIsLostWhereDenormalsAreFlushed) {
     const unsigned before = _mm_getcsr();
     for (const std::string& accel : bench().accels()) {
-        const auto fresh = std::make_shared<const Scene>(*shapes());  // built anew
+        const auto fresh = std::make_shared<const Scene>(*shapes());  // a new scene, so that the structure is built again
         _mm_setcsr(before | 0x8040);
         const auto prepared = bench().prepare(fresh, settings_of(accel, 1));
         _mm_setcsr(before);
@@ -128,7 +129,7 @@ TEST(Rays, NoPrimitiveIsLostWhereDenormalsAreFlushed) {
 }
 #endif
 
-// One lane and `portable`: the program that a GPU runs, on whatever device there is.
+// One lane and `portable`: the kernel variant for GPUs, tested on any device.
 TEST(Rays, AsGpusTraceThem) {
     for (const ScenePtr& scene : {shapes(), geometry_of(load_scene(source_file("scenes/primitives.scene")))}) {
         const Oracle oracle(scene);
@@ -164,8 +165,8 @@ TEST(Rays, LimitsAreHonoured) {
     expect_everywhere(shapes(), Oracle(shapes()), rays, 0);
 }
 
-// From afar, where the coordinates of what is near each other agree in most digits: half aimed at the scene, half past it at
-// any distance, a million times a triangle's size included.
+// Rays from far away, where the coordinates of neighbouring surfaces agree in most digits. Half of them are aimed at the scene,
+// half pass it at any distance, up to a million times the size of a triangle.
 TEST(Rays, FromAfar) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Oracle oracle(scene);
@@ -176,7 +177,7 @@ TEST(Rays, FromAfar) {
         rt_ray& ray = rays[i];
         const float far = std::pow(10.0f, decades(random));
         if (i % 2) {
-            // Along the floor, and from there towards a lamp in the sky.
+            // Origins along the floor, directions to a lamp in the sky.
             ray = ray_of({far * one(random), 0.7f, far * one(random)}, {0.486664265f, 0.811107099f, 0.324442834f});
             continue;
         }
@@ -195,7 +196,7 @@ TEST(Rays, AlongTheAxes) {
     for (int i = 0; i < 12000; ++i) {
         const Point origin{at(random), at(random), at(random)};
         Point direction{};
-        // One axis, or two of them; the zeros are zeros of either sign.
+        // Directions along one axis or two; the zeros have either sign.
         for (float& d : direction) d = random() & 1 ? 0.0f : -0.0f;
         direction[i % 3] = i & 8 ? 1.0f : -1.0f;
         if (i % 2) direction[(i + 1) % 3] = at(random);
@@ -204,8 +205,8 @@ TEST(Rays, AlongTheAxes) {
     expect_everywhere(shapes(), Oracle(shapes()), rays, 0);
 }
 
-// From points of the boxes' planes along these planes, and exactly at corners: ties, where only agreement among structures and
-// with their own any-hit queries can be asked for.
+// Origins in the planes of the boxes with directions in these planes, and rays that hit corners exactly. There are ties, so the
+// test only asks that structures agree with each other and with their own any-hit queries.
 TEST(Rays, AtCornersAndAlongFaces) {
     std::vector<rt_ray> rays;
     const ScenePtr scene = shared_scene(degenerate_scene());
@@ -230,8 +231,8 @@ TEST(Rays, AtCornersAndAlongFaces) {
     }
 }
 
-// Directions of no length, of no number, of no end: whatever is answered, in time, and sound; and who travels in the same
-// packet gets the same answer as without them.
+// Directions that are zero, NaN or infinite: every answer must come in time and be valid. Rays in the same packet must get the
+// same answers as without them.
 TEST(Rays, StrangeOnesHarmNobody) {
     const float denormal = 1e-40f;
     const std::vector<rt_ray> strange = {
@@ -271,7 +272,7 @@ TEST(Rays, StrangeOnesHarmNobody) {
                     }
                 }
             }
-    // Nearly along an axis is along it.
+    // A direction that is nearly along an axis gives the same hit as the axis itself.
     for (const std::string& accel : bench().accels()) {
         const rt_hit straight = bench().rays(shapes(), settings_of(accel, 1), {ray_of({0.1f, 0.2f, 5}, {0, 0, -1})}, false)[0],
                      nearly = bench().rays(shapes(), settings_of(accel, 1),

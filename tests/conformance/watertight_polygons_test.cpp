@@ -1,6 +1,6 @@
-// watertight_polygons_test.cpp -- no ray leaves a closed surface of polygons, of many corners or few, convex or not: not
-// through the edges and corners that they share, with each other or with triangles. A room that leaks has black pixels along
-// its edges.
+// watertight_polygons_test.cpp -- no ray leaves a closed surface of polygons through edges and corners that they share with
+// each other or with triangles. The polygons have many or few corners and are convex or not. A leak would show as black pixels
+// along the edges of a room.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 using Matrix = std::array<double, 9>;
 
-// Faces of a closed surface as loops of corners, which all neighbours have bit for bit.
+// The faces of a closed surface as loops of corners. Neighbours have exactly the same corners.
 struct Faces {
     std::vector<Point> corners;
     std::vector<std::vector<rt_u32>> loops;
@@ -52,7 +52,7 @@ struct Faces {
     }
 };
 
-// Two loops of `n` corners, one above the other, and a quadrilateral for each of their edges.
+// Two loops of `n` corners, one above the other, with a quadrilateral for each edge.
 Faces prism(const std::vector<std::array<double, 2>>& outline) {
     Faces faces;
     const auto n = static_cast<rt_u32>(outline.size());
@@ -74,7 +74,7 @@ Faces room() {
     return prism({{-1, -1}, {-1, 1}, {1, 1}, {1, -1}});
 }
 
-// Corners near and far by turns: floor and ceiling are as far from convex as can be.
+// Corners are near and far alternately, so that floor and ceiling are far from convex.
 Faces star(unsigned points) {
     std::vector<std::array<double, 2>> outline;
     for (unsigned i = 0; i < 2 * points; ++i) {
@@ -84,7 +84,7 @@ Faces star(unsigned points) {
     return prism(outline);
 }
 
-// A sphere of trapezoids between two caps of many corners.
+// A sphere of trapezoids, with a cap of many corners at each end.
 Faces globe(unsigned segments, unsigned rings) {
     Faces faces;
     for (unsigned r = 1; r < rings; ++r)
@@ -105,7 +105,7 @@ Faces globe(unsigned segments, unsigned rings) {
     return faces;
 }
 
-// Every `nth` face of four corners as two triangles, the rest as polygons.
+// Every `nth` face of four corners becomes two triangles; the rest are polygons.
 ScenePtr scene_of(const Faces& faces, size_t nth) {
     TriangleMesh mesh;
     std::vector<const std::vector<rt_u32>*> polygons;
@@ -145,7 +145,7 @@ Matrix rotation(std::mt19937& random) {
 
 constexpr Matrix kUpright = {1, 0, 0, 0, 1, 0, 0, 0, 1};
 
-// About `aims` rays at edges and corners from points all over the middle of the room, and random ones.
+// Traces about `aims` rays from points in the middle of the room to edges and corners, and random ones.
 void expect_tight(const std::string& name, Faces faces, const Matrix& turn, double scale, const std::array<double, 3>& offset,
                   size_t aims, size_t nth = 0) {
     ASSERT_TRUE(faces.is_closed()) << name << ": not a closed surface, it proves nothing";
@@ -164,7 +164,8 @@ void expect_tight(const std::string& name, Faces faces, const Matrix& turn, doub
     const std::vector<rt_ray> rays = aimed_at(edges, eyes);
     unsigned count = 0;
     for (const std::string& accel : Workbench::get().accels()) {
-        const int usual = count++ % 2 ? 1 : 16;  // each structure by itself, the one with ways of its own for packets by both
+        // Each structure runs with one lane count, but bvh8 with both, because it traverses packets in a different way.
+        const int usual = count++ % 2 ? 1 : 16;
         for (const int lanes : {16, 1}) {
             if ((lanes != usual && accel != "bvh8") || (accel == "linear" && edges.size() > 200)) continue;
             Settings settings;
@@ -212,10 +213,10 @@ TEST(WatertightPolygons, TrianglesAmongThem) {
     expect_tight("globe with triangles", globe(48, 24), rotation(random), 1, {0, 0, 0}, 200000, 3);
 }
 
-// Where walls meet, rounding puts what camera rays hit on either side of the other wall: none of it may lie in that wall's
-// shadow.
+// Near an edge between two walls, rounding moves hit points to either side of the other wall. None of them may be in the shadow
+// of that wall.
 TEST(WatertightPolygons, EdgesAreNotInShadow) {
-    // As high as wide: a picture's diagonals lie on the edges from the back to the front.
+    // The room is as high as wide, so that the diagonals of the picture lie on its edges from front to back.
     const ScenePtr scene = scene_of(prism({{-0.75, -1}, {-0.75, 1}, {0.75, 1}, {0.75, -1}}), 0);
     size_t dark = 0;
     for (const float z : {0.95f, 0.7f, 0.3f}) {

@@ -1,5 +1,5 @@
-// watertight_test.cpp -- no ray leaves a closed mesh: not through edges, not through corners, wherever the mesh lies and
-// whatever its size. (Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection, has the reasons.)
+// watertight_test.cpp -- no ray leaves a closed mesh through an edge or a corner, wherever the mesh is and whatever its size.
+// Woop, Benthin, Wald 2013, Watertight Ray/Triangle Intersection, explains why this needs care.
 #include <gtest/gtest.h>
 
 #include "leaks.hpp"

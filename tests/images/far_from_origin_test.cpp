@@ -1,5 +1,5 @@
-// far_from_origin_test.cpp -- rays that start at surfaces, where floats are coarse: they neither meet the same surface again
-// nor pass over what is near. Scenes are moved by powers of two, so that their own numbers stay exact.
+// far_from_origin_test.cpp -- rays that start at surfaces where floats are coarse neither hit the same surface again nor miss a
+// near one. Scenes are moved by powers of two, so that their coordinates stay exact.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ rt_light light_of(rt_u32 kind, const Point& position, float intensity) {
     return light;
 }
 
-// An axis-aligned rectangle that faces +z, as two triangles, a polygon, or the mesh of an instance.
+// The same axis-aligned rectangle, which faces +z, as two triangles, as a polygon or as the mesh of an instance.
 enum class Kind { triangles, polygon, instance };
 constexpr Kind kKinds[] = {Kind::triangles, Kind::polygon, Kind::instance};
 const char* name_of(Kind kind) {
@@ -73,7 +73,7 @@ void add_rectangle(Scene& scene, Kind kind, const Point& center, float half, rt_
     mesh.add_triangle(0, 2, 3);
     const rt_u32 number = add_mesh(scene, mesh, material);
     add_instance(scene, number, moved ? center : Point{0, 0, 0});
-    if (moved) add_instance(scene, number, {x, y, z - 100});  // meshes placed once are flattened
+    if (moved) add_instance(scene, number, {x, y, z - 100});  // a mesh that is placed once would be flattened
 }
 
 View dark_view(const Point& eye, const Point& target, double fov_deg) {
@@ -98,7 +98,7 @@ TEST(FarFromOrigin, ALampFiveMillimetresAboveASurfaceLightsIt) {
         }
 }
 
-// The camera looks along a gap of 2 mm between a surface and what keeps the light from it.
+// The camera looks along a gap of 2 mm between a surface and an object that blocks the light.
 TEST(FarFromOrigin, AGapOfTwoMillimetresCastsAShadow) {
     for (const Kind kind : kKinds)
         for (const Point& at : {Point{1000, 0, 0}, Point{1000, -1000, 1000}}) {
@@ -118,7 +118,7 @@ TEST(FarFromOrigin, AGapOfTwoMillimetresCastsAShadow) {
         }
 }
 
-// A room of 2 m: floor and back wall of triangles and a polygon, a mirror, a ball of glass, a mesh placed twice.
+// A room of 2 m: floor and back wall of triangles and a polygon, a mirror, a glass ball and a mesh that is placed twice.
 Scene room(const Point& by) {
     const auto at = [&](float x, float y, float z) { return Point{by[0] + x, by[1] + y, by[2] + z}; };
     Scene scene = scene_of(TriangleMesh());
@@ -160,7 +160,7 @@ TEST(FarFromOrigin, ASmallSceneLooksAsItDoesAtTheOrigin) {
         const Picture home = room_picture({0, 0, 0}, depth);
         struct {
             float far;
-            double tolerance, share;  // at 131072 floats are 16 mm apart: a ball of glass 50 cm wide shows it
+            double tolerance, share;  // at 131072 floats are 16 mm apart, which is visible in a glass ball 50 cm wide
         } const cases[] = {{1024, .004, depth == 1 ? .001 : .003}, {131072, .02, depth == 1 ? .02 : .06}};
         for (const auto& c : cases)
             for (const Point& by : {Point{c.far, 0, 0}, Point{0, 0, c.far}, Point{c.far, -c.far, c.far}}) {
@@ -175,11 +175,12 @@ TEST(FarFromOrigin, ASmallSceneLooksAsItDoesAtTheOrigin) {
     }
 }
 
-// Nothing is lit through a closed mesh, and nothing leaves it: rays that go from mirror to mirror inside see no background.
+// No light passes through a closed mesh, and no ray leaves it: rays that bounce between the mirrors inside never see the
+// background.
 TEST(FarFromOrigin, ClosedMirrorsKeepTheirRays) {
     for (const double scale : {1e-3, 1.0, 100.0})
         for (const float away : {0.f, 1000.f, 1e5f, 1e6f}) {
-            if (scale < 1 && away > 0) continue;  // less than the distance between floats
+            if (scale < 1 && away > 0) continue;  // smaller than the distance between floats
             if (scale < 100 && away > 1e5f) continue;
             for (const unsigned copies : {1u, 2u}) {
                 Scene scene = scene_of(box(scale));
@@ -203,12 +204,12 @@ TEST(FarFromOrigin, ClosedMirrorsKeepTheirRays) {
         }
 }
 
-// Glass of index 1 is not there. A ray crosses a ball of it twice; one that met the same surface again would need a generation
-// more.
+// Glass of index 1 is invisible. A ray hits the surface of a ball twice; a ray that hit the same surface again would need one
+// more generation.
 TEST(FarFromOrigin, RaysCrossEachSurfaceOfGlassOnce) {
     for (const double scale : {1e-3, 1.0})
         for (const float away : {0.f, 1000.f, 131072.f})
-            for (const int kind : {0, 1, 2}) {  // a sphere, a mesh, a mesh placed twice
+            for (const int kind : {0, 1, 2}) {  // a sphere, a mesh, a mesh that is placed twice
                 if (scale < 1 && away > 0) continue;
                 Scene scene = scene_of(kind == 0 ? TriangleMesh() : uv_sphere(scale, 24, 12));
                 scene.materials[0].values = glass(1);
@@ -235,7 +236,7 @@ TEST(FarFromOrigin, RaysCrossEachSurfaceOfGlassOnce) {
             }
 }
 
-// No surface shades itself, whatever the kind of primitive, the place and the angle.
+// No surface shades itself, for every kind of primitive, place and angle.
 TEST(FarFromOrigin, NoSurfaceShadesItself) {
     for (const float away : {0.f, 1000.f, 131072.f})
         for (const int kind : {0, 1, 2}) {

@@ -1,4 +1,4 @@
-// independence_test.cpp -- a picture is the same whatever structure, lane count, packet and tracer computed it.
+// independence_test.cpp -- the picture does not depend on the structure, lane count, packet size and tracer.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ Workbench& bench() {
 }
 
 struct Difference {
-    size_t pixels = 0;  // that differ by more than 1/255 in a channel
+    size_t pixels = 0;  // number of pixels that differ by more than 1/255 in a channel
     int worst = 0;
     size_t first = 0;
 };
@@ -62,7 +62,7 @@ TEST(Independence, EveryPrimitiveMaterialAndLight) {
 }
 
 TEST(Independence, TexturedShowpiece) {
-    std::vector<Configuration> some;  // each compiles a large kernel
+    std::vector<Configuration> some;  // only some, because each compiles a large kernel
     int lanes = 4;
     for (const std::string& accel : bench().fast_accels()) {
         some.push_back({accel, lanes, 4, 4});
@@ -71,11 +71,11 @@ TEST(Independence, TexturedShowpiece) {
     expect_same_pictures("scenes/showpiece.scene", some, 240, 180);
 }
 
-// Packets of camera rays that see nothing of a scene are filled without being traced. Lost would be what stands at the edge of
-// one.
+// Packets of camera rays that see nothing of the scene are filled without tracing. The test makes sure that no object at the
+// edge of a packet is lost.
 TEST(Independence, WhatPacketsHardlySee) {
     auto bounded = std::make_shared<Scene>(*geometry_of(load_scene(source_file("scenes/primitives.scene"))));
-    bounded->planes.clear();  // of which there would be something to see everywhere
+    bounded->planes.clear();  // planes are visible nearly everywhere
     const ScenePtr scene = bounded;
     const Bounds box = scene->bounds();
     const std::array<float, 3> middle = {(box.min[0] + box.max[0]) / 2, (box.min[1] + box.max[1]) / 2,
@@ -90,7 +90,7 @@ TEST(Independence, WhatPacketsHardlySee) {
     size_t seen = 0, empty = 0;
     for (int i = 0; i < 60; ++i) {
         View view = make_view(*scene, float(one.width) / one.height);
-        // Within, near and far; looking at it, past it, and away; along the axes too.
+        // The camera is inside, near or far. It looks at the scene, past it or away from it, sometimes along an axis.
         const float distance = size * std::pow(10.0f, 3 * any(random) - 1.5f);
         std::array<float, 3> away{normal(random), normal(random), normal(random)};
         if (i % 4 == 0) away = {i % 8 ? 0.0f : 1.0f, i % 8 ? 1.0f : 0.0f, 0.0f};
@@ -117,7 +117,7 @@ TEST(Independence, WhatPacketsHardlySee) {
     EXPECT_GT(empty, 100000u);
 }
 
-// Sizes that no packet divides, down to a single pixel.
+// Picture sizes that are no multiple of a packet, down to a single pixel.
 TEST(Independence, OddSizes) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const auto& [width, height] : std::vector<std::pair<int, int>>{{1, 1}, {17, 3}, {3, 17}, {33, 31}}) {
@@ -136,7 +136,7 @@ TEST(Independence, OddSizes) {
     }
 }
 
-// The samples of a picture are numbered, so it does not matter how they are dealt out.
+// Samples of a picture are numbered, so it does not matter how they are divided among frames.
 TEST(Independence, SamplesDependOnTheirNumberAlone) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const View view = make_view(*scene, 4.0f / 3);

@@ -1,4 +1,4 @@
-// light_test.cpp -- background, Lambert's cosine, ambient light and shadows, against formulas.
+// light_test.cpp -- compares background, Lambert's cosine, ambient light and shadows with formulas.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -28,7 +28,7 @@ rt_light directional_light(const Vec& towards, float intensity) {
     return light;
 }
 
-// A plane through the origin that faces +z, of albedo .5, and black surroundings.
+// A plane through the origin which faces +z, with albedo 0.5, in black surroundings.
 Scene plane_scene() {
     Scene scene = scene_of(TriangleMesh());
     scene.planes.push_back({{0, 0, 1}, 0, add_material(scene, diffuse(0.5f, 0.5f, 0.5f))});
@@ -56,7 +56,7 @@ TEST(Light, BackgroundFillsAnEmptyPicture) {
 
 TEST(Light, DisplayIsSrgb) {
     View view = black_view({0, 0, 5}, {0, 0, 0}, 45);
-    view.background = {0.0f, 0.214041f, 1.0f};  // half of the range in sRGB
+    view.background = {0.0f, 0.214041f, 1.0f};  // 0.214041 is half of the range in sRGB
     const ByteImage image =
         Workbench::get().display(shared_scene(scene_of(TriangleMesh())), make_settings({{"size", "8x8"}}), view);
     ASSERT_EQ(image.pixels.size(), 8u * 8u * 4u);
@@ -100,8 +100,8 @@ TEST(Light, LightsAndAmbientAddUp) {
         trace(plane_scene(), view, 16, 16, 1), view, [&](const Line&) { return expected; }, 1e-5, 256);
 }
 
-// The blinn-phong highlight where the half vector meets the normal: on a plane under a lamp beside the eye it is the whole of
-// it.
+// The Blinn-Phong highlight is strongest where the half vector is the normal: there, on a plane with a light beside the eye, it
+// has its full value.
 TEST(Light, HighlightAtTheMirrorPoint) {
     Scene scene = plane_scene();
     rt_material& shiny = scene.materials.back().values;
@@ -162,7 +162,7 @@ TEST(Shadow, OfASphereInTheSun) {
     expect_shadow_of_a_sphere(directional_light({0.5, 0.3, 1}, 1));
 }
 
-// A lamp between the surface and an obstacle casts no shadow of what is behind it.
+// An obstacle behind the lamp, as seen from the surface, casts no shadow on it.
 TEST(Shadow, NotFromBehindTheLamp) {
     Scene scene = plane_scene();
     Sphere ball;
@@ -179,7 +179,7 @@ TEST(Shadow, NotFromBehindTheLamp) {
         1e-5, 48 * 48);
 }
 
-// No acne: a surface does not shade itself, whatever the scale, the place and the angle.
+// No shadow acne: a surface does not shade itself, for every scale, place and angle.
 TEST(Shadow, NoneOfTheSurfaceItself) {
     for (const double scale : {1e-3, 1.0, 1e3})
         for (const double offset : {0.0, 10.0}) {
@@ -195,7 +195,7 @@ TEST(Shadow, NoneOfTheSurfaceItself) {
             size_t differ = 0, lit = 0;
             for (size_t i = 0; i < with.image.pixels.size(); ++i) {
                 lit += without.image.pixels[i] > 0;
-                // Near the edge of its own shadow a faceted sphere may shade its next facet.
+                // Near the edge of its own shadow, a faceted sphere may shade its next facet.
                 differ += without.image.pixels[i] > 0.03f && with.image.pixels[i] != without.image.pixels[i];
             }
             EXPECT_GT(lit, 10000u);

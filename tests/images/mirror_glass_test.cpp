@@ -1,4 +1,4 @@
-// mirror_glass_test.cpp -- mirrors, glass, depth and ray arrays, against the laws of reflection, Snell and Fresnel.
+// mirror_glass_test.cpp -- compares mirrors, glass, depth and ray arrays with the laws of reflection, Snell and Fresnel.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ void add_polygon(Scene& scene, const std::vector<Point>& corners, rt_u32 materia
     for (const Point& p : corners) scene.polygon_corners.insert(scene.polygon_corners.end(), p.begin(), p.end());
 }
 
-// A lamp over a floor that mirrors .6 of it: seen again as far below the floor.
+// A lamp above a floor that mirrors 60 % of the light: its mirror image is as far below the floor.
 Scene lamp_over_mirror() {
     Scene scene = scene_of(TriangleMesh());
     scene.planes.push_back({{0, 1, 0}, 0, add_material(scene, mirror(0.6f))});
@@ -71,8 +71,7 @@ TEST(Mirror, DepthOneShowsNone) {
 }
 
 TEST(Mirror, DepthCountsGenerations) {
-    // Between two parallel mirrors of .5, behind which nothing shines but the background at the end of the last generation's
-    // rays.
+    // The camera is between two parallel mirrors of 50 %, of which only the one at z = 0 emits light.
     Scene scene = scene_of(TriangleMesh());
     const rt_u32 half = add_material(scene, mirror(0.5f));
     rt_material lit = mirror(0.5f);
@@ -82,7 +81,7 @@ TEST(Mirror, DepthCountsGenerations) {
     const View view = dark_view({0, 0, 2}, {0, 0, 0}, 30);
     double expected = 0;
     for (int depth = 1; depth <= 9; ++depth) {
-        if (depth % 2 == 1) expected += std::pow(0.5, depth - 1);  // every other generation meets the lit one
+        if (depth % 2 == 1) expected += std::pow(0.5, depth - 1);  // every other generation hits the bright one
         const Picture picture = trace(scene, view, 9, 9, depth);
         EXPECT_NEAR(picture.at(4, 4)[1], expected, 1e-5) << "depth " << depth;
         EXPECT_EQ(picture.stats.secondary, 81u * (depth - 1));
@@ -120,8 +119,8 @@ TEST(Glass, FresnelAtNormalIncidence) {
     }
 }
 
-// A pane of thickness 1 before a lamp's edge: the edge is seen where Snell's law shifts it to, through the share that Fresnel
-// lets pass, twice.
+// A pane of thickness 1 in front of the edge of a lamp. The edge appears where Snell's law shifts it to, with the share of
+// light that passes both surfaces by Fresnel's equations.
 TEST(Glass, SlabShiftsBySnellsLaw) {
     TriangleMesh slab = box(0.5);
     for (size_t i = 0; i < slab.positions.size(); ++i)
@@ -147,11 +146,11 @@ TEST(Glass, SlabShiftsBySnellsLaw) {
     EXPECT_LT(bright, 16000u);
 }
 
-// From within a block of glass: the bright outside is seen up to the critical angle, 41.8 degrees, and no further.
+// From inside a block of glass, the bright outside is visible up to the critical angle of 41.8 degrees.
 TEST(Glass, TotalInternalReflection) {
     Scene scene = scene_of(box(1));
     scene.materials[0].values = glass(1.5f);
-    View view = dark_view({0, 0, 0}, {0, 0, -1}, 80);  // the wall's edges are at 45 degrees, its corners at 55
+    View view = dark_view({0, 0, 0}, {0, 0, -1}, 80);  // the edges of the wall are at 45 degrees, its corners at 55
     view.background = {1, 1, 1};
     size_t total = 0;
     const auto expected = [&](const Line& line) {
@@ -168,7 +167,7 @@ TEST(Glass, TotalInternalReflection) {
 
 TEST(Glass, TintsWhatPasses) {
     Scene scene = scene_of(TriangleMesh());
-    rt_material tinted = glass(1.0f);  // no bending, no reflection
+    rt_material tinted = glass(1.0f);  // no refraction, no reflection
     tinted.color[0] = 0.5f;
     tinted.color[1] = 0.25f;
     tinted.color[2] = 1;
@@ -181,14 +180,15 @@ TEST(Glass, TintsWhatPasses) {
     EXPECT_NEAR(seen[2], 0.8, 1e-4);
 }
 
-// Nothing is lost in a lossless ball: where all is equally bright, so is what is seen through it, but for the generations cut
-// off.
+// A ball without losses loses no light: if everything is equally bright, so is the picture through the ball, except for the
+// generations that are cut off.
 TEST(Glass, ABallInAnEvenlyBrightWorldIsInvisible) {
     Scene scene = scene_of(TriangleMesh());
     add_sphere(scene, {0, 0, 0}, 1, add_material(scene, glass(1.5f)));
     View view = dark_view({0, 0, 5}, {0, 0, 0}, 30);
     view.background = {1, 1, 1};
-    // The share that goes round inside after n reflections falls like Fresnel's n-th power; grazing rays are left out.
+    // After n reflections inside, the remaining share falls with the n-th power of Fresnel's reflectance. Grazing rays are left
+    // out.
     const auto expected = [](const Line& line) {
         double margin = 0;
         meet_sphere(line, {0, 0, 0}, 1, &margin);
@@ -212,7 +212,7 @@ TEST(RayArrays, FullOnesDropAndCount) {
     EXPECT_GT(narrow.stats.dropped, 0u);
     EXPECT_EQ(wide.stats.dropped, 0u);
     EXPECT_LT(narrow.stats.secondary, wide.stats.secondary);
-    // What is dropped is missing, never invented.
+    // Dropped rays may only remove light, never add any.
     for (size_t i = 0; i < wide.image.pixels.size(); ++i)
         ASSERT_LE(narrow.image.pixels[i], wide.image.pixels[i] + 1e-4f) << "value " << i;
 }

@@ -1,4 +1,4 @@
-// optics.hpp -- what pictures should show, by formula and in double precision.
+// optics.hpp -- expected pictures, computed from formulas in double precision.
 #pragma once
 #include <array>
 #include <functional>
@@ -14,20 +14,22 @@ Vec operator*(double s, const Vec& a);
 double dot(const Vec& a, const Vec& b);
 Vec normalized(const Vec& a);
 
+// A ray of the formulas.
 struct Line {
-    Vec origin, direction;  // unit
+    Vec origin, direction;  // direction has unit length
     Vec at(double t) const { return origin + t * direction; }
 };
-// Through the centre of a pixel; y = 0 at the top.
+// The line through the centre of a pixel; y = 0 is the top row.
 Line pixel_line(const Camera& camera, int width, int height, int x, int y);
-// Distance, +inf if missed, and how far from the silhouette the line passes, in radii.
+// Distance to the sphere; +inf if it is missed. margin: distance of the line from the silhouette, in radii.
 double meet_sphere(const Line& line, const Vec& center, double radius, double* margin = nullptr);
 
-// Snell and Fresnel for unpolarised light; eta = index on this side / index on the other. 1 for total internal reflection.
+// Snell's and Fresnel's laws for unpolarised light. eta: index on this side / index on the other side. fresnel() returns 1 for
+// total internal reflection.
 double fresnel(double cos_in, double eta);
 Vec refracted(const Vec& direction, const Vec& normal_towards, double eta);
 
-// A picture of a scene whose settings are its own; colours are linear.
+// A traced picture with linear colours, and the statistics of its frame.
 struct Picture {
     int width, height;
     FloatImage image;
@@ -37,8 +39,8 @@ struct Picture {
 Picture trace(const Scene& scene, const View& view, int width, int height, int depth,
               const std::vector<std::pair<std::string, std::string>>& settings = {});
 
-// Compares every pixel's green with what `expected` says of it; a negative answer leaves the pixel out (too near to an edge).
-// Fails with the worst pixel; at least `least` pixels must have been compared.
+// Compares the green channel of every pixel with `expected`. A negative expectation leaves the pixel out, because it is too
+// close to an edge. Reports the worst pixel if it is off by more than `tolerance`. At least `least` pixels must be compared.
 void expect_picture(const Picture& picture, const View& view, const std::function<double(const Line&)>& expected,
                     double tolerance, size_t least);
 

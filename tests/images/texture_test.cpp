@@ -1,5 +1,5 @@
-// texture_test.cpp -- textures the right way up, on every kind of primitive that carries one, and the AOVs that describe
-// surfaces.
+// texture_test.cpp -- textures have the right orientation on every kind of primitive that can have one. Also tests the AOVs
+// that describe surfaces.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -13,14 +13,14 @@ namespace {
 
 constexpr uint32_t kRed = 0xff0000ffu, kGreen = 0xff00ff00u, kBlue = 0xffff0000u, kWhite = 0xffffffffu;
 
-// Two by two texels, top row first: red green / blue white.
+// Two by two texels, top row first: red, green / blue, white.
 rt_u32 add_texture(Scene& scene) {
     scene.textures.push_back({static_cast<rt_u32>(scene.texels.size()), 2, 2, 0});
     for (const uint32_t texel : {kRed, kGreen, kBlue, kWhite}) scene.texels.push_back(texel);
     return static_cast<rt_u32>(scene.textures.size() - 1);
 }
 
-// A square of the xy plane, corners at (0,0) and (2,2) with uv as the corners' halves.
+// A square in the xy plane with corners at (0,0) and (2,2); uv is half of the position.
 Scene textured_square(const Affine& placed = kIdentity) {
     TriangleMesh mesh;
     const rt_u32 a = mesh.add_vertex(0, 0, 0), b = mesh.add_vertex(2, 0, 0), c = mesh.add_vertex(2, 2, 0),
@@ -36,7 +36,7 @@ Scene textured_square(const Affine& placed = kIdentity) {
 }
 
 View flat_view() {
-    View view = view_from({1, 1, 5}, {1, 1, 0}, 2 * std::atan(1.0 / 5) * 180 / 3.14159265358979);  // exactly the square
+    View view = view_from({1, 1, 5}, {1, 1, 0}, 2 * std::atan(1.0 / 5) * 180 / 3.14159265358979);  // shows exactly the square
     view.background = {0, 0, 0};
     view.ambient = {1, 1, 1};
     return view;
@@ -56,7 +56,7 @@ TEST(Texture, BottomLeftIsUvZero) {
 
 TEST(Texture, IsBilinearBetweenTexels) {
     const Picture picture = trace(textured_square(), flat_view(), 64, 64, 1);
-    const std::array<float, 3> middle = picture.at(31, 15);  // half a pixel left of between red and green
+    const std::array<float, 3> middle = picture.at(31, 15);  // half a pixel to the left of the middle, between red and green
     EXPECT_NEAR(middle[0], 0.5, 0.05);
     EXPECT_NEAR(middle[1], 0.5, 0.05);
     EXPECT_NEAR(middle[2], 0.0, 0.02);
@@ -71,7 +71,7 @@ TEST(Texture, RepeatsOutsideItsRange) {
 }
 
 TEST(Texture, GoesWithTheMeshThatIsTurned) {
-    // A quarter turn about the square's centre, counter-clockwise: what was at the top right is now at the top left.
+    // A quarter turn about the square's centre, counter-clockwise: the top right corner moves to the top left.
     const Picture picture = trace(textured_square({0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, 0}), flat_view(), 64, 64, 1);
     expect_color(picture.at(15, 15), {0, 1, 0}, "top left");
     expect_color(picture.at(48, 15), {1, 1, 1}, "top right");
@@ -82,7 +82,7 @@ TEST(Texture, GoesWithTheMeshThatIsTurned) {
 TEST(Texture, OnInstancesToo) {
     Scene scene = textured_square();
     Instance second = scene.instances[0];
-    second.world_from_object = {0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, -1};  // turned, behind the first: hidden
+    second.world_from_object = {0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, -1};  // rotated, and hidden behind the first
     scene.instances.push_back(second);
     const Picture front = trace(scene, flat_view(), 64, 64, 1);
     expect_color(front.at(15, 48), {0, 0, 1}, "bottom left of the first");
@@ -102,7 +102,7 @@ TEST(Texture, UprightOnASphere) {
     View view = view_from({0, 0, 6}, {0, 0, 0}, 25);
     view.ambient = {1, 1, 1};
     const Picture picture = trace(scene, view, 64, 64, 1);
-    // The middle of the map looks along +z: left of it is its left half, above it the upper one.
+    // The middle of the map is the direction +z. Its left half is to the left of it, its upper half above.
     const std::array<float, 3> above_left = picture.at(16, 16), below_right = picture.at(47, 47);
     EXPECT_GT(above_left[0], above_left[2]) << "red is at the top left";
     EXPECT_GT(above_left[0], 0.5f);
@@ -117,7 +117,7 @@ FloatImage aov(const Scene& scene, const View& view, const std::string& name) {
 TEST(Aov, UvNormalInstanceAndPrim) {
     Scene scene = textured_square();
     scene.instances.push_back(scene.instances[0]);
-    scene.instances[1].world_from_object[3] = 1;  // to the right by half of it
+    scene.instances[1].world_from_object[3] = 1;  // shifted right by half its width
     scene.instances[1].world_from_object[11] = -1;
     const View view = flat_view();
     const FloatImage uv = aov(scene, view, "uv"), normal = aov(scene, view, "normal"), instance = aov(scene, view, "instance"),
@@ -132,7 +132,7 @@ TEST(Aov, UvNormalInstanceAndPrim) {
     const Line line = pixel_line(view.camera, 64, 64, 20, 40);
     EXPECT_NEAR(t.pixels[middle], -5 / line.direction[2], 1e-5);
 
-    // Pulled away, the first leaves the second alone, whose numbers go on.
+    // If the first instance is moved away, the second becomes visible; its numbers follow those of the first.
     scene.instances[0].world_from_object[3] = 50;
     EXPECT_EQ(aov(scene, view, "instance").pixels[40 * 64 + 50], 1);
     EXPECT_GE(aov(scene, view, "prim").pixels[40 * 64 + 50], 2);

@@ -1,4 +1,4 @@
-// import_case.hpp -- a folder of test files, and imports of them.
+// import_case.hpp -- fixture with a folder for test files, and functions to import them.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -24,10 +24,12 @@ class ImportCase : public ::testing::Test {
 
     Scene import(const std::vector<std::string>& files);
     Scene import_text(const std::string& text) { return import({file("case.cltest", text)}); }
-    // The message of the Error(import_failed) that importing must throw; the empty string (and a test failure) if it does not.
+    // The message of the Error(import_failed) which the import must throw. If it throws none, the test fails and the result is
+    // empty.
     std::string failure(const std::vector<std::string>& files);
     std::string failure_of_text(const std::string& text) { return failure({file("case.cltest", text)}); }
 
+    // Lines of the log so far.
     std::vector<std::string> logged() const;
 
     ImportOptions options_;

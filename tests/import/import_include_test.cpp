@@ -1,4 +1,4 @@
-// Files that load files and name pictures: what is found, what is refused, and how parts are placed.
+// Files that load other files and name pictures: which ones are found, which are refused, and how parts are placed.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -16,7 +16,7 @@ class Include : public ImportCase, public ::testing::WithParamInterface<bool> {
         ImportCase::SetUp();
         options_.in_process = GetParam();
     }
-    // Uncompressed 24-bit TGA of one colour; enough for a decoder.
+    // An uncompressed 24-bit TGA of one colour, as a simple valid picture.
     static std::string tga(int width, int height, char blue, char green, char red) {
         std::string text(18, '\0');
         text[2] = 2;

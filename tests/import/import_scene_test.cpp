@@ -1,4 +1,4 @@
-// Measures of a scene, transforms, and validate(): every kind of damage is found and named.
+// Bounds and areas of a scene, transforms, and validate(): every kind of damage is found and named.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// One of everything. Vertex 3 belongs to no triangle.
+// A scene with one of everything. Vertex 3 belongs to no triangle.
 Scene sample() {
     Scene s;
     s.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 500, 500, 500};
@@ -152,7 +152,7 @@ TEST(Transform, products_and_inverses) {
     EXPECT_FALSE(invert({kNan, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, inverse));
 }
 
-// The part of DESIGN's camera model that tells where a point appears: -1..1 within the picture.
+// Projects a point with DESIGN's camera model; both coordinates are -1..1 within the picture.
 std::array<double, 3> on_screen(const Camera& c, float aspect, const std::array<float, 3>& p) {
     double w[3], u[3], v[3], d[3];
     const auto normalize = [](double* x) {

@@ -1,4 +1,4 @@
-// What importers hand over, good and bad, through both ways: in this process and through the worker.
+// What importers deliver, good and bad, with both kinds of import: in this process and in the worker.
 #include <fstream>
 
 #include "import_case.hpp"

@@ -1,4 +1,5 @@
-// Always n - 2 triangles; convex faces as fans; concave ones cover exactly their own area; nothing takes for ever.
+// A face gives n - 2 triangles. Convex faces become fans, the triangles of concave ones cover exactly their area, and no face
+// takes very long.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -13,7 +14,7 @@ namespace {
 using Points = std::vector<std::array<double, 2>>;
 constexpr double kPi = 3.14159265358979323846;
 
-// The face on a slanted plane, so that projection is tested too; lengths are kept.
+// Puts the face on a slanted plane, so that the projection is tested too. Lengths stay the same.
 std::vector<float> on_a_slope(const Points& points) {
     const double u[3] = {0.6, 0, 0.8}, v[3] = {0.8 * 0.28, 0.96, -0.6 * 0.28};
     std::vector<float> positions;
@@ -48,7 +49,8 @@ double polygon_area(const Points& p) {
     return sum;
 }
 
-// Sums of signed and of absolute areas both equal the polygon's: no overlap, no gap, no triangle turned over.
+// The sums of signed and of absolute areas must both equal the polygon's area: then there is no overlap, no gap and no flipped
+// triangle.
 void expect_exact_cover(const Points& points) {
     const std::vector<rt_u32> triangles = triangles_of(points);
     ASSERT_EQ(triangles.size(), 3 * (points.size() - 2));
@@ -97,9 +99,9 @@ TEST(Triangulate, concave_faces_are_covered_exactly) {
     expect_exact_cover({{1, 1}, {0, 0}, {2, 1}, {0, 2}});
     expect_exact_cover({{0, 0}, {4, 0}, {4, 3}, {3, 3}, {3, 1}, {1, 1}, {1, 3}, {0, 3}});
     for (const double inner : {0.1, 0.5, 0.9}) expect_exact_cover(circle(60, inner));
-    // Corners along straight edges.
+    // Corners in the middle of straight edges.
     expect_exact_cover({{0, 0}, {1, 0}, {2, 0}, {2, 2}, {1, 1}, {0, 2}, {0, 1}});
-    // A hole, joined by a slit whose corners occur twice.
+    // A hole, which is joined to the outline by a slit; the corners of the slit occur twice.
     expect_exact_cover({{0, 0}, {4, 0}, {4, 4}, {0, 4}, {0, 0}, {1, 1}, {1, 3}, {3, 3}, {3, 1}, {1, 1}});
 }
 
@@ -135,7 +137,7 @@ TEST(Triangulate, anything_gives_n_minus_2_triangles) {
     EXPECT_TRUE(triangles_of(Points(2, {1, 1})).empty());
 }
 
-// Corners of a unit square, one diagonal of which is `stretch` longer, lifted off its plane by turns.
+// The corners of a unit square. One diagonal is longer by `stretch`, and every other corner is lifted off the plane.
 std::vector<rt_u32> bent_quad(double stretch, float lift) {
     const float s = static_cast<float>(stretch);
     const float positions[12] = {0, 0, lift, 1, 0, -lift, 1 + s, 1 + s, lift, 0, 1, -lift};

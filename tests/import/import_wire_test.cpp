@@ -1,4 +1,4 @@
-// A scene through shared memory: arrives whole, or is refused; no damage to the file can do more than that.
+// A scene that passes through shared memory arrives complete or is refused. Damage to the file can do nothing worse.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/mman.h>
@@ -61,7 +61,7 @@ Scene sample() {
     return s;
 }
 
-// All of a scene as bytes: equal ones are equal scenes.
+// The scene as bytes: scenes are equal if their bytes are.
 std::vector<char> image_of(const Scene& scene) {
     const MemoryFile file;
     EXPECT_EQ(write_scene(file.fd(), scene), "");
@@ -124,7 +124,7 @@ TEST(Wire, no_damage_does_harm) {
     int refused = 0, unsound = 0;
     for (int run = 0; run < 20000; ++run) {
         std::vector<char> damaged = whole;
-        // The table of sections is where it hurts: three of four hits go there.
+        // Damage to the table of sections matters most, so three of four changes are made there.
         const size_t range = run % 4 != 0 ? 330 : damaged.size();
         if (run % 2 != 0) {
             const uint64_t values[] = {0, 1, 63, 64, damaged.size(), ~uint64_t{0}, uint64_t{1} << 32, uint64_t{1} << 63};
@@ -149,8 +149,8 @@ TEST(Wire, no_damage_does_harm) {
     EXPECT_GT(unsound, 100);
 }
 
-// 871 414 triangles and 437 645 vertices, the size of the largest scan at hand. The aim is 50 ms of an idle machine; the limit
-// here only catches what has become an order of magnitude slower.
+// 871 414 triangles and 437 645 vertices, the size of the largest scan that we have. The aim is 50 ms on an idle machine. The
+// limit here only detects that something has become ten times slower.
 TEST(Wire, a_large_mesh_is_handed_over_quickly) {
     constexpr rt_u32 vertices = 437645, triangles = 871414;
     Scene sent;

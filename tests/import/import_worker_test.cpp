@@ -1,4 +1,4 @@
-// Importers that crash, hang, run wild or try what they must not: each costs one error message.
+// Importers that crash, hang or try forbidden things cause one error message each and do no other harm.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -23,11 +23,11 @@ double seconds_since(Clock::time_point start) {
 class Worker : public ImportCase {
  protected:
     void TearDown() override {
-        // Every worker of the test is dead and waited for.
+        // No worker of the test is left, not even as a zombie.
         EXPECT_EQ(waitpid(-1, nullptr, WNOHANG), -1);
         ImportCase::TearDown();
     }
-    // A sanitizer turns a death by signal into an exit with a report of its own.
+    // With a sanitizer the worker does not die of a signal but exits after a report.
     void expect_death(const std::string& text, const std::string& how) {
         const std::string message = failure_of_text(text);
         EXPECT_TRUE(contains(message, path("case.cltest") + ": the importer cltest ")) << text;
@@ -113,7 +113,7 @@ TEST_F(Worker, cancel_answers_at_once) {
         EXPECT_THROW(import_scene(plugins, {file("case.cltest", text)}, options_, progress), Cancelled) << text;
         const double answer_s = seconds_since(cancelled);
         canceller.join();
-        // The promise is 0.1 s; the rest is for machines that do other things as well.
+        // Cancelling should take 0.1 s; the rest is for busy machines.
         EXPECT_LT(answer_s, kSanitizer ? 1.0 : 0.3) << text;
     }
 }
@@ -155,7 +155,7 @@ TEST_F(Worker, the_sandbox_refuses) {
     kept << std::ifstream(inside).rdbuf();
     EXPECT_EQ(kept.str(), "kept");
     EXPECT_FALSE(std::filesystem::exists(path("new.txt")));
-    // The same plugin without the sandbox: these attempts are real ones.
+    // Without the sandbox the same attempts succeed, so they are real.
     options_.in_process = true;
     EXPECT_TRUE(contains(failure_of_text("read " + outside), "tried to read: worked"));
     EXPECT_TRUE(contains(failure_of_text("socket"), "tried to socket: worked"));
@@ -181,7 +181,7 @@ TEST_F(Worker, a_wrong_worker_program_is_named) {
     EXPECT_TRUE(contains(failure_of_text("triangles good 1"), "/nonexistent/clarity"));
     options_.worker = "/bin/true";
     EXPECT_TRUE(contains(failure_of_text("triangles good 1"), "/bin/true: ended without answering"));
-    // This very test: it would run the tests again, which would start it again.
+    // This test program: it would run the tests again, which would start it again.
     options_.worker = "/proc/self/exe";
     setenv("GTEST_FILTER", "None.*", 1);
     EXPECT_TRUE(contains(failure_of_text("triangles good 1"), "as an import worker"));

@@ -22,11 +22,11 @@
 namespace test_importer {
 namespace {
 
-// Volatile and not a tail call, so that no optimiser saves the stack.
+// Volatile and not a tail call, so that no optimiser removes the recursion.
 int recurse(volatile int depth) {
     volatile char frame[512];
     frame[depth % 512] = static_cast<char>(depth);
-    if (depth < 0) return 0;  // never, but no compiler knows
+    if (depth < 0) return 0;  // never true, but the compiler does not know it
     return recurse(depth + 1) + frame[(depth + 7) % 512];
 }
 

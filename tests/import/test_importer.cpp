@@ -1,4 +1,4 @@
-// test_importer.cpp -- an importer for files `.cltest`, each line a command, done in order. Commands are listed in `command`.
+// test_importer.cpp -- an importer for `.cltest` files. Each line is a command; they run in order. `command` lists them.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -41,7 +41,7 @@ struct Run {
         return status(sink.instance(sink.ctx, &instance));
     }
 
-    // A row of `count` separate triangles of area 1/2; the first `bad` ones have the given fault.
+    // A row of `count` separate triangles of area 1/2. The first `bad` ones have the given fault.
     int32_t triangles(const std::string& fault, rt_u32 count, rt_u32 bad) const {
         std::vector<float> positions;
         std::vector<rt_u32> indices;
@@ -69,7 +69,7 @@ struct Run {
         return id == RT_NONE ? RT_FAILED : place(id, identity);
     }
 
-    // Descriptions that no correct importer would hand over.
+    // Descriptions which no correct importer would deliver.
     int32_t broken(const std::string& what) const {
         static const float corner[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
         static const rt_u32 index[3] = {0, 1, 2}, size[1] = {3}, material[1] = {77};
@@ -100,7 +100,8 @@ struct Run {
         return fail("the sink took it");
     }
 
-    // One mesh of one face, its corners as x y pairs; to look at triangulation, or at `strided` copying with normals and uvs.
+    // A mesh of one face, with corners as x y pairs. It tests triangulation, or with `strided` the copying with normals and
+    // uvs.
     int32_t face(std::istream& words) const {
         std::vector<float> data;
         std::vector<rt_u32> indices;
@@ -183,7 +184,7 @@ struct Run {
         return sink.load(sink.ctx, &desc);
     }
 
-    // Work in `steps` pieces of 100 ms that says how far it is (or, stuck, always the same).
+    // Works in `steps` pieces of 100 ms and reports its progress; if stuck, it always reports the same.
     int32_t work(int steps, bool stuck) const {
         for (int i = 0; i < steps; ++i) {
             const float fraction = stuck ? 0.5f : static_cast<float>(i) / static_cast<float>(steps);
@@ -209,7 +210,7 @@ struct Run {
         for (const char* known : {"sphere", "plane", "polygon", "light", "camera"}) {
             if (what == known) return analytic(what, words);
         }
-        if (what == "instance") {  // of the last mesh, by twelve numbers
+        if (what == "instance") {  // of the last mesh, with twelve numbers
             float m[12];
             for (float& value : m) {
                 words >> argument;
@@ -230,7 +231,7 @@ struct Run {
             std::fflush(stdout);
             return RT_OK;
         }
-        if (what == "reserve") {  // MiB of address space, not touched
+        if (what == "reserve") {  // MiB of address space, which are not touched
             const std::vector<char>::size_type bytes = std::strtoull(argument.c_str(), nullptr, 10) << 20;
             return std::unique_ptr<char[]>(new (std::nothrow) char[bytes]) ? int32_t(RT_OK) : fail("no room for " + argument);
         }

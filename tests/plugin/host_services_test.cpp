@@ -19,7 +19,7 @@ namespace {
 using clarity::Exit;
 using clarity::HostServices;
 
-// Runs a plugin's call and gives the Error's text; "" if there was none, "cancelled" for Cancelled.
+// Calls a plugin function and returns the Error's text: "" without an error, "cancelled" for Cancelled.
 template <class Call>
 std::string outcome(clarity::Progress& progress, Call call, Exit code = Exit::failed) {
     HostServices services("accel test", progress);
@@ -111,7 +111,7 @@ TEST(HostServices, CancelledOnlyAfterItWasTold) {
     EXPECT_NE(outcome([](const rt_host*) { return RT_CANCELLED; }).find("nobody had cancelled"), std::string::npos);
 }
 
-// A Progress that answers for another process may say no without being marked as cancelled itself.
+// A Progress that stands for another process may return false without being cancelled itself.
 struct Refusing : clarity::Progress {
     bool report(float) override { return false; }
 };

@@ -10,7 +10,7 @@
 
 namespace {
 
-const char* const kSplits[] = {"sah", "half", "1", nullptr};  // the last is named as the index of another
+const char* const kSplits[] = {"sah", "half", "1", nullptr};  // the last name is also the index of another choice
 constexpr rt_param kParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most", 1, 16, 4),
     rt::float_param("cost", "Traversal cost", "relative to a leaf test", 0.0625, 2500, 1.5),
@@ -29,7 +29,7 @@ double set(const std::string& key, const std::string& value) {
     return std::numeric_limits<double>::quiet_NaN();
 }
 
-// The message of the Error(usage) that the call throws.
+// The message of the Error(usage) which the call throws.
 template <class Call>
 std::string usage_error(Call call) {
     try {
@@ -128,7 +128,7 @@ TEST(PluginChoice, RefusesWhatIsMalformed) {
     }
 }
 
-// A decimal comma of the user's locale must change neither what is read nor what is printed.
+// The decimal comma of the user's locale must not change how numbers are read or printed.
 TEST(Parameters, DoNotDependOnTheLocale) {
     const std::string before = std::setlocale(LC_NUMERIC, nullptr);
     if (!std::setlocale(LC_NUMERIC, "de_DE.UTF-8")) GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";

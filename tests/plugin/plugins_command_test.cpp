@@ -1,4 +1,4 @@
-// clarity plugins: what it prints of loaded, shadowed and refused libraries, for people and as JSON.
+// The command `clarity plugins`: its output about loaded, shadowed and refused libraries, as text and as JSON.
 #include <gtest/gtest.h>
 
 #include <filesystem>

@@ -1,5 +1,5 @@
-// Discovery: the order of places, who wins, who is shadowed, and which importer takes a file. The libraries are the sound one
-// of tests/bad_plugins under several names.
+// Discovery of plugins: the order of folders, which plugin is used and which is shadowed, and which importer takes a file. The
+// libraries are copies of the sound one of tests/bad_plugins under several names.
 #include "plugin/registry.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ const std::string kWrongAbi = std::string(TEST_PLUGINS) + "/wrong_abi.so";
 class Registry : public testing::Test {
  protected:
     Registry() {
-        // Nothing of the user's: neither their plugins nor their variable.
+        // Exclude the user's own plugins and variable.
         environment_.set("XDG_DATA_HOME", scratch_.path("data"));
         environment_.set("CLARITY_PLUGIN_PATH", "");
         clarity::set_log_listener([this](clarity::LogLevel level, const std::string& text) {
@@ -32,13 +32,13 @@ class Registry : public testing::Test {
     }
     ~Registry() override { clarity::set_log_listener({}); }
 
-    // A library of its own: another file, not another name for the same.
+    // A separate library: a copy of the file, not a second name for it.
     std::string copy(const std::string& from, const std::string& to) {
         fs::create_directories(fs::path(scratch_.path(to)).parent_path());
         fs::copy_file(from, scratch_.path(to), fs::copy_options::overwrite_existing);
         return scratch_.path(to);
     }
-    // Records below the scratch folder: the program's own plugins are found as well.
+    // Only the records below the scratch folder, because the program's own plugins are found as well.
     std::vector<PluginRecord> ours(const PluginRegistry& registry) const {
         std::vector<PluginRecord> list;
         for (const PluginRecord& record : registry.records())
@@ -146,7 +146,7 @@ TEST_F(Registry, ABrokenSymlinkIsRefusedAndNotFatal) {
     EXPECT_NE(records[0].why.find("No such file"), std::string::npos) << records[0].why;
 }
 
-// As in PATH an empty element would be the working directory, from where nobody expects code to be run.
+// As in PATH, an empty element could mean the working directory. Nobody expects code to be run from there.
 TEST_F(Registry, NeverTheWorkingDirectory) {
     copy(kSound, "here/sound.so");
     const fs::path before = fs::current_path();
@@ -159,7 +159,7 @@ TEST_F(Registry, NeverTheWorkingDirectory) {
     fs::create_directories("clarity/plugins");
     copy(kSound, "here/clarity/plugins/sound.so");
     EXPECT_EQ(PluginRegistry::discover().accel("sound"), nullptr) << "a relative XDG_DATA_HOME";
-    // A file that was named is taken, also by a bare name that dlopen would look up elsewhere.
+    // A file that was named is loaded, also if it is a bare name, which dlopen would look up elsewhere.
     EXPECT_NE(PluginRegistry::discover({"sound.so"}).accel("sound"), nullptr);
     fs::current_path(before);
 }

@@ -1,4 +1,4 @@
-// The C++ helper of plugins, used against the real host services.
+// The C++ helpers of the SDK, tested with the real host services.
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -11,7 +11,7 @@
 
 namespace {
 
-// What the host says of a guarded function; "" for success.
+// The host's error text after a guarded function; "" for success.
 template <auto F>
 std::string outcome(clarity::Progress& progress) {
     clarity::HostServices services("plugin", progress);
@@ -82,7 +82,7 @@ TEST(Guarded, CancelIsNoFailure) {
     EXPECT_EQ(outcome<reports>(progress), "cancelled");
 }
 
-// A host that has no memory to give has said so itself: the helper only stops.
+// If the host has no memory, it has recorded that already, so the helper only stops the build.
 TEST(BuildOutput, NoMemoryStopsTheBuild) {
     rt_build_output out{};
     out.alloc = [](void*, rt_u32, uint64_t) -> void* { return nullptr; };
@@ -93,7 +93,7 @@ TEST(BuildOutput, NoMemoryStopsTheBuild) {
     EXPECT_EQ(rt::id(3), 3u);
 }
 
-// Everything a description is made of is a constant: the host reads its head from the file before any code runs.
+// All parts of a description must be constants, because the host reads its head from the file before any code runs.
 constexpr rt_cl_file kFiles[] = {{"a_types.h", "types"}, {"a.cl", "text"}};
 static_assert(rt::file(kFiles, "a.cl").text == kFiles[1].text);
 static_assert(rt::file(kFiles, "a").name == nullptr && rt::file(kFiles, "a.clx").name == nullptr);

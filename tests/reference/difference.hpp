@@ -1,4 +1,4 @@
-// difference.hpp -- how far two pictures are apart.
+// difference.hpp -- measures how much two pictures differ.
 #pragma once
 #include <algorithm>
 #include <cstdlib>
@@ -7,12 +7,13 @@
 
 namespace clarity::reference {
 
-constexpr int kTolerance = 2;  // of 255, in the worst channel
+constexpr int kTolerance = 2;  // in steps of 1/255, in the channel that differs most
 
+// Difference of two pictures of the same size. beyond: number of pixels that differ by more than kTolerance.
 struct Difference {
     size_t pixels = 0, beyond = 0;
     int worst = 0;
-    ByteImage picture;  // eight times the difference
+    ByteImage picture;  // eight times the difference, to look at
     double share() const { return double(beyond) / double(pixels); }
 };
 

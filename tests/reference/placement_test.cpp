@@ -1,5 +1,5 @@
-// placement_test.cpp -- turned, stretched and mirrored meshes look as the reference says, placed once (flattened) or twice
-// (instances): normals, and which side is the inside of glass.
+// placement_test.cpp -- compares rotated, scaled and mirrored meshes with the reference, placed once (flattened) and twice
+// (instances). It tests normals, and which side is the inside of glass.
 #include <gtest/gtest.h>
 
 #include "reference/difference.hpp"
@@ -16,7 +16,7 @@ struct Placement {
     const char* name;
     Affine world;
 };
-// Rows of a turn about a slanted axis, times a stretch of the columns.
+// Rows of a rotation about a slanted axis; the columns are scaled by sx, sy, sz.
 Affine placed(double sx, double sy, double sz) {
     const double turn[9] = {0.7071068, -0.5, 0.5, 0.5, 0.8535534, 0.1464466, -0.5, 0.1464466, 0.8535534};
     Affine m{};
@@ -40,7 +40,7 @@ TEST_P(Placements, LookAsTheReferenceSays) {
         for (const int copies : {1, 2}) {
             Scene scene = *model;
             rt_material crystal = glass(1.5f);
-            crystal.refract = .7f;  // some light is scattered, so that normals show by themselves
+            crystal.refract = .7f;  // some light is scattered, so that errors of normals are visible
             crystal.color[0] = crystal.color[1] = crystal.color[2] = .8f;
             scene.instances[0].material = add_material(scene, crystal);
             scene.instances[0].world_from_object = placement.world;

@@ -1,5 +1,5 @@
-// thesis_counts_test.cpp -- the scenes are what the thesis says they were: how many triangles and spheres, one point light, and
-// nothing that neither mirrors nor is of glass.
+// thesis_counts_test.cpp -- the scenes are as the thesis describes them: their numbers of triangles and spheres, one point
+// light, and only materials that mirror or are glass.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -20,7 +20,7 @@ constexpr Expected kExpected[] = {{"1_two_triangles", 2, 0, 0}, {"2_two_spheres"
                                   {"4_35_triangles", 35, 0, 0}, {"5_36_spheres", 0, 36, 0}, {"6_2406_triangles", 2406, 0, 0},
                                   {"aim_100k", 100002, 1, 2}};
 
-// Materials that something in the scene has.
+// Materials which the scene's objects use.
 std::set<rt_u32> used_materials(const Scene& scene) {
     std::set<rt_u32> used;
     for (const Sphere& sphere : scene.spheres) used.insert(sphere.material);
@@ -50,7 +50,7 @@ TEST(ThesisCounts, HoldWhatTheThesisSays) {
     }
 }
 
-// Every triangle has an area: none was put in to make up the number.
+// Every triangle has an area: none was added only to reach the number.
 TEST(ThesisCounts, HaveNoTrianglesOfNoArea) {
     for (const char* name : {"4_35_triangles", "6_2406_triangles"}) {
         const ScenePtr scene = load_scene(source_file(std::string("scenes/thesis/") + name + ".scene"));

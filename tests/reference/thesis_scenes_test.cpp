@@ -1,4 +1,4 @@
-// thesis_scenes_test.cpp -- pictures of the thesis's scenes against the reference: within 2/255 for 99.9 % of the pixels.
+// thesis_scenes_test.cpp -- compares pictures of the thesis's scenes with the reference: 99.9 % of the pixels are within 2/255.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,9 +17,9 @@ using reference::Difference;
 
 namespace {
 
-constexpr double kExcepted = .001;  // of the pixels: edges, where both are right
-// An endless board of squares in mirrors of mirrors has edges in most pixels: what a ray's start is moved off the surface, in
-// single precision, takes one in 700 to the other side of one.
+constexpr double kExcepted = .001;  // share of the pixels that may differ: at edges both pictures are right
+// In mirrors of mirrors an endless board of squares has edges in most pixels. The offset of ray origins from the surface, in
+// single precision, moves one pixel in 700 to the other side of an edge.
 constexpr double kExceptedEndless = .002;
 
 class ThesisScenes : public testing::TestWithParam<const char*> {
@@ -73,7 +73,7 @@ TEST_P(ThesisScenes, AgreeAtEveryStep) {
     expect_agreement(512, 384, 4);
 }
 
-// The comparison can fail, and no scene is done before its fourth step.
+// Makes sure that the comparison can fail: every step up to the fourth changes the picture.
 TEST_P(ThesisScenes, EveryStepShows) {
     for (const int depth : {1, 2, 3})
         EXPECT_GT(compare(ours(256, 192, depth), ours(256, 192, depth + 1)).share(), kExcepted) << "step " << depth + 1;

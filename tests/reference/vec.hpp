@@ -1,4 +1,4 @@
-// vec.hpp -- three doubles.
+// vec.hpp -- a vector of three doubles.
 #pragma once
 #include <cmath>
 

@@ -13,15 +13,15 @@ class Tracer {
     Tracer(const Scene& scene, const View& view, const Settings& settings)
         : scene_(scene), view_(view), settings_(settings), world_(scene) {}
 
-    // Light along a ray. weight: what the pixel gets of it; generation counts from 1.
+    // The light that comes back along a ray. weight: its share in the pixel; generation counts from 1.
     Vec trace(const Ray& ray, Vec weight, int generation) const {
         Hit hit;
         if (!world_.nearest(ray, INFINITY, hit)) return vec_of(view_.background);
         const rt_material& material = scene_.materials[hit.material].values;
         const Vec at = ray.origin + hit.t * ray.direction;
 
-        // Seen from inside, normals turn round. Where the interpolated one looks away from the viewer, the geometric one
-        // serves.
+        // Seen from inside, normals are flipped. If the interpolated normal points away from the viewer, the geometric one
+        // replaces it.
         const bool leaving = dot(hit.geometric, ray.direction) > 0;
         const Vec geometric = leaving ? -hit.geometric : hit.geometric;
         Vec normal = leaving ? -hit.shading : hit.shading;
@@ -38,7 +38,7 @@ class Tracer {
 
         if (mirrored * largest(weight) > settings_.min_weight) {
             Vec direction = ray.direction + 2 * cos_in * normal;
-            // An interpolated normal may send it into the surface: it is mirrored out again.
+            // With an interpolated normal the direction may point into the surface: it is then mirrored out again.
             if (dot(direction, geometric) < 0) direction = direction - 2 * dot(direction, geometric) * geometric;
             light = light + mirrored * trace(leave(at, geometric, direction), mirrored * weight, generation + 1);
         }
@@ -59,14 +59,15 @@ class Tracer {
         return dark ? (1.0 / 3) * color : color;
     }
 
-    // Fresnel's equations: the mean of both polarisations.
+    // Fresnel's equations; the mean of both polarisations.
     static double reflectance(double cos_in, double cos_out, double eta) {
         const double across = (eta * cos_in - cos_out) / (eta * cos_in + cos_out);
         const double along = (cos_in - eta * cos_out) / (cos_in + eta * cos_out);
         return 0.5 * (across * across + along * along);
     }
 
-    // Emission; ambient and Lambert's diffuse light for the share that neither mirrors nor refracts; Blinn's highlight.
+    // Emission, ambient light, Lambert's diffuse light for the share that is neither mirrored nor refracted, and Blinn's
+    // highlight.
     Vec direct_light(const Ray& ray, Vec at, Vec geometric, Vec normal, const rt_material& material) const {
         Vec diffuse = vec_of(view_.ambient), highlight;
         for (const rt_light& light : view_.lights) {

@@ -6,17 +6,17 @@ namespace clarity::reference {
 
 struct World::Triangle {
     Vec a, b, c;
-    Vec normal;   // not unit
-    Vec n[3];     // of the corners
-    bool smooth;  // whether there are such
+    Vec normal;   // not unit length
+    Vec n[3];     // normals of the corners, if `smooth`
+    bool smooth;  // the corners have normals
     unsigned material;
     Vec middle() const { return (1.0 / 3) * (a + b + c); }
 };
 
 struct World::Node {
     Vec lo{INFINITY, INFINITY, INFINITY}, hi{-INFINITY, -INFINITY, -INFINITY};
-    unsigned first = 0, end = 0;   // leaf: triangles
-    unsigned left = 0, right = 0;  // else: nodes
+    unsigned first = 0, end = 0;   // leaf: range of triangles
+    unsigned left = 0, right = 0;  // inner node: its children
 };
 
 namespace {
@@ -31,14 +31,14 @@ Vec apply(const Affine& m, Vec p, double w) {
             m[8] * p.x + m[9] * p.y + m[10] * p.z + w * m[11]};
 }
 
-// Normals turn with the cofactors of the matrix, which are the transposed inverse times its determinant.
+// Normals are transformed with the cofactors of the matrix, which are its transposed inverse times its determinant.
 Vec apply_to_normal(const Affine& m, Vec n) {
     const Vec x{m[0], m[4], m[8]}, y{m[1], m[5], m[9]}, z{m[2], m[6], m[10]};
     const Vec turned = n.x * cross(y, z) + n.y * cross(z, x) + n.z * cross(x, y);
     return dot(x, cross(y, z)) < 0 ? -turned : turned;
 }
 
-// Glassner (ed.) 1989, An Introduction to Ray Tracing, ch. 2: the quadratic.
+// Solves the quadratic equation, as in Glassner (ed.) 1989, An Introduction to Ray Tracing, chapter 2.
 void try_sphere(const Sphere& sphere, const Ray& ray, Hit& hit) {
     const Vec center = vec_of(sphere.center), from = ray.origin - center;
     const double b = dot(from, ray.direction), c = dot(from, from) - double(sphere.radius) * sphere.radius;
@@ -61,7 +61,7 @@ void try_plane(const Plane& plane, const Ray& ray, Hit& hit) {
     hit.material = plane.material;
 }
 
-// Its plane, then the parity of crossings in the projection along the normal's largest axis.
+// Intersects the polygon's plane, then counts crossings in the projection along the normal's largest axis.
 void try_polygon(const Scene& scene, const Polygon& polygon, const Ray& ray, Hit& hit) {
     const auto corner = [&](unsigned i) {
         return vec_of(&scene.polygon_corners[3 * (polygon.first_corner + i % polygon.corner_count)]);
@@ -147,7 +147,7 @@ void World::try_triangles(const Ray& ray, Hit& hit) const {
             const double inverse = 1 / ray.direction[axis];
             const double a = (node.lo[axis] - 1e-9 - ray.origin[axis]) * inverse,
                          b = (node.hi[axis] + 1e-9 - ray.origin[axis]) * inverse;
-            enter = std::fmax(enter, std::fmin(a, b));  // fmin and fmax pass over what is no number
+            enter = std::fmax(enter, std::fmin(a, b));  // fmin and fmax ignore NaN
             leave = std::fmin(leave, std::fmax(a, b));
         }
         if (enter > leave) continue;
@@ -160,7 +160,7 @@ void World::try_triangles(const Ray& ray, Hit& hit) const {
             const Triangle& tri = triangles_[i];
             const double t = dot(tri.normal, tri.a - ray.origin) / dot(tri.normal, ray.direction);
             if (!(t > 0 && t < hit.t)) continue;
-            // Barycentric coordinates: areas of the three parts, signed by the normal.
+            // Barycentric coordinates: the areas of the three parts, with the sign that the normal gives.
             const Vec p = ray.origin + t * ray.direction, plain = cross(tri.b - tri.a, tri.c - tri.a);
             const double whole = dot(plain, plain);
             const double u = dot(cross(tri.c - tri.b, p - tri.b), plain) / whole,

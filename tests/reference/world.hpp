@@ -1,4 +1,4 @@
-// world.hpp -- what rays can meet, in double precision and world space.
+// world.hpp -- everything that rays can hit, in double precision and world space.
 #pragma once
 #include <memory>
 #include <vector>
@@ -9,25 +9,25 @@
 namespace clarity::reference {
 
 struct Ray {
-    Vec origin, direction;  // unit direction
+    Vec origin, direction;  // direction has unit length
 };
 
 struct Hit {
     double t = INFINITY;
-    Vec geometric;  // unit normal, on the side that the primitive has it: outwards of closed surfaces
-    Vec shading;    // interpolated where the corners have normals; unit, on the same side
+    Vec geometric;  // unit normal, on the side that the primitive defines: outside of closed surfaces
+    Vec shading;    // interpolated if the corners have normals; unit length, on the same side
     unsigned material = 0;
 };
 
-// Triangles are in a tree of boxes, halved by the middle of the longest side; all else is tried one by one.
+// Triangles are in a tree of boxes, each divided at the middle of its longest side. All other primitives are tested one by one.
 class World {
  public:
     explicit World(const Scene& scene);
     ~World();
-    // The nearest one with 0 < t < limit; false if there is none.
+    // Finds the nearest hit with 0 < t < limit; returns false if there is none.
     bool nearest(const Ray& ray, double limit, Hit& hit) const;
     bool blocked(const Ray& ray, double limit) const;
-    // How far from a surface at `at` the next ray starts, for it not to meet the same point again.
+    // Distance from the surface at which the next ray starts, so that it does not hit the same point again.
     double offset(Vec at) const;
 
  private:

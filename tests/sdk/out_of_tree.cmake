@@ -7,7 +7,7 @@ set(prefix "${root}/moved here")
 set(mine "${root}/my plugins")
 file(REMOVE_RECURSE ${root})
 
-# run(WHAT variable command...): what it printed, and a failure of the test where the command fails.
+# run(WHAT variable command...): stores the command's output in the variable. The test fails if the command fails.
 function(run what variable)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE errors)
   if(NOT code EQUAL 0)
@@ -49,7 +49,7 @@ foreach(file IN LISTS package)
   endforeach()
 endforeach()
 
-# The program finds its own plugins where it was moved to, without any variable.
+# The program finds its own plugins in the moved tree, without any environment variable.
 foreach(variable CLARITY_PLUGIN_PATH CLARITY_WORKER CLARITY_DEVICE)
   unset(ENV{${variable}})
 endforeach()
@@ -62,7 +62,7 @@ expect("'linear' comes from the moved tree (${path})" ${at} 0)
 plugin_field("${json}" boxes status status)
 expect("'boxes' is not there yet" "${status}" "")
 
-# Two plugins of a stranger.
+# Makes two plugins outside of the tree.
 file(GLOB_RECURSE template "${prefix}/*/new_plugin.cmake")
 foreach(kind accel importer)
   set(id_accel boxes)
@@ -74,7 +74,7 @@ foreach(kind accel importer)
   run("building ${id}" ignored ${CMAKE_COMMAND} --build ${mine}/${id}/build)
 endforeach()
 
-# By the variable, then installed for the user.
+# The plugins are found through the variable, and then as installed for the user.
 set(ENV{CLARITY_PLUGIN_PATH} "${mine}/boxes/build/lib/clarity/plugins:${mine}/tri_text/build/lib/clarity/plugins")
 run("clarity plugins" json ${clarity} plugins --json)
 foreach(id boxes tri_text)
@@ -93,7 +93,7 @@ foreach(id boxes tri_text)
   expect("${id}, installed for the user (${path})" ${at} 0)
 endforeach()
 
-# The importer imports, and says where a file is wrong.
+# The importer reads a file, and its error message says where a bad file is wrong.
 set(tri "${root}/three.tri")
 file(WRITE ${tri} "# a triangle a line\n0 0 0  1 0 0  0 1 0\n1 0 0  1 1 0  0 1 0\n0 0 -1  2 0 -1  0 2 -1\n")
 run("clarity info" json ${clarity} info ${tri} --json)
@@ -106,7 +106,7 @@ if(NOT errors MATCHES "bad.tri: .*line 2: expected nine numbers")
   message(FATAL_ERROR "the error does not name file and line: ${errors}")
 endif()
 
-# The structure finds what `linear` finds.
+# The structure finds the same hits as `linear`.
 execute_process(COMMAND ${clarity} devices RESULT_VARIABLE code OUTPUT_QUIET ERROR_QUIET)
 if(code EQUAL 3)
   message("SKIPPED: no OpenCL device, the pictures are not compared")

@@ -1,5 +1,5 @@
 # cmake -DKIND=accel|importer -DID=my_tree [-DINTO=folder] -P new_plugin.cmake
-# A new plugin from the template beside this file, renamed, in INTO/ID (INTO: here). It builds and works as it is.
+# Copies the template beside this file to INTO/ID (INTO: the current folder) and renames it. The new plugin builds and works at once.
 if(NOT KIND MATCHES "^(accel|importer)$" OR NOT ID MATCHES "^[a-z][a-z0-9_]*$")
   message(FATAL_ERROR "usage: cmake -DKIND=accel|importer -DID=my_tree [-DINTO=folder] -P ${CMAKE_CURRENT_LIST_FILE}\n"
     "  ID: lower-case letters, digits and _, a letter first")

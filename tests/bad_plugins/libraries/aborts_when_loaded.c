@@ -1,4 +1,4 @@
-/* Of a wrong ABI, and its constructor would end the process: passes the tests only if the library is never loaded. */
+/* Has the wrong ABI version, and its constructor ends the process: tests pass only if the library is never loaded. */
 #define ABI (RT_ABI_VERSION + 1)
 #include <stdlib.h>
 

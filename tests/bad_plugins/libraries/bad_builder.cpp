@@ -1,4 +1,4 @@
-// A linear list whose builder breaks the contract in the way that its parameter names; "none" builds it properly.
+// A linear list. Its builder breaks the contract in the way that its parameter names; with "none" it builds correctly.
 #include <cstring>
 #include <stdexcept>
 
@@ -94,7 +94,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
 
 constexpr rt_slot kSlots[] = {rt::slot<Run>("bad_builder_runs", "uint2")};
 constexpr rt_param kParams[] = {rt::enum_param("defect", "Defect", "what the builder does wrong", kDefects, 0)};
-// Not wrapped in rt::guarded: what a careless plugin throws has to be stopped by the host.
+// Not wrapped in rt::guarded: the host must stop the exceptions of a careless plugin.
 constexpr rt_accel kAccel = rt::accel(kSlots, {}, {"bad_builder.cl", "void RT_TRAVERSE() {}"}, build, nullptr, {});
 
 }  // namespace

@@ -1,4 +1,4 @@
-/* Of a later SDK, whose rt_plugin has one more field at its end: no defect, this host takes it. */
+/* As from a later SDK, in which rt_plugin has one more field at its end. This is no defect: the host accepts it. */
 #include "sound.h"
 struct grown {
     rt_plugin known;

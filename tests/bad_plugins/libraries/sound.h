@@ -1,6 +1,6 @@
-/* sound.h -- the parts of a sound plugin. Each library beside it takes them and spoils exactly one thing; sound.c, which
- * spoils nothing, proves that it is that thing which is refused. A defect redefines one of the macros before it includes this
- * page, and PLUGIN at the end writes out the description. */
+/* sound.h -- the parts of a sound plugin. Each library beside this file uses them and adds exactly one defect: it defines one of
+ * the macros before it includes this file, and ends with PLUGIN, which defines the description. sound.c has no defect; it proves
+ * that the other libraries are refused because of theirs. */
 #ifndef SOUND_H
 #define SOUND_H
 #include <stddef.h>
@@ -56,7 +56,7 @@
 #define PARAM_COUNT sizeof params / sizeof params[0]
 #endif
 
-/* Code of a refused plugin must not run, whatever it does. */
+/* The code of a refused plugin must never run. */
 static int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_output* out) {
     (void)in, (void)out;
     return host->fail(host->ctx, "the test plugin builds nothing");
@@ -73,7 +73,7 @@ static const rt_slot slots[] = {SLOTS};
 static const rt_accel accel = {ACCEL_BYTES, sizeof slots / sizeof slots[0], slots, {NULL, NULL}, {TRAVERSE}, BUILD, NULL, NULL, TRAITS};
 static const char* const extensions[] = {"sound", NULL};
 static const rt_importer importer = {IMPORTER_BYTES, extensions, NULL, load};
-/* Not every defect uses every part. */
+/* Avoids warnings about unused parts: not every library uses all of them. */
 const void* const sound_parts[] = {choices, no_choices, &accel, &importer, params, (const void*)&build};
 
 #define PLUGIN \

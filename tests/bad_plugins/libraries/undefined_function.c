@@ -1,4 +1,4 @@
-/* Calls what no library has. */
+/* Calls a function which no library defines. */
 #define ACCEL &calling
 #include "sound.h"
 void sound_function_that_nobody_has(void);

@@ -1,4 +1,4 @@
-// An importer that knows its files by their first bytes.
+// An importer that recognises its files by their first bytes.
 #include <algorithm>
 #include <cstring>
 
@@ -8,7 +8,7 @@ static int32_t probe(const uint8_t* head, uint64_t bytes) {
     const auto begins = [&](const char* word) {
         return bytes >= std::strlen(word) && std::equal(word, word + std::strlen(word), head);
     };
-    if (begins("THROW")) throw 1;  // no plugin may; the host has to live with one that does
+    if (begins("THROW")) throw 1;  // plugins must not throw; the host must cope with one that does
     return begins("MAGIC") ? 100 : begins("MAYBE") ? 20 : 0;
 }
 static int32_t load(const rt_host*, const char*, const double*, const rt_scene_sink*) {

@@ -1,4 +1,4 @@
-// An importer that knows its files by their extension alone.
+// An importer that recognises its files only by their extension.
 #include "rt_plugin.hpp"
 
 static int32_t load(const rt_host*, const char*, const double*, const rt_scene_sink*) {

@@ -1,6 +1,7 @@
-// my_accel.cpp -- a list of boxes over a few primitives each, in the order of the file. Replace it by something better.
+// my_accel.cpp -- builds a list of boxes. Each box encloses a few primitives, in the order of the file. Replace it by your own
+// structure.
 #include "rt_plugin.hpp"
-// after it, since it uses its types:
+// included after rt_plugin.hpp, because it uses its types:
 #include "my_accel_types.h"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ int32_t build(const rt_host* host, const rt_build_input* in, const rt_build_outp
             ++b.count;
             leaves[leaf] = prims[i].ref;
         }
-        rt::root(out, g, g);  // for every group, also an empty one
+        rt::root(out, g, g);  // call it for every group, also for an empty one
         rt::progress(host, float(g + 1) / float(in->group_count));
     }
     rt::stat(out, "nodes", block_count);

@@ -1,4 +1,4 @@
-// my_importer.cpp -- reads .tri: a triangle a line, as nine numbers. Replace it by a format of yours.
+// my_importer.cpp -- reads .tri files: one triangle per line, as nine numbers. Replace it by your own format.
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -22,7 +22,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
                 throw rt::fail(host, "line " + std::to_string(number) + ": expected nine numbers: '" + line + "'");
             positions.push_back(value);
         }
-        if (number % 4096 == 0) rt::progress(host, 0.5f);  // throws once the user has cancelled
+        if (number % 4096 == 0) rt::progress(host, 0.5f);  // throws if the user has cancelled
     }
     std::vector<rt_u32> indices(positions.size() / 3);
     std::iota(indices.begin(), indices.end(), 0u);
@@ -34,11 +34,11 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     mesh.position_stride = 3 * sizeof(float);
     mesh.indices = indices.data();
     mesh.index_count = indices.size();
-    mesh.face_count = indices.size() / 3;  // face_sizes is NULL: all are triangles
+    mesh.face_count = indices.size() / 3;  // face_sizes is NULL, so all faces are triangles
     mesh.material = RT_NONE;
     rt_instance_desc placed{sizeof placed, nullptr, 0, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
-    placed.mesh = rt::id(sink->mesh(sink->ctx, &mesh));  // the host copies all of it
-    rt::id(sink->instance(sink->ctx, &placed));          // a mesh that is placed nowhere is not seen
+    placed.mesh = rt::id(sink->mesh(sink->ctx, &mesh));  // the host copies the mesh
+    rt::id(sink->instance(sink->ctx, &placed));          // a mesh is visible only through an instance
     return RT_OK;
 }
 
