@@ -1,9 +1,11 @@
-/* film.cl -- from the film to what a screen shows, and sums over the counters. A program of its own, built once a device. */
+/* film.cl -- makes the picture that a screen shows from the film, and sums the counters. A program of its own, built once a
+ * device. */
 
-/* Four pixels at a time, r g b w each: w is carried along and thrown away. Sums and products are spelled out, since built-in
- * functions need not take scalars beside vectors; the compiler fuses them. */
+/* Tone curves work on four pixels at a time, r g b w each; w is computed along and not used. Sums and products are written as
+ * operators, because built-in functions need not accept a scalar beside a vector. The compiler fuses them. */
 
-/* The sRGB curve as a polynomial of the square root: off by a twelfth of a step of 8 bits, in a fraction of pow's time. */
+/* The sRGB curve as a polynomial of the square root. Its error is a twelfth of a step of 8 bits, its time a fraction of
+ * pow's. */
 float16 rt_srgb_from_linear(float16 c)
 {
     const float16 r = sqrt(c);
@@ -12,14 +14,14 @@ float16 rt_srgb_from_linear(float16 c)
     return c < 0.0031308f ? 12.92f * c : curve;
 }
 
-/* Narkowicz 2015, ACES Filmic Tone Mapping Curve (a fit). */
+/* Narkowicz 2015, "ACES Filmic Tone Mapping Curve" (a fit). */
 float16 rt_aces(float16 x) { return clamp(x * (2.51f * x + 0.03f) / (x * (2.43f * x + 0.59f) + 0.14f), 0.0f, 1.0f); }
 
-/* In the manner of AgX (Sobotka 2022, github.com/sobotka/AgX): the primaries are drawn together, so that bright colours turn
- * white instead of to a neighbouring hue; then a sigmoid over 16.5 stops, 10 below middle grey and 6.5 above, is the display's
- * code. Its primaries are pulled by a fifth towards the mean of the three here, which is simpler than the original's
- * matrix. The polynomial is our fit, rising throughout and within 1/255, of the original's curve: pivot 0.5, slope 2, powers 3
- * (toe) and 3.25 (shoulder). */
+/* A curve like AgX (Sobotka 2022, github.com/sobotka/AgX). Primaries are moved towards each other, so that bright colours turn
+ * white and not to a neighbouring hue. Then a sigmoid over 16.5 stops, 10 below middle grey and 6.5 above, gives the display's
+ * code. Here primaries are moved by a fifth towards the mean of the three, which is simpler than the original's matrix. The
+ * polynomial is our fit of the original's curve (pivot 0.5, slope 2, powers 3 for the toe and 3.25 for the shoulder). It rises
+ * throughout and is within 1/255. */
 float16 rt_agx(float16 c)
 {
     const float4 mean = (c.s048c + c.s159d + c.s26ae) * (1.0f / 3.0f);
@@ -33,7 +35,7 @@ float16 rt_agx(float16 c)
     return (curve + 0.178789123f) * x - 0.00313757338f;
 }
 
-/* The i-th quadruple of pixels. */
+/* Maps the i-th quadruple of pixels. */
 void rt_map_tones(const global float *film, global uchar *display, const uint i, const float exposure, const uint tone)
 {
     const float16 sum = vload16(i, film);
@@ -47,17 +49,17 @@ void rt_map_tones(const global float *film, global uchar *display, const uint i,
     vstore16(convert_uchar16(s) | alpha, i, display);
 }
 
-/* film: sums of samples, w counts them. display: RGBA8, sRGB, top row first. count: quadruples of pixels.
- * tone: 0 linear (clipped), 1 Reinhard, 2 ACES-like, 3 AgX-like. */
+/* film: the sums of samples, with their number in w. display: RGBA8, sRGB, top row first. count: the number of quadruples of
+ * pixels. tone: 0 linear (clipped), 1 Reinhard, 2 ACES-like, 3 AgX-like. */
 kernel void map_tones(const global float *film, global uchar *display, const uint count, const float exposure, const uint tone)
 {
     const uint i = (uint)get_global_id(0);
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
-/* The same for some rows of work-groups alone. rows: their numbers. row_pixels: pixels of one. row_quads: quadruples that a row
- * touches at most; where row_pixels is no multiple of 4, rows share quadruples with their neighbours, and two work-items may
- * write the same bytes. items: row_quads times the number of rows. */
+/* The same for some rows of work-groups. rows: their numbers. row_pixels: the pixels of one row. row_quads: the greatest number of
+ * quadruples that a row touches. Where row_pixels is no multiple of 4, neighbouring rows share quadruples, and two work-items
+ * may write the same bytes. items: row_quads times the number of rows. */
 kernel void map_tones_of_rows(const global float *film, global uchar *display, const uint count, const float exposure,
                               const uint tone, const global uint *rows, const uint row_pixels, const uint row_quads,
                               const uint items)
@@ -68,8 +70,8 @@ kernel void map_tones_of_rows(const global float *film, global uchar *display, c
     if (i < count) rt_map_tones(film, display, i, exposure, tone);
 }
 
-/* A launch's layers (rt_types.h) into the film, one after the other: of some rows of work-groups, of row_pixels pixels each;
- * items: of all these rows. adds: 0: the first one in place of what was there. */
+/* Adds a launch's layers (rt_types.h) to the film, in order, for some rows of work-groups of row_pixels pixels each. items: the
+ * number of pixels in all of these rows. adds: 0: the first layer replaces the film. */
 kernel void add_layers(global float4 *film, const global float4 *layers, const uint pixels, const uint layer_count, const uint adds,
                        const global uint *rows, const uint row_pixels, const uint items)
 {
@@ -85,7 +87,7 @@ kernel void add_layers(global float4 *film, const global float4 *layers, const u
 
 #define RT_SUMMERS 64u
 
-/* Adds to a number of 64 bits, low half first: OpenCL 1.2 promises atomics of 32 bits alone. */
+/* Adds to a number of 64 bits, low half first, because OpenCL 1.2 promises only atomics of 32 bits. */
 void rt_add_wide(volatile global uint *sum, const ulong value)
 {
     const uint low = (uint)value, before = atomic_add(sum, low);

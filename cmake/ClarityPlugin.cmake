@@ -1,7 +1,7 @@
 # clarity_add_plugin(accel|importer ID [LIBRARIES lib...]): builds the current folder as one plugin, which is one shared library.
 #
-# Compiles every .cpp and .c file of the folder. For an accel plugin, ID.cl and ID_types.h are embedded: the plugin includes
-# "ID.inc", which has rows of {path, text}. The library is written to lib/clarity/plugins/{importers,accel} beside bin/.
+# Compiles every .cpp and .c file of the folder. For an accel plugin, ID.cl and ID_types.h are embedded, with the parts
+# that they include, ID_*.cl and ID_*.h. The plugin includes "ID.inc", which has rows of {path, text}. The library is written to lib/clarity/plugins/{importers,accel} beside bin/.
 # Outside of clarity's tree (with find_package(clarity)) that folder is in the plugin's build folder: add
 # build/lib/clarity/plugins to CLARITY_PLUGIN_PATH, or run `cmake --install build --prefix ~/.local`, which installs the plugin
 # where clarity looks for it.
@@ -31,7 +31,8 @@ function(clarity_add_plugin kind id)
   target_link_options(${target} PRIVATE -Wl,--no-undefined "-Wl,--version-script=${CLARITY_PLUGIN_EXPORTS}")
   file(GLOB embedded CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_types.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}.cl)
   if(embedded)
-    clarity_embed(${target} NAME ${id} BASE ${CMAKE_CURRENT_SOURCE_DIR} FILES ${embedded})
+    file(GLOB parts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_*.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}_*.cl)
+    clarity_embed(${target} NAME ${id} BASE ${CMAKE_CURRENT_SOURCE_DIR} FILES ${embedded} SHOWN plugins/${folder}/${id} PARTS ${parts})
   endif()
   if(CLARITY_PLUGIN_INSTALL_DIR)
     install(TARGETS ${target} LIBRARY DESTINATION ${CLARITY_PLUGIN_INSTALL_DIR}/${folder})

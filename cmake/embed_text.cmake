@@ -1,9 +1,50 @@
 # Writes each of FILES (separated by |) as a row {"path relative to BASE", "text" "text" ...} of C code into OUT.
+#
+# With SHOWN, the folder that compiler messages name, each line `#include "part"` is replaced by the text of the file `part` of the
+# same folder, between #line directives. host/device/kernel_includes.cpp does the same to files that it reads from disk, byte by
+# byte. Lines that include "cl/..." stay: the host replaces them.
+cmake_minimum_required(VERSION 3.22)
+
+function(expand_parts file shown out)
+  file(READ ${file} rest)
+  get_filename_component(folder ${file} DIRECTORY)
+  get_filename_component(name ${file} NAME)
+  set(text "")
+  set(line 1)
+  while(TRUE)
+    # The newline in front finds a line that is the file's first as well.
+    if(NOT "\n${rest}" MATCHES "\n#include \"([A-Za-z0-9_]+[.][a-z]+)\"[ \t\r]*(\n|$)")
+      break()
+    endif()
+    set(part ${CMAKE_MATCH_1})
+    set(match "${CMAKE_MATCH_0}")
+    string(FIND "\n${rest}" "${match}" before)
+    string(LENGTH "${match}" length)
+    string(SUBSTRING "${rest}" 0 ${before} head)
+    math(EXPR after "${before} + ${length} - 1") # without the newline that was put in front
+    string(SUBSTRING "${rest}" ${after} -1 rest)
+    string(REGEX MATCHALL "\n" newlines "${head}")
+    list(LENGTH newlines count)
+    math(EXPR line "${line} + ${count} + 1")
+    expand_parts(${folder}/${part} ${shown} inner)
+    string(APPEND text "${head}#line 1 \"${shown}/${part}\"\n${inner}")
+    if(NOT inner MATCHES "\n$")
+      string(APPEND text "\n")
+    endif()
+    string(APPEND text "#line ${line} \"${shown}/${name}\"\n")
+  endwhile()
+  set(${out} "${text}${rest}" PARENT_SCOPE)
+endfunction()
+
 string(REPLACE "|" ";" files "${FILES}")
 set(text "")
 foreach(file IN LISTS files)
   file(RELATIVE_PATH name ${BASE} ${file})
-  file(READ ${file} content)
+  if(SHOWN)
+    expand_parts(${file} ${SHOWN} content)
+  else()
+    file(READ ${file} content)
+  endif()
   string(LENGTH "${content}" length)
   string(APPEND text "{\"${name}\",\n")
   set(at 0)

@@ -1,14 +1,14 @@
-/* lanes.h -- one kernel source, any SIMD width. OpenCL C 1.2.
+/* lanes.h -- one kernel source for any SIMD width. OpenCL C 1.2.
  *
- * RT_LANES is 1 on GPUs (a work-item is a thread) and 4, 8 or 16 on CPUs (a work-item drives one vector register). vfloat, vint
- * and vmask are then scalars or vectors; a mask's lane is 0 or -1. All control flow is uniform over the lanes.
- * Why not leave it to the compiler: no OpenCL CPU compiler vectorises a divergent tree traversal across work-items. */
+ * RT_LANES is 1 on GPUs, where a work-item is a thread, and 4, 8 or 16 on CPUs, where a work-item drives one vector register.
+ * vfloat, vint and vmask are scalars or vectors accordingly. A lane of a mask is 0 or -1. All control flow is uniform over the
+ * lanes. The lanes are explicit because no OpenCL compiler for CPUs vectorises a divergent tree traversal across work-items. */
 #ifndef RT_LANES_H
 #define RT_LANES_H
 
 #define RT_INLINE static inline __attribute__((always_inline))
-/* A kernel that makes pictures. NVIDIA's compiler may be told how many registers to use (RT_FEWER_REGISTERS), but listens only where
- * the size of work-groups is not laid down. */
+/* Declares a kernel that makes pictures. With RT_FEWER_REGISTERS the host limits the registers of NVIDIA's compiler, which
+ * obeys only where the kernel does not fix the size of its work-groups. */
 #if defined(RT_FEWER_REGISTERS) && defined(__NV_CL_C_VERSION)
 #define RT_PICTURE_KERNEL kernel void
 #else
@@ -48,7 +48,7 @@ typedef RT_CAT(int, RT_LANES) vmask;
 #define rt_select(m, a, b) ((m) ? (a) : (b))
 #define rt_vfloat(x) ((vfloat)(x))
 #define rt_vint(x) ((vint)(x))
-/* From and to arrays of floats or ints, which need not be aligned. PoCL's vload and vstore go by quarters. */
+/* Loads and stores of arrays of floats or ints, which need not be aligned. PoCL's vload and vstore work in quarters. */
 typedef vfloat rt_unaligned_vfloat __attribute__((aligned(4)));
 typedef vint rt_unaligned_vint __attribute__((aligned(4)));
 RT_INLINE __attribute__((overloadable)) vfloat rt_load(const float *p) { return *(const rt_unaligned_vfloat *)p; }
@@ -68,8 +68,8 @@ RT_INLINE __attribute__((overloadable)) void rt_store(vfloat v, global float *p)
 #define rt_lane_index() ((int4)(0, 1, 2, 3))
 #endif
 
-/* Mask to bits, lane 0 in bit 0. PoCL 3.1's any() walks the lanes one by one and costs a third of a frame; the movemask
- * instruction is one cycle. RT_PORTABLE (a setting for tests) takes the fallback everywhere. */
+/* rt_bits: the lanes of a mask as bits, lane 0 in bit 0. PoCL 3.1's any() tests lane after lane and costs a third of a frame;
+ * the movemask instruction takes one cycle. RT_PORTABLE, a setting for tests, selects the fallback everywhere. */
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX512DQ__)
 #define rt_bits(m) ((uint)(ushort)__builtin_ia32_cvtd2mask512(m))
 #elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 8 && defined(__AVX__)
@@ -77,7 +77,7 @@ RT_INLINE __attribute__((overloadable)) void rt_store(vfloat v, global float *p)
 #elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 4
 #define rt_bits(m) ((uint)__builtin_ia32_movmskps(as_float4(m)))
 #elif !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX__)
-#define rt_bits(m)                                                                                                               \
+#define rt_bits(m)                                                                                                             \
     ((uint)__builtin_ia32_movmskps256(as_float8((m).lo)) | (uint)__builtin_ia32_movmskps256(as_float8((m).hi)) << 8)
 #else
 RT_INLINE uint rt_bits4(int4 m)
@@ -98,11 +98,11 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #endif
 
-#define rt_lowest(bits) popcount(~(bits) & ((bits)-1u)) /* index of the lowest bit that is set */
+#define rt_lowest(bits) popcount(~(bits) & ((bits)-1u)) /* the index of the lowest set bit */
 #define RT_ALL_LANES ((1u << RT_LANES) - 1u)
 
-/* One instruction each. On a CPU fmin and fmax have to look for NaN and take three; a GPU has them as one, but a comparison and
- * a choice as two: an eighth of all rays' time. */
+/* Minimum and maximum in one instruction each. On a CPU fmin and fmax take three, since they must look for NaN. On a GPU they
+ * take one, but a comparison and a selection take two, which costs an eighth of the time of all rays. */
 #if RT_CPU
 #define rt_min(a, b) ((a) < (b) ? (a) : (b))
 #define rt_max(a, b) ((a) > (b) ? (a) : (b))
@@ -113,7 +113,7 @@ RT_INLINE uint rt_bits4(int4 m)
 
 #define RT_INFINITY ((vfloat)(INFINITY))
 
-/* The greatest lane, as a scalar. */
+/* rt_greatest: the greatest lane as a scalar. */
 #if RT_LANES == 1
 #define rt_greatest(v) (v)
 #else
@@ -134,12 +134,12 @@ RT_INLINE float rt_greatest(float16 v)
 }
 #endif
 
-/* Of the lanes in a mask. */
+/* The greatest and the least lane of those in a mask. */
 #define rt_greatest_of(mask, v) rt_greatest(rt_select(mask, v, rt_vfloat(-MAXFLOAT)))
 #define rt_least_of(mask, v) (-rt_greatest_of(mask, -(v)))
 #endif
 
-/* Debug builds stop a traversal whose stack would overflow and count it; see CONTRACT.md. */
+/* 1 if the stack has room for the entry `top`. Debug programs count a full stack instead of overflowing it; see CONTRACT.md. */
 #ifdef RT_DEBUG
 #define RT_STACK_OK(top, size, hit) ((top) < (size) ? 1 : ((hit)->overflow = 1, 0))
 #else

@@ -1,12 +1,12 @@
-/* packet_stream.h -- how many blocks of rays are traced together.
+/* packet_stream.h -- streams: how many packets of rays are traced together.
  *
- * One vector of rays fills the lanes of a ray test. Neighbouring vectors mostly go down the same tree, so a structure may take
- * RT_STREAM of them down together, each a lane again: bounds of a whole vector of rays in one lane, against one box after the
- * other (rt_trace_stream() of query.h, RT_TRAVERSE_STREAM of the plugin). Tracers hold a stream's rays in private arrays; where
- * nothing goes by streams they are of one element, which compilers keep in registers.
+ * A packet is RT_LANES rays, one in each lane. Neighbouring packets mostly visit the same nodes, so a structure may trace a
+ * stream of RT_STREAM packets together: then a lane holds the bounds of a whole packet (rt_trace_stream() of query.h,
+ * RT_TRAVERSE_STREAM of the plugin). Tracers keep the rays of a stream in private arrays. Without streams these have one
+ * element, which compilers keep in registers.
  *
- * An instance's tree vectors of rays enter one by one: taking a stream there together was 2 to 10 % slower, for what it takes
- * to tell who enters. While rays are written down one after the other, all go one by one. */
+ * Packets enter an instance's tree one by one. Tracing a stream there together was 2 to 10 % slower, because deciding which
+ * packets enter the instance costs more than it saves. The inspector, which records ray after ray, has no streams either. */
 #ifndef RT_PACKET_STREAM_H
 #define RT_PACKET_STREAM_H
 
@@ -18,19 +18,20 @@
 #undef RT_SPLITS_INCOHERENT
 #define RT_STREAM 1
 #define RT_STREAM_OF(blocks_left) 1u
-/* `b` is plainly 0, so that no compiler takes an array of one for something to index: an H200 took 5 to 8 % longer for rays from memory. */
+/* `b` is a plain 0, so that no compiler indexes an array of one element: on an H200 that made rays from memory 5 to 8 %
+ * slower. */
 #define RT_FOR_EACH_PACKET(b, count) for (uint b = 0, b##_once = 1; b##_once; b##_once = 0)
 #endif
 
-/* Blocks from `begin` to `end`, a stream at a time. A GPU's work-item has one, and no loop for it. */
+/* A loop over the blocks [begin, end), a stream at a time. A GPU's work-item has one block and no loop. */
 #if RT_MAX_PIXELS == 1 && RT_LANES == 1
 #define RT_FOR_STREAMS(base, begin, end) for (uint base = (begin), base##_once = base < (end); base##_once; base##_once = 0)
 #else
 #define RT_FOR_STREAMS(base, begin, end) for (uint base = (begin); base < (end); base += RT_STREAM)
 #endif
 
-/* Lane p: the greatest lane of v[p], of RT_LANES vectors. Two by two they become one, each keeping half as many numbers of its own,
- * until one lane is left: two shuffles and a maximum for every two vectors, a third of what one after the other takes. */
+/* Lane p of the result is the greatest lane of v[p], for RT_LANES vectors. Each step merges vectors in pairs: half of the lanes
+ * of the result belong to either. Two shuffles and a maximum for a pair take a third of what vector after vector takes. */
 #if RT_STREAM > 1
 #if defined(RT_PORTABLE) || !defined(__clang__)
 RT_INLINE vfloat rt_greatest_each(const vfloat *v)
@@ -42,17 +43,17 @@ RT_INLINE vfloat rt_greatest_each(const vfloat *v)
 #else
 #define RT_SHUFFLE __builtin_shufflevector
 #if RT_LANES == 16
-#define RT_HALVES(a, b)                                                                                                          \
-    rt_max(RT_SHUFFLE(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23),                                             \
+#define RT_HALVES(a, b)                                                                                                        \
+    rt_max(RT_SHUFFLE(a, b, 0, 1, 2, 3, 4, 5, 6, 7, 16, 17, 18, 19, 20, 21, 22, 23),                                           \
            RT_SHUFFLE(a, b, 8, 9, 10, 11, 12, 13, 14, 15, 24, 25, 26, 27, 28, 29, 30, 31))
-#define RT_QUARTERS(a, b)                                                                                                        \
-    rt_max(RT_SHUFFLE(a, b, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27),                                           \
+#define RT_QUARTERS(a, b)                                                                                                      \
+    rt_max(RT_SHUFFLE(a, b, 0, 1, 2, 3, 8, 9, 10, 11, 16, 17, 18, 19, 24, 25, 26, 27),                                         \
            RT_SHUFFLE(a, b, 4, 5, 6, 7, 12, 13, 14, 15, 20, 21, 22, 23, 28, 29, 30, 31))
-#define RT_PAIRS(a, b)                                                                                                           \
-    rt_max(RT_SHUFFLE(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29),                                           \
+#define RT_PAIRS(a, b)                                                                                                         \
+    rt_max(RT_SHUFFLE(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29),                                         \
            RT_SHUFFLE(a, b, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15, 30, 31))
-#define RT_SINGLES(a, b)                                                                                                         \
-    rt_max(RT_SHUFFLE(a, b, 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30),                                          \
+#define RT_SINGLES(a, b)                                                                                                       \
+    rt_max(RT_SHUFFLE(a, b, 0, 2, 16, 18, 4, 6, 20, 22, 8, 10, 24, 26, 12, 14, 28, 30),                                        \
            RT_SHUFFLE(a, b, 1, 3, 17, 19, 5, 7, 21, 23, 9, 11, 25, 27, 13, 15, 29, 31))
 #define RT_FOUR(p) RT_QUARTERS(RT_HALVES(v[p], v[(p) + 4]), RT_HALVES(v[(p) + 8], v[(p) + 12]))
 #elif RT_LANES == 8
@@ -64,7 +65,8 @@ RT_INLINE vfloat rt_greatest_each(const vfloat *v)
 #define RT_PAIRS(a, b) rt_max(RT_SHUFFLE(a, b, 0, 1, 4, 5), RT_SHUFFLE(a, b, 2, 3, 6, 7))
 #define RT_SINGLES(a, b) rt_max(RT_SHUFFLE(a, b, 0, 2, 4, 6), RT_SHUFFLE(a, b, 1, 3, 5, 7))
 #endif
-/* By which bit of their numbers vectors meet: 2 at halves, 3 at quarters, 0 and 1 within parts of four lanes. So all end up in order. */
+/* The vectors of a pair differ in one bit of their index: bit 2 at halves, bit 3 at quarters, bits 0 and 1 within quarters.
+ * That puts all results in order. */
 RT_INLINE vfloat rt_greatest_each(const vfloat *v)
 {
     return RT_SINGLES(RT_PAIRS(RT_FOUR(0), RT_FOUR(1)), RT_PAIRS(RT_FOUR(2), RT_FOUR(3)));

@@ -1,14 +1,49 @@
-/* ray_space.h -- a corner as a ray sees it, for every test that projects corners across the ray.
+/* ray_space.h -- a ray's own space, and the steps that the tests of triangles and polygons share there.
  *
- * z lies along the ray's dominant axis, x and y on the other two, sheared so that the ray is the z axis; all from the corner to the
- * ray's origin: which side of an edge the ray passes does not mind the sign (Woop, Benthin, Wald 2013, "Watertight Ray/Triangle
- * Intersection"). A lane's numbers are the same by either way, so a ray's hit does not depend on who travels with it. */
+ * Woop, Benthin, Wald 2013, "Watertight Ray/Triangle Intersection". In ray space the ray's origin is the origin. z is the ray's
+ * dominant axis; x and y are the other two, sheared so that the ray lies on the z axis. All coordinates are those of origin -
+ * point, not of point - origin: on which side of an edge the ray passes does not depend on the sign. The numbers of a lane are
+ * the same by every way below, so a ray's hit does not depend on the rays that are traced with it. */
 #ifndef RT_RAY_SPACE_H
 #define RT_RAY_SPACE_H
 
+/* The steps are macros: a test has its numbers as scalars, as lanes of rays or as lanes of triangles. A test that uses them
+ * says FP_CONTRACT OFF, so that each product is rounded. */
+
+/* x or y of a point from its z. origin, point: their coordinates on the axis. */
+#define RT_SHEARED(shear, z, origin, point) fma(shear, z, (origin) - (point))
+
+/* The edge function: twice the signed area of the triangle of the ray and the points p and q. A difference of two rounded
+ * products: rounding is monotone, so the sign is right or the result is 0. */
+#define RT_EDGE(px, py, qx, qy) ((px) * (qy) - (py) * (qx))
+
+#define RT_MIN3(a, b, c) rt_min(rt_min(a, b), c)
+#define RT_MAX3(a, b, c) rt_max(rt_max(a, b), c)
+
+/* The distance at which a ray hits a triangle or polygon, from `height` and `facing`: the dot products of the normal with
+ * corner - origin and with the direction. The plane's distance is exact far away, where corners weighted with u, v, w would
+ * cancel, as on a floor. A plane that is seen edge-on has no distance, so it is kept between those of the nearest and the
+ * farthest corner, lo and hi. */
+#define RT_PLANE_DISTANCE(height, facing, lo, hi) rt_min(rt_max((height) / (facing), lo), hi)
+
+#define RT_DOT(ax, ay, az, bx, by, bz) fma(ax, bx, fma(ay, by, (az) * (bz)))
+
+/* The normal of a triangle, (b - a) x (c - a), not of unit length. */
+RT_INLINE void rt_triangle_normal(float ax, float ay, float az, float bx, float by, float bz, float cx, float cy, float cz, float *nx,
+                                  float *ny, float *nz)
+{
+#pragma OPENCL FP_CONTRACT OFF
+    const float e1x = bx - ax, e1y = by - ay, e1z = bz - az;
+    const float e2x = cx - ax, e2y = cy - ay, e2z = cz - az;
+    *nx = e1y * e2z - e1z * e2y;
+    *ny = e1z * e2x - e1x * e2z;
+    *nz = e1x * e2y - e1y * e2x;
+}
+
 #if RT_CPU
 
-/* The number of `quad` that `axis`, 0 to 2, says for each lane: one permutation where four numbers fit into a part of a register. */
+/* The number of `quad` that `axis`, 0 to 2, selects for each lane. One permutation where four numbers fit into a part of a
+ * register. */
 RT_INLINE vfloat rt_pick(float4 quad, vint axis)
 {
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX512F__)
@@ -23,24 +58,24 @@ RT_INLINE vfloat rt_pick(float4 quad, vint axis)
 #endif
 }
 
-/* `quad`: the three numbers at `corner`, and anything. */
+/* A corner in the ray space of each lane. quad: the three numbers at `corner`, and any fourth. */
 RT_INLINE void rt_to_ray_space(const rt_rays *r, const global float *corner, float4 quad, vfloat *x, vfloat *y, vfloat *z)
 {
 #pragma OPENCL FP_CONTRACT OFF
     if (r->same_axis) {
         *z = r->pz - rt_vfloat(corner[r->kz]);
-        *x = fma(r->sx, *z, r->px - rt_vfloat(corner[r->kx]));
-        *y = fma(r->sy, *z, r->py - rt_vfloat(corner[r->ky]));
+        *x = RT_SHEARED(r->sx, *z, r->px, rt_vfloat(corner[r->kx]));
+        *y = RT_SHEARED(r->sy, *z, r->py, rt_vfloat(corner[r->ky]));
     } else {
         *z = r->pz - rt_pick(quad, r->axis_z);
-        *x = fma(r->sx, *z, r->px - rt_pick(quad, r->axis_x));
-        *y = fma(r->sy, *z, r->py - rt_pick(quad, r->axis_y));
+        *x = RT_SHEARED(r->sx, *z, r->px, rt_pick(quad, r->axis_x));
+        *y = RT_SHEARED(r->sy, *z, r->py, rt_pick(quad, r->axis_y));
     }
 }
 
 #else
 
-/* Selected after the difference: what is from the origin is at hand, px, py and pz would be three registers more. */
+/* The same. Axes are selected after the difference from the origin: px, py and pz would take three registers more. */
 RT_INLINE void rt_to_ray_space(const rt_rays *r, const global float *corner, float4 quad, vfloat *x, vfloat *y, vfloat *z)
 {
 #pragma OPENCL FP_CONTRACT OFF
@@ -52,11 +87,11 @@ RT_INLINE void rt_to_ray_space(const rt_rays *r, const global float *corner, flo
 }
 
 #ifdef RT_RAYS_PER_ITEM
-/* Where a warp's rays have the same dominant axis k (warp_rays.cl) nothing is selected: a corner of `leaf` for the ray `r`. */
-#define RT_TO_RAY_SPACE_AXIS(corner, i, j, k, x, y, z)                                                                                 \
-    z = r->o##k - leaf->corner.k;                                                                                                \
-    x = fma(r->sx, z, r->o##i - leaf->corner.i);                                                                                 \
-    y = fma(r->sy, z, r->o##j - leaf->corner.j);
+/* The same for a corner of `leaf` where all rays of a warp have the dominant axis k (warp_rays.cl): nothing is selected. */
+#define RT_TO_RAY_SPACE_AXIS(corner, i, j, k, x, y, z)                                                                         \
+    z = r->o##k - leaf->corner.k;                                                                                              \
+    x = RT_SHEARED(r->sx, z, r->o##i, leaf->corner.i);                                                                         \
+    y = RT_SHEARED(r->sy, z, r->o##j, leaf->corner.j);
 #endif
 
 #endif

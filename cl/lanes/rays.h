@@ -1,4 +1,4 @@
-/* rays.h -- rays and hits of all lanes, and the box test that every traversal shares. */
+/* rays.h -- rays and hits of all lanes, and the slab tests that traversals share. */
 #ifndef RT_RAYS_H
 #define RT_RAYS_H
 
@@ -11,7 +11,7 @@ typedef struct rt_rays {
     vfloat far_x, far_y, far_z;    /* -origin / direction, rounded up */
     int coherent;                  /* all active lanes have the same signs: then */
     uint lo_x, lo_y, lo_z;         /* index of the near plane in a box {lo.xyz, hi.xyz}; the far one is 3 away */
-    int incoherent;                 /* they start far apart, as rt_incoherent() has it: few nodes will be shared */
+    int incoherent;                /* they start far apart (rt_incoherent()), so they will share few nodes */
     int same_axis;                 /* all active lanes have the same dominant axis: then */
     uint kx, ky, kz;               /* kz is it, kx and ky the other two; else */
     vint axis_x, axis_y, axis_z;   /* they differ by lane, and only then are these filled in */
@@ -19,26 +19,27 @@ typedef struct rt_rays {
     vfloat sx, sy, sz;             /* shear along the dominant axis; 1 / direction on it */
 } rt_rays;
 
-/* The nearest hit so far. A lane that is inactive, or occluded in an any-hit query, has t = -1: every test then fails for it. */
+/* The nearest hit so far. A lane that is inactive, or occluded in an any-hit query, has t = -1: every test then fails for
+ * it. */
 typedef struct rt_hits {
     vfloat t;
     vfloat u, v;       /* weights of corners b and c of a triangle */
     vfloat nx, ny, nz; /* geometric normal in the space of the hit's group, not unit, either side */
     vint leaf;         /* position in leaf order; -1: none; -2 - i: plane i */
-    vint prim;         /* its number; of two primitives at the same t the lower one wins, whatever the order of visits */
+    vint prim;         /* the primitive's number; the lower of two at the same t is the hit, whatever the order of visits */
     vint instance;     /* -1: none */
 #ifdef RT_COUNT_STEPS
-    uint steps, leaf_tests, lane_steps; /* of all lanes together, see rt_hit */
+    uint steps, leaf_tests, lane_steps; /* sums over all lanes, see rt_hit */
 #endif
 #ifdef RT_DEBUG
     uint overflow;
 #endif
 #ifdef RT_STEP_BUDGET
-    int step_budget; /* turns of the traversal that are left; negative: it was stopped */
+    int step_budget; /* steps that the traversal may still take; negative: it was stopped */
 #endif
 } rt_hits;
 
-/* Counting programs; see CONTRACT.md. The plain ones are not slowed by it: what only feeds these macros is dead code there. */
+/* For programs that count; see CONTRACT.md. Other programs do not pay: code that only feeds these macros is dead there. */
 #ifdef RT_COUNT_STEPS
 #define RT_COUNT_VISIT(hit, inside) ((hit)->steps++, (hit)->lane_steps += popcount(inside))
 #define RT_COUNT_LEAVES(hit, n) ((hit)->leaf_tests += (n))
@@ -47,10 +48,10 @@ typedef struct rt_hits {
 #define RT_COUNT_LEAVES(hit, n) ((void)(n))
 #endif
 #define RT_COUNT_LEAF(hit) RT_COUNT_LEAVES(hit, 1u)
-/* For traversals that do not know who is in a node: all who are still looking. */
+/* For traversals that do not know which lanes are in a node: all lanes that still search count. */
 #define RT_COUNT_STEP(hit) RT_COUNT_VISIT(hit, rt_bits(RT_MASK((hit)->t >= rt_vfloat(0.0f))))
 
-/* Kernels that have no rt_tally count full stacks into one number, in debug programs: an argument before the context's. */
+/* In debug programs, a kernel without an rt_tally counts full stacks into one number, an argument before those of the context. */
 #ifdef RT_DEBUG
 #define RT_OVERFLOWS_PARAM volatile global uint *overflows,
 #define RT_CLEAR_OVERFLOW(hit) (hit)->overflow = 0u; /* where rt_clear_hits() is not called for every hit */
@@ -61,7 +62,7 @@ typedef struct rt_hits {
 #define RT_COUNT_OVERFLOW(hit)
 #endif
 
-/* Before each turn of a traversal's loop; see CONTRACT.md. */
+/* Asked before each step of a traversal's loop; see CONTRACT.md. */
 #ifdef RT_STEP_BUDGET
 #define RT_MAY_GO_ON(hit) ((hit)->step_budget-- > 0)
 #else
@@ -71,7 +72,7 @@ typedef struct rt_hits {
 #define RT_EPS 5.9604645e-8f /* 2^-24, half an ulp of 1 */
 #define RT_WIDE (1.0f + 16.0f * RT_EPS)
 
-/* Where a component of the direction, or its reciprocal, is negative. */
+/* The lanes in which a component of the direction, or its reciprocal, is negative. */
 #define rt_negative(v) RT_MASK((v) < rt_vfloat(0.0f))
 
 RT_INLINE vfloat rt_safe_reciprocal(vfloat d)
@@ -149,8 +150,8 @@ RT_INLINE void rt_prepare(rt_rays *r, uint bits)
     rt_prepare_for_triangles(r, bits);
 }
 
-/* Whether half of the rays of a packet start more than two triangles away from the first, by the size of those that they start on.
- * area: twice that of each ray's. */
+/* Whether at least half of the rays of a packet start more than two triangles away from the first ray, measured by the size of
+ * the triangles that they start on. area: twice the area of each ray's triangle. */
 #define RT_INCOHERENT 4.0f
 RT_INLINE int rt_incoherent(const rt_rays *r, vfloat area, uint bits)
 {
@@ -165,48 +166,59 @@ RT_INLINE int rt_incoherent(const rt_rays *r, vfloat area, uint bits)
 #endif
 }
 
-/* Lanes in which a primitive at t beats what was hit so far. */
+/* Lanes in which a primitive at distance t is the nearest hit so far. Of two primitives at one distance the lower number
+ * wins. */
 RT_INLINE vmask rt_closer(const rt_rays *r, const rt_hits *h, vfloat t, uint prim)
 {
     return RT_MASK(t >= r->t_min) & (RT_MASK(t < h->t) | (RT_MASK(t == h->t) & RT_MASK(rt_vint((int)prim) < h->prim)));
 }
 
-/* Which lanes enter the box lo..hi before their nearest hit; *entry is where. Rounding never loses a lane. */
+/* The last step of a slab test (Kay, Kajiya 1986, "Ray Tracing Complex Scenes"). Given the distances at which a ray meets the
+ * near planes of a box (ax, ay, az) and its far planes (bx, by, bz), finds the distances *in .. *out at which it is inside the
+ * box, between t_min and t. It misses the box if *in > *out. The far side is widened by the relative error of all these
+ * distances. */
+RT_INLINE void rt_intersect_slabs(vfloat ax, vfloat ay, vfloat az, vfloat bx, vfloat by, vfloat bz, vfloat t_min, vfloat t, vfloat *in,
+                                  vfloat *out)
+{
+    *in = rt_max(rt_max(ax, ay), rt_max(az, t_min));
+    *out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, t);
+}
+
+/* The lanes that enter a box before their nearest hit, given its planes as these rays meet them: near ones, then far ones.
+ * *entry is the distance of entry. Rounding never loses a lane. */
+RT_INLINE vmask rt_enter_planes(vfloat near_x, vfloat near_y, vfloat near_z, vfloat far_x, vfloat far_y, vfloat far_z, const rt_rays *r,
+                                const rt_hits *h, vfloat *entry)
+{
+    const vfloat ax = fma(r->ix, near_x, r->near_x), bx = fma(r->ix, far_x, r->far_x);
+    const vfloat ay = fma(r->iy, near_y, r->near_y), by = fma(r->iy, far_y, r->far_y);
+    const vfloat az = fma(r->iz, near_z, r->near_z), bz = fma(r->iz, far_z, r->far_z);
+    vfloat out;
+    rt_intersect_slabs(ax, ay, az, bx, by, bz, r->t_min, h->t, entry, &out);
+    return RT_MASK(*entry <= out);
+}
+
+/* The same for a box from lo to hi. Each lane selects its near planes by the signs of its direction. */
 RT_INLINE vmask rt_enter_bounds(vfloat lo_x, vfloat lo_y, vfloat lo_z, vfloat hi_x, vfloat hi_y, vfloat hi_z, const rt_rays *r,
                                 const rt_hits *h, vfloat *entry)
 {
     const vmask neg_x = rt_negative(r->ix), neg_y = rt_negative(r->iy), neg_z = rt_negative(r->iz);
-    const vfloat ax = fma(r->ix, rt_select(neg_x, hi_x, lo_x), r->near_x), bx = fma(r->ix, rt_select(neg_x, lo_x, hi_x), r->far_x);
-    const vfloat ay = fma(r->iy, rt_select(neg_y, hi_y, lo_y), r->near_y), by = fma(r->iy, rt_select(neg_y, lo_y, hi_y), r->far_y);
-    const vfloat az = fma(r->iz, rt_select(neg_z, hi_z, lo_z), r->near_z), bz = fma(r->iz, rt_select(neg_z, lo_z, hi_z), r->far_z);
-    const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
-    const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, h->t);
-    *entry = in;
-    return RT_MASK(in <= out);
+    return rt_enter_planes(rt_select(neg_x, hi_x, lo_x), rt_select(neg_y, hi_y, lo_y), rt_select(neg_z, hi_z, lo_z),
+                           rt_select(neg_x, lo_x, hi_x), rt_select(neg_y, lo_y, hi_y), rt_select(neg_z, lo_z, hi_z), r, h, entry);
 }
 
-/* The same for a box {lo.xyz, hi.xyz} in memory. Packets whose lanes agree in sign pick near and far planes by address. */
+/* The same for a box {lo.xyz, hi.xyz} in memory. A packet whose lanes agree in sign selects near and far planes by address. */
 RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry)
 {
 #if RT_LANES > 1
-    if (r->coherent) {
-        const vfloat ax = fma(r->ix, rt_vfloat(box[r->lo_x]), r->near_x);
-        const vfloat ay = fma(r->iy, rt_vfloat(box[r->lo_y]), r->near_y);
-        const vfloat az = fma(r->iz, rt_vfloat(box[r->lo_z]), r->near_z);
-        const vfloat bx = fma(r->ix, rt_vfloat(box[3u - r->lo_x]), r->far_x);
-        const vfloat by = fma(r->iy, rt_vfloat(box[5u - r->lo_y]), r->far_y);
-        const vfloat bz = fma(r->iz, rt_vfloat(box[7u - r->lo_z]), r->far_z);
-        const vfloat in = rt_max(rt_max(ax, ay), rt_max(az, r->t_min));
-        const vfloat out = rt_min(rt_min(rt_min(bx, by), bz) * RT_WIDE, h->t);
-        *entry = in;
-        return RT_MASK(in <= out);
-    }
+    if (r->coherent)
+        return rt_enter_planes(rt_vfloat(box[r->lo_x]), rt_vfloat(box[r->lo_y]), rt_vfloat(box[r->lo_z]), rt_vfloat(box[3u - r->lo_x]),
+                               rt_vfloat(box[5u - r->lo_y]), rt_vfloat(box[7u - r->lo_z]), r, h, entry);
 #endif
     return rt_enter_bounds(rt_vfloat(box[0]), rt_vfloat(box[1]), rt_vfloat(box[2]), rt_vfloat(box[3]), rt_vfloat(box[4]),
                            rt_vfloat(box[5]), r, h, entry);
 }
 
-/* Which rays come to the bounds of all but planes before t_max. */
+/* The lanes whose rays enter the bounds of all primitives but planes before t_max. */
 RT_INLINE vmask rt_enter_scene(const constant rt_frame *frame, const rt_rays *r, vfloat t_max)
 {
     vfloat entry;

@@ -1,8 +1,10 @@
-/* single_ray.h -- the rays of a packet one at a time: where they part, each goes its own way through the tree, and what lies in a
- * vector's lane costs more to take out at every turn than to store once.
+/* single_ray.h -- the rays of a packet one at a time, as arrays.
  *
- * RT_AT(r->sx, l) is that number of lane l. In programs of one lane rt_single_rays and rt_single_hits are rt_rays and rt_hits
- * themselves, and l is 0. The numbers are the packet's, so a ray's hit does not depend on who travels with it. */
+ * The rays of an incoherent packet are traced separately. Extracting a lane from a vector at each step would cost more than
+ * storing all lanes once.
+ *
+ * RT_AT(r->sx, l) is the number of lane l. In programs of one lane rt_single_rays and rt_single_hits are rt_rays and rt_hits
+ * themselves, and l is 0. The numbers are those of the packet, so a ray's hit does not depend on the rays traced with it. */
 #ifndef RT_SINGLE_RAY_H
 #define RT_SINGLE_RAY_H
 
@@ -16,16 +18,16 @@
 
 #define RT_AT(field, l) (field)[l]
 
-/* As rt_rays has them. */
+/* The members of rt_rays. */
 typedef struct rt_single_rays {
     float ox[RT_LANES], oy[RT_LANES], oz[RT_LANES], dx[RT_LANES], dy[RT_LANES], dz[RT_LANES], t_min[RT_LANES];
     float ix[RT_LANES], iy[RT_LANES], iz[RT_LANES];
     float near_x[RT_LANES], near_y[RT_LANES], near_z[RT_LANES], far_x[RT_LANES], far_y[RT_LANES], far_z[RT_LANES];
     float px[RT_LANES], py[RT_LANES], pz[RT_LANES], sx[RT_LANES], sy[RT_LANES], sz[RT_LANES];
-    int kx[RT_LANES], ky[RT_LANES], kz[RT_LANES]; /* of this ray: the packet's may have several dominant axes */
+    int kx[RT_LANES], ky[RT_LANES], kz[RT_LANES]; /* for each ray, since a packet may have several dominant axes */
 } __attribute__((aligned(64))) rt_single_rays;
 
-/* As rt_hits has them. */
+/* The members of rt_hits. */
 typedef struct rt_single_hits {
     float t[RT_LANES], u[RT_LANES], v[RT_LANES], nx[RT_LANES], ny[RT_LANES], nz[RT_LANES];
     int leaf[RT_LANES], prim[RT_LANES], instance[RT_LANES];
@@ -53,7 +55,7 @@ RT_INLINE void rt_spread_hits(const rt_hits *from, rt_single_hits *to)
     rt_store(from->leaf, to->leaf), rt_store(from->prim, to->prim), rt_store(from->instance, to->instance);
 }
 
-/* The counters of `to` stay. */
+/* Makes rt_hits of the arrays. The counters of `to` keep their values. */
 RT_INLINE void rt_gather_hits(const rt_single_hits *from, rt_hits *to)
 {
     to->t = rt_load(from->t), to->u = rt_load(from->u), to->v = rt_load(from->v);

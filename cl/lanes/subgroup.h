@@ -1,5 +1,7 @@
-/* subgroup.h -- work-items that decide together: RT_SUBGROUP_SIZE neighbours, all of whom must call these at the same place. On NVIDIA's devices
- * they are a warp, which agrees by votes and shuffles (PTX; their OpenCL has no sub-groups); elsewhere a work-item is by itself. */
+/* subgroup.h -- subgroups: RT_SUBGROUP_SIZE neighbouring work-items that exchange values without memory.
+ *
+ * All work-items of a subgroup must call these functions at the same place. On NVIDIA's devices a subgroup is a warp, and the
+ * functions are PTX votes and shuffles, since their OpenCL has no sub-groups. Elsewhere a subgroup is one work-item. */
 #ifndef RT_SUBGROUP_H
 #define RT_SUBGROUP_H
 
@@ -8,14 +10,14 @@
 #define RT_HAS_SUBGROUPS
 #define RT_SUBGROUP_SIZE 32u
 RT_INLINE uint rt_subgroup_local_id(void) { return (uint)get_local_id(0) & 31u; }
-/* Bits of those whose value is not 0. */
+/* The bits of the work-items whose value is not 0. */
 RT_INLINE uint rt_subgroup_ballot(uint value)
 {
     uint bits;
     __asm__ volatile("{ .reg .pred p; setp.ne.u32 p, %1, 0; vote.sync.ballot.b32 %0, p, 0xffffffff; }" : "=r"(bits) : "r"(value));
     return bits;
 }
-/* Whether it is so for any of them. A branch by it is the same for all, which the compiler sees. */
+/* Whether `value` is true for any of them. The compiler sees that a branch on the result is uniform. */
 RT_INLINE bool rt_subgroup_any(bool value)
 {
     uint any;
@@ -24,7 +26,7 @@ RT_INLINE bool rt_subgroup_any(bool value)
                      : "r"((uint)value));
     return any != 0u;
 }
-/* The value of one of them. */
+/* The value of the work-item `voter`. */
 RT_INLINE uint rt_subgroup_broadcast(uint voter, uint value)
 {
     uint its;
@@ -42,7 +44,7 @@ RT_INLINE uint rt_subgroup_broadcast(uint voter, uint value) { return value; }
 
 #endif
 
-/* Where a warp's rays go together each work-item has RT_RAYS_PER_ITEM of them (warp_rays.cl). */
+/* A loop over the RT_RAYS_PER_ITEM rays of a work-item, in programs that trace the rays of a warp together (warp_rays.cl). */
 #define RT_FOR_EACH_RAY_OF_ITEM(i) _Pragma("unroll") for (uint i = 0; i < RT_RAYS_PER_ITEM; ++i)
 
 #endif

@@ -1,4 +1,4 @@
-/* vec.h -- three-dimensional vectors and colours of all lanes, for shading. Traversal spells its components out. */
+/* vec.h -- three-dimensional vectors and colours of all lanes, for shading. Traversals name the components one by one. */
 #ifndef RT_VEC_H
 #define RT_VEC_H
 
@@ -27,14 +27,15 @@ RT_INLINE rt_vec rt_choose(vmask m, rt_vec a, rt_vec b)
 {
     return rt_vec_of(rt_select(m, a.x, b.x), rt_select(m, a.y, b.y), rt_select(m, a.z, b.z));
 }
-/* 1 / length; finite also for a null vector. */
+/* 1 / length; finite for a null vector too. */
 RT_INLINE vfloat rt_inverse_length(rt_vec a) { return rt_vfloat(1.0f) / sqrt(rt_max(rt_dot(a, a), rt_vfloat(1e-36f))); }
 RT_INLINE rt_vec rt_normalize(rt_vec a) { return rt_scale(rt_inverse_length(a), a); }
-/* Lane by lane: x, y, z and w. */
+/* Stores x, y, z and w of lane after lane. */
 #if RT_LANES == 16 && defined(__clang__)
 RT_INLINE void rt_store_lanes(rt_vec v, float w, float4 *out)
 {
-    /* Within quarters of the register, where shuffles are cheapest: lanes l, l + 4, l + 8 and l + 12 become a vector. */
+    /* Shuffles stay within quarters of the register, where they are cheapest: lanes l, l + 4, l + 8 and l + 12 become a
+     * vector. */
 #define RT_EVEN(a, b) __builtin_shufflevector(a, b, 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29)
 #define RT_ODD(a, b) __builtin_shufflevector(a, b, 2, 18, 3, 19, 6, 22, 7, 23, 10, 26, 11, 27, 14, 30, 15, 31)
 #define RT_FIRST(a, b) __builtin_shufflevector(a, b, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13, 28, 29)

@@ -1,8 +1,8 @@
-/* work_distribution.h -- work-items that take work and room together: one atomic for all of them.
+/* work_distribution.h -- teams of work-items that claim work and memory with one atomic operation for all of them.
  *
- * A wave is RT_TEAM_SIZE work-items that run the same way through a kernel's outer loop: on NVIDIA's devices a warp, which agrees by
- * votes (subgroup.h); elsewhere a work-group, which agrees through local memory; on a CPU one work-item. Every work-item of a wave must
- * call these, at the same place. */
+ * A team is RT_TEAM_SIZE work-items that run through a kernel's outer loop in step. It is a warp on NVIDIA's devices, where it
+ * uses subgroup.h; one work-item on a CPU; elsewhere a work-group, which uses local memory. Every work-item of a team must call
+ * these functions, at the same place. */
 #ifndef RT_WORK_DISTRIBUTION_H
 #define RT_WORK_DISTRIBUTION_H
 
@@ -13,7 +13,7 @@
 #else
 #define RT_TEAM_SIZE ((uint)RT_LOCAL_SIZE)
 #endif
-/* uints of local memory that a work-group lends to the functions below. */
+/* The uints of local memory that the functions below need for a work-group. */
 #define RT_TEAM_SCRATCH (RT_LOCAL_SIZE + 1)
 
 #if RT_CPU
@@ -30,7 +30,7 @@ RT_INLINE uint rt_team_exclusive_sum(uint value, uint *sum, local uint *scratch)
 
 RT_INLINE uint rt_team_item(void) { return rt_subgroup_local_id(); }
 RT_INLINE uint rt_team_broadcast(uint value, local uint *scratch) { return rt_subgroup_broadcast(0u, value); }
-/* value: 1 at most. */
+/* `value` is 0 or 1. */
 RT_INLINE uint rt_team_exclusive_sum(uint value, uint *sum, local uint *scratch)
 {
     const uint ones = rt_subgroup_ballot(value);
@@ -49,7 +49,7 @@ RT_INLINE uint rt_team_broadcast(uint value, local uint *scratch)
     barrier(CLK_LOCAL_MEM_FENCE);
     return first;
 }
-/* Hillis, Steele 1986, Data Parallel Algorithms. */
+/* Hillis, Steele 1986, "Data Parallel Algorithms". */
 RT_INLINE uint rt_team_exclusive_sum(uint value, uint *sum, local uint *scratch)
 {
     const uint item = (uint)get_local_id(0);
@@ -70,22 +70,23 @@ RT_INLINE uint rt_team_exclusive_sum(uint value, uint *sum, local uint *scratch)
 
 #endif
 
-/* rt_team_broadcast: the value of the wave's first work-item. rt_team_exclusive_sum: the values of the work-items before this one, added up;
- * *sum: of all. What follows is made of them. */
+/* rt_team_broadcast returns the value of the team's first work-item. rt_team_exclusive_sum returns the sum of the values of the
+ * work-items before this one; *sum is that of all. The functions below are made of these two. */
 
-/* Leaves a loop once the condition holds for none of the wave. Work-groups go on to its end. */
+/* Leaves a loop if the condition holds for no work-item of the team. Where a team is a work-group, the loop runs to its end. */
 #if RT_CPU
-#define RT_TEAM_BREAK_UNLESS(condition)                                                                                          \
+#define RT_TEAM_BREAK_UNLESS(condition)                                                                                        \
     if (!(condition)) break;
 #elif defined(RT_HAS_SUBGROUPS)
-#define RT_TEAM_BREAK_UNLESS(condition)                                                                                          \
+#define RT_TEAM_BREAK_UNLESS(condition)                                                                                        \
     if (rt_subgroup_ballot(condition) == 0u) break;
 #else
 #define RT_TEAM_BREAK_UNLESS(condition)
 #endif
 
-/* Gives out the chunks of a piece of work, each to one wave: in order, to whoever is free; *tickets counts them. Work-groups that are
- * waves take turns instead: PoCL 3.1 loses work-items where a loop with barriers is left from its middle. */
+/* A loop over the chunks of a piece of work, each for one team. Teams claim chunks in order when they are free; *tickets counts
+ * them. Where a team is a work-group, each has fixed chunks: PoCL 3.1 loses work-items where a loop with barriers is left from
+ * its middle. */
 #if RT_CPU || defined(RT_HAS_SUBGROUPS)
 RT_INLINE uint rt_team_ticket(volatile global uint *tickets, local uint *scratch)
 {
@@ -93,15 +94,15 @@ RT_INLINE uint rt_team_ticket(volatile global uint *tickets, local uint *scratch
     if (rt_team_item() == 0u) ticket = atomic_inc(tickets);
     return rt_team_broadcast(ticket, scratch);
 }
-#define RT_FOR_CHUNKS(chunk, chunks, tickets, scratch)                                                                           \
+#define RT_FOR_CHUNKS(chunk, chunks, tickets, scratch)                                                                         \
     for (uint chunk; (chunk = rt_team_ticket(tickets, scratch)) < (chunks);)
 #else
-#define RT_FOR_CHUNKS(chunk, chunks, tickets, scratch)                                                                           \
+#define RT_FOR_CHUNKS(chunk, chunks, tickets, scratch)                                                                         \
     for (uint chunk = (uint)get_group_id(0); chunk < (chunks); chunk += (uint)get_num_groups(0))
 #endif
 
-/* Room for `amount` in an array whose next free place *next is; the wave's is in one piece, from what is returned on, and may lie
- * beyond the array's end. */
+/* Claims `amount` elements of an array for the team, from its next free element *next on. Returns the first of them. They may
+ * lie beyond the array's end. */
 RT_INLINE uint rt_team_claim(volatile global uint *next, uint amount, local uint *scratch)
 {
     uint first = 0u;

@@ -1,5 +1,5 @@
-/* leaf_mesh.h -- RT_LEAF within a mesh: triangles only; and its two halves, for who asks about many before it tests those that
- * answered. A template, see CONTRACT.md. */
+/* leaf_mesh.h -- RT_LEAF within a mesh, where all primitives are triangles; whole, and as RT_LEAF_CANDIDATE and RT_LEAF_TEST. A
+ * template, see CONTRACT.md. */
 RT_INLINE void RT_FN(rt_leaf_mesh)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
     RT_COUNT_LEAF(hit);

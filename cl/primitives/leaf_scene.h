@@ -1,8 +1,10 @@
-/* leaf_scene.h -- RT_LEAF in world space, whole and in two halves: any kind of primitive, and instances, which start a traversal of
- * their mesh's tree with the ray in object space. Kinds that the scene does not hold are compiled out. A template, see CONTRACT.md. */
+/* leaf_scene.h -- RT_LEAF in world space, for any kind of primitive; whole, and as RT_LEAF_CANDIDATE and RT_LEAF_TEST.
+ *
+ * An instance starts a traversal of its mesh's tree with the ray in object space. Kinds that the scene does not have are not
+ * compiled. A template, see CONTRACT.md. */
 #if RT_HAS_INSTANCES
-/* Only lanes that come to the instance's bounds go into its mesh's tree; the others are done there. Where packets go by streams, the
- * tree of the scene has leaf tests in several places, and a mesh's tree would be compiled as often. */
+/* Only lanes that enter the instance's bounds are active in its mesh's tree. A traversal of streams has leaf tests in several
+ * places. There this function is not inlined: the mesh's traversal would be compiled as often. */
 #if RT_STREAM > 1
 RT_NOINLINE
 #else
@@ -28,7 +30,7 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
     inner.dz = fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz));
     inner.t_min = r->t_min; /* the direction keeps its length, so t means the same in both spaces */
     rt_prepare(&inner, active);
-    /* Leaves of a mesh count their primitives from 0: the number to beat is turned into theirs, and back. */
+    /* The leaves of a mesh number its primitives from 0, so the number of the hit is converted for the traversal, and back. */
     const vfloat t = h->t;
     const vint before = h->prim, first = rt_vint((int)instance->first_prim);
     h->t = rt_select(enters, t, rt_vfloat(-1.0f));
@@ -64,7 +66,7 @@ RT_INLINE void RT_FN(rt_leaf_scene_test)(const rt_ctx *ctx, uint at, const rt_ra
     RT_FN(rt_hit_triangle)(leaf, at, ray, hit);
 }
 
-/* An instance is no primitive: what is in it counts. */
+/* An instance is no primitive; the primitives in it count. */
 RT_INLINE void RT_FN(rt_count_leaf_scene)(const rt_ctx *ctx, uint at, rt_hits *hit)
 {
 #if RT_HAS_INSTANCES

@@ -1,12 +1,14 @@
-/* leaf_single_ray.h -- one ray of a packet against the primitives of a leaf, eight at most, in two steps: RT_SINGLE_RAY_CANDIDATES says which
- * it may hit, without a branch where leaves are small, and RT_SINGLE_RAY_TEST tests those. Whoever has several rays under way does the
- * first step for all of them: the branches of the second are then decided before they are met. A template, see CONTRACT.md;
- * RT_SINGLE_RAY_MIXED says whether there may be more than triangles. */
-RT_INLINE uint RT_SINGLE_RAY_CANDIDATES(const rt_ctx *ctx, uint first, uint count, const rt_single_rays *lone, uint l)
+/* leaf_single_ray.h -- one ray of a packet against the primitives of a leaf, eight at most, in two steps.
+ *
+ * RT_SINGLE_RAY_CANDIDATES returns the bits of those that the ray may hit, without a branch where leaves are small.
+ * RT_SINGLE_RAY_TEST tests those. A traversal of several rays does the first step for all of them before the second, so that
+ * the second step's branches are decided early. RT_SINGLE_RAY_MIXED is 1 if a leaf may hold more than triangles. A template,
+ * see CONTRACT.md. */
+RT_INLINE uint RT_SINGLE_RAY_CANDIDATES(const rt_ctx *ctx, uint first, uint count, const rt_single_rays *single, uint l)
 {
     const global rt_packed_prim *leaf = ctx->leaves + first;
-    uint bits = rt_row_candidates(lone, l, leaf);
-    if (count > RT_ROW) bits |= rt_row_candidates(lone, l, leaf + RT_ROW) << RT_ROW;
+    uint bits = rt_row_candidates(single, l, leaf);
+    if (count > RT_ROW) bits |= rt_row_candidates(single, l, leaf + RT_ROW) << RT_ROW;
 #if RT_SINGLE_RAY_MIXED
     for (uint i = 0; i < count; ++i)
         if (RT_REF_KIND(leaf[i].ref) != RT_REF_TRIANGLE) bits |= 1u << i;
@@ -14,8 +16,8 @@ RT_INLINE uint RT_SINGLE_RAY_CANDIDATES(const rt_ctx *ctx, uint first, uint coun
     return bits & ((1u << count) - 1u);
 }
 
-/* `ray` and `hit` are the packet, for primitives that are tested on lanes: then all others wait. */
-RT_INLINE void RT_SINGLE_RAY_TEST(const rt_ctx *ctx, uint first, uint bits, const rt_single_rays *lone, uint l, rt_single_hits *lone_hit,
+/* `ray` and `hit` are the packet's, for primitives that are tested on lanes; the other lanes are inactive meanwhile. */
+RT_INLINE void RT_SINGLE_RAY_TEST(const rt_ctx *ctx, uint first, uint bits, const rt_single_rays *single, uint l, rt_single_hits *single_hit,
                             const rt_rays *ray, rt_hits *hit)
 {
     for (; bits != 0u; bits &= bits - 1u) {
@@ -26,18 +28,18 @@ RT_INLINE void RT_SINGLE_RAY_TEST(const rt_ctx *ctx, uint first, uint bits, cons
             RT_LEAF(ctx, at, ray, hit);
 #else
             const vmask is_this = RT_MASK(rt_lane_index() == rt_vint((int)l));
-            rt_gather_hits(lone_hit, hit);
+            rt_gather_hits(single_hit, hit);
             const vfloat others = hit->t;
             hit->t = rt_select(is_this, others, rt_vfloat(-1.0f));
             RT_LEAF(ctx, at, ray, hit);
             hit->t = rt_select(is_this, hit->t, others);
-            rt_spread_hits(hit, lone_hit);
+            rt_spread_hits(hit, single_hit);
 #endif
         } else
 #endif
-            RT_FN(rt_hit_triangle_single_ray)(ctx->leaves + at, at, lone, l, lone_hit);
+            RT_FN(rt_hit_triangle_single_ray)(ctx->leaves + at, at, single, l, single_hit);
 #if RT_ANY_HIT
-        if (RT_AT(lone_hit->t, l) < 0.0f) return;
+        if (RT_AT(single_hit->t, l) < 0.0f) return;
 #endif
     }
 }

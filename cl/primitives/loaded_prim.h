@@ -1,10 +1,12 @@
-/* loaded_prim.h -- a primitive's record in registers: what a traversal of single rays fetches by itself, together with nodes, so
- * that the lanes of a warp wait for memory once and not once for each kind. */
+/* loaded_prim.h -- a primitive's record in registers.
+ *
+ * A traversal of single rays may load primitives by itself, at the same time as nodes. Then the work-items of a warp wait for
+ * memory once, and not once for nodes and once for primitives. */
 #ifndef RT_LOADED_PRIM_H
 #define RT_LOADED_PRIM_H
 #if RT_LANES == 1
 
-/* An rt_packed_prim as three 16-byte loads bring it. */
+/* An rt_packed_prim as three 16-byte loads return it. */
 typedef struct rt_loaded_prim {
     float4 a, b, c;
 } rt_loaded_prim;

@@ -1,10 +1,10 @@
 /* polygon.h -- watertight ray/polygon test on lanes, for planar polygons, convex or not.
  *
- * Corners are projected across the ray as triangle.h does it, by the same arithmetic, and the edges that a half line from the ray
- * crosses there are counted (even-odd rule). Whether an edge is crossed follows from its two corners alone and is the same in
- * either direction: the polygons at an edge agree on it, whatever rounding did, so a ray that passes from the one to the other
- * meets an odd number of them. The product of one corner with the other decides only where the corners lie on different sides of
- * the half line's axis, and its sign is right or it is zero, as that of triangle.h is; a zero is no crossing, for both. */
+ * Corners are taken to ray space by the arithmetic of triangle.h. The test counts the edges that a half line from the ray
+ * crosses there (even-odd rule). Whether it crosses an edge follows from the edge's two corners alone and is the same in either
+ * direction. So the polygons at an edge agree on it, whatever rounding did, and a ray that passes from one to the other meets
+ * an odd number of them. The edge function decides only where the corners lie on different sides of the half line's axis. Its
+ * sign is right or it is zero, and a zero is no crossing for both polygons. A template, see CONTRACT.md. */
 #define RT_PROJECT(at, x, y, z) rt_to_ray_space(r, at, (float4)((at)[0], (at)[1], (at)[2], 0.0f), x, y, z);
 RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
@@ -20,7 +20,7 @@ RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_packed_p
         vfloat x1, y1, z1;
         RT_PROJECT(corners + 3u * i, &x1, &y1, &z1)
         const vmask above1 = RT_MASK(y1 > zero); /* half-open, so a corner counts once */
-        const vfloat edge = x0 * y1 - x1 * y0;
+        const vfloat edge = RT_EDGE(x0, y0, x1, y1);
         inside ^= (above0 ^ above1) & rt_select(above1, RT_MASK(edge > zero), RT_MASK(edge < zero));
         nearest = rt_min(nearest, z1);
         farthest = rt_max(farthest, z1);
@@ -31,13 +31,12 @@ RT_INLINE void RT_FN(rt_hit_polygon)(const rt_ctx *ctx, const global rt_packed_p
     inside &= RT_MASK(h->t >= zero);
     if (!rt_any(inside)) return;
 
-    /* Seen edge-on the plane says nothing, so t is kept within the corners'. */
     const float nx = leaf->a[0], ny = leaf->a[1], nz = leaf->a[2];
-    const vfloat facing = fma(rt_vfloat(nx), r->dx, fma(rt_vfloat(ny), r->dy, rt_vfloat(nz) * r->dz));
-    const vfloat height = fma(rt_vfloat(nx), rt_vfloat(leaf->b[0]) - r->ox,
-                              fma(rt_vfloat(ny), rt_vfloat(leaf->b[1]) - r->oy, rt_vfloat(nz) * (rt_vfloat(leaf->b[2]) - r->oz)));
+    const vfloat facing = RT_DOT(rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), r->dx, r->dy, r->dz);
+    const vfloat height = RT_DOT(rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), rt_vfloat(leaf->b[0]) - r->ox,
+                                 rt_vfloat(leaf->b[1]) - r->oy, rt_vfloat(leaf->b[2]) - r->oz);
     const vfloat ta = -nearest * r->sz, tb = -farthest * r->sz;
-    const vfloat t = rt_min(rt_max(height / facing, rt_min(ta, tb)), rt_max(ta, tb));
+    const vfloat t = RT_PLANE_DISTANCE(height, facing, rt_min(ta, tb), rt_max(ta, tb));
     const vmask closer = inside & rt_closer(r, h, t, leaf->prim);
     if (!rt_any(closer)) return;
     RT_FN(rt_record)(h, closer, t, zero, zero, rt_vfloat(nx), rt_vfloat(ny), rt_vfloat(nz), (int)at, leaf->prim);

@@ -1,4 +1,4 @@
-/* query.h -- a whole query of the scene: planes, then the tree of group 0. A template, see CONTRACT.md. */
+/* query.h -- a query of the whole scene: planes first, then the tree of group 0. A template, see CONTRACT.md. */
 RT_INLINE void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_HAS_PLANES
@@ -10,7 +10,7 @@ RT_INLINE void RT_FN(rt_trace)(const rt_ctx *ctx, const constant rt_frame *frame
     RT_FN(rt_scene)(ctx, frame->root, ray, hit);
 }
 
-/* The same for `count` blocks of rays. Those without active lanes, hit.t = -1 in all, need not be prepared. */
+/* The same for `count` packets. A packet without active lanes, which has hit.t = -1 in all, need not be prepared. */
 RT_INLINE void RT_FN(rt_trace_stream)(const rt_ctx *ctx, const constant rt_frame *frame, const rt_rays *rays, rt_hits *hits, uint count)
 {
 #if RT_STREAM == 1

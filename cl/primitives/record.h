@@ -1,4 +1,5 @@
-/* record.h -- what a primitive test leaves behind in the lanes that it wins. A template, see CONTRACT.md. */
+/* record.h -- stores a hit in the lanes `closer`, in which a primitive test found the nearest hit so far. A template, see
+ * CONTRACT.md. */
 RT_INLINE void RT_FN(rt_record)(rt_hits *h, vmask closer, vfloat t, vfloat u, vfloat v, vfloat nx, vfloat ny, vfloat nz, int leaf,
                                 uint prim)
 {

@@ -1,13 +1,15 @@
-/* sphere.h -- ray/sphere on lanes. The discriminant is the squared distance of the centre from the ray's line, not b^2 - 4ac,
- * which cancels for far or small spheres (Haines, Guenther, Akenine-Moeller 2019, Precision Improvements for Ray/Sphere
- * Intersection, Ray Tracing Gems ch. 7). Seen from inside, the far side is the hit. */
+/* sphere.h -- ray/sphere test on lanes.
+ *
+ * Haines, Guenther, Akenine-Moeller 2019, "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems ch. 7. The
+ * discriminant comes from the squared distance between the centre and the ray's line. The textbook's b^2 - 4ac cancels for far
+ * or small spheres. A ray that starts inside hits the far side. A template, see CONTRACT.md. */
 RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {
 #pragma OPENCL FP_CONTRACT OFF
     const float radius = leaf->b[0];
     const vfloat fx = r->ox - rt_vfloat(leaf->a[0]), fy = r->oy - rt_vfloat(leaf->a[1]), fz = r->oz - rt_vfloat(leaf->a[2]);
     const vfloat a = fma(r->dx, r->dx, fma(r->dy, r->dy, r->dz * r->dz));
-    const vfloat b = -fma(fx, r->dx, fma(fy, r->dy, fz * r->dz)); /* half of the textbook's, sign turned */
+    const vfloat b = -fma(fx, r->dx, fma(fy, r->dy, fz * r->dz)); /* minus half of the textbook's b */
     const vfloat along = b / a;
     const vfloat lx = fma(along, r->dx, fx), ly = fma(along, r->dy, fy), lz = fma(along, r->dz, fz);
     const vfloat room = rt_vfloat(radius * radius) - fma(lx, lx, fma(ly, ly, lz * lz));
@@ -16,7 +18,7 @@ RT_INLINE void RT_FN(rt_hit_sphere)(const global rt_packed_prim *leaf, uint at, 
     if (!rt_any(meets)) return;
 
     const vfloat root = sqrt(rt_max(room, zero) * a);
-    const vfloat q = b + copysign(root, b); /* no cancellation: both have the same sign */
+    const vfloat q = b + copysign(root, b); /* both have the same sign, so nothing cancels */
     const vfloat c = fma(fx, fx, fma(fy, fy, fz * fz)) - rt_vfloat(radius * radius);
     const vfloat t_a = rt_select(RT_MASK(q != zero), c / q, zero), t_b = q / a;
     const vfloat t_near = rt_min(t_a, t_b), t_far = rt_max(t_a, t_b);

@@ -1,22 +1,26 @@
-/* ray_blocks.h -- rays that the host brings and their answers, in memory as a packet has them in registers.
+/* ray_blocks.h -- the host's rays and their answers, in memory as a packet has them in registers.
  *
- * A block is RT_LANES rays side by side, field by field: RT_LANES floats origin x, then y, z, t_min, direction x, y, z, t_max.
- * Every load is one aligned vector; gathering from rays one after the other costs 15 to 20 clocks a ray. With one lane a block
- * is an rt_ray. Answers likewise, as many fields as were asked for: RT_ANSWER_ALL are t, u, v, prim, instance and three more that
- * only counting programs write, and with one lane a block of them is an rt_hit; RT_ANSWER_HIT, of one lane, are the first four, for
- * scenes without instances: half the bytes; RT_ANSWER_NEAREST are t and prim, RT_ANSWER_OCCLUSION is t. The last block is filled up
- * with inactive rays by the host, who packs and unpacks in host/render/ray_blocks.cpp. */
+ * A block is RT_LANES rays, field by field: RT_LANES floats of origin x, then of y, z, t_min, direction x, y, z, t_max. Every
+ * load is one aligned vector. Gathering from one ray after the other would cost 15 to 20 clocks a ray. With one lane a block is
+ * an rt_ray.
+ *
+ * Answers have the same form, with as many fields as the host asks for:
+ *   RT_ANSWER_ALL        t, u, v, prim, instance, and three that only programs that count write; with one lane an rt_hit
+ *   RT_ANSWER_HIT        t, u, v, prim: half the bytes, for one lane and scenes without instances
+ *   RT_ANSWER_NEAREST    t, prim
+ *   RT_ANSWER_OCCLUSION  t
+ * The host fills the last block up with inactive rays. It packs and unpacks blocks in host/render/queries/ray_blocks.cpp. */
 #ifndef RT_RAY_BLOCKS_H
 #define RT_RAY_BLOCKS_H
 
-/* t_max of a block: negative where no ray is. */
+/* t_max of a block; negative in inactive lanes. */
 RT_INLINE vfloat rt_load_reach(const global float *blocks, uint block)
 {
     return ((const global vfloat *)blocks)[RT_RAY_FIELDS * (size_t)block + 7u];
 }
 
-/* While a block is read, asks for what will be: the fields of the block a stream ahead, if it has rays, and the t_max of that two
- * streams ahead. `last`: the last block. A CPU waits for memory else, a sixth of bunny's camera rays' time. */
+/* Prefetches the fields of the block one stream ahead, if it has rays, and the t_max of the block two streams ahead. `last`:
+ * the last block. Without it a CPU waits for memory a sixth of the time of bunny's camera rays. */
 RT_INLINE void rt_fetch_ahead(const global float *blocks, uint block, uint last)
 {
 #if RT_CPU && RT_LANES > 1 && defined(__clang__) && (defined(__x86_64__) || defined(__aarch64__)) /* not in a simulator */
@@ -32,15 +36,15 @@ RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays
 {
 #if RT_LANES == 1
     const global float4 *in = (const global float4 *)blocks + 2u * (size_t)block; /* 16-byte loads */
-    const float4 from = in[0], along = in[1];
-    ray->ox = from.x;
-    ray->oy = from.y;
-    ray->oz = from.z;
-    ray->t_min = from.w;
-    ray->dx = along.x;
-    ray->dy = along.y;
-    ray->dz = along.z;
-    *t_max = along.w;
+    const float4 origin = in[0], direction = in[1];
+    ray->ox = origin.x;
+    ray->oy = origin.y;
+    ray->oz = origin.z;
+    ray->t_min = origin.w;
+    ray->dx = direction.x;
+    ray->dy = direction.y;
+    ray->dz = direction.z;
+    *t_max = direction.w;
 #else
     const global vfloat *in = (const global vfloat *)blocks + RT_RAY_FIELDS * (size_t)block;
     ray->ox = in[0];
@@ -54,7 +58,7 @@ RT_INLINE void rt_load_ray_block(const global float *blocks, uint block, rt_rays
 #endif
 }
 
-/* Nobody reads the answers soon: a CPU need not fetch what it overwrites, nor keep it. */
+/* Stores an answer past the caches: a CPU then neither fetches the line that it overwrites nor keeps it. */
 #if RT_CPU && RT_LANES > 1 && defined(__has_builtin) && __has_builtin(__builtin_nontemporal_store)
 #define RT_STORE_NONTEMPORAL(out, v) __builtin_nontemporal_store(v, out)
 #else
@@ -69,10 +73,10 @@ RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields,
         return;
     }
 #endif
-    global vfloat *few = (global vfloat *)blocks + fields * (size_t)block;
+    global vfloat *block_fields = (global vfloat *)blocks + fields * (size_t)block;
     if (fields != RT_ANSWER_ALL) {
-        RT_STORE_NONTEMPORAL(few, hit->t);
-        if (fields == RT_ANSWER_NEAREST) RT_STORE_NONTEMPORAL(few + 1, rt_as_vfloat(hit->prim));
+        RT_STORE_NONTEMPORAL(block_fields, hit->t);
+        if (fields == RT_ANSWER_NEAREST) RT_STORE_NONTEMPORAL(block_fields + 1, rt_as_vfloat(hit->prim));
         return;
     }
 #if RT_LANES == 1
@@ -84,7 +88,7 @@ RT_INLINE void rt_store_hit_block(global float *blocks, uint block, uint fields,
     out[1] = (float4)(as_float(hit->instance), 0.0f, 0.0f, 0.0f);
 #endif
 #else
-    global vfloat *out = few;
+    global vfloat *out = block_fields;
     out[0] = hit->t;
     out[1] = hit->u;
     out[2] = hit->v;

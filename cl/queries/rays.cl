@@ -1,4 +1,5 @@
-/* rays.cl -- rays that the host brings, a block of RT_LANES at a time: for tests and benches. Memory: ray_blocks.h. */
+/* rays.cl -- traces the host's rays, a block of RT_LANES at a time, for queries, tests and benchmarks. ray_blocks.h has their
+ * layout. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_rays(const constant rt_frame *frame, const uint first_group, const uint blocks, const uint any_hit, const uint fields,
            const global float *rays, global float *answers, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
@@ -16,13 +17,13 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
             RT_FOR_EACH_PACKET(b, count) {
                 rt_fetch_ahead(rays, base + b, blocks - 1u);
                 vfloat t_max;
-#if RT_LANES == 1 /* one fetch has it all */
+#if RT_LANES == 1 /* one load has all fields */
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
 #else
                 t_max = rt_load_reach(rays, base + b);
 #endif
                 active[b] = RT_MASK(t_max >= rt_vfloat(0.0f));
-                if (RT_STREAM == 1) rt_clear_hits(hit + b, active[b]); /* else there is an answer for blocks without rays */
+                if (RT_STREAM == 1) rt_clear_hits(hit + b, active[b]); /* a stream answers blocks without rays apart */
                 hit[b].t = rt_vfloat(-1.0f);
                 RT_CLEAR_OVERFLOW(hit + b)
                 if (!rt_any(active[b])) continue;
@@ -30,7 +31,8 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 rt_load_ray_block(rays, base + b, ray + b, &t_max);
 #endif
                 rt_prepare_for_boxes(ray + b);
-                /* Where few rays meet anything, most of what a stream takes is to prepare it. Counts are of the tree, from its root on. */
+                /* Skips packets that miss the scene: where few rays hit anything, a stream spends most of its time on preparing
+                 * them. Programs that count do not, so that their counts begin at the tree's root. */
 #if RT_STREAM > 1 && !RT_HAS_PLANES && !defined(RT_COUNT_STEPS)
                 active[b] &= rt_enter_scene(frame, ray + b, t_max);
                 if (!rt_any(active[b])) continue;
@@ -45,7 +47,7 @@ trace_rays(const constant rt_frame *frame, const uint first_group, const uint bl
                 rt_trace_stream_closest(&ctx, frame, ray, hit, count);
             RT_FOR_EACH_PACKET(b, count) {
                 RT_COUNT_OVERFLOW(hit + b)
-                if (RT_STREAM > 1 && !rt_any(active[b])) { /* mostly so where little of a picture is hit */
+                if (RT_STREAM > 1 && !rt_any(active[b])) { /* most blocks, where rays hit little */
                     rt_hits none;
                     rt_clear_hits(&none, active[b]);
                     none.t = RT_INFINITY;

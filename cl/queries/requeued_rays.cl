@@ -1,18 +1,21 @@
-/* requeued_rays.cl -- rays that the host brings, in two launches, for single rays on a GPU: where they do not fill the device a launch
- * lasts as long as its slowest warps, and those wait for the few rays that graze hundreds of triangles.
+/* requeued_rays.cl -- traces the host's rays in two launches, for single rays on a GPU: long rays are queued for the second.
  *
- * trace_short gives each ray RT_STEP_BUDGET turns of its traversal and puts those down that need more. trace_long_* begin these anew
- * from the root, as near as their hit has come: RT_REQUEUE_ITEMS work-items take one ray and make side by side the turns that
- * had to follow each other. Hits do not depend on the order of visits, so answers are those of rays.cl bit for bit.
+ * Where rays do not fill the device, a launch lasts as long as its slowest warps, and these wait for the few rays that graze
+ * hundreds of triangles. trace_short gives each ray RT_STEP_BUDGET steps of its traversal and lists those that need more.
+ * trace_long_* begin these again at the root, with the nearest hit found so far. RT_REQUEUE_ITEMS work-items trace one ray:
+ * they take in parallel the steps that had to follow each other. Hits do not depend on the order of visits, so answers are bit
+ * for bit those of rays.cl.
  *
- * list: how many long rays there are, of this launch and of the next, for which it is cleared, in turn; then their numbers. */
+ * list[parity]: the number of long rays of this launch; the other of its first two elements, that of the next launch, is
+ * cleared. Then the indices of the rays. */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_short(const constant rt_frame *frame, const uint first_group, const uint count, const uint any_hit, const uint fields,
-            const global float *rays, global float *answers, volatile global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+            const global float *rays, global float *answers, volatile global uint *list, const uint parity,
+            RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     const uint at = (first_group + (uint)get_group_id(0)) * RT_LOCAL_SIZE + (uint)get_local_id(0);
-    if (get_global_id(0) == 0) list[turn ^ 1u] = 0u;
+    if (get_global_id(0) == 0) list[parity ^ 1u] = 0u;
     if (at >= count) return;
     rt_rays ray;
     rt_hits hit;
@@ -30,7 +33,7 @@ trace_short(const constant rt_frame *frame, const uint first_group, const uint c
             rt_trace_closest(&ctx, frame, &ray, &hit);
             hit.t = hit.prim >= 0 ? hit.t : INFINITY;
         }
-        if (hit.step_budget < 0 && !(any_hit && hit.t == 0.0f)) list[2u + atomic_inc(list + turn)] = at;
+        if (hit.step_budget < 0 && !(any_hit && hit.t == 0.0f)) list[2u + atomic_inc(list + parity)] = at;
     }
     RT_COUNT_OVERFLOW(&hit)
     rt_store_hit_block(answers, at, fields, &hit);
@@ -40,12 +43,12 @@ trace_short(const constant rt_frame *frame, const uint first_group, const uint c
 
 RT_LONG_KERNEL
 trace_long_closest(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
-                   const global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+                   const global uint *list, const uint parity, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     local rt_requeue_scratch scratch;
     local uint nearest, lowest;
-    const uint count = list[turn];
+    const uint count = list[parity];
     for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
         const uint at = list[2u + i];
         rt_rays ray;
@@ -61,7 +64,7 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
         if (get_local_id(0) == 0) nearest = lowest = 0x7FFFFFFFu;
         rt_scene_long_closest(&ctx, frame->root, &ray, &hit, &scratch);
         RT_COUNT_OVERFLOW(&hit)
-        /* Several may have met something, of which one is the nearest. */
+        /* Several work-items may have found a hit. The nearest one counts. */
         const bool found = hit.leaf != -1;
         if (found) atomic_min(&nearest, as_uint(hit.t));
         barrier(CLK_LOCAL_MEM_FENCE | CLK_GLOBAL_MEM_FENCE);
@@ -72,14 +75,14 @@ trace_long_closest(const constant rt_frame *frame, const uint fields, const glob
     }
 }
 
-/* Apart from the other, for PoCL 3.1 loses work-items where there are barriers under a condition. */
+/* A kernel of its own, because PoCL 3.1 loses work-items where there are barriers under a condition. */
 RT_LONG_KERNEL
 trace_long_any(const constant rt_frame *frame, const uint fields, const global float *rays, global float *answers,
-               const global uint *list, const uint turn, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
+               const global uint *list, const uint parity, RT_OVERFLOWS_PARAM RT_CTX_PARAMS)
 {
     RT_CTX_INIT(ctx);
     local rt_requeue_scratch scratch;
-    const uint count = list[turn];
+    const uint count = list[parity];
     for (uint i = (uint)get_group_id(0); i < count; i += (uint)get_num_groups(0)) {
         const uint at = list[2u + i];
         rt_rays ray;

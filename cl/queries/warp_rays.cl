@@ -1,13 +1,14 @@
-/* warp_rays.cl -- rays that the host brings, for single rays on a GPU: one way through the tree for all rays of a warp (Guenther,
- * Popov, Seidel, Slusallek 2007, "Realtime Ray Tracing on GPU with BVH-based Packet Traversal"). Where rays keep together they meet
- * hardly more nodes than the longest of them alone, and what is decided is decided once for all. Rays that part lose by it, three
- * to five times.
+/* warp_rays.cl -- traces the host's rays on a GPU: one way through the tree for all rays of a warp.
  *
- * On NVIDIA's devices a warp agrees by votes (subgroup.h), elsewhere each work-item goes by itself. It has RT_RAYS_PER_ITEM rays, RT_SUBGROUP_SIZE apart
- * in memory: with two, what is fetched serves 64 rays. Rays whose directions differ in sign or in dominant axis go one after
- * the other. Answers are those of rays.cl bit for bit, for hits do not depend on the order of visits. */
+ * Guenther, Popov, Seidel, Slusallek 2007, "Realtime Ray Tracing on GPU with BVH-based Packet Traversal". Coherent rays
+ * together visit hardly more nodes than the longest of them alone, and each decision is made once for all. Incoherent rays are
+ * three to five times slower.
+ *
+ * On NVIDIA's devices the work-items of a warp decide by votes (subgroup.h); elsewhere each work-item is traced by itself. A
+ * work-item has RT_RAYS_PER_ITEM rays, RT_SUBGROUP_SIZE apart in memory: with two, a fetch serves 64 rays. Rays are traced
+ * class after class. Hits do not depend on the order of visits, so answers are bit for bit those of rays.cl. */
 
-/* A ray's ray_class: where its direction is negative, bits 0 to 2, and from bit 3 on its dominant axis. */
+/* The class of a ray: bits 0 to 2 are the signs of its direction, the bits from 3 on its dominant axis. */
 #define RT_NO_RAY_CLASS 24u
 RT_INLINE uint rt_ray_class(const rt_rays *ray)
 {
@@ -16,28 +17,28 @@ RT_INLINE uint rt_ray_class(const rt_rays *ray)
 
 RT_INLINE void rt_trace_warp(const rt_ctx *ctx, const constant rt_frame *frame, uint any_hit, rt_rays *rays, rt_hits *hits)
 {
-    uint ray_class[RT_RAYS_PER_ITEM]; /* of those that still have to go */
+    uint ray_class[RT_RAYS_PER_ITEM]; /* RT_NO_RAY_CLASS once the ray is traced */
     float reach[RT_RAYS_PER_ITEM];
     RT_FOR_EACH_RAY_OF_ITEM(i) {
         reach[i] = hits[i].t;
         ray_class[i] = reach[i] < 0.0f ? RT_NO_RAY_CLASS : rt_ray_class(rays + i);
     }
     for (;;) {
-        uint own = RT_NO_RAY_CLASS;
-        RT_FOR_EACH_RAY_OF_ITEM(i) own = min(own, ray_class[i]);
-        const uint waiting = rt_subgroup_ballot(own < RT_NO_RAY_CLASS);
-        if (waiting == 0u) break;
-        const uint now = rt_subgroup_broadcast(31u - clz(waiting), own);
+        uint next_class = RT_NO_RAY_CLASS;
+        RT_FOR_EACH_RAY_OF_ITEM(i) next_class = min(next_class, ray_class[i]);
+        const uint untraced = rt_subgroup_ballot(next_class < RT_NO_RAY_CLASS);
+        if (untraced == 0u) break;
+        const uint traced_class = rt_subgroup_broadcast(31u - clz(untraced), next_class);
         RT_FOR_EACH_RAY_OF_ITEM(i) {
-            hits[i].t = ray_class[i] == now ? reach[i] : -1.0f;
-            rays[i].kz = now >> 3;
+            hits[i].t = ray_class[i] == traced_class ? reach[i] : -1.0f;
+            rays[i].kz = traced_class >> 3;
         }
         if (any_hit)
-            rt_scene_warp_any(ctx, frame->root, now & 7u, rays, hits);
+            rt_scene_warp_any(ctx, frame->root, traced_class & 7u, rays, hits);
         else
-            rt_scene_warp_closest(ctx, frame->root, now & 7u, rays, hits);
+            rt_scene_warp_closest(ctx, frame->root, traced_class & 7u, rays, hits);
         RT_FOR_EACH_RAY_OF_ITEM(i) {
-            if (ray_class[i] != now) continue;
+            if (ray_class[i] != traced_class) continue;
             reach[i] = hits[i].t;
             ray_class[i] = RT_NO_RAY_CLASS;
         }
@@ -58,7 +59,7 @@ trace_warps(const constant rt_frame *frame, const uint first_group, const uint c
     RT_FOR_EACH_RAY_OF_ITEM(i) {
         const uint at = first + i * RT_SUBGROUP_SIZE;
         float t_max;
-        rt_load_ray_block(rays, min(at, count - 1u), ray + i, &t_max); /* nobody may stay away from a vote */
+        rt_load_ray_block(rays, min(at, count - 1u), ray + i, &t_max); /* every work-item must take part in votes */
         active[i] = at < count && t_max >= 0.0f;
         rt_clear_hits(hit + i, -1);
         hit[i].t = active[i] ? t_max : -1.0f;

@@ -1,7 +1,8 @@
-/* aov.cl -- what the camera rays meet, without shading: one kernel a quantity (RT_AOV, chosen when the program is built).
- * Quantities are rows of the host's table (host/render/aov.cpp), which defines their numbers RT_AOV_T, RT_AOV_PRIM and so on.
- * out: 1 or 3 floats a pixel as the table says, top row first. prim and instance are ints in the same bits. Steps, leaf tests and
- * lanes are counted for the packet of rays that the pixel's ray belongs to. */
+/* aov.cl -- one quantity of what the camera rays hit, without shading. RT_AOV selects it when the program is built.
+ *
+ * A quantity is a row of the host's table (host/render/settings/aov.cpp), from which RT_AOV_T, RT_AOV_PRIM and the like are defined.
+ * out: 1 or 3 floats a pixel as the table says, top row first. prim and instance are ints in the bits of floats. Steps, leaf tests
+ * and lanes are counted for the packet that the pixel's ray belongs to. */
 
 RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, vint x, vint y, const rt_rays *ray, const rt_hits *hit,
                            uint bits, global float *out)
@@ -14,7 +15,7 @@ RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, v
 #elif RT_AOV == RT_AOV_LEAF_TESTS
     RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit->leaf_tests), bits)
 #elif RT_AOV == RT_AOV_LANES
-    /* Nothing visited, nothing idle. */
+    /* A packet that visits no node has no idle lane. */
     const float visited = (float)(hit->steps * popcount(bits));
     RT_FOR_LANES_STORE(out, at, rt_vfloat(hit->steps != 0u ? (float)hit->lane_steps / visited : 1.0f), bits)
 #else

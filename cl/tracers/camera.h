@@ -1,15 +1,16 @@
-/* camera.h -- which pixels a work-item computes, and the camera rays through them.
+/* camera.h -- the pixels of a work-item, and the camera rays through them.
  *
- * A packet of packet_w x packet_h pixels is one work-item's, as in the thesis. It is looped in blocks of RT_LANES pixels, of
- * which RT_STREAM are traced together (packet_stream.h). A work-group is several packets, so that neighbours in the picture run close
- * in time. On a CPU (RT_CPU) it is one work-item that does these packets in turn: PoCL would keep the private arrays of all
- * work-items of a group side by side, and they would fall out of the cache. There a group is as many packets as 16 pixels hold
- * either way, one at least and four at most, so that many cores have enough groups to share. The packet's size is no define but a number of the
- * frame, so changing it compiles nothing; only RT_MAX_PIXELS, the room for it, is fixed. */
+ * A work-item has a packet of packet_w x packet_h pixels, as in the thesis. It loops over blocks of RT_LANES pixels and traces
+ * RT_STREAM blocks together (packet_stream.h). A work-group has several packets, so that neighbours in the picture run close in
+ * time. On a CPU (RT_CPU) a work-group is one work-item that traces these packets one after the other. PoCL would keep the
+ * private arrays of all work-items of a group side by side, which would not fit into the cache. There a group has as many
+ * packets as fit into 16 pixels in each direction, at least one and at most four, so that there are enough groups for many
+ * cores. The packet's size is a member of the frame, so changing it compiles nothing. Only RT_MAX_PIXELS, its upper limit, is
+ * compiled in. */
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
 
-#if RT_MAX_PIXELS == 1 /* GPUs: let the compiler see that there is one pixel */
+#if RT_MAX_PIXELS == 1 /* on GPUs the compiler shall see that there is one pixel */
 #define RT_PACKET_W(frame) 1u
 #define RT_PACKET_H(frame) 1u
 #define RT_BLOCKS(frame) 1u
@@ -19,7 +20,7 @@
 #define RT_BLOCKS(frame) ((frame)->blocks_x * (frame)->blocks_y)
 #endif
 
-/* Packets of a group side by side, RT_GROUP_SIDE at most: Layout::group_w and group_h of the host. */
+/* The packets of a group in each direction, at most RT_GROUP_SIDE. The host has them as Layout::group_w and group_h. */
 #if RT_CPU
 #define RT_IN_GROUP(packet_side) clamp(16u / (packet_side), 1u, (uint)RT_GROUP_SIDE)
 #define RT_GROUP_W(frame) RT_IN_GROUP(RT_PACKET_W(frame))
@@ -34,8 +35,8 @@
 #endif
 #define RT_GROUP_PACKETS(frame) (RT_GROUP_W(frame) * RT_GROUP_H(frame))
 
-/* First pixel of a packet. group: number of the work-group, row by row over the picture, or over those rows of it that a device
- * has where several share it; packet: within the group. */
+/* The first pixel of a packet. group: the index of the work-group, row by row over the picture, or over the device's rows of
+ * groups where several devices share the picture. packet: the packet's index in the group. */
 RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uint packet)
 {
     const uint w = RT_PACKET_W(frame), h = RT_PACKET_H(frame);
@@ -47,8 +48,8 @@ RT_INLINE uint2 rt_packet_origin(const constant rt_frame *frame, uint group, uin
     return (uint2)(x * w, y * h);
 }
 
-/* Which of a launch's samples a work-group is of; *group: its number in the launch, and then in the sample. A group's samples
- * follow each other, so that what one has fetched is still near for the next. */
+/* The sample of a launch that a work-group computes. *group: in, the group's index in the launch; out, its index in the sample.
+ * The samples of one group follow each other, so that each finds in the caches what the one before has fetched. */
 RT_INLINE uint rt_layer_of(const constant rt_frame *frame, uint *group)
 {
 #if RT_MAX_PIXELS == 1 && RT_LANES == 1
@@ -60,7 +61,7 @@ RT_INLINE uint rt_layer_of(const constant rt_frame *frame, uint *group)
 #endif
 }
 
-/* Pixel of each lane within the packet, and whether packet and picture hold it. */
+/* Each lane's pixel in the packet; returns the lanes whose pixel is in the packet and in the picture. */
 RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, uint block, vint *in_x, vint *in_y)
 {
 #if RT_MAX_PIXELS == 1 && RT_LANES == 1
@@ -80,8 +81,8 @@ RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, ui
 #endif
 }
 
-/* Camera rays through pixels (x, y) of the picture, at the place within a pixel that the frame says. It is the same for all
- * pixels, so that pictures do not depend on who renders what when, and packets stay as coherent as they are. */
+/* The camera rays through pixels (x, y) of the picture. The frame tells the point within a pixel. It is the same for all
+ * pixels: so pictures do not depend on which device renders which pixel when, and packets stay coherent. */
 RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
 {
     const vfloat px = rt_to_float(x) + rt_vfloat(frame->within_x), py = rt_to_float(y) + rt_vfloat(frame->within_y);
@@ -101,22 +102,23 @@ RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt
 }
 
 #if RT_STREAM > 1 && !RT_HAS_PLANES
-/* Whether no camera ray of a packet comes to the bounds of all but planes: by intervals of the directions, not yet of unit length,
- * which are affine in the pixels and so lie between those of the packet's corners. */
+/* Whether no camera ray of a packet enters the bounds of all primitives but planes. It bounds the directions before
+ * normalisation: they are affine in the pixels, so they lie between those of the packet's corners. */
 RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
 {
-    /* Corners of the packet, in lanes; x and y are those of rt_camera_rays(). */
+    /* The packet's corners, one in each lane, with the x and y of rt_camera_rays(). */
     const float4 px = convert_float(origin.x) + (float4)(0.0f, 1.0f, 0.0f, 1.0f) * convert_float(RT_PACKET_W(frame) - 1u) + frame->within_x;
     const float4 py = convert_float(origin.y) + (float4)(0.0f, 0.0f, 1.0f, 1.0f) * convert_float(RT_PACKET_H(frame) - 1u) + frame->within_y;
     const float4 sx = px * (2.0f * frame->pixel_x) - 1.0f, sy = py * (-2.0f * frame->pixel_y) + 1.0f;
     float enter = 0.0f, leave = MAXFLOAT;
     for (uint k = 0; k < 3u; ++k) {
         const float4 d = sx * frame->right[k] + sy * frame->up[k] + frame->forward[k];
-        /* A millionth of what is added up covers how it is rounded, there and here; forward has unit length. */
+        /* A millionth of the sum of magnitudes covers the rounding, there and here. `forward` has unit length. */
         const float slack = 1e-6f * (1.0f + fabs(frame->right[k]) + fabs(frame->up[k]));
         const float hi = rt_max(rt_max(d.x, d.y), rt_max(d.z, d.w)) + slack, lo = rt_min(rt_min(d.x, d.y), rt_min(d.z, d.w)) - slack;
         const float to_lower = frame->bounds[k] - frame->eye[k], to_upper = frame->bounds[3u + k] - frame->eye[k];
-        /* Against the side that is ahead of the eye no ray comes earlier than the fastest; past both none stays longer than the slowest. */
+        /* No ray reaches the side ahead of the eye earlier than the fastest ray, and none passes both later than the
+         * slowest. */
         if (to_lower > 0.0f) {
             if (hi <= 0.0f) return true;
             enter = rt_max(enter, to_lower / hi);
@@ -134,7 +136,7 @@ RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
 }
 #endif
 
-/* What a packet's pixels, row by row, add to the film. */
+/* Adds the sums of a packet's pixels, row by row, to the film. */
 RT_INLINE void rt_put_pixels(const constant rt_frame *frame, uint2 origin, const float4 *sums, global float4 *film)
 {
     const uint packet_w = RT_PACKET_W(frame);
@@ -155,7 +157,7 @@ RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
     h->t = rt_select(active, RT_INFINITY, rt_vfloat(-1.0f));
     h->u = h->v = h->nx = h->ny = h->nz = rt_vfloat(0.0f);
     h->leaf = h->instance = rt_vint(-1);
-    h->prim = rt_vint(-1); /* below all: t_max itself is out of the ray's reach */
+    h->prim = rt_vint(-1); /* below all numbers, so that a primitive at t_max itself is no hit */
 #ifdef RT_COUNT_STEPS
     h->steps = h->leaf_tests = h->lane_steps = 0;
 #endif
@@ -170,7 +172,8 @@ RT_INLINE void rt_fill_with_background(const constant rt_frame *frame, float4 *s
     for (uint i = 0; i < RT_PACKET_W(frame) * RT_PACKET_H(frame); ++i) sums[i] = background;
 }
 
-/* A packet that sees nothing but background, if it is one: its pixels, and the distances of its camera rays, block by block. */
+/* If a packet sees nothing but background: fills its pixels and the distances of its camera rays, block by block, and returns
+ * true. */
 RT_INLINE bool rt_only_background(const constant rt_frame *frame, uint2 origin, float4 *sums, global float *distance)
 {
 #if RT_STREAM > 1 && !RT_HAS_PLANES

@@ -1,5 +1,7 @@
-/* frame_parts.cl -- the beginning of a frame, for `clarity bench --breakdown`: 0 the film alone, 1 camera rays too, 2 their nearest hits
- * too. Arguments and order of work are those of iterative.cl. What a part finds goes into the picture, so none of it is saved. */
+/* frame_parts.cl -- the first parts of a frame, for `clarity bench --breakdown`.
+ *
+ * RT_PART 0 writes the film alone, 1 makes camera rays too, 2 finds their nearest hits too. Arguments and order of work are
+ * those of iterative.cl. The results go into the picture, so that the compiler cannot remove any work. */
 RT_PICTURE_KERNEL
 trace_parts(const constant rt_frame *frame, const uint first_group, global float4 *film, global uint4 *counters,
             global float *distances, RT_CTX_PARAMS)

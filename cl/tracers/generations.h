@@ -1,14 +1,15 @@
-/* generations.h -- Whitted's ray tracing without recursion, as the thesis has it.
+/* generations.h -- Whitted's ray tracing without recursion, as in the thesis.
  *
- * A packet of pixels owns two arrays, the rays of the current generation and of the next. Each step traces all current rays,
- * adds what they see to their pixels and appends mirrored and refracted rays to the next array; then the arrays change places,
- * until none is left or `depth` generations are done. The arrays hold RT_RAY_SLOTS rays a pixel; a ray that finds no room is
- * dropped and counted. They are private memory for RT_MAX_PIXELS, of which only what is used is touched. */
+ * A packet of pixels owns two arrays: the rays of the current generation and those of the next. Each step traces all current
+ * rays, adds their light to their pixels and appends mirrored and refracted rays to the next array. Then the arrays are
+ * swapped, until no ray is left or `depth` generations are done. An array holds RT_RAY_SLOTS rays a pixel. A ray that finds no
+ * room is dropped and counted. The arrays are private memory for RT_MAX_PIXELS pixels, of which only the used part is
+ * touched. */
 #ifndef RT_GENERATIONS_H
 #define RT_GENERATIONS_H
 
 #ifdef RT_INSPECT
-#define RT_RECORD_SPAWN(kind, bits, followed)                                                                                    \
+#define RT_RECORD_SPAWN(kind, bits, followed)                                                                                  \
     rt_record_spawn(&tally->recorder, next, capacity, count, kind, bits, followed, origin, direction, passed);
 #else
 #define RT_RECORD_SPAWN(kind, bits, followed)
@@ -20,7 +21,7 @@
 #define RT_KEEP_AREA(bits) (void)first;
 #endif
 
-/* Appends the rays that go on from the points p. */
+/* Appends the mirrored and refracted rays of the points p. Returns the new count. */
 RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint capacity, uint count, const rt_point *p,
                         const rt_shade *m, rt_vec weight, vint pixel, rt_tally *tally)
 {
@@ -53,7 +54,7 @@ RT_INLINE uint rt_spawn(const constant rt_frame *frame, rt_queue *next, uint cap
 }
 
 #ifdef RT_SHOW_GENERATIONS
-/* The picture is the number of generations that each pixel has. */
+/* The picture shows the number of generations of each pixel. */
 RT_INLINE void rt_mark_pixels(float value, vint pixel, uint bits, float4 *marks)
 {
     int at[RT_LANES];
@@ -63,7 +64,8 @@ RT_INLINE void rt_mark_pixels(float value, vint pixel, uint bits, float4 *marks)
 }
 #endif
 
-/* The light of a block of camera rays, the first that its pixels get: by rows of four where blocks have them. */
+/* Stores the light of a block of camera rays, the first of their pixels; in rows of four where a block is at least four pixels
+ * wide. */
 RT_INLINE void rt_begin_pixels(const constant rt_frame *frame, rt_vec light, vint pixel, uint bits, float4 *sums)
 {
     float4 lanes[RT_LANES];
@@ -78,7 +80,7 @@ RT_INLINE void rt_begin_pixels(const constant rt_frame *frame, rt_vec light, vin
             if (bits >> l & 1u) sums[at[l]] = lanes[l];
 }
 
-/* Adds each lane's light to its pixel, one by one: two lanes may belong to the same. */
+/* Adds each lane's light to its pixel. One lane after the other, since two may belong to one pixel. */
 RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float4 *sums)
 {
     float4 lanes[RT_LANES];
@@ -92,13 +94,13 @@ RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float4 *sum
             if (bits >> l & 1u) sums[at[l]] += lanes[l];
 }
 
-/* All rays of the packet whose first pixel is `origin`. sums: of each pixel's light, row by row, and 1. distance: of the camera
- * rays, in the order in which they are traced; written with sample 0. */
+/* Traces all rays of the packet whose first pixel is `origin`. sums: each pixel's light and the weight 1, row by row. distance:
+ * those of the camera rays, in the order in which they are traced; written with sample 0. */
 RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float4 *sums,
                                     global float *distance, rt_tally *tally)
 {
     const uint packet_w = RT_PACKET_W(frame), pixels = packet_w * RT_PACKET_H(frame), capacity = pixels * RT_RAY_SLOTS;
-    uint count = RT_BLOCKS(frame) * RT_LANES; /* the first generation is made, not stored */
+    uint count = RT_BLOCKS(frame) * RT_LANES; /* camera rays are computed, not stored */
 #ifndef RT_SHOW_GENERATIONS
     if (rt_only_background(frame, origin, sums, distance)) return;
 #endif
@@ -151,7 +153,7 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
 #ifdef RT_DEBUG
                 tally->overflow += hit->overflow;
 #endif
-                /* Known for the picture's first sample, so that things can be drawn into it, before or behind what it shows. */
+                /* The distances of the picture's first sample, for drawing things before or behind its surfaces. */
                 if (generation == 0u && frame->sample == 0u && bits != 0u) rt_store(hit->t, distance + (first + b) * RT_LANES);
 
                 points[b].hits = active[b] & RT_MASK(hit->prim >= rt_vint(0));

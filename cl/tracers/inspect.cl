@@ -1,7 +1,8 @@
-/* inspect.cl -- one packet, traced as ever, with the rays of one of its pixels written down: see inspect.h. */
+/* inspect.cl -- traces one packet and records the rays of one of its pixels: see inspect.h. */
 
-/* One work-group. records: room for `capacity`. summary: how many there were, which may be more; the pixel's colour in the next
- * three, as bits of floats; then how many stacks of the packet were full (debug programs). packet: the one to trace, of the group's; pixel: the one to watch, of the packet's. */
+/* Launched with one work-group. packet_wanted: the index of the packet in the group. pixel: the index in the packet of the
+ * pixel to record. records: `capacity` elements. summary: the number of rays, which may exceed capacity; then the pixel's
+ * colour, as three bit patterns of floats; then the number of full stacks (debug programs). */
 kernel __attribute__((reqd_work_group_size(RT_LOCAL_SIZE, 1, 1))) void
 trace_inspect(const constant rt_frame *frame, const uint group, const uint packet_wanted, const uint pixel,
               global rt_ray_record *records, const uint capacity, global uint *summary, global float *distances, RT_CTX_PARAMS)

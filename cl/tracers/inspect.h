@@ -1,22 +1,23 @@
-/* inspect.h -- writes down the rays of one pixel while its packet is traced. Part of the inspector's program alone (RT_INSPECT):
- * the tracer runs as ever and calls these where rays begin, hit and add light, so what is shown is what is traced. Lane by lane
- * and slow, which one packet can bear. */
+/* inspect.h -- records the rays of one pixel while its packet is traced.
+ *
+ * Only the inspector's program has it (RT_INSPECT). The tracer calls these functions where rays begin, hit and add light, so
+ * the records show the real rays. They work lane by lane and are slow, which does not matter for one packet. */
 #ifndef RT_INSPECT_H
 #define RT_INSPECT_H
 #ifdef RT_INSPECT
 
 typedef struct rt_recorder {
     global rt_ray_record *records;
-    uint count, capacity; /* count goes on beyond capacity */
-    int pixel;            /* the one watched, within the packet */
+    uint count, capacity; /* count may exceed capacity */
+    int pixel;            /* the recorded one, within the packet */
     uint generation;      /* 1: the camera's */
-    int too_deep;         /* what is spawned now would be of a generation too many */
-    int record[RT_LANES]; /* of each lane's ray; -1: of another pixel, or no room */
-    rt_vec weight;        /* of each lane's ray */
+    int too_deep;         /* whether the next generation is beyond the depth */
+    int record[RT_LANES]; /* index for each lane's ray; -1: the ray of another pixel, or no room */
+    rt_vec weight;        /* for each lane's ray */
     uint steps, leaf_tests;
 } rt_recorder;
 
-/* One lane of a vector, by way of memory. */
+/* One lane of a vector, through memory. */
 RT_INLINE float rt_lane(vfloat v, uint l)
 {
     float values[RT_LANES];
@@ -36,7 +37,7 @@ RT_INLINE void rt_lane_vec(rt_vec v, uint l, global float *out)
     out[2] = rt_lane(v.z, l);
 }
 
-/* A new record, as far as it is known when a ray begins; -1: no room. */
+/* Adds a record with what is known when a ray begins. Returns its index, or -1 if there is no room. */
 RT_INLINE int rt_begin_record(rt_recorder *rec, uint kind, uint fate, int parent, uint generation, uint lane, rt_vec origin,
                               rt_vec direction, rt_vec weight)
 {
@@ -56,7 +57,7 @@ RT_INLINE int rt_begin_record(rt_recorder *rec, uint kind, uint fate, int parent
     return (int)index;
 }
 
-/* The camera's rays: those of the watched pixel, which is one, get a record. */
+/* Adds a record for the camera ray of the recorded pixel. */
 RT_INLINE void rt_watch_camera(rt_recorder *rec, const rt_rays *ray, vint pixel, uint bits)
 {
     rec->weight = rt_splat(1.0f, 1.0f, 1.0f);
@@ -68,14 +69,15 @@ RT_INLINE void rt_watch_camera(rt_recorder *rec, const rt_rays *ray, vint pixel,
     }
 }
 
-/* Rays of a later generation: they got theirs when they were spawned. */
+/* Looks up the records of rays of a later generation. They were added when the rays were spawned. */
 RT_INLINE void rt_watch_queue(rt_recorder *rec, const rt_queue *queue, uint base, uint bits, rt_vec weight)
 {
     rec->weight = weight;
     for (uint l = 0; l < RT_LANES; ++l) rec->record[l] = bits >> l & 1u ? queue->record[base + l] : -1;
 }
 
-/* What the rays hit, and the light that comes from there without a light source: its own and ambient light, or the background. */
+/* Records what the rays hit, and the light from there that needs no light source: emission and ambient light, or the
+ * background. */
 RT_INLINE void rt_record_hit(rt_recorder *rec, const rt_hits *hit, vint prim, vint material, rt_vec light)
 {
     const rt_vec added = rt_mul(rec->weight, light);
@@ -94,8 +96,8 @@ RT_INLINE void rt_record_hit(rt_recorder *rec, const rt_hits *hit, vint prim, vi
     }
 }
 
-/* Shadow rays to a light, of the lanes in bits; lit: those of them that it reaches. light: what it then sends back along the ray
- * that hit the surface. The recorder's counts are those of the query, if there was one. */
+/* Records the shadow rays to a light of the lanes in `bits`. lit: the lanes that the light reaches. light: the light that then
+ * returns along the ray that hit the surface. asked: whether a query was made; then the recorder has its counts. */
 RT_INLINE void rt_record_shadow(rt_recorder *rec, uint light_index, int asked, uint bits, uint lit, rt_vec origin, rt_vec direction,
                                 vfloat distance, rt_vec light)
 {
@@ -115,8 +117,8 @@ RT_INLINE void rt_record_shadow(rt_recorder *rec, uint light_index, int asked, u
     }
 }
 
-/* Rays that go on. bits: lanes in which something is left to follow; followed: those of them that are heavy enough, which will
- * take the next places of the queue as far as there is room. To be called before they are appended. */
+/* Records mirrored or refracted rays, before they are appended to the queue. bits: the lanes that have such a ray. followed:
+ * those whose weight is large enough. They take the next elements of the queue as far as there is room. */
 RT_INLINE void rt_record_spawn(rt_recorder *rec, rt_queue *next, uint capacity, uint count, uint kind, uint bits, uint followed,
                                rt_vec origin, rt_vec direction, rt_vec weight)
 {

@@ -1,8 +1,9 @@
-/* iterative.cl -- a sample of every pixel by generations of rays, each packet on its own: see generations.h. */
+/* iterative.cl -- a sample of every pixel by generations of rays, packet by packet: see generations.h. */
 
-/* film: sums of samples, w counts them; with RT_SHOW_GENERATIONS a number a pixel, of this sample. counters: shadow, secondary,
- * dropped rays and full stacks of each packet. distances: of sample 0's camera rays, packet by packet, block by block, RT_LANES
- * each: one store a block, where a picture's order would take one a pixel; who reads them puts them in order. */
+/* film: the sums of samples, with their number in w; with RT_SHOW_GENERATIONS one number a pixel, of this sample. counters:
+ * shadow, secondary and dropped rays and full stacks of each packet. distances: those of sample 0's camera rays, packet by
+ * packet, block by block, RT_LANES each. That is one store a block, where the picture's order would take one a pixel; the
+ * reader puts them in order. */
 #ifdef RT_SHOW_GENERATIONS
 typedef float rt_film;
 #else

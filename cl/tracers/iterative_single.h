@@ -1,9 +1,10 @@
-/* iterative_single.h -- generations.h where a work-item has one pixel and one lane, as on GPUs: the same rays in the same order, so the
- * same sums.
+/* iterative_single.h -- generations.h for one pixel and one lane a work-item, as on GPUs: the same rays in the same order, so
+ * the same sums.
  *
- * A mirrored ray goes on in the registers of the one that met the mirror. Arrays in private memory, which is as far away as any
- * other on a GPU, hold only what waits while another ray goes on: without glass, nothing. And there is one loop, where generations
- * in a loop of their own would have a warp wait for the most rays of each: here it waits for the most rays of a pixel. */
+ * A mirrored ray takes the registers of the ray that hit the mirror. The arrays lie in private memory, which is as slow as any
+ * other on a GPU. They hold only deferred rays: none without glass. There is one loop for all generations. With a loop for
+ * each, a warp would wait for the pixel with the most rays in each generation; here it waits for the pixel with the most rays
+ * in all. */
 #ifndef RT_ITERATIVE_SINGLE_H
 #define RT_ITERATIVE_SINGLE_H
 
@@ -21,8 +22,8 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
     uint count = rt_bits(rt_block_pixels(frame, origin, 0u, &x, &y));
     rt_camera_rays(frame, x + (int)origin.x, y + (int)origin.y, &ray);
 
-    /* The ray in registers is number `at` of the `count` of its generation; next_count rays of the next one are known. Number 0 of
-     * a generation may be in registers, and its place in the array empty. */
+    /* The ray in registers is number `at` of the `count` of its generation. The next generation has next_count rays so far. Its
+     * ray 0 may be in registers; then its element of the array is empty. */
     for (uint generation = 0, at = 0, next_count = 0; count != 0u;) {
         rt_hits hit;
         rt_prepare(&ray, 1u);
@@ -34,19 +35,19 @@ RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *
         if (generation == 0u && frame->sample == 0u) *distance = hit.t;
 
         rt_vec light;
-        rt_deferred aside;
-        uint parted;
+        rt_deferred deferred;
+        uint splits;
         const vmask last = RT_MASK(generation + 1u >= frame->depth);
-        const vmask going = rt_step(ctx, frame, -1, last, &ray, &hit, &weight, &light, &aside, &parted, tally);
+        const vmask next_lanes = rt_step(ctx, frame, -1, last, &ray, &hit, &weight, &light, &deferred, &splits, tally);
         sum = rt_add(sum, light);
 
         rt_queue *next = queues + (1u - (generation & 1u));
-        const bool stays = going && at + 1u == count && next_count == 0u;
+        const bool stays = next_lanes && at + 1u == count && next_count == 0u;
         if (stays)
             next_count = 1u;
-        else if (going)
+        else if (next_lanes)
             next_count = rt_put_ray(next, next_count, rt_vec_of(ray.ox, ray.oy, ray.oz), rt_vec_of(ray.dx, ray.dy, ray.dz), weight, tally);
-        if (parted != 0u) next_count = rt_put_ray(next, next_count, aside.origin, aside.direction, aside.weight, tally);
+        if (splits != 0u) next_count = rt_put_ray(next, next_count, deferred.origin, deferred.direction, deferred.weight, tally);
         if (++at == count) {
             tally->secondary += next_count;
             count = next_count;

@@ -1,4 +1,4 @@
-/* ray_queue.h -- an array of rays in private memory, filled from the front by whole vectors: the thesis's `current` and `next`. */
+/* ray_queue.h -- an array of rays in private memory, to which packets are appended: the thesis's `current` and `next`. */
 #ifndef RT_RAY_QUEUE_H
 #define RT_RAY_QUEUE_H
 
@@ -8,14 +8,14 @@ typedef struct rt_queue {
     float field[9][RT_QUEUE_ROOM]; /* origin, direction, weight */
     int pixel[RT_QUEUE_ROOM];      /* within the packet */
 #ifdef RT_SPLITS_INCOHERENT
-    float area[RT_QUEUE_ROOM];     /* of where it starts: rt_surface.area */
+    float area[RT_QUEUE_ROOM];     /* rt_surface.area of the surface that the ray starts on */
 #endif
 #ifdef RT_INSPECT
     int record[RT_QUEUE_ROOM];
 #endif
 } rt_queue;
 
-/* The lanes in bits move to the front. */
+/* rt_compress: moves the lanes in `bits` to the front. */
 #if !defined(RT_PORTABLE) && defined(__x86_64__) && RT_LANES == 16 && defined(__AVX512F__)
 #define rt_compress(v, bits) __builtin_ia32_compresssf512_mask(v, (float16)(0.0f), (ushort)(bits))
 #elif RT_LANES == 1
@@ -37,7 +37,7 @@ RT_INLINE void rt_queue_put(rt_queue *queue, uint field, uint at, vfloat v, uint
     rt_store(rt_compress(v, bits), queue->field[field] + at);
 }
 
-/* Appends the lanes in bits and returns the new count. Rays that find no room are dropped and counted. */
+/* Appends the rays of the lanes in `bits`. Returns the new count. Rays that find no room are dropped and counted. */
 RT_INLINE uint rt_append(rt_queue *queue, uint capacity, uint count, uint bits, rt_vec origin, rt_vec direction, rt_vec weight,
                          vint pixel, uint *dropped)
 {
@@ -57,7 +57,7 @@ RT_INLINE uint rt_append(rt_queue *queue, uint capacity, uint count, uint bits, 
     return count + taken;
 }
 
-/* RT_LANES rays from `base` on. */
+/* Loads RT_LANES rays from `base` on. */
 RT_INLINE void rt_take(const rt_queue *queue, uint base, rt_rays *ray, rt_vec *weight, vint *pixel)
 {
     ray->ox = rt_load(queue->field[0] + base);

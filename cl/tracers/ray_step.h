@@ -1,25 +1,27 @@
-/* ray_step.h -- what becomes of rays that have been traced: the light they see, and where they go on. For tracers that keep a ray
- * in registers from one surface to the next: what goes on does so in the ray's place, what parts from it is put aside. */
+/* ray_step.h -- shades a hit and makes the next rays, for tracers that keep a ray in registers from one surface to the next.
+ *
+ * The next ray replaces the one that was traced. Where a ray is both mirrored and refracted, the refracted ray is deferred. */
 #ifndef RT_RAY_STEP_H
 #define RT_RAY_STEP_H
 
-/* A refracted ray that parted from a mirrored one; set where it did. */
+/* The refracted rays of lanes that are mirrored too. Undefined in other lanes. */
 typedef struct rt_deferred {
     rt_vec origin, direction, weight;
 } rt_deferred;
 
-/* ray, weight: in, of the rays that found `hit`; out, of those that go on, the lanes in what is returned. last: lanes in which none
- * does. light: what the rays add to their pixels, where `active`. parted: bits of the lanes in which `aside` is set. */
+/* ray, weight: in, those that found `hit`; out, those of the next rays, in the lanes that are returned. last: lanes that make
+ * no next rays. light: the light that the `active` lanes add to their pixels. splits: the bits of the lanes in which `deferred`
+ * is set. */
 RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask active, vmask last, rt_rays *ray, rt_hits *hit,
-                        rt_vec *weight, rt_vec *light, rt_deferred *aside, uint *parted, rt_tally *tally)
+                        rt_vec *weight, rt_vec *light, rt_deferred *deferred, uint *splits, rt_tally *tally)
 {
     const uint bits = rt_bits(active);
     const rt_surface surface = rt_resolve(ctx, ray, hit, bits);
     const vmask hits = surface.hit & active;
     const uint hit_bits = rt_bits(hits);
     rt_vec seen = rt_splat(frame->background[0], frame->background[1], frame->background[2]), passed = *weight;
-    vmask going = rt_vint(0);
-    *parted = 0u;
+    vmask next_lanes = rt_vint(0);
+    *splits = 0u;
     if (hit_bits != 0u) {
         const rt_point point = rt_point_of(ray, &surface, hits);
         const rt_shade material = rt_load_materials(ctx, &surface, hit_bits, point.at);
@@ -27,18 +29,18 @@ RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask
         const rt_split split = rt_follow(frame, &point, &material, *weight, &mirrored, &refracted);
         mirrored &= ~last;
         refracted &= ~last;
-        going = mirrored | refracted;
-        *parted = rt_bits(mirrored & refracted);
+        next_lanes = mirrored | refracted;
+        *splits = rt_bits(mirrored & refracted);
         rt_vec bounced = point.incoming, bent = bounced;
         if (rt_any(mirrored)) bounced = rt_mirror_direction(&point);
         if (rt_any(refracted)) bent = rt_refracted_direction(&point, &split);
         const rt_vec through = rt_scale(split.refracted, rt_mul(material.color, *weight));
-        if (*parted != 0u) {
-            aside->origin = rt_along(point.inward, point.geometric, point.at);
-            aside->direction = bent;
-            aside->weight = through;
+        if (*splits != 0u) {
+            deferred->origin = rt_along(point.inward, point.geometric, point.at);
+            deferred->direction = bent;
+            deferred->weight = through;
         }
-        /* The ray itself has served: the next is made in its place, before the shadow rays. */
+        /* The traced ray is no longer needed. The next one replaces it, before shadow rays take registers. */
         const vfloat side = rt_select(mirrored, point.outward, point.inward);
         const rt_vec from = rt_along(side, point.geometric, point.at), along = rt_choose(mirrored, bounced, bent);
         ray->ox = from.x, ray->oy = from.y, ray->oz = from.z;
@@ -51,7 +53,7 @@ RT_INLINE vmask rt_step(const rt_ctx *ctx, const constant rt_frame *frame, vmask
     }
     *light = rt_mul(*weight, seen);
     *weight = passed;
-    return going;
+    return next_lanes;
 }
 
 #endif

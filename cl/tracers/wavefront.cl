@@ -1,24 +1,26 @@
-/* wavefront.cl -- rays that part go on side by side: of a ray that is both mirrored and refracted, what is
- * mirrored stays with its work-item, the other waits in a queue of the whole picture for one that has nothing to do.
- * After Purcell, Buck, Mark, Hanrahan 2002, Ray Tracing on Programmable Graphics Hardware; queues as in Laine, Karras, Aila 2013,
- * Megakernels Considered Harmful: Wavefront Path Tracing on GPUs.
+/* wavefront.cl -- traces the mirrored and the refracted ray of one surface in parallel, with a queue for the whole picture.
  *
- * Level 0 follows camera rays, level n the rays that were put aside at level n - 1; a level is a launch. The host enqueues all at
- * once: how many rays a level has is known to the device alone, so as many work-items as run side by side take chunks of
- * RT_TEAM_SIZE * RT_LANES rays until none is left. Without glass there is one level, and no ray ever leaves its registers. With it a
- * pixel of 2^n rays is the work of 2^n work-items, where iterative.cl has one that holds up its warp.
+ * Purcell, Buck, Mark, Hanrahan 2002, "Ray Tracing on Programmable Graphics Hardware"; queues as in Laine, Karras, Aila 2013,
+ * "Megakernels Considered Harmful: Wavefront Path Tracing on GPUs". A ray that is both mirrored and refracted splits: the
+ * mirrored ray stays with its work-item, the refracted one is deferred to the queue, for any free work-item.
  *
- * A pixel's first way is a sum of its own, in the order of generations; what other ways add to it is summed as fixed-point
- * numbers, of which the order does not matter. So a picture does not depend on who was first, and where nothing parts it has the
- * same bits as the iterative tracer's.
+ * Level 0 follows camera rays, level n the rays deferred at level n - 1. A level is a launch, and the host enqueues all levels
+ * at once. Only the device knows the number of rays of a level. So each launch has as many work-items as run in parallel, and
+ * they claim chunks of RT_TEAM_SIZE * RT_LANES rays until none is left. Without glass there is one level, and no ray leaves its
+ * registers. With glass 2^n work-items trace a pixel of 2^n rays, where iterative.cl has one work-item that holds up its warp.
  *
- * Costs: 48 B written and read and 6 atomics a ray put aside; no private arrays. */
+ * A pixel's first path, the one that level 0 follows, has a sum of its own, in the order of generations. Other paths add their
+ * light as fixed-point numbers, whose order does not matter. So a picture does not depend on the order of work, and without
+ * splits it is bit for bit the iterative tracer's.
+ *
+ * A deferred ray costs 48 B written and read and 6 atomics. There are no private arrays. */
 
-/* control: for each level RT_CONTROL uints: rays (may be beyond `room`), tickets given out. Zeroes to begin with. */
+/* control: RT_CONTROL uints for each level: the number of rays, which may exceed `room`, and the tickets claimed. Zero at the
+ * start. */
 #define RT_CONTROL 2u
-#define RT_CONTROLS (17u * RT_CONTROL) /* 16 generations, and one that never comes */
+#define RT_CONTROLS (17u * RT_CONTROL) /* 16 generations, and one that is never traced */
 
-/* Light of ways put aside, for each pixel and channel: 64 bits in two's complement, low half first, in units of 2^-36. */
+/* The light of deferred paths, for each pixel and channel: 64 bits in two's complement, low half first, in units of 2^-36. */
 #define RT_SHARE 6u
 #define RT_SHARE_UNIT 68719476736.0f
 #define RT_SHARE_MOST 1e8f
@@ -36,9 +38,11 @@ RT_INLINE float rt_share(const global uint *cell)
     return convert_float((long)((ulong)cell[0] | (ulong)cell[1] << 32)) * (1.0f / RT_SHARE_UNIT);
 }
 
-/* One level. sums: of each pixel's first way, w = 1; where nothing parts, the film. shares: see above; of no use unless `parting`. counters: shadow, secondary,
- * dropped rays and full stacks, of each work-group, in all launches of a picture; begun anew with `fresh`. distances: as iterative.cl has them. rays: of this
- * level; next: of the coming one, `room` at most. idle_control: that of the pictures after this, of whom nobody is under way. */
+/* Traces one level. parting: whether the scene has rays that split. sums: the light of each pixel's first path, w = 1; without
+ * splits, the film. shares: the light of deferred paths, used only with `parting`. counters: shadow, secondary and dropped rays
+ * and full stacks of each work-group; `fresh` starts them at 0. distances: as in iterative.cl. rays: those of this level. next:
+ * those of the next level, at most `room`. idle_control: the control of later pictures, none of which is being traced; it is
+ * cleared. */
 RT_PICTURE_KERNEL
 trace_wavefront(const constant rt_frame *frame, const uint first_group, const uint group_count, const uint level, const uint fresh,
                 const uint room, const uint parting, global float4 *sums, global uint *shares, global ulong4 *counters,
@@ -78,13 +82,13 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 active = rt_load_wavefront_rays(rays, unit * RT_LANES, count, &ray, &weight, &pixel, &generation);
             }
         }
-        const uint mine = rt_bits(active);
+        const uint pixel_bits = rt_bits(active);
 
         for (uint step = 0; step < frame->depth; ++step) {
             const uint bits = rt_bits(active);
             RT_TEAM_BREAK_UNLESS(bits != 0u)
-            rt_deferred aside;
-            uint parted = 0u;
+            rt_deferred deferred;
+            uint splits = 0u;
             if (bits != 0u) {
                 rt_hits hit;
                 rt_prepare(&ray, bits);
@@ -103,32 +107,32 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
                 }
                 const vmask last = RT_MASK(generation + 1 >= rt_vint((int)frame->depth));
                 rt_vec light;
-                const vmask going = rt_step(&ctx, frame, active, last, &ray, &hit, &weight, &light, &aside, &parted, &tally);
+                const vmask next_lanes = rt_step(&ctx, frame, active, last, &ray, &hit, &weight, &light, &deferred, &splits, &tally);
                 sum = rt_add(sum, rt_choose(active, light, rt_splat(0.0f, 0.0f, 0.0f)));
-                active = going;
+                active = next_lanes;
                 generation += 1;
-                tally.secondary += popcount(rt_bits(going));
+                tally.secondary += popcount(rt_bits(next_lanes));
             }
 
             uint wanted;
-            const uint before = rt_team_exclusive_sum(popcount(parted), &wanted, scratch);
+            const uint before = rt_team_exclusive_sum(popcount(splits), &wanted, scratch);
             const uint first = rt_team_claim(control + (level + 1u) * RT_CONTROL, wanted, scratch);
             if (rt_team_item() == 0u) {
                 const uint taken = min(wanted, room - min(first, room));
                 tally.secondary += taken;
                 tally.dropped += wanted - taken;
             }
-            if (parted != 0u)
-                rt_store_wavefront_rays(next, room, first + before, parted, aside.origin, aside.direction, aside.weight, pixel, generation);
+            if (splits != 0u)
+                rt_store_wavefront_rays(next, room, first + before, splits, deferred.origin, deferred.direction, deferred.weight, pixel, generation);
         }
 
-        if (mine != 0u) {
+        if (pixel_bits != 0u) {
             float4 light[RT_LANES];
             int at[RT_LANES];
             rt_store_lanes(sum, 0.0f, light);
             rt_store(pixel, at);
             for (uint l = 0; l < RT_LANES; ++l) {
-                if ((mine >> l & 1u) == 0u) continue;
+                if ((pixel_bits >> l & 1u) == 0u) continue;
                 global uint *share = shares + RT_SHARE * (size_t)at[l];
                 if (level == 0u) {
                     const float4 sample = (float4)(light[l].xyz, 1.0f);
@@ -163,7 +167,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
     }
 }
 
-/* Where rays part, a sample into the film: the first one in place of what was there. */
+/* Adds a sample of a scene whose rays split to the film, or stores it if it is the first one. */
 RT_PICTURE_KERNEL
 add_sample(const constant rt_frame *frame, const uint first_group, global float4 *film, const global float4 *sums,
            const global uint *shares)

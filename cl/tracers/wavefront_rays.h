@@ -1,12 +1,12 @@
-/* wavefront_rays.h -- rays under way in global memory: three float4 each, 48 B, whatever the lanes.
- *   origin x y z, bits of the pixel's number in the picture | direction x y z, weight red | weight green, blue, bits of the
- *   generations before it, 0 */
+/* wavefront_rays.h -- the queue of deferred rays in global memory: three float4 a ray, 48 B, for any number of lanes.
+ *   origin x, y, z, pixel's index in the picture | direction x, y, z, weight red | weight green, blue, number of generations before, 0
+ * The index and the number are ints in the bits of floats. */
 #ifndef RT_WAVEFRONT_RAYS_H
 #define RT_WAVEFRONT_RAYS_H
 
 #define RT_WAVEFRONT_RAY 3u
 
-/* Rays [first, first + RT_LANES) of `count`. Lanes beyond have the last one's ray, and no part in anything. */
+/* Loads the rays [first, first + RT_LANES) of `count`. Returns the lanes below `count`; the others get the last ray. */
 RT_INLINE vmask rt_load_wavefront_rays(const global float4 *rays, uint first, uint count, rt_rays *ray, rt_vec *weight, vint *pixel,
                                    vint *generation)
 {
@@ -30,7 +30,7 @@ RT_INLINE vmask rt_load_wavefront_rays(const global float4 *rays, uint first, ui
     return RT_MASK(rt_lane_index() + rt_vint((int)first) < rt_vint((int)count));
 }
 
-/* Writes the rays of the lanes in `bits` one after the other from `first` on, but none at or beyond `room`. */
+/* Stores the rays of the lanes in `bits` one after the other from `first` on, but none at or beyond `room`. */
 RT_INLINE void rt_store_wavefront_rays(global float4 *rays, uint room, uint first, uint bits, rt_vec origin, rt_vec direction, rt_vec weight,
                                 vint pixel, vint generation)
 {

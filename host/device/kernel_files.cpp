@@ -10,6 +10,7 @@
 
 #include "base/error.hpp"
 #include "base/read_file.hpp"
+#include "device/kernel_includes.hpp"
 
 namespace clarity {
 namespace {
@@ -115,6 +116,31 @@ void require_same(const fs::path& path, const std::string& text, const std::stri
                 {path.string(), line, 0, why});
 }
 
+// A plugin's file as it stands at `path`, with the parts that lie beside it.
+std::string with_parts(const std::string& text, const std::string& shown, const fs::path& path) {
+    return expand_includes(text, shown, IncludeKind::part, [&](const std::string& name) {
+        const fs::path part = path.parent_path() / name;
+        std::string inner;
+        if (!read_if_present(part, inner))
+            throw Error(Exit::kernel_build_failed, path.string() + ": cannot read its part " + part.string() +
+                                                       ": put the file there, or set CLARITY_KERNEL_PATH=embedded to run the "
+                                                       "kernels inside the program");
+        return remember(shown.substr(0, shown.rfind('/') + 1) + name, part, std::move(inner));
+    });
+}
+
+// Adds the parts of a file on disk, and the parts of these; `all` has the file already.
+void add_parts(const fs::path& path, std::vector<std::string>& all) {
+    std::string text;
+    if (!read_if_present(path, text)) return;
+    for (const std::string& name : included_parts(text)) {
+        const fs::path part = path.parent_path() / name;
+        if (std::find(all.begin(), all.end(), part.string()) != all.end()) continue;
+        all.push_back(part.string());
+        add_parts(part, all);
+    }
+}
+
 const char* embedded_text(const std::string& name) {
     for (const Embedded& file : kEmbedded)
         if (name == file.name) return file.text;
@@ -151,18 +177,24 @@ std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file) {
 
 std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
     const std::string shown = plugin_kernel_name(accel, file);
+    const auto with_kernels = [&](const std::string& text) {
+        return expand_includes(text, shown, IncludeKind::kernel,
+                               [](const std::string& name) { return kernel_text(name.substr(std::string("cl/").size())); });
+    };
     std::string text;
     if (file.name)
         for (const fs::path& path : plugin_places(accel, file.name)) {
             if (!read_if_present(path, text)) continue;
+            const std::string whole = with_parts(text, shown, path);
             if (&file == &accel.accel->types && file.text)
-                require_same(path, text, file.text,
+                require_same(path, whole, file.text,
                              std::string("plugin ") + accel.id +
                                  " was compiled with, so its structs may: build the plugin again and restart, or set "
                                  "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
-            return remember(shown, path, std::move(text));
+            remember(shown, path, std::move(text));
+            return with_kernels(whole);
         }
-    return remember(shown, {}, file.text ? file.text : "");
+    return with_kernels(remember(shown, {}, file.text ? file.text : ""));
 }
 
 std::string kernel_path(const std::string& shown_name) {
@@ -186,7 +218,10 @@ std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& 
     for (const rt_plugin* plugin : accels)
         for (const rt_cl_file* file : {&plugin->accel->types, &plugin->accel->traverse})
             if (file->name)
-                for (const fs::path& path : plugin_places(*plugin, file->name)) all.push_back(path.string());
+                for (const fs::path& path : plugin_places(*plugin, file->name)) {
+                    all.push_back(path.string());
+                    add_parts(path, all);
+                }
     return all;
 }
 

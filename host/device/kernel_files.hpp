@@ -25,8 +25,8 @@ namespace clarity {
 // no such text, or if rt_types.h on disk differs from the program's.
 std::string kernel_text(const std::string& name);
 
-// Returns the text of a plugin's file. Throws Error(kernel_build_failed) if its types on disk differ from those that it was
-// compiled with.
+// Returns the text of a plugin's file, with the files that it includes (kernel_includes.hpp). Throws Error(kernel_build_failed)
+// if its types on disk differ from those that it was compiled with, or if a file that it includes cannot be read.
 std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file);
 // What the compiler is told that file is called.
 std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file);
@@ -39,6 +39,7 @@ std::string kernel_path(const std::string& shown_name);
 uint64_t kernel_text_revision();
 
 // Returns every path that provides a text now, or would if the file existed; for FileWatch. Empty if only embedded text counts.
+// The parts of a plugin are those that its files include at the time of the call.
 std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& accels);
 
 }  // namespace clarity

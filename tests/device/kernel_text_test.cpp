@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "device/kernel_files.hpp"
+#include "device/kernel_includes.hpp"
 #include "device/program.hpp"
 #include "support/scratch.hpp"
 
@@ -109,6 +110,56 @@ TEST_F(KernelText, CandidatesAreAllThatMayDecide) {
     for (const char* name : {"cl/rt_types.h", "cl/film.cl", "cl/tracers/iterative.cl", "plugins/accel/watched/watched.cl",
                              "plugins/accel/watched/watched_types.h"})
         EXPECT_EQ(std::count(all.begin(), all.end(), scratch_.path(name)), 1) << name;
+}
+
+TEST_F(KernelText, PartsOfAPluginAreInserted) {
+    from_disk();
+    scratch_.write("plugins/accel/watched/watched.cl", "one\n#include \"watched_part.cl\"\nthree\n");
+    const std::string part = scratch_.write("plugins/accel/watched/watched_part.cl", "two");
+    EXPECT_EQ(
+        plugin_kernel_text(kPlugin, kAccel.traverse),
+        "one\n#line 1 \"plugins/accel/watched/watched_part.cl\"\ntwo\n#line 3 \"plugins/accel/watched/watched.cl\"\nthree\n");
+    EXPECT_EQ(kernel_path("plugins/accel/watched/watched_part.cl"), part);
+    const std::vector<std::string> all = kernel_candidates({&kPlugin});
+    EXPECT_EQ(std::count(all.begin(), all.end(), part), 1) << "a part is watched";
+    const uint64_t before = kernel_text_revision();
+    scratch_.write("plugins/accel/watched/watched_part.cl", "another two");
+    plugin_kernel_text(kPlugin, kAccel.traverse);
+    EXPECT_EQ(kernel_text_revision(), before + 1);
+}
+
+TEST_F(KernelText, APluginIncludesFilesOfCl) {
+    from_disk();
+    scratch_.write("cl/lanes/mine.h", "mine\n");
+    scratch_.write("plugins/accel/watched/watched.cl", "#include \"cl/lanes/mine.h\"\n");
+    EXPECT_EQ(plugin_kernel_text(kPlugin, kAccel.traverse),
+              "#line 1 \"cl/lanes/mine.h\"\nmine\n#line 2 \"plugins/accel/watched/watched.cl\"\n");
+    EXPECT_EQ(kernel_path("cl/lanes/mine.h"), scratch_.path("cl/lanes/mine.h"));
+}
+
+TEST_F(KernelText, IncludesThatCannotBeFollowedAreSaid) {
+    from_disk();
+    const auto refused = [&](const std::string& text) {
+        scratch_.write("plugins/accel/watched/watched.cl", text);
+        return why([] { plugin_kernel_text(kPlugin, kAccel.traverse); });
+    };
+    std::string said = refused("#include \"watched_nothing.cl\"\n");
+    EXPECT_NE(said.find("watched_nothing.cl"), std::string::npos) << said;
+    said = refused("\n#include \"../other/other.cl\"\n");
+    EXPECT_NE(said.find("plugins/accel/watched/watched.cl:2"), std::string::npos) << said;
+    EXPECT_NE(said.find("../other/other.cl"), std::string::npos) << said;
+    said = refused("#include \"watched.cl\"\n");
+    EXPECT_NE(said.find("in a circle"), std::string::npos) << said;
+}
+
+TEST(KernelIncludes, OnlyWholeLinesCount) {
+    const auto read = [](const std::string& name) { return "<" + name + ">\n"; };
+    const std::string text =
+        "  #include \"a.h\"\n#include <a.h>\n#include \"a.h\" x\n// #include \"a.h\"\n#include \"cl/a.h\"\n";
+    EXPECT_EQ(expand_includes(text, "f/b.cl", IncludeKind::part, read), text);
+    EXPECT_EQ(included_parts("#include \"a.h\"\n" + text + "#include \"b.h\"").size(), 2u);
+    EXPECT_EQ(expand_includes("#include \"a.h\"", "f/b.cl", IncludeKind::part, read),
+              "#line 1 \"f/a.h\"\n<a.h>\n#line 2 \"f/b.cl\"\n");
 }
 
 TEST_F(KernelText, FilesBesideAPluginsLibrary) {

@@ -1,49 +1,54 @@
-/* bvh4.cl -- one ray against four boxes at once (RT_LANES 1), or a packet of rays against one box after the other.
+/* bvh4.cl -- traversal of a tree of four children a node: one ray against four boxes at once (RT_LANES 1), or a packet of rays.
  *
- * Made for GPUs. A turn of the loop is one item of each ray of a warp, a node or two triangles: whatever it is for whom, all of
- * it is fetched before anything is computed, so the warp waits once a turn, and no ray waits for the end of another's leaf. The
- * longest ray of a warp, which decides over small pictures, takes as many turns as it has nodes and pairs of triangles.
+ * Wald, Benthin, Boulos 2008, "Getting Rid of Packets". Made for GPUs. A step of the loop is a node or two triangles for each
+ * ray of a warp. All of it is fetched before anything is computed, whichever it is for which ray. So the warp waits for memory
+ * once a step, and no ray waits for the end of another's leaf. The longest ray of a warp decides over small pictures. It takes
+ * as many steps as it has nodes and pairs of triangles.
  *
- * 128 bytes a node; 71 registers on an H200, so 28 warps a multiprocessor; a stack of 8 bytes an entry (any hit: 4) in local
- * memory, whose lowest entry says that nothing is left. Measured there, geometric means over four scenes and three kinds of rays,
- * at 1024x768 (at 3840x2160): 1.08 (0.98) of leaves in a loop of their own; 1.3 (1.06) where single rays meet hundreds of triangles;
- * 1.10 of fetching triangles only when nodes are done. No gain: loads by inline PTX, prefetching what is put off, one triangle a turn
- * (0.9), a node and two triangles a turn (0.88: nodes are visited that the triangles would have hidden), leaves that wait until
- * several of a warp have one (0.94 to 0.86), constants of the ray pinned to registers, nodes of eight (0.93, leaves in a loop). Leaves
- * put off until all of a warp have one (Aila, Laine 2009) are better at 3840x2160 (1.04) and worse at 1024x768 (0.94).
+ * 128 bytes a node. Stack: 8 bytes an entry (any hit: 4) in local memory; its lowest entry ends the traversal. 71 registers on
+ * an H200, so 28 warps a multiprocessor.
  *
- * Rays that keep together go by warps (RT_TRAVERSE_WARP): with one ray a work-item 52 registers, 36 warps a multiprocessor, with two
- * 93 and 20. */
+ * Measured there at 1024x768 (in brackets: 3840x2160), geometric means over four scenes and three kinds of rays. This loop is
+ *   1.08 (0.98)  times as fast as one with leaves in an inner loop
+ *   1.3 (1.06)   times as fast where single rays meet hundreds of triangles
+ *   1.10         times as fast as fetching triangles only after the nodes are tested.
+ * Tried without gain (relative speed): loads by inline PTX; prefetching deferred children; one triangle a step (0.9); a node
+ * and two triangles a step (0.88: it visits nodes that the triangles would have hidden); leaves that wait until several rays of
+ * a warp have one (0.94 to 0.86); ray constants pinned to registers; nodes of eight children (0.93, leaves in a loop). Leaves
+ * that wait until all rays of a warp have one (Aila, Laine 2009) are better at 3840x2160 (1.04) and worse at 1024x768 (0.94).
+ *
+ * Coherent rays can be traced warp by warp (RT_TRAVERSE_WARP). With one ray a work-item that takes 52 registers, 36 warps a
+ * multiprocessor; with two rays 93 and 20. */
 #if RT_LANES == 1
 #if RT_ANY_HIT
-#define BVH4_PUSHED uint
-#define BVH4_RETURN_TOP() return stack[--*top]
+#define BVH4_STACK_ENTRY uint
+#define BVH4_RETURN_POPPED() return stack[--*top]
 #else
-#define BVH4_PUSHED ulong
-#define BVH4_RETURN_TOP()                                                                                                        \
-    {                                                                                                                            \
-        ulong pushed;                                                                                                            \
-        do pushed = stack[--*top];                                                                                               \
-        while (as_float((uint)(pushed >> 32)) > hit->t);                                                                         \
-        return (uint)pushed;                                                                                                     \
+#define BVH4_STACK_ENTRY ulong
+#define BVH4_RETURN_POPPED()                                                                                                   \
+    {                                                                                                                          \
+        ulong popped;                                                                                                          \
+        do popped = stack[--*top];                                                                                             \
+        while (as_float((uint)(popped >> 32)) > hit->t);                                                                       \
+        return (uint)popped;                                                                                                   \
     }
 #endif
-/* A turn: the node or the leaf `at`. Returns what comes next. */
-RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint at, const rt_rays *ray, const bvh4_ray *own, rt_hits *hit,
-                                          BVH4_PUSHED *stack, uint *top)
+/* One step: visits the node or leaf `ref`. Returns the next node reference. */
+RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint ref, const rt_rays *ray, const bvh4_ray *slab, rt_hits *hit,
+                                          BVH4_STACK_ENTRY *stack, uint *top)
 {
-    const uint is_leaf = at >> 31, first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
-    /* Rows a, b, c of a node's near planes or of the first triangle; d, e, f of its far planes or of the second. */
+    const uint is_leaf = ref >> 31, first = BVH4_LEAF_FIRST(ref), count = BVH4_LEAF_COUNT(ref);
+    /* a, b, c: a node's rows of near planes, or the first triangle. d, e, f: its rows of far planes, or the second triangle. */
     float4 a, b, c, d, e, f;
     uint4 child;
     if (!is_leaf) {
-        const ulong node = BVH4_NODE(ctx, at);
-        a = BVH4_ROW(node, own->near_x);
-        b = BVH4_ROW(node, own->near_y);
-        c = BVH4_ROW(node, own->near_z);
-        d = BVH4_ROW(node, own->near_x ^ BVH4_RAY_SPACE_X);
-        e = BVH4_ROW(node, own->near_y ^ BVH4_RAY_SPACE_Y);
-        f = BVH4_ROW(node, own->near_z ^ BVH4_RAY_SPACE_Z);
+        const ulong node = BVH4_NODE(ctx, ref);
+        a = BVH4_ROW(node, slab->near_x);
+        b = BVH4_ROW(node, slab->near_y);
+        c = BVH4_ROW(node, slab->near_z);
+        d = BVH4_ROW(node, slab->near_x ^ BVH4_FAR_X);
+        e = BVH4_ROW(node, slab->near_y ^ BVH4_FAR_Y);
+        f = BVH4_ROW(node, slab->near_z ^ BVH4_FAR_Z);
         child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
     }
 #if RT_TRIANGLES_ONLY
@@ -76,20 +81,20 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint at, const rt_r
         if (hit->t < 0.0f) return BVH4_DONE;
 #endif
         if (count > done) return BVH4_MAKE_LEAF(first + done, count - done);
-        BVH4_RETURN_TOP();
+        BVH4_RETURN_POPPED();
     }
     RT_COUNT_VISIT(hit, 1u);
-    const float4 entry = bvh4_enter(ray, own, hit->t, a, b, c, d, e, f);
+    const float4 entry = bvh4_enter(ray, slab, hit->t, a, b, c, d, e, f);
 #if RT_ANY_HIT
-    /* Order is worth nothing here: the last child that is met goes first. */
+    /* Order does not matter here: the last child that is entered is visited next. */
     uint next = BVH4_EMPTY;
-#define BVH4_TAKE(k)                                                                                                             \
-    if (entry.s##k < INFINITY) {                                                                                                 \
+#define BVH4_TAKE(k)                                                                                                           \
+    if (entry.s##k < INFINITY) {                                                                                               \
         if (next != BVH4_EMPTY) {                                                                                              \
-            stack[*top] = next;                                                                                                  \
-            if (RT_STACK_OK(*top, BVH4_STACK, hit)) ++*top;                                                                      \
-        }                                                                                                                        \
-        next = child.s##k;                                                                                                       \
+            stack[*top] = next;                                                                                                \
+            if (RT_STACK_OK(*top, BVH4_STACK, hit)) ++*top;                                                                    \
+        }                                                                                                                      \
+        next = child.s##k;                                                                                                     \
     }
     BVH4_TAKE(0)
     BVH4_TAKE(1)
@@ -97,7 +102,7 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint at, const rt_r
     BVH4_TAKE(3)
 #undef BVH4_TAKE
     if (next != BVH4_EMPTY) return next;
-    BVH4_RETURN_TOP();
+    BVH4_RETURN_POPPED();
 #else
     float t0 = entry.s0, t1 = entry.s1, t2 = entry.s2, t3 = entry.s3;
     uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
@@ -116,107 +121,99 @@ RT_INLINE uint RT_CAT(RT_TRAVERSE, _step)(const rt_ctx *ctx, uint at, const rt_r
         }
     }
     if (t0 < INFINITY) return child0;
-    BVH4_RETURN_TOP();
+    BVH4_RETURN_POPPED();
 #endif
 }
-#undef BVH4_RETURN_TOP
+#undef BVH4_RETURN_POPPED
+#endif
+
+#if RT_LANES > 1
+#define RT_PACKET_STACK_SIZE BVH4_STACK
+#define RT_PACKET_RAYS uint
+#include "cl/lanes/packet_traversal.h"
+
+/* Pushes the children that are entered, by their slots. *far_first has the bits of the slot that is visited last. */
+RT_INLINE void RT_CAT(RT_TRAVERSE, _children)(const rt_ctx *ctx, uint ref, const rt_rays *ray, const uint *far_first, rt_hits *hit,
+                                              rt_packet_stack *stack)
+{
+#define BVH4_NUMBER(row) ((const global float *)((ulong)ctx->bvh4_nodes + ((ulong)(ref ^ (row)) << 4)))[slot]
+    for (uint i = 0; i < 4u; ++i) {
+        const uint slot = i ^ *far_first, child = as_uint(BVH4_NUMBER(6u));
+        if (child == BVH4_EMPTY) continue;
+        vfloat entry;
+        const vmask in = rt_enter_bounds(rt_vfloat(BVH4_NUMBER(0u)), rt_vfloat(BVH4_NUMBER(1u)), rt_vfloat(BVH4_NUMBER(2u)),
+                                         rt_vfloat(BVH4_NUMBER(3u)), rt_vfloat(BVH4_NUMBER(4u)), rt_vfloat(BVH4_NUMBER(5u)), ray, hit,
+                                         &entry);
+        if (rt_any(in)) rt_push_packet(stack, child, rt_select(in, entry, RT_INFINITY), hit);
+    }
+#undef BVH4_NUMBER
+}
+#undef RT_PACKET_STACK_SIZE
+#undef RT_PACKET_RAYS
 #endif
 
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
 #if RT_LANES == 1
-    BVH4_PUSHED stack[BVH4_STACK + 1];
-    stack[0] = (BVH4_PUSHED)BVH4_LOWEST;
-    uint top = 1u, at = BVH4_NODE_REF(root);
-    const bvh4_ray own = bvh4_prepare(ray);
-    while (at != BVH4_DONE && RT_MAY_GO_ON(hit)) at = RT_CAT(RT_TRAVERSE, _step)(ctx, at, ray, &own, hit, stack, &top);
+    BVH4_STACK_ENTRY stack[BVH4_STACK + 1];
+    stack[0] = (BVH4_STACK_ENTRY)BVH4_LOWEST;
+    uint top = 1u, ref = BVH4_NODE_REF(root);
+    const bvh4_ray slab = bvh4_prepare(ray);
+    while (ref != BVH4_DONE && RT_MAY_GO_ON(hit)) ref = RT_CAT(RT_TRAVERSE, _step)(ctx, ref, ray, &slab, hit, stack, &top);
 #else
-    uint top = 0, at = BVH4_NODE_REF(root);
-    /* Near children go first by the signs of the direction, on which the lanes mostly agree: last onto the stack. */
+    /* Bits 0 and 1 of a slot tell on which side of the node the child lies in x and y. */
     const uint far_first = (ray->lo_x == 0u ? 1u : 0u) | (ray->lo_y == 1u ? 2u : 0u);
-    vfloat stack_t[BVH4_STACK];
-    uint stack_node[BVH4_STACK];
-    uint inside = rt_bits(RT_MASK(hit->t >= rt_vfloat(0.0f))); /* lanes in the node, for counting programs */
-    for (;;) {
-        if (at & BVH4_LEAF) {
-            const uint first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
-            for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
-#if RT_ANY_HIT
-            if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return;
-#endif
-        } else {
-            RT_COUNT_VISIT(hit, inside);
-#define BVH4_NUMBER(k) ((const global float *)((ulong)ctx->bvh4_nodes + ((ulong)(at ^ (k)) << 4)))[slot]
-            for (uint i = 0; i < 4u; ++i) {
-                const uint slot = i ^ far_first, child = as_uint(BVH4_NUMBER(6u));
-                if (child == BVH4_EMPTY) continue;
-                vfloat entry;
-                const vmask in = rt_enter_bounds(rt_vfloat(BVH4_NUMBER(0u)), rt_vfloat(BVH4_NUMBER(1u)), rt_vfloat(BVH4_NUMBER(2u)),
-                                                 rt_vfloat(BVH4_NUMBER(3u)), rt_vfloat(BVH4_NUMBER(4u)), rt_vfloat(BVH4_NUMBER(5u)),
-                                                 ray, hit, &entry);
-                if (!rt_any(in)) continue;
-                stack_node[top] = child;
-                stack_t[top] = rt_select(in, entry, RT_INFINITY);
-                if (RT_STACK_OK(top + 1u, BVH4_STACK, hit)) ++top;
-            }
-#undef BVH4_NUMBER
-        }
-        do {
-            if (top == 0u) return;
-            --top;
-            inside = rt_bits(RT_MASK(stack_t[top] <= hit->t));
-        } while (inside == 0u);
-        at = stack_node[top];
-    }
+    RT_CAT(RT_TRAVERSE, _packet)(ctx, BVH4_NODE_REF(root), ray, &far_first, hit);
 #endif
 }
 
 #ifdef RT_TRAVERSE_REQUEUED
-/* Each work-item takes an entry of the stack that all share, the topmost being the nearest, tests the node's children or the leaf,
- * and puts back what is met. While room is short only one is taken: then BVH4_STACK more are enough. */
+/* All work-items share one stack. In each round each pops an entry, of the topmost ones, which are the nearest; tests the
+ * node's children or the leaf; and pushes the children that are entered. While room is short only one entry is popped in a
+ * round: then BVH4_STACK more entries are enough. */
 void RT_TRAVERSE_REQUEUED(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit, local rt_requeue_scratch *shared)
 {
     const uint item = (uint)get_local_id(0);
-    const bvh4_ray own = bvh4_prepare(ray);
+    const bvh4_ray slab = bvh4_prepare(ray);
     if (item == 0u) {
         shared->stack[0] = BVH4_ENTRY(0.0f, BVH4_NODE_REF(root));
-        shared->put[0] = 0u;
+        shared->pushed[0] = 0u;
         shared->nearest = as_uint(hit->t);
     }
     barrier(CLK_LOCAL_MEM_FENCE);
-    for (uint top = 1u, turn = 0u; top != 0u; turn ^= 1u) {
+    for (uint top = 1u, parity = 0u; top != 0u; parity ^= 1u) {
         const uint room = (uint)max(1, ((int)BVH4_LONG_STACK - (int)(BVH4_STACK + top)) / 3);
         const uint taken = min(min(top, RT_REQUEUE_ITEMS), room);
         const ulong entry = shared->stack[top - 1u - min(item, taken - 1u)];
         const float nearest = as_float(shared->nearest);
         barrier(CLK_LOCAL_MEM_FENCE);
-        if (item == 0u) shared->put[turn ^ 1u] = 0u;
+        if (item == 0u) shared->pushed[parity ^ 1u] = 0u;
         top -= taken;
 #if RT_ANY_HIT
-        const bool goes = item < taken && nearest != 0.0f;
+        const bool is_active = item < taken && nearest != 0.0f;
         if (nearest == 0.0f) top = 0u;
 #else
-        const bool goes = item < taken && as_float((uint)(entry >> 32)) <= nearest;
-        if (nearest < hit->t) { /* another's; what is as near must still be found, for the lower number wins */
+        const bool is_active = item < taken && as_float((uint)(entry >> 32)) <= nearest;
+        if (nearest < hit->t) { /* another's hit; a primitive at the same distance must still be found, since the lower number is the hit */
             hit->t = as_float(as_uint(nearest) + 1u);
             hit->prim = hit->leaf = hit->instance = -1;
         }
 #endif
-        const uint at = (uint)entry;
-        if (goes && (at & BVH4_LEAF)) {
-            const uint first = BVH4_LEAF_FIRST(at), count = BVH4_LEAF_COUNT(at);
+        const uint ref = (uint)entry;
+        if (is_active && (ref & BVH4_LEAF)) {
+            const uint first = BVH4_LEAF_FIRST(ref), count = BVH4_LEAF_COUNT(ref);
             for (uint i = 0; i < count; ++i) RT_LEAF(ctx, first + i, ray, hit);
 #if RT_ANY_HIT
             if (hit->t < 0.0f) atomic_min(&shared->nearest, 0u);
 #else
             if (hit->leaf != -1) atomic_min(&shared->nearest, as_uint(hit->t));
 #endif
-        } else if (goes) {
-            const ulong node = BVH4_NODE(ctx, at);
+        } else if (is_active) {
+            const ulong node = BVH4_NODE(ctx, ref);
             const float4 entries =
-                bvh4_enter(ray, &own, hit->t, BVH4_ROW(node, own.near_x), BVH4_ROW(node, own.near_y), BVH4_ROW(node, own.near_z),
-                           BVH4_ROW(node, own.near_x ^ BVH4_RAY_SPACE_X), BVH4_ROW(node, own.near_y ^ BVH4_RAY_SPACE_Y),
-                           BVH4_ROW(node, own.near_z ^ BVH4_RAY_SPACE_Z));
+                bvh4_enter(ray, &slab, hit->t, BVH4_ROW(node, slab.near_x), BVH4_ROW(node, slab.near_y), BVH4_ROW(node, slab.near_z),
+                           BVH4_ROW(node, slab.near_x ^ BVH4_FAR_X), BVH4_ROW(node, slab.near_y ^ BVH4_FAR_Y),
+                           BVH4_ROW(node, slab.near_z ^ BVH4_FAR_Z));
             const uint4 child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
             float t0 = entries.s0, t1 = entries.s1, t2 = entries.s2, t3 = entries.s3;
             uint child0 = child.s0, child1 = child.s1, child2 = child.s2, child3 = child.s3;
@@ -228,7 +225,7 @@ void RT_TRAVERSE_REQUEUED(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_h
             const uint more = (t0 < INFINITY ? 1u : 0u) + (t1 < INFINITY ? 1u : 0u) + (t2 < INFINITY ? 1u : 0u) +
                               (t3 < INFINITY ? 1u : 0u);
             if (more != 0u) {
-                local ulong *to = shared->stack + top + atomic_add(&shared->put[turn], more);
+                local ulong *to = shared->stack + top + atomic_add(&shared->pushed[parity], more);
                 if (t3 < INFINITY) *to++ = BVH4_ENTRY(t3, child3);
                 if (t2 < INFINITY) *to++ = BVH4_ENTRY(t2, child2);
                 if (t1 < INFINITY) *to++ = BVH4_ENTRY(t1, child1);
@@ -236,30 +233,31 @@ void RT_TRAVERSE_REQUEUED(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_h
             }
         }
         barrier(CLK_LOCAL_MEM_FENCE);
-        top += shared->put[turn];
+        top += shared->pushed[parity];
     }
 }
 #endif
 
 #ifdef RT_TRAVERSE_WARP
-/* What any ray of the warp enters all of it visit, so addresses, branches and the stack are the same for all. Branches are by votes,
- * of which the compiler knows that: they need not be guarded, nor ways joined again. A work-item keeps its own distances on the
- * stack, those of the nearer of its rays. The nearest child is taken first; of three or more the others are in no order. */
+/* All rays of the warp visit each node that any of them enters, so addresses, branches and the stack are uniform. Branches are
+ * on votes, which the compiler knows to be uniform: it neither guards them nor joins their paths again. A work-item keeps the
+ * entry distance of the nearer of its rays on its stack. The nearest child is visited next; of three or more the others are in
+ * no order. */
 void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *rays, rt_hits *hits)
 {
-    BVH4_PUSHED stack[BVH4_STACK + 1];
-    stack[0] = (BVH4_PUSHED)BVH4_LOWEST;
-    bvh4_ray own[RT_RAYS_PER_ITEM];
-    RT_FOR_EACH_RAY_OF_ITEM(i) own[i] = bvh4_prepare(rays + i);
+    BVH4_STACK_ENTRY stack[BVH4_STACK + 1];
+    stack[0] = (BVH4_STACK_ENTRY)BVH4_LOWEST;
+    bvh4_ray slab[RT_RAYS_PER_ITEM];
+    RT_FOR_EACH_RAY_OF_ITEM(i) slab[i] = bvh4_prepare(rays + i);
     const uint near_x = BVH4_NEAR_X(octant & 1u), near_y = BVH4_NEAR_Y(octant & 2u), near_z = BVH4_NEAR_Z(octant & 4u);
-    uint top = 1u, at = BVH4_NODE_REF(root);
+    uint top = 1u, ref = BVH4_NODE_REF(root);
     for (;;) {
         bool found = false;
         uint next = BVH4_DONE;
-        if (rt_subgroup_any(at >= BVH4_LEAF)) {
-            if (rt_subgroup_any(at == BVH4_DONE)) return;
-            const uint end = BVH4_LEAF_FIRST(at) + BVH4_LEAF_COUNT(at);
-            for (uint k = BVH4_LEAF_FIRST(at); rt_subgroup_any(k < end); ++k) {
+        if (rt_subgroup_any(ref >= BVH4_LEAF)) {
+            if (rt_subgroup_any(ref == BVH4_DONE)) return;
+            const uint end = BVH4_LEAF_FIRST(ref) + BVH4_LEAF_COUNT(ref);
+            for (uint k = BVH4_LEAF_FIRST(ref); rt_subgroup_any(k < end); ++k) {
 #if RT_TRIANGLES_ONLY
                 const rt_loaded_prim leaf = rt_load_leaf(ctx->leaves + k);
                 RT_FOR_EACH_RAY_OF_ITEM(i) RT_LOADED_PRIM(ctx, &leaf, k, rays + i, hits + i);
@@ -268,46 +266,46 @@ void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *
 #endif
             }
 #if RT_ANY_HIT
-            bool seeks = false;
-            RT_FOR_EACH_RAY_OF_ITEM(i) seeks |= hits[i].t >= 0.0f;
-            if (!rt_subgroup_any(seeks)) return;
+            bool searching = false;
+            RT_FOR_EACH_RAY_OF_ITEM(i) searching |= hits[i].t >= 0.0f;
+            if (!rt_subgroup_any(searching)) return;
 #endif
         } else {
-            const ulong node = BVH4_NODE(ctx, at);
+            const ulong node = BVH4_NODE(ctx, ref);
             const float4 a = BVH4_ROW(node, near_x), b = BVH4_ROW(node, near_y), c = BVH4_ROW(node, near_z),
-                         d = BVH4_ROW(node, near_x ^ BVH4_RAY_SPACE_X), e = BVH4_ROW(node, near_y ^ BVH4_RAY_SPACE_Y),
-                         f = BVH4_ROW(node, near_z ^ BVH4_RAY_SPACE_Z);
+                         d = BVH4_ROW(node, near_x ^ BVH4_FAR_X), e = BVH4_ROW(node, near_y ^ BVH4_FAR_Y),
+                         f = BVH4_ROW(node, near_z ^ BVH4_FAR_Z);
             const uint4 child = as_uint4(BVH4_ROW(node, BVH4_CHILDREN));
             float4 in[RT_RAYS_PER_ITEM], out[RT_RAYS_PER_ITEM];
-            RT_FOR_EACH_RAY_OF_ITEM(i) bvh4_slabs(rays + i, own + i, hits[i].t, a, b, c, d, e, f, in + i, out + i);
+            RT_FOR_EACH_RAY_OF_ITEM(i) bvh4_slabs(rays + i, slab + i, hits[i].t, a, b, c, d, e, f, in + i, out + i);
 #if RT_ANY_HIT
-#define BVH4_KEEP(k)                                                                                                             \
-    if (found) {                                                                                                                 \
-        stack[top] = next;                                                                                                       \
-        if (RT_STACK_OK(top, BVH4_STACK, hits)) ++top;                                                                           \
-    }                                                                                                                            \
+#define BVH4_KEEP(k)                                                                                                           \
+    if (found) {                                                                                                               \
+        stack[top] = next;                                                                                                     \
+        if (RT_STACK_OK(top, BVH4_STACK, hits)) ++top;                                                                         \
+    }                                                                                                                          \
     next = child.s##k;
 #else
             float nearest = INFINITY;
-#define BVH4_KEEP(k)                                                                                                             \
-    float entry = INFINITY;                                                                                                      \
-    RT_FOR_EACH_RAY_OF_ITEM(i) entry = in[i].s##k <= out[i].s##k ? fmin(entry, in[i].s##k) : entry;                                      \
-    const bool nearer = !found || rt_subgroup_any(entry < nearest);                                                                      \
-    if (found) {                                                                                                                 \
-        stack[top] = nearer ? BVH4_ENTRY(nearest, next) : BVH4_ENTRY(entry, child.s##k);                                         \
-        if (RT_STACK_OK(top, BVH4_STACK, hits)) ++top;                                                                           \
-    }                                                                                                                            \
-    nearest = nearer ? entry : nearest;                                                                                          \
+#define BVH4_KEEP(k)                                                                                                           \
+    float entry = INFINITY;                                                                                                    \
+    RT_FOR_EACH_RAY_OF_ITEM(i) entry = in[i].s##k <= out[i].s##k ? fmin(entry, in[i].s##k) : entry;                            \
+    const bool nearer = !found || rt_subgroup_any(entry < nearest);                                                            \
+    if (found) {                                                                                                               \
+        stack[top] = nearer ? BVH4_ENTRY(nearest, next) : BVH4_ENTRY(entry, child.s##k);                                       \
+        if (RT_STACK_OK(top, BVH4_STACK, hits)) ++top;                                                                         \
+    }                                                                                                                          \
+    nearest = nearer ? entry : nearest;                                                                                        \
     next = nearer ? child.s##k : next;
 #endif
-#define BVH4_TAKE(k)                                                                                                             \
-    {                                                                                                                            \
-        bool met = false;                                                                                                        \
-        RT_FOR_EACH_RAY_OF_ITEM(i) met |= in[i].s##k <= out[i].s##k;                                                                     \
-        if (rt_subgroup_any(met)) {                                                                                                      \
-            BVH4_KEEP(k)                                                                                                         \
-            found = true;                                                                                                        \
-        }                                                                                                                        \
+#define BVH4_TAKE(k)                                                                                                           \
+    {                                                                                                                          \
+        bool entered = false;                                                                                                  \
+        RT_FOR_EACH_RAY_OF_ITEM(i) entered |= in[i].s##k <= out[i].s##k;                                                       \
+        if (rt_subgroup_any(entered)) {                                                                                        \
+            BVH4_KEEP(k)                                                                                                       \
+            found = true;                                                                                                      \
+        }                                                                                                                      \
     }
             BVH4_TAKE(0)
             BVH4_TAKE(1)
@@ -322,16 +320,16 @@ void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *
 #else
             float reach = hits[0].t;
             RT_FOR_EACH_RAY_OF_ITEM(i) reach = fmax(reach, hits[i].t);
-            ulong pushed;
-            do pushed = stack[--top];
-            while (!rt_subgroup_any(as_float((uint)(pushed >> 32)) <= reach));
-            next = (uint)pushed;
+            ulong popped;
+            do popped = stack[--top];
+            while (!rt_subgroup_any(as_float((uint)(popped >> 32)) <= reach));
+            next = (uint)popped;
 #endif
         }
-        at = next;
+        ref = next;
     }
 }
 #endif
 #if RT_LANES == 1
-#undef BVH4_PUSHED
+#undef BVH4_STACK_ENTRY
 #endif

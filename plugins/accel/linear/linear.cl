@@ -1,4 +1,4 @@
-/* linear.cl -- tests every primitive in order. */
+/* linear.cl -- a list: tests every primitive in order. The reference for all other structures. No nodes, no stack. */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     const uint first = ctx->linear_runs[root].first, count = ctx->linear_runs[root].count;

@@ -1,10 +1,13 @@
-/* spheres.cl -- trees of bounding spheres, without a stack: nodes are visited in their depth-first order, and a sphere that no lane
- * enters is skipped with all that is in it. Nearer ones do not come first.
+/* spheres.cl -- traversal of trees of bounding spheres. 32 bytes a node, no stack.
  *
- * A lane enters where the centre is nearer to its line than the radius. That distance is that of a point from a line, not a
- * discriminant, which cancels for origins far away (Haines et al. 2019, Precision Improvements for Ray/Sphere
- * Intersection). The vectors involved are off by a few ulp of |l| = |centre - origin| in all; 16 ulp of it widen the sphere, so
- * that rounding never loses a lane. Along the line the diameter is taken for the chord: a square root less, a few visits more. */
+ * Nodes are visited in depth-first order. A sphere that no lane enters is skipped with everything in it. Nearer spheres are not
+ * visited first, which makes the traversal simple and slow.
+ *
+ * A ray enters a sphere if the centre is nearer to the ray's line than the radius. That distance is computed as that of a point
+ * from a line, not as a discriminant, which cancels for origins far away (Haines, Guenther, Akenine-Moeller 2019, "Precision
+ * Improvements for Ray/Sphere Intersection"). The vectors have errors of a few ulp of |l| = |centre - origin| in all. The
+ * sphere is widened by 16 ulp of that, so rounding never loses a lane. Along the line the diameter stands for the chord, which
+ * saves a square root and costs a few visits. */
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     const vfloat slack = rt_vfloat(1.9073486e-6f);
@@ -22,7 +25,7 @@ void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
         const vfloat radius = fma(fabs(lx) + fabs(ly) + fabs(lz), slack, rt_vfloat(node->radius));
         const vfloat half_chord = radius * inv_d;
         const vfloat in = rt_max(middle - half_chord, ray->t_min), out = rt_min(middle + half_chord, hit->t);
-        /* What overflowed into NaN enters. */
+        /* A distance that overflowed into NaN counts as entered. */
         const uint inside = rt_bits(RT_MASK(in <= out) & ~RT_MASK(distance2 > radius * radius));
         RT_COUNT_VISIT(hit, inside);
         if (inside == 0u) {

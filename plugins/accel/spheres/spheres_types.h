@@ -4,11 +4,12 @@
 
 /* A sphere around all primitives below, or the head of a group. 32 B.
  *
- * Nodes stand in depth-first order: after a sphere that the ray enters comes the next element (its first child, where it is no
- * leaf), after one that it misses, and after a leaf, comes the element `skip`. So a traversal only ever goes forwards.
+ * Nodes stand in depth-first order. If the ray enters a sphere, the traversal goes on to the next element, which is the first
+ * child of an inner node. If the ray misses it, and after a leaf, it goes on to the element `skip`. So it only goes forwards.
  *
- * The root of a group is its head, which is no sphere: the group's trees follow it, one for each mesh, and its `skip` is where the
- * group ends. Nothing stands above the meshes' roots, which are tried one after the other, unless `top_level` is set. */
+ * The root of a group is its head, which is no sphere. The group's trees follow it, one for each mesh, and its `skip` is the
+ * end of the group. The roots of the meshes have no node above them and are visited one after the other, unless `top_level` is
+ * set. */
 typedef struct spheres_node {
     rt_f32 center[3];
     rt_f32 radius;

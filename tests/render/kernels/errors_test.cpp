@@ -30,16 +30,21 @@ class Errors : public ::testing::Test {
         scene_ = shared_scene(scene_of(box(1)));
         settings_ = make_settings({{"accel", "bvh2"}, {"size", "32x24"}, {"lanes", "4"}});
     }
-    // Inserts a line that is not OpenCL C after the first `after` lines of a file.
-    void break_line(const std::string& name, int after) {
+    // Puts a line that is no OpenCL C before the first line of a file that begins with `before`. Returns its place, FILE:LINE.
+    std::string break_line(const std::string& name, const std::string& before) {
         std::istringstream in(scratch_.read(name));
         std::ostringstream out;
-        std::string line;
-        for (int i = 0; std::getline(in, line); ++i) {
-            if (i == after) out << "this_is_no_type x;\n";
+        std::string line, place;
+        for (int number = 1; std::getline(in, line); ++number) {
+            if (place.empty() && line.compare(0, before.size(), before) == 0) {
+                out << "this_is_no_type x;\n";
+                place = name + ":" + std::to_string(number);
+            }
             out << line << '\n';
         }
+        EXPECT_NE(place, "") << name << " has no line " << before;
         scratch_.write(name, out.str());
+        return place;
     }
     void expect_error_at(const std::string& where) {
         Progress progress;
@@ -62,18 +67,30 @@ class Errors : public ::testing::Test {
 };
 
 TEST_F(Errors, NameFileAndLineOfTheTracer) {
-    break_line("cl/tracers/iterative.cl", 20);
-    expect_error_at("cl/tracers/iterative.cl:21");
+    expect_error_at(break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL"));
 }
 
 TEST_F(Errors, NameFileAndLineOfAPrimitive) {
-    break_line("cl/primitives/triangle.h", 7);
-    expect_error_at("cl/primitives/triangle.h:8");
+    expect_error_at(break_line("cl/primitives/triangle.h", "#if RT_CPU"));
 }
 
 TEST_F(Errors, NameFileAndLineOfAPluginsTraversal) {
-    break_line("plugins/accel/bvh2/bvh2.cl", 5);
-    expect_error_at("plugins/accel/bvh2/bvh2.cl:6");
+    expect_error_at(break_line("plugins/accel/bvh2/bvh2.cl", "void RT_TRAVERSE"));
+}
+
+TEST_F(Errors, NameFileAndLineOfAPartOfAPlugin) {
+    settings_ = make_settings({{"accel", "bvh8"}, {"size", "32x24"}, {"lanes", "4"}});
+    expect_error_at(break_line("plugins/accel/bvh8/bvh8_interval_packet.cl", "RT_INLINE"));
+}
+
+TEST_F(Errors, NameFileAndLineOfAHeaderThatAPluginIncludes) {
+    settings_ = make_settings({{"accel", "bvh4"}, {"size", "32x24"}, {"lanes", "4"}});
+    expect_error_at(break_line("cl/lanes/packet_traversal.h", "#ifndef RT_PACKET_TRAVERSAL_H"));
+}
+
+TEST_F(Errors, NameFileAndLineBehindAnInclude) {
+    settings_ = make_settings({{"accel", "bvh4"}, {"size", "32x24"}, {"lanes", "4"}});
+    expect_error_at(break_line("plugins/accel/bvh4/bvh4.cl", "#undef RT_PACKET_STACK_SIZE"));
 }
 
 TEST_F(Errors, LeaveWhatWasPreparedBefore) {
@@ -86,7 +103,7 @@ TEST_F(Errors, LeaveWhatWasPreparedBefore) {
     frames.trace(*good, settings_, view, 0, false, progress);
     const ByteImage before = frames.read_display(settings_);
     const std::string sound = scratch_.read("cl/tracers/iterative.cl");
-    break_line("cl/tracers/iterative.cl", 20);
+    break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL");
     Settings other = settings_;
     other.lanes = 8;  // needs another program, so that something is compiled
     EXPECT_THROW(preparer.prepare(scene_, other, progress), Error);
@@ -99,14 +116,14 @@ TEST_F(Errors, LeaveWhatWasPreparedBefore) {
 TEST_F(Errors, ExitCodeOfTheProgram) {
     const char* program = std::getenv("CLARITY_WORKER");
     if (!program || !fs::exists(program)) GTEST_SKIP() << "SKIPPED: no program `clarity`; ctest names it in CLARITY_WORKER";
-    break_line("cl/tracers/iterative.cl", 20);
+    const std::string place = break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL");
     const std::string out = scratch_.path("a.png"), said = scratch_.path("said");
     const std::string command =
         std::string(program) + " render " + source_file("scenes/primitives.scene") + " -o " + out + " --size 32x24 2>" + said;
     const int status = std::system(command.c_str());
     ASSERT_TRUE(WIFEXITED(status));
     EXPECT_EQ(WEXITSTATUS(status), static_cast<int>(Exit::kernel_build_failed));
-    EXPECT_NE(scratch_.read("said").find("cl/tracers/iterative.cl:21"), std::string::npos) << scratch_.read("said");
+    EXPECT_NE(scratch_.read("said").find(place), std::string::npos) << scratch_.read("said");
     EXPECT_FALSE(fs::exists(out));
 }
 
