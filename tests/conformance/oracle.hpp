@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "render/frame/renderer.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::test {
 

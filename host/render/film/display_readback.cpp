@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "render/frame/cl_errors.hpp"
+#include "device/cl_errors.hpp"
 
 namespace clarity {
 

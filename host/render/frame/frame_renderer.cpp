@@ -1,19 +1,18 @@
-// frame_renderer.cpp -- traces samples into the film of one device, and reads it.
+#include "render/frame/frame_renderer.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 #include <utility>
 
+#include "device/cl_errors.hpp"
 #include "render/film/bands.hpp"
 #include "render/film/display_readback.hpp"
 #include "render/film/film.hpp"
 #include "render/film/overflow_counter.hpp"
-#include "render/frame/cl_errors.hpp"
 #include "render/frame/frame_constants.hpp"
-#include "render/frame/frame_stats.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
@@ -360,7 +359,8 @@ void FrameRenderer::add_display_times(std::vector<KernelTime>& times) {
 ByteImage FrameRenderer::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
     Impl& im = *impl_;
     if (scale) *scale = {};
-    if (!im.aov->is_color()) return show_values([this] { return read_values(); }, im.aov->name, settings, stats, scale);
+    if (!im.aov->is_color())
+        return show_values([this] { return read_values(); }, im.aov->name, settings, stats ? &stats->kernels : nullptr, scale);
     im.shown = Impl::Shown::read;
     return wrap_cl_errors(*im.device, "reading the picture",
                           [&] { return im.relay.take(im.film_of_colors(), settings, false); })

@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "base/elapsed.hpp"
-#include "render/frame/cl_errors.hpp"
+#include "device/cl_errors.hpp"
 
 namespace clarity {
 

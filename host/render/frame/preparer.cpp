@@ -1,4 +1,5 @@
-// preparer.cpp -- the slow steps between settings and frames, and which of their results are kept.
+#include "render/frame/preparer.hpp"
+
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "render/accel/accel_choice.hpp"
@@ -6,10 +7,10 @@
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/device_scene.hpp"
 #include "render/frame/frame_constants.hpp"
-#include "render/frame/renderer.hpp"
 #include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/settings/aov.hpp"
+#include "render/settings/view.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -2,12 +2,16 @@
 #pragma once
 #include <memory>
 
+#include "device/device.hpp"
 #include "render/film/growing_buffer.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/prepared.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/kernel_source.hpp"
+#include "render/kernels/layout.hpp"
 #include "render/queries/ping_pong.hpp"
+#include "render/settings/view.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity {
 

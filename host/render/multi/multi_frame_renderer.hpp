@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "render/frame/frame_renderer.hpp"
 #include "render/multi/multi_preparer.hpp"
 
 namespace clarity {

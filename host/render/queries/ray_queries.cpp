@@ -1,7 +1,7 @@
 #include "render/queries/ray_queries.hpp"
 
 #include "base/error.hpp"
-#include "render/frame/cl_errors.hpp"
+#include "device/cl_errors.hpp"
 #include "render/frame/frame_constants.hpp"
 
 namespace clarity {

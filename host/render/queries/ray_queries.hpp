@@ -3,15 +3,18 @@
 #include <map>
 #include <tuple>
 
+#include "device/device.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/prepared.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/kernel_source.hpp"
+#include "render/kernels/layout.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/queries/autotuner.hpp"
 #include "render/queries/dynamic_fetch.hpp"
 #include "render/queries/ray_blocks.hpp"
+#include "render/queries/ray_query.hpp"
 #include "render/queries/requeued_rays.hpp"
 
 namespace clarity {

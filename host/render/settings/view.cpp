@@ -1,9 +1,9 @@
-// view.cpp -- the camera and the lights of a picture.
+#include "render/settings/view.hpp"
+
 #include <charconv>
 #include <cmath>
 
 #include "base/error.hpp"
-#include "render/frame/renderer.hpp"
 
 namespace clarity {
 namespace {
