@@ -131,9 +131,9 @@ struct FrameRenderer::Impl {
 
     // How many of the `left` samples the next launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
-        const bool parting = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
+        const bool splits = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
         if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || !program->has_generations() ||
-            parting || begun > 0)
+            splits || begun > 0)
             return 1;
         const DeviceInfo& info = device->info();
         uint64_t room = info.global_bytes / kShareOfMemory;
@@ -147,7 +147,7 @@ struct FrameRenderer::Impl {
 
     // Traces samples [sample, sample + at_once) into the film, or each into its own layer if there are several.
     LaunchTimes launch(const Picture& picture, unsigned sample, unsigned at_once, const cl::Buffer& into,
-                       const Beside& beside) {
+                       const SideWork& side_work) {
         const auto& [prepared, settings, view_of, shared, progress] = picture;
         cl::CommandQueue& queue = device->queue();
         std::vector<rt_frame> frames;
@@ -173,7 +173,7 @@ struct FrameRenderer::Impl {
             return wavefront.trace(
                 queue, launcher,
                 {prepared, view_of, view, layout, width, height, begun, launched, depth, sample, into, distances.get()}, go_on,
-                beside);
+                side_work);
         }
         cl_uint at = 0;
         kernel.setArg(at++, view.frame());
@@ -188,7 +188,7 @@ struct FrameRenderer::Impl {
             at = overflows.bind(kernel, at, true);
         }
         view.bind(*prepared.on_device, kernel, at);
-        return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, beside);
+        return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, side_work);
     }
 
     size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
@@ -249,10 +249,10 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
             const bool first = sample == samples.first, last = sample + at_once == end;
             uint8_t* const display = shared && last ? shared->display : nullptr;
             cl::Event added;
-            Beside beside;
-            if (first) beside.while_it_works = meanwhile;
+            SideWork side_work;
+            if (first) side_work.while_it_works = meanwhile;
             if (at_once > 1 || sum || display || (show && last))
-                beside.behind = [&] {
+                side_work.behind = [&] {
                     cl::Event behind;
                     if (at_once > 1)
                         behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
@@ -261,7 +261,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
                     if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
                     return behind;
                 };
-            const LaunchTimes times = im.launch(picture, sample, at_once, into, beside);
+            const LaunchTimes times = im.launch(picture, sample, at_once, into, side_work);
             FrameStats one;
             one.kernels.push_back({"trace", times.device_ms});
             if (added()) one.kernels.push_back({"add samples", event_ms(added)});
@@ -374,7 +374,7 @@ AsyncReadback FrameRenderer::begin_display(const Settings& settings) {
                           [&] { return im.relay.take(im.film_of_colors(), settings, true); });
 }
 
-bool FrameRenderer::copies_aside() const {
+bool FrameRenderer::overlaps_copies() const {
     return impl_->program && impl_->aov->is_color() && !impl_->device->info().cpu;
 }
 

@@ -72,9 +72,9 @@ class FrameRenderer {
     // work and `scale` the scale of the false colours.
     ByteImage read_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
     // The same for colours, without waiting for the copy. The next picture may be traced before this one is waited for. This is
-    // faster only if copies_aside(), because the copy then runs while the device traces.
+    // faster only if overlaps_copies(), because the copy then runs while the device traces.
     AsyncReadback begin_display(const Settings& settings);
-    bool copies_aside() const;
+    bool overlaps_copies() const;
 
     // Traces the caller's own rays, for tests and benchmarks. If given, *device_ms becomes the time by the device's clock.
     std::vector<rt_hit> trace_rays(const Prepared& prepared, const std::vector<rt_ray>& rays, RayQuery query,

@@ -138,8 +138,8 @@ AsyncReadback MultiFrameRenderer::begin_display(const Settings& settings) {
     return impl_->alone->begin_display(settings);
 }
 
-bool MultiFrameRenderer::copies_aside() const {
-    return impl_->alone && impl_->alone->copies_aside();
+bool MultiFrameRenderer::overlaps_copies() const {
+    return impl_->alone && impl_->alone->overlaps_copies();
 }
 
 }  // namespace clarity

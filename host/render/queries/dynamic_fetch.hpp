@@ -26,7 +26,7 @@ class DynamicFetch {
     std::shared_ptr<Device> device_;
     Launcher launcher_;
     GrowingBuffer queue_{CL_MEM_READ_WRITE};
-    PingPong turns_;
+    PingPong ping_pong_;
 };
 
 }  // namespace clarity

@@ -56,7 +56,7 @@ class RayQueries {
     // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.
     uint64_t packing_ = 0;
     std::vector<KernelKind> kinds_;
-    Autotuner way_;
+    Autotuner autotuner_;
     RayTuning tuning_;
     OverflowCounter overflows_;  // used for debug programs
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};

@@ -26,7 +26,7 @@ class RequeuedRays {
     std::shared_ptr<Device> device_;
     Launcher launcher_;
     GrowingBuffer list_{CL_MEM_READ_WRITE};
-    PingPong turns_;
+    PingPong ping_pong_;
 };
 
 }  // namespace clarity
