@@ -1,6 +1,7 @@
 // oracle.hpp -- independent answers to rays: Embree for triangles, simple code in double precision for everything else.
 #pragma once
 #include <embree3/rtcore.h>
+#include <memory>
 
 #include <array>
 #include <cmath>
