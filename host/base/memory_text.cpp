@@ -14,4 +14,10 @@ std::string memory_text(uint64_t bytes) {
     return text;
 }
 
+std::string memory_limit_text(uint64_t bytes) {
+    const uint64_t mebibytes = bytes >> 20;
+    if (mebibytes == 0) return std::to_string(bytes) + " bytes";
+    return mebibytes < 10240 ? std::to_string(mebibytes) + " MiB" : std::to_string(mebibytes >> 10) + " GiB";
+}
+
 }  // namespace clarity

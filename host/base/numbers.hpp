@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 namespace clarity {
 
@@ -23,6 +24,28 @@ bool read_number(std::string_view text, Number& value) {
     if (error != std::errc() || next != end) return false;
     if constexpr (std::is_floating_point_v<Number>) return std::isfinite(value);
     return true;
+}
+
+// Reads finite numbers with commas between them. Returns an empty list if the text is anything else.
+template <class Number>
+std::vector<Number> read_numbers(std::string_view text) {
+    std::vector<Number> numbers;
+    for (;;) {
+        const size_t comma = text.find(',');
+        Number value{};
+        if (!read_number(text.substr(0, comma), value)) return {};
+        numbers.push_back(value);
+        if (comma == std::string_view::npos) return numbers;
+        text.remove_prefix(comma + 1);
+    }
+}
+
+// The text that read_numbers() reads: all digits.
+template <class Number>
+std::string numbers_text(const Number* values, size_t count) {
+    std::string text;
+    for (size_t i = 0; i < count; ++i) text += (i ? "," : "") + exact_text(values[i]);
+    return text;
 }
 
 // The double with the same shortest text as the float: 0.1, not 0.10000000149011612.

@@ -8,17 +8,14 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/memory_text.hpp"
+
 namespace clarity {
 namespace {
 
 std::string cannot_be_read(int error) {
     return std::string("cannot be read: ") + std::strerror(error) +
            (error == ENOENT || error == ENOTDIR ? "; check the name and the folder" : "");
-}
-
-// "16 MiB"; sizes below one MiB are given in bytes, because "0 MiB" would not help.
-std::string size_text(uint64_t bytes) {
-    return bytes >> 20 ? std::to_string(bytes >> 20) + " MiB" : std::to_string(bytes) + " bytes";
 }
 
 class Descriptor {
@@ -44,7 +41,7 @@ std::string try_read_file(const std::string& path, uint64_t limit_bytes, std::st
     if (S_ISDIR(status.st_mode)) return "is a folder; name a file in it";
     if (!S_ISREG(status.st_mode)) return "is no regular file, and may have no end; save its content to a file and name that";
     const std::string too_large =
-        "is larger than " + size_text(limit_bytes) + ", the most that is read of such a file; is it the right one?";
+        "is larger than " + memory_limit_text(limit_bytes) + ", the most that is read of such a file; is it the right one?";
     const auto size = static_cast<uint64_t>(status.st_size);
     if (size > limit_bytes) return too_large;
     // Read until read() returns 0: the file may grow meanwhile, and files of /proc claim to be empty. With one byte more than

@@ -24,11 +24,6 @@ const char* type_name(const DeviceInfo& device) {
 constexpr const char* kSeveral =
     "\nSeveral devices can share a picture: --device 0,1 or gpus or all. cpu/2 is a CPU split in two, cpu/2.0 a half.\n";
 
-// Device::preferred_lanes, computed without opening the device.
-unsigned lanes_of(const DeviceInfo& device) {
-    return !device.cpu ? 1 : device.float_width >= 16 ? 16 : device.float_width >= 8 ? 8 : 4;
-}
-
 // The devices which a command without --device uses, and the reason.
 struct Default {
     std::vector<DeviceInfo> devices;
@@ -74,7 +69,7 @@ Json device_json(const DeviceInfo& device, size_t number, const Default& chosen)
             {"clock_mhz", device.clock_mhz},
             {"global_bytes", device.global_bytes},
             {"max_allocation_bytes", device.max_allocation_bytes},
-            {"lanes", lanes_of(device)},
+            {"lanes", device.preferred_lanes()},
             {"default", chosen.has(device)}};
 }
 
@@ -82,7 +77,7 @@ void print_device(const DeviceInfo& device, size_t number, const Default& chosen
     print_text("%zu = %-5s %s  [%s, %u compute units", number, device.id().c_str(), device.name.c_str(), type_name(device),
                device.compute_units);
     if (device.clock_mhz > 0) print_text(" at %u MHz", device.clock_mhz);
-    print_text(", %s, lanes %u]\n", memory_text(device.global_bytes).c_str(), lanes_of(device));
+    print_text(", %s, lanes %u]\n", memory_text(device.global_bytes).c_str(), device.preferred_lanes());
     print_text("          %s, driver %s\n", device.platform.c_str(), device.driver.c_str());
     if (chosen.has(device)) print_text("          default: %s\n", chosen.why.c_str());
 }

@@ -49,7 +49,7 @@ int fail(Exit code, const std::string& message, const std::string& details = {})
     return static_cast<int>(code);
 }
 
-int guarded_run(int argc, char** argv) {
+int run_and_report(int argc, char** argv) {
     try {
         return run(argc, argv);
     } catch (const Error& e) {
@@ -67,7 +67,7 @@ int guarded_run(int argc, char** argv) {
 int main(int argc, char** argv) {
     // The import worker must set its resource limits before anything else runs.
     if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import::import_worker_main(argc, argv);
-    const int code = clarity::guarded_run(argc, argv);
+    const int code = clarity::run_and_report(argc, argv);
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
         clarity::log(clarity::LogLevel::error, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "render/frame/frame_stats.hpp"
 #include "render/multi/multi_preparer.hpp"
 
 namespace clarity {

@@ -1,12 +1,12 @@
 // trace_options.cpp -- turns the options of the command line into checked values.
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 
 #include "base/error.hpp"
 #include "cli/commands.hpp"
+#include "import/file_access.hpp"
 #include "render/accel/accel_choice.hpp"
 #include "render/settings/preset.hpp"
 
@@ -44,11 +44,7 @@ void check_scene_files(const std::vector<std::string>& files) {
                                          : "; check the name and the folder";
             throw Error(Exit::import_failed, file + ": " + std::strerror(errno) + hint);
         }
-        if (S_ISDIR(status.st_mode)) throw Error(Exit::import_failed, file + ": is a folder; name a file in it");
-        if (!S_ISREG(status.st_mode))
-            throw Error(Exit::import_failed, file + ": is no regular file; copy its content into one");
-        if (access(file.c_str(), R_OK) != 0)
-            throw Error(Exit::import_failed, file + ": cannot be read: " + std::strerror(errno));
+        import::check_readable(file);
     }
 }
 

@@ -23,10 +23,10 @@ std::shared_ptr<Device> Device::with_own_queue() const {
     return std::shared_ptr<Device>(new Device(info_, context_));
 }
 
-unsigned Device::preferred_lanes() const {
-    if (!info_.cpu) return 1;
-    if (info_.float_width >= 16) return 16;
-    if (info_.float_width >= 8) return 8;
+unsigned DeviceInfo::preferred_lanes() const {
+    if (!cpu) return 1;
+    if (float_width >= 16) return 16;
+    if (float_width >= 8) return 8;
     return 4;
 }
 

@@ -20,6 +20,8 @@ struct DeviceInfo {
     cl::Platform cl_platform;
     cl::Device cl_device;
     std::string id() const;  // "0:0"; the second of four parts: "0:0/4.1"
+    // Lanes that suit the device: 1 on a GPU, the native float width on a CPU.
+    unsigned preferred_lanes() const;
 };
 
 // Returns all devices of all platforms, best first: GPUs, then CPUs, then others, each ordered by compute units x clock. A
@@ -48,8 +50,6 @@ class Device {
     cl::CommandQueue& queue() { return queue_; }  // in order, profiling enabled
     // Returns the same device and context with a queue of its own, so that kernels of both queues may run at the same time.
     std::shared_ptr<Device> with_own_queue() const;
-    // Lanes that suit the device: 1 on a GPU, the native float width on a CPU.
-    unsigned preferred_lanes() const;
 
  private:
     Device(DeviceInfo info, cl::Context context);

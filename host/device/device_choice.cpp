@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/lower.hpp"
 #include "base/numbers.hpp"
 #include "device/device_list.hpp"
 

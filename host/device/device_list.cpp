@@ -13,13 +13,9 @@
 
 #include "device/device_list.hpp"
 
-namespace clarity {
+#include "base/lower.hpp"
 
-std::string lower(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
+namespace clarity {
 
 bool says(const std::string& text, const std::string& part) {
     return lower(text).find(lower(part)) != std::string::npos;

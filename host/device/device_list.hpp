@@ -8,7 +8,6 @@ inline constexpr const char* kInstallDriver =
     "install an OpenCL driver: on Debian `apt-get install pocl-opencl-icd` runs on every CPU, a GPU needs its vendor's "
     "(`clinfo -l` shows what is found)";
 
-std::string lower(std::string text);
 // Whether `text` contains `part`, ignoring case.
 bool says(const std::string& text, const std::string& part);
 

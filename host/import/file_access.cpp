@@ -1,5 +1,7 @@
 #include "import/file_access.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -40,13 +42,19 @@ void add_unique(std::vector<std::string>& list, const std::string& item) {
 
 }  // namespace
 
-void check_model_file(const std::string& path) {
+void check_readable(const std::string& path) {
     std::error_code error;
     const fs::file_status status = fs::status(path, error);
     if (status.type() == fs::file_type::not_found) refuse(path, "no such file");
     if (error) refuse(path, "cannot be read: " + error.message());
     if (fs::is_directory(status)) refuse(path, "is a folder; name a model file in it");
     if (!fs::is_regular_file(status)) refuse(path, "is no regular file; save what it delivers to a file first");
+    if (access(path.c_str(), R_OK) != 0) refuse(path, std::string("cannot be read: ") + std::strerror(errno));
+}
+
+void check_model_file(const std::string& path) {
+    check_readable(path);
+    std::error_code error;
     if (fs::file_size(path, error) == 0) refuse(path, "the file is empty");
     errno = 0;
     std::ifstream file(path, std::ios::binary);

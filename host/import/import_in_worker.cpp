@@ -15,6 +15,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/lower.hpp"
+#include "base/memory_text.hpp"
 #include "import/wire.hpp"
 #include "import/worker_channel.hpp"
 #include "import/worker_process.hpp"
@@ -60,10 +62,6 @@ std::string worker_program(const ImportOptions& options) {
     return named && *named ? named : "/proc/self/exe";
 }
 
-std::string in_words(uint64_t bytes) {
-    const uint64_t mebibytes = bytes >> 20;
-    return mebibytes >= 10240 ? std::to_string(mebibytes >> 10) + " GiB" : std::to_string(mebibytes) + " MiB";
-}
 std::string in_words(double seconds) {
     const auto tenths = static_cast<uint64_t>(std::lround(seconds * 10));
     return std::to_string(tenths / 10) + (tenths % 10 != 0 ? "." + std::to_string(tenths % 10) : "") + " s";
@@ -212,7 +210,7 @@ class Supervisor {
     }
 
     [[noreturn]] void out_of_memory() const {
-        fail(importer() + " needs more than " + in_words(limits_.memory_bytes()) +
+        fail(importer() + " needs more than " + memory_limit_text(limits_.memory_bytes()) +
              " of memory; the file is damaged, or larger than this machine can import");
     }
 
@@ -240,7 +238,7 @@ class Supervisor {
         }
         const char* name = strsignal(signal);
         std::string how = name ? name : "signal " + std::to_string(signal);
-        std::transform(how.begin(), how.begin() + 1, how.begin(), [](unsigned char c) { return std::tolower(c); });
+        how.front() = lower(how.front());
         if (!last_words_.empty()) how += ": " + last_words_;
         fail(importer() + " crashed (" + how + ") while reading" + advice);
     }

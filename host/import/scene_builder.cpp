@@ -64,7 +64,6 @@ void SceneBuilder::warn(const std::string& file, const std::string& text) {
 }
 
 void SceneBuilder::add_root(const std::string& path) {
-    check_model_file(path);
     std::error_code error;
     const fs::path canonical = fs::canonical(path, error);
     if (error) fail(path, "cannot be read: " + error.message());

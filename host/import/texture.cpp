@@ -12,6 +12,8 @@
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_image.h>
+
+#include "base/memory_text.hpp"
 #pragma GCC diagnostic pop
 
 namespace clarity::import {
@@ -25,7 +27,7 @@ std::string check_size(uint64_t width, uint64_t height, const std::vector<uint32
         return size + ": at most " + std::to_string(kMaxTextureSide) + " are possible along each side";
     }
     if (4 * (texels.size() + width * height) > kMaxTexelBytes) {
-        return size + ": the scene's textures would take more than " + std::to_string(kMaxTexelBytes >> 20) + " MiB";
+        return size + ": the scene's textures would take more than " + memory_limit_text(kMaxTexelBytes);
     }
     return {};
 }

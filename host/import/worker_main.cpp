@@ -69,7 +69,7 @@ void on_crash(int signal, siginfo_t* info, void* context) {
 }
 
 // Sent once. The code that asked for memory may survive the refusal; if the worker dies instead, this was the reason.
-void on_no_memory() {
+void on_out_of_memory() {
     static bool said = false;
     if (!said) send_short(kChannelFd, MessageKind::death, "out of memory");
     said = true;
@@ -78,7 +78,7 @@ void on_no_memory() {
 
 void prepare_last_words() {
     std::set_terminate(on_terminate);
-    std::set_new_handler(on_no_memory);
+    std::set_new_handler(on_out_of_memory);
     if (kHasCrashReports) return;
     const stack_t stack = {signal_stack, 0, sizeof signal_stack};
     sigaltstack(&stack, nullptr);

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "base/log.hpp"
+#include "base/lower.hpp"
 #include "plugin/elf_file.hpp"
 #include "plugin/plugin_check.hpp"
 
@@ -155,9 +156,7 @@ std::string key_of(const rt_plugin& plugin) {
 std::string lower_extension(const std::string& path) {
     std::string extension = fs::path(path).extension().string();
     if (!extension.empty()) extension.erase(0, 1);
-    for (char& c : extension)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return extension;
+    return lower(extension);
 }
 
 std::vector<uint8_t> read_head(const std::string& path) {

@@ -161,7 +161,7 @@ Contender tuned(
     const auto runs = std::make_shared<unsigned>(0);
     return {"tuned", [=] {
                 Sample take;
-                take.way = way->way();
+                take.way = way->variant();
                 take.trial = way->trying();
                 take.time_ms = take.wall_ms = ms[take.way] * slowdown((*runs)++);
                 way->took(take.time_ms);

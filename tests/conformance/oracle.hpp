@@ -1,12 +1,13 @@
 // oracle.hpp -- independent answers to rays: Embree for triangles, simple code in double precision for everything else.
 #pragma once
 #include <embree3/rtcore.h>
+#include <memory>
 
 #include <array>
 #include <cmath>
 #include <vector>
 
-#include "render/frame/renderer.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::test {
 

@@ -4,8 +4,11 @@
 // Whitted 1980, An Improved Illumination Model for Shaded Display; Glassner (ed.) 1989, An Introduction to Ray Tracing.
 // It has no textures and refuses scenes with textures.
 #pragma once
+#include "render/film/byte_image.hpp"
 #include "render/film/image_io.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/settings/settings.hpp"
+#include "render/settings/view.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::reference {
 

@@ -6,7 +6,8 @@
 
 #include "device/device.hpp"
 #include "plugin/registry.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/frame_renderer.hpp"
+#include "render/frame/preparer.hpp"
 
 namespace clarity::test {
 

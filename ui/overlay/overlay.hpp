@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "render/accel/accel_build.hpp"
+#include "render/accel/accel_volumes.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/viewport/viewport.hpp"
 

@@ -249,7 +249,7 @@ PictureSide FrameThread::trace_side(Tracer& tracer, const std::shared_ptr<const 
     } else if (last) {
         side.stats = traced_part(last->stats);
     }
-    if (tracer.frames->copies_aside())
+    if (tracer.frames->overlaps_copies())
         image = tracer.frames->begin_display(settings);
     else
         side.image = tracer.frames->read_display(settings, &side.stats, &side.scale);

@@ -1,7 +1,10 @@
 // whitted.hpp -- the frame which we and the baselines both render: every surface is a half mirror of one grey, with one light
 // and shadows.
 #pragma once
-#include "render/frame/renderer.hpp"
+#include "render/film/image_io.hpp"
+#include "render/settings/settings.hpp"
+#include "render/settings/view.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::bench {
 

@@ -1,7 +1,11 @@
 // row.hpp -- fills in a record's description of scene, device, settings and structure.
 #pragma once
 #include "bench/output/record.hpp"
-#include "render/frame/renderer.hpp"
+#include "device/device.hpp"
+#include "render/accel/accel_build.hpp"
+#include "render/frame/prepared.hpp"
+#include "render/settings/settings.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::bench {
 

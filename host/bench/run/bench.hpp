@@ -6,6 +6,7 @@
 #include "bench/run/measure.hpp"
 #include "bench/suites/suite.hpp"
 #include "device/device.hpp"
+#include "render/settings/settings.hpp"
 
 namespace clarity::bench {
 

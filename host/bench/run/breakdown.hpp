@@ -6,7 +6,7 @@
 
 #include "bench/run/fixture.hpp"
 #include "bench/run/measure.hpp"
-#include "render/kernels/frame_parts.hpp"
+#include "render/frame/frame_parts.hpp"
 
 namespace clarity::bench {
 

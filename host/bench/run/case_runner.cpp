@@ -237,7 +237,7 @@ class CaseRunner {
             const RayTuning tuning = held.frames->ray_tuning();
             take.trial = tuning.trial;
             take.settled = tuning.settled;
-            take.way = tuning.way;
+            take.way = tuning.variant;
             return take;
         };
         entry.finish = [=, &set](BenchRecord& row) {

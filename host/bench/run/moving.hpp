@@ -1,7 +1,7 @@
 // moving.hpp -- renders a sequence of pictures, as the window does while the camera moves.
 #pragma once
 #include "bench/run/measure.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/frame_renderer.hpp"
 
 namespace clarity::bench {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "bench/suites/vec3.hpp"
-#include "render/frame/renderer.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::bench {
 

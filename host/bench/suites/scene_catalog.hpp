@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "import/import.hpp"
-#include "render/frame/renderer.hpp"
+#include "plugin/registry.hpp"
+#include "render/settings/view.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity::bench {
 

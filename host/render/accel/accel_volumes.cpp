@@ -1,9 +1,9 @@
-// accel_volumes.cpp -- bounding volumes of a tree level, transformed to world space.
+#include "render/accel/accel_volumes.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 #include "plugin/host_services.hpp"
-#include "render/accel/accel_build.hpp"
 
 namespace clarity {
 namespace {

@@ -1,4 +1,5 @@
-// build_scene.cpp -- converts a Scene to boxes in groups.
+#include "render/accel/build_scene.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -6,7 +7,6 @@
 
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
-#include "render/accel/accel_build.hpp"
 #include "render/accel/memory_plan.hpp"
 
 namespace clarity {

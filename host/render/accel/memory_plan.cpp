@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
+#include "render/accel/accel_build.hpp"
 
 namespace clarity {
 namespace {

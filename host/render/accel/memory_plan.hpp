@@ -6,7 +6,8 @@
 
 #include "base/memory_text.hpp"
 #include "device/device.hpp"
-#include "render/accel/accel_build.hpp"
+#include "rt_plugin.h"
+#include "scene/scene.hpp"
 
 namespace clarity {
 

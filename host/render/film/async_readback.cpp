@@ -2,8 +2,7 @@
 
 #include <utility>
 
-#include "render/frame/cl_errors.hpp"
-#include "render/frame/renderer.hpp"
+#include "device/cl_errors.hpp"
 
 namespace clarity {
 

@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "device/device.hpp"
+#include "device/kernel_time.hpp"
 #include "render/film/byte_image.hpp"
 
 namespace clarity {
-
-struct KernelTime;
 
 // The result of DisplayReadback. It may outlive the DisplayReadback, but not the device's being open. Used from one thread.
 class AsyncReadback {

@@ -2,11 +2,11 @@
 
 #include <utility>
 
-#include "render/frame/cl_errors.hpp"
+#include "device/cl_errors.hpp"
 
 namespace clarity {
 
-cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings, bool aside) {
+cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings, bool overlapped) {
     begun_ = {};
     const size_t pixels = size_t(film.width) * film.height, room = FilmKernels::room(pixels) * 4;
     AsyncReadback image;
@@ -18,14 +18,14 @@ cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings
         image.in_place_ = cl::Buffer(device_->context(), CL_MEM_WRITE_ONLY | CL_MEM_USE_HOST_PTR, room, image.memory_.get());
         image.mapped_ = kernels_.map_tones(film.sums, image.in_place_, pixels, settings);
     } else {
-        Display& display = displays_[turn_ ^= 1u];
+        Display& display = displays_[parity_ ^= 1u];
         if (display.copied())
             clWaitForEvents(1, &display.copied());  // complete since long; its own reader has reported any failure
         const cl::Buffer& tones = display.buffer.fit(device_->context(), room);
         image.mapped_ = kernels_.map_tones(film.sums, tones, pixels, settings);
         const std::vector<cl::Event> after = {image.mapped_};
-        if (aside && !copies_) copies_ = device_->with_own_queue();
-        cl::CommandQueue& copies = aside ? copies_->queue() : device_->queue();
+        if (overlapped && !copies_) copies_ = device_->with_own_queue();
+        cl::CommandQueue& copies = overlapped ? copies_->queue() : device_->queue();
         copies.enqueueReadBuffer(tones, CL_FALSE, 0, image.bytes(), image.memory_.get(), &after, &image.copied_);
         display.copied = image.copied_;
         device_->queue().flush();  // otherwise the other queue waits for commands that are not submitted
@@ -33,12 +33,12 @@ cl::Event DisplayReadback::begin(const ColorFilm& film, const Settings& settings
     }
     tones_ = Tones(settings);
     begun_ = std::move(image);
-    return aside ? begun_.mapped_ : begun_.copied_;
+    return overlapped ? begun_.mapped_ : begun_.copied_;
 }
 
-AsyncReadback DisplayReadback::take(const ColorFilm& film, const Settings& settings, bool aside) {
+AsyncReadback DisplayReadback::take(const ColorFilm& film, const Settings& settings, bool overlapped) {
     const bool same = begun_ && begun_.width_ == film.width && begun_.height_ == film.height && tones_ == Tones(settings);
-    if (!same) begin(film, settings, aside);
+    if (!same) begin(film, settings, overlapped);
     return std::move(begun_);
 }
 

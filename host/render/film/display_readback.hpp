@@ -24,11 +24,11 @@ class DisplayReadback {
  public:
     DisplayReadback(std::shared_ptr<Device> device, FilmKernels& kernels)
         : device_(std::move(device)), kernels_(kernels), memory_(device_) {}
-    // Returns the film's picture, which may still be on its way. aside: the copy does not delay work that is queued later.
-    AsyncReadback take(const ColorFilm& film, const Settings& settings, bool aside);
+    // Returns the film's picture, which may still be on its way. overlapped: the copy does not delay work that is queued later.
+    AsyncReadback take(const ColorFilm& film, const Settings& settings, bool overlapped);
     // Starts this work behind the commands that are queued. A later take() of the same film with the same settings returns the
     // picture begun here. Returns the last event in the device's own queue.
-    cl::Event begin(const ColorFilm& film, const Settings& settings, bool aside);
+    cl::Event begin(const ColorFilm& film, const Settings& settings, bool overlapped);
     // Call this when the film is about to change: take() then starts anew.
     void forget_begun() { begun_ = {}; }
 
@@ -42,7 +42,7 @@ class DisplayReadback {
     PinnedMemoryPool memory_;
     Display displays_[2];
     // Index of the display buffer that was used last.
-    unsigned turn_ = 0;
+    unsigned parity_ = 0;
     AsyncReadback begun_;
     Tones tones_;  // of begun_
 };

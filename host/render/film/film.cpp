@@ -7,9 +7,10 @@
 #include <utility>
 
 #include "base/elapsed.hpp"
+#include "device/cl_errors.hpp"
 #include "device/kernel_files.hpp"
 #include "device/program.hpp"
-#include "render/frame/cl_errors.hpp"
+#include "render/film/false_colors.hpp"
 
 namespace clarity {
 namespace {
@@ -32,16 +33,16 @@ size_t quads_touched(size_t row_pixels) {
 }  // namespace
 
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
-                      FrameStats* stats, FalseColorScale* scale) {
+                      std::vector<KernelTime>* times, FalseColorScale* scale) {
     using Clock = std::chrono::steady_clock;
     const auto begin = Clock::now();
     const FloatImage values = read();
     const auto done = Clock::now();
     const FalseColorScale found = scale_of(values, aov, static_cast<float>(settings.scale_max));
     ByteImage image = false_colors(values, aov, found);
-    if (stats) {
-        stats->kernels.push_back({"read-back", std::chrono::duration<double, std::milli>(done - begin).count()});
-        stats->kernels.push_back({"false colours", ms_since(done)});
+    if (times) {
+        times->push_back({"read-back", std::chrono::duration<double, std::milli>(done - begin).count()});
+        times->push_back({"false colours", ms_since(done)});
     }
     if (scale) *scale = found;
     return image;

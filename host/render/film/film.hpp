@@ -3,16 +3,22 @@
 #include <functional>
 #include <memory>
 
+#include "device/device.hpp"
+#include "device/kernel_time.hpp"
 #include "render/film/bands.hpp"
+#include "render/film/byte_image.hpp"
 #include "render/film/growing_buffer.hpp"
+#include "render/film/image_io.hpp"
 #include "render/film/pinned_memory_pool.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/settings/false_color_scale.hpp"
+#include "render/settings/settings.hpp"
 
 namespace clarity {
 
-// Calls `read` and paints the result in false colours. If given, `stats` gets the times and `scale` the meaning of the colours.
+// Calls `read` and paints the result in false colours. If given, `times` gets the times of this
+// work and `scale` the meaning of the colours.
 ByteImage show_values(const std::function<FloatImage()>& read, const std::string& aov, const Settings& settings,
-                      FrameStats* stats, FalseColorScale* scale);
+                      std::vector<KernelTime>* times, FalseColorScale* scale);
 
 // The settings that tone mapping depends on.
 struct Tones {

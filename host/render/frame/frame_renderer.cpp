@@ -1,19 +1,18 @@
-// frame_renderer.cpp -- traces samples into the film of one device, and reads it.
+#include "render/frame/frame_renderer.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <numeric>
 #include <utility>
 
+#include "device/cl_errors.hpp"
 #include "render/film/bands.hpp"
 #include "render/film/display_readback.hpp"
 #include "render/film/film.hpp"
 #include "render/film/overflow_counter.hpp"
-#include "render/frame/cl_errors.hpp"
 #include "render/frame/frame_constants.hpp"
-#include "render/frame/frame_stats.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
@@ -132,9 +131,9 @@ struct FrameRenderer::Impl {
 
     // How many of the `left` samples the next launch traces.
     unsigned samples_at_once(const Picture& picture, unsigned left) const {
-        const bool parting = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
+        const bool splits = program->is_wavefront() && refracts(*picture.prepared.scene, picture.view.materials);
         if (layout.cpu || layout.max_pixels > 1 || layout.lanes > 1 || !aov->is_color() || !program->has_generations() ||
-            parting || begun > 0)
+            splits || begun > 0)
             return 1;
         const DeviceInfo& info = device->info();
         uint64_t room = info.global_bytes / kShareOfMemory;
@@ -148,7 +147,7 @@ struct FrameRenderer::Impl {
 
     // Traces samples [sample, sample + at_once) into the film, or each into its own layer if there are several.
     LaunchTimes launch(const Picture& picture, unsigned sample, unsigned at_once, const cl::Buffer& into,
-                       const Beside& beside) {
+                       const SideWork& side_work) {
         const auto& [prepared, settings, view_of, shared, progress] = picture;
         cl::CommandQueue& queue = device->queue();
         std::vector<rt_frame> frames;
@@ -174,7 +173,7 @@ struct FrameRenderer::Impl {
             return wavefront.trace(
                 queue, launcher,
                 {prepared, view_of, view, layout, width, height, begun, launched, depth, sample, into, distances.get()}, go_on,
-                beside);
+                side_work);
         }
         cl_uint at = 0;
         kernel.setArg(at++, view.frame());
@@ -189,7 +188,7 @@ struct FrameRenderer::Impl {
             at = overflows.bind(kernel, at, true);
         }
         view.bind(*prepared.on_device, kernel, at);
-        return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, beside);
+        return launcher.run(queue, kernel, first_group, launched, layout.local_size(), go_on, begun, side_work);
     }
 
     size_t film_bytes(size_t of_pixels) const { return of_pixels * aov->film_channels() * sizeof(float); }
@@ -250,10 +249,10 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
             const bool first = sample == samples.first, last = sample + at_once == end;
             uint8_t* const display = shared && last ? shared->display : nullptr;
             cl::Event added;
-            Beside beside;
-            if (first) beside.while_it_works = meanwhile;
+            SideWork side_work;
+            if (first) side_work.while_it_works = meanwhile;
             if (at_once > 1 || sum || display || (show && last))
-                beside.behind = [&] {
+                side_work.behind = [&] {
                     cl::Event behind;
                     if (at_once > 1)
                         behind = added = im.film_kernels.add_layers(film, into, at_once, sample > 0, im.group_rows());
@@ -262,7 +261,7 @@ FrameStats FrameRenderer::trace(const Prepared& prepared, const Settings& settin
                     if (show && last) behind = im.relay.begin(im.film_of_colors(), settings, before == Impl::Shown::begun);
                     return behind;
                 };
-            const LaunchTimes times = im.launch(picture, sample, at_once, into, beside);
+            const LaunchTimes times = im.launch(picture, sample, at_once, into, side_work);
             FrameStats one;
             one.kernels.push_back({"trace", times.device_ms});
             if (added()) one.kernels.push_back({"add samples", event_ms(added)});
@@ -360,7 +359,8 @@ void FrameRenderer::add_display_times(std::vector<KernelTime>& times) {
 ByteImage FrameRenderer::read_display(const Settings& settings, FrameStats* stats, FalseColorScale* scale) {
     Impl& im = *impl_;
     if (scale) *scale = {};
-    if (!im.aov->is_color()) return show_values([this] { return read_values(); }, im.aov->name, settings, stats, scale);
+    if (!im.aov->is_color())
+        return show_values([this] { return read_values(); }, im.aov->name, settings, stats ? &stats->kernels : nullptr, scale);
     im.shown = Impl::Shown::read;
     return wrap_cl_errors(*im.device, "reading the picture",
                           [&] { return im.relay.take(im.film_of_colors(), settings, false); })
@@ -374,7 +374,7 @@ AsyncReadback FrameRenderer::begin_display(const Settings& settings) {
                           [&] { return im.relay.take(im.film_of_colors(), settings, true); });
 }
 
-bool FrameRenderer::copies_aside() const {
+bool FrameRenderer::overlaps_copies() const {
     return impl_->program && impl_->aov->is_color() && !impl_->device->info().cpu;
 }
 

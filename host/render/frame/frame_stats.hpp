@@ -1,8 +1,36 @@
-// frame_stats.hpp -- combines the statistics of several samples or several devices.
+// frame_stats.hpp -- times and ray counts of a frame, and their sums over several samples or several devices.
 #pragma once
-#include "render/frame/renderer.hpp"
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "device/kernel_time.hpp"
 
 namespace clarity {
+
+// One device's part in a picture that several devices share.
+struct DeviceShare {
+    std::string id, name;
+    double share = 0;                     // of the picture's rows, 0 to 1
+    double device_ms = 0, wall_ms = 0;    // tracing, by the device's clock and by the clock of its host thread
+    double tone_map_ms = 0, read_ms = 0;  // read_display(), by the device's clock
+    unsigned launches = 0;
+};
+
+// Times and ray counts of the samples that one call has traced.
+struct FrameStats {
+    double device_ms = 0;  // kernels of these samples, by the device's clock
+    double wall_ms = 0;    // the same by the host's clock, including waiting
+    uint64_t primary = 0, shadow = 0, secondary = 0,
+             dropped = 0;     // rays of these samples; all but primary are 0 unless counted
+    uint64_t overflowed = 0;  // traversal stacks that were full (debug programs only)
+    unsigned samples = 0;     // in the film now
+    unsigned launches = 0;    // launches that traced these samples
+    // The steps: trace, counters, adding samples. read_display() appends tone mapping and read-back.
+    std::vector<KernelTime> kernels;
+    // One for each device if several share the picture. The times above are then those of the slowest device.
+    std::vector<DeviceShare> devices;
+};
 
 // Adds ray counts and launches only.
 void add_rays(FrameStats& sum, const FrameStats& more);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include "device/cl_errors.hpp"
 #include "render/film/overflow_counter.hpp"
-#include "render/frame/cl_errors.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/program_cache.hpp"

@@ -4,7 +4,10 @@
 #include <memory>
 #include <vector>
 
-#include "render/frame/renderer.hpp"
+#include "device/device.hpp"
+#include "render/frame/prepared.hpp"
+#include "render/settings/settings.hpp"
+#include "render/settings/view.hpp"
 
 namespace clarity {
 

@@ -4,13 +4,13 @@
 #include <chrono>
 
 #include "base/elapsed.hpp"
-#include "render/frame/cl_errors.hpp"
+#include "device/cl_errors.hpp"
 
 namespace clarity {
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
                           const std::function<Piece(unsigned first, unsigned count)>& enqueue,
-                          const std::function<void()>& go_on, const Beside& beside) {
+                          const std::function<void()>& go_on, const SideWork& side_work) {
     LaunchTimes times;
     pace_.begin_picture();
     for (unsigned first = 0; first < group_count;) {
@@ -20,10 +20,10 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
         const Piece piece = enqueue(first, count);
         first += count;
         cl::Event last;
-        if (beside.behind && first == group_count) last = beside.behind();
-        if (beside.while_it_works && times.launches == 0) {
+        if (side_work.behind && first == group_count) last = side_work.behind();
+        if (side_work.while_it_works && times.launches == 0) {
             queue.flush();
-            beside.while_it_works();
+            side_work.while_it_works();
         }
         queue.finish();
         double wall = ms_since(start);
@@ -39,7 +39,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, unsigned group_count, unsigne
 }
 
 LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                          unsigned group_size, const std::function<void()>& go_on, unsigned begin, const Beside& beside) {
+                          unsigned group_size, const std::function<void()>& go_on, unsigned begin, const SideWork& side_work) {
     const auto enqueue = [&](unsigned first, unsigned count) {
         cl::Event event;
         kernel.setArg(first_argument, begin + first);
@@ -47,7 +47,7 @@ LaunchTimes Launcher::run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint f
                                    nullptr, &event);
         return Piece{event, event};
     };
-    return run(queue, group_count, group_count, enqueue, go_on, beside);
+    return run(queue, group_count, group_count, enqueue, go_on, side_work);
 }
 
 }  // namespace clarity

@@ -15,7 +15,7 @@ struct LaunchTimes {
 };
 
 // Work beside the trace of a picture. Either function may be empty.
-struct Beside {
+struct SideWork {
     std::function<cl::Event()> behind;     // enqueues work after the last kernel, and returns its last event
     std::function<void()> while_it_works;  // host work: called once, when the device has its first piece
 };
@@ -28,15 +28,16 @@ class Launcher {
         cl::Event first, last;
     };
     // Runs groups [0, group_count) in pieces of at most `most`. `enqueue` enqueues one piece. `go_on` is called between pieces
-    // and stops the run by throwing. The call waits for beside.behind with the last piece; its time is in none of the returned
-    // times.
+    // and stops the run by throwing. The call waits for side_work.behind with the last piece; its time is in none of the
+    // returned times.
     LaunchTimes run(cl::CommandQueue& queue, unsigned group_count, unsigned most,
                     const std::function<Piece(unsigned first, unsigned count)>& enqueue, const std::function<void()>& go_on,
-                    const Beside& beside = {});
+                    const SideWork& side_work = {});
     // Runs groups [begin, begin + group_count) of `group_size` work-items. Argument `first_argument` (a uint) receives the
     // number of a piece's first group. The global offset stays zero, because PoCL compiles a kernel again for another offset.
     LaunchTimes run(cl::CommandQueue& queue, cl::Kernel& kernel, cl_uint first_argument, unsigned group_count,
-                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0, const Beside& beside = {});
+                    unsigned group_size, const std::function<void()>& go_on, unsigned begin = 0,
+                    const SideWork& side_work = {});
     void forget() { pace_.forget(); }
     // Expected time of that many groups, in ms; infinite if nothing is known.
     double expected_ms(unsigned groups) const { return pace_.expected_ms(groups); }

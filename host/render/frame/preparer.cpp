@@ -1,4 +1,5 @@
-// preparer.cpp -- the slow steps between settings and frames, and which of their results are kept.
+#include "render/frame/preparer.hpp"
+
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "render/accel/accel_choice.hpp"
@@ -6,10 +7,10 @@
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/device_scene.hpp"
 #include "render/frame/frame_constants.hpp"
-#include "render/frame/renderer.hpp"
 #include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/settings/aov.hpp"
+#include "render/settings/view.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,7 +23,7 @@ namespace clarity {
 namespace {
 
 // Without refraction no ray splits. `wavefront` is then a single launch whose warps fetch new pixels as soon as they are free,
-// which is 1.03 to 1.10 times as fast on a GPU. With refraction it depends on the scene which tracer wins: docs/performance.md.
+// which is 1.03 to 1.10 times as fast on a GPU. With refraction it depends on the scene which tracer wins: docs/experiments.md.
 std::string tracer_for(const Device& device, const Scene& scene) {
     return device.info().cpu || refracts(scene, {}) ? "iterative" : "wavefront";
 }
@@ -30,7 +31,7 @@ std::string tracer_for(const Device& device, const Scene& scene) {
 Settings resolve(const Settings& asked, const Device& device, const Scene& scene) {
     Settings s = asked;
     if (s.tracer == "auto") s.tracer = tracer_for(device, scene);
-    if (s.lanes == 0) s.lanes = static_cast<int>(device.preferred_lanes());
+    if (s.lanes == 0) s.lanes = static_cast<int>(device.info().preferred_lanes());
     if (s.packet_w == 0)
         s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;  // a packet stream: cl/lanes/packet_stream.h
     return s;

@@ -2,7 +2,8 @@
 #pragma once
 #include "render/film/growing_buffer.hpp"
 #include "render/frame/device_scene.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/settings/view.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity {
 

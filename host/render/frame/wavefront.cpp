@@ -69,42 +69,43 @@ void Wavefront::bind(const WavefrontFrame& frame, const Room& room) {
     work_groups_ = std::max(1u, device_->info().compute_units) * kGroupsPerUnit;
     counters_.fit(context, size_t(work_groups_) * sizeof(cl_ulong4));
     for (GrowingBuffer& rays : rays_) rays.fit(context, room.rays * kRayBytes);
-    shares_.fit(context, room.parting ? pixels * kShareBytes : 0);
-    sums_.fit(context, room.parting && frame.sample > 0 ? pixels * sizeof(cl_float4) : 0);
+    shares_.fit(context, room.splits ? pixels * kShareBytes : 0);
+    sums_.fit(context, room.splits && frame.sample > 0 ? pixels * sizeof(cl_float4) : 0);
 }
 
 Launcher::Piece Wavefront::enqueue(cl::CommandQueue& queue, const WavefrontFrame& frame, const Room& room, unsigned first,
                                    unsigned count) {
     const size_t local = frame.layout.local_size(), global = work_groups_ * local;
-    const cl::Buffer& sums = room.parting && frame.sample > 0 ? sums_.get() : frame.film;
+    const cl::Buffer& sums = room.splits && frame.sample > 0 ? sums_.get() : frame.film;
     first += frame.begin;
     Launcher::Piece piece;
-    const auto enqueue_levels = [&](cl_uint turn) {
-        const unsigned levels = room.parting ? frame.depth : 1;
+    const auto enqueue_levels = [&](cl_uint parity) {
+        const unsigned levels = room.splits ? frame.depth : 1;
         for (cl_uint level = 0; level < levels; ++level) {
             Arguments arguments(trace_);
             arguments << frame.view_buffers.frame() << cl_uint(first) << cl_uint(count) << level
-                      << cl_uint(first == 0 && level == 0) << cl_uint(room.rays) << cl_uint(room.parting) << sums
+                      << cl_uint(first == 0 && level == 0) << cl_uint(room.rays) << cl_uint(room.splits) << sums
                       << shares_.get() << counters_.get() << frame.distances << rays_[level & 1].get()
-                      << rays_[~level & 1].get() << control_[turn] << control_[turn ^ 1];
+                      << rays_[~level & 1].get() << control_[parity] << control_[parity ^ 1];
             frame.view_buffers.bind(*frame.prepared.on_device, trace_, arguments.count());
             queue.enqueueNDRangeKernel(trace_, cl::NullRange, cl::NDRange(global), cl::NDRange(local), nullptr, &piece.last);
             if (level == 0) piece.first = piece.last;
         }
-        if (!room.parting) return;
+        if (!room.splits) return;
         Arguments(add_) << frame.view_buffers.frame() << cl_uint(first) << frame.film << sums << shares_.get();
         queue.enqueueNDRangeKernel(add_, cl::NullRange, cl::NDRange(count * local), cl::NDRange(local), nullptr, &piece.last);
     };
-    turns_.take([&](cl_uint turn) { queue.enqueueFillBuffer(control_[turn], cl_uint(0), 0, kControlBytes); }, enqueue_levels);
+    ping_pong_.take([&](cl_uint parity) { queue.enqueueFillBuffer(control_[parity], cl_uint(0), 0, kControlBytes); },
+                    enqueue_levels);
     return piece;
 }
 
 LaunchTimes Wavefront::trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
-                             const std::function<void()>& go_on, const Beside& beside) {
+                             const std::function<void()>& go_on, const SideWork& side_work) {
     const Room room = room_for(frame);
     bind(frame, room);
     const auto piece = [&](unsigned first, unsigned count) { return enqueue(queue, frame, room, first, count); };
-    return launcher.run(queue, frame.groups, room.groups, piece, go_on, beside);
+    return launcher.run(queue, frame.groups, room.groups, piece, go_on, side_work);
 }
 
 }  // namespace clarity

@@ -2,12 +2,16 @@
 #pragma once
 #include <memory>
 
+#include "device/device.hpp"
 #include "render/film/growing_buffer.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/prepared.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/kernel_source.hpp"
+#include "render/kernels/layout.hpp"
 #include "render/queries/ping_pong.hpp"
+#include "render/settings/view.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity {
 
@@ -31,7 +35,7 @@ class Wavefront {
     explicit Wavefront(std::shared_ptr<Device> device) : device_(std::move(device)) {}
     // Traces one sample of these pixels. `go_on` is called between pieces and stops the trace by throwing.
     LaunchTimes trace(cl::CommandQueue& queue, Launcher& launcher, const WavefrontFrame& frame,
-                      const std::function<void()>& go_on, const Beside& beside = {});
+                      const std::function<void()>& go_on, const SideWork& side_work = {});
     // Counters of the last sample for each work-group: shadow rays, secondary rays, dropped rays, full stacks, 64 bits each.
     const cl::Buffer& counters() const { return counters_.get(); }
     unsigned counter_count() const { return work_groups_; }
@@ -40,7 +44,7 @@ class Wavefront {
     // How many rays a level's queue holds, and for how many groups of pixels that is meant.
     struct Room {
         unsigned rays, groups;
-        bool parting;  // rays may split
+        bool splits;  // rays may split
     };
     Room room_for(const WavefrontFrame& frame) const;
     void bind(const WavefrontFrame& frame, const Room& room);
@@ -53,7 +57,7 @@ class Wavefront {
     GrowingBuffer rays_[2] = {GrowingBuffer(CL_MEM_READ_WRITE), GrowingBuffer(CL_MEM_READ_WRITE)};
     GrowingBuffer sums_{CL_MEM_READ_WRITE}, shares_{CL_MEM_READ_WRITE}, counters_{CL_MEM_READ_WRITE};
     cl::Buffer control_[2];  // a picture's first kernel clears the other one for the next picture
-    PingPong turns_;         // of control_
+    PingPong ping_pong_;     // of control_
     unsigned work_groups_ = 0;
 };
 

@@ -3,9 +3,11 @@
 #include <algorithm>
 
 #include "plugin/capabilities.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/prepared.hpp"
+#include "render/kernels/layout.hpp"
 #include "render/kernels/traversal_source.hpp"
 #include "render/settings/aov.hpp"
+#include "render/settings/settings.hpp"
 
 namespace clarity {
 namespace {

@@ -30,7 +30,7 @@ const Headers kByQueues = {"shading/material.h", "shading/shading.h", "tracers/r
                            "tracers/wavefront_rays.h"};
 const Headers kRayBlocks = {"queries/ray_blocks.h"};
 
-// Node visits of a traversal after which a ray is long. On an H200 32 to 64 serve nearly as well (docs/performance.md).
+// Node visits of a traversal after which a ray is long. On an H200 32 to 64 serve nearly as well (docs/experiments.md).
 constexpr unsigned kStepBudget = 48;
 const std::vector<std::string> kRequeue = {"RT_STEP_BUDGET " + std::to_string(kStepBudget),
                                            "RT_REQUEUE_ITEMS " + std::to_string(kRequeueItems) + "u"};

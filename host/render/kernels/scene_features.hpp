@@ -1,6 +1,6 @@
 // scene_features.hpp -- which kinds of things a scene has. Kernels are compiled without the code for the others.
 #pragma once
-#include "render/accel/accel_build.hpp"
+#include "render/accel/build_scene.hpp"
 
 namespace clarity {
 

@@ -6,7 +6,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
-#include "render/frame/cl_errors.hpp"
+#include "device/cl_errors.hpp"
 #include "render/frame/frame_stats.hpp"
 
 namespace clarity {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "render/frame/frame_renderer.hpp"
 #include "render/multi/device_threads.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "render/multi/tile_scheduler.hpp"

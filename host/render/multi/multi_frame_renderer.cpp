@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "device/cl_errors.hpp"
 #include "render/film/film.hpp"
 #include "render/film/pinned_memory_pool.hpp"
-#include "render/frame/cl_errors.hpp"
 #include "render/frame/frame_stats.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/settings/aov.hpp"
@@ -112,7 +112,8 @@ ByteImage MultiFrameRenderer::read_display(const Settings& settings, FrameStats*
     Impl& im = *impl_;
     if (im.alone) return im.alone->read_display(settings, stats, scale);
     if (scale) *scale = {};
-    if (!im.aov().is_color()) return show_values([this] { return read_values(); }, im.aov().name, settings, stats, scale);
+    if (!im.aov().is_color())
+        return show_values([this] { return read_values(); }, im.aov().name, settings, stats ? &stats->kernels : nullptr, scale);
     im.shown = true;
     const size_t bytes = size_t(im.width) * im.height * 4;
     std::vector<std::vector<KernelTime>> times(im.shared->size());
@@ -137,8 +138,8 @@ AsyncReadback MultiFrameRenderer::begin_display(const Settings& settings) {
     return impl_->alone->begin_display(settings);
 }
 
-bool MultiFrameRenderer::copies_aside() const {
-    return impl_->alone && impl_->alone->copies_aside();
+bool MultiFrameRenderer::overlaps_copies() const {
+    return impl_->alone && impl_->alone->overlaps_copies();
 }
 
 }  // namespace clarity

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "render/frame/frame_renderer.hpp"
 #include "render/multi/multi_preparer.hpp"
 
 namespace clarity {
@@ -33,9 +34,9 @@ class MultiFrameRenderer {
     FloatImage read_values();
     FloatImage read_distance();
     ByteImage read_display(const Settings& settings, FrameStats* stats = nullptr, FalseColorScale* scale = nullptr);
-    // Only if copies_aside(). Several devices do not support this: they copy before they continue.
+    // Only if overlaps_copies(). Several devices do not support this: they copy before they continue.
     AsyncReadback begin_display(const Settings& settings);
-    bool copies_aside() const;
+    bool overlaps_copies() const;
 
  private:
     struct Impl;

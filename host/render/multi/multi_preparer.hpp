@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "render/frame/renderer.hpp"
+#include "render/frame/preparer.hpp"
 
 namespace clarity {
 

@@ -15,7 +15,7 @@ void TileScheduler::begin(unsigned tile_count, const std::vector<bool>& takes_pa
     if (takes_part != takes_part_) shares_.clear();
     takes_part_ = takes_part;
     measured_.assign(measured_.size(), {});
-    set_aside_.assign(measured_.size(), {});
+    reserved_.assign(measured_.size(), {});
     left_.clear();
     const auto taking = static_cast<unsigned>(std::count(takes_part.begin(), takes_part.end(), true));
     // Each tile that is assigned dynamically costs one launch. Tiles assigned in advance cost nothing, but the slowest device
@@ -23,7 +23,7 @@ void TileScheduler::begin(unsigned tile_count, const std::vector<bool>& takes_pa
     const bool known = !shares_.empty();
     unsigned few = known ? taking : std::max(taking, alike ? tile_count / 16 : tile_count);
     if (taking < 2 || (known && alike)) few = 0;
-    set_aside(tile_count, std::min(tile_count, few));
+    assign_in_advance(tile_count, std::min(tile_count, few));
     dynamic_ = !left_.empty();
 }
 
@@ -45,16 +45,16 @@ void TileScheduler::learn() {
 
 // Assigns tiles in advance. Each tile goes to the device that is furthest behind its share, so that every device gets tiles
 // from all parts of the picture.
-void TileScheduler::set_aside(unsigned tile_count, unsigned left_over) {
-    const size_t nobody = measured_.size();
-    std::vector<double> share(nobody + 1), owed(nobody + 1, 0.0);
-    share[nobody] = tile_count > 0 ? double(left_over) / tile_count : 0;
-    for (size_t i = 0; i < nobody; ++i) share[i] = share_locked(i) * (1 - share[nobody]);
+void TileScheduler::assign_in_advance(unsigned tile_count, unsigned left_over) {
+    const size_t unassigned = measured_.size();
+    std::vector<double> share(unassigned + 1), owed(unassigned + 1, 0.0);
+    share[unassigned] = tile_count > 0 ? double(left_over) / tile_count : 0;
+    for (size_t i = 0; i < unassigned; ++i) share[i] = share_locked(i) * (1 - share[unassigned]);
     for (unsigned tile = 0; tile < tile_count; ++tile) {
-        for (size_t i = 0; i <= nobody; ++i) owed[i] += share[i];
+        for (size_t i = 0; i <= unassigned; ++i) owed[i] += share[i];
         const size_t to = size_t(std::max_element(owed.begin(), owed.end()) - owed.begin());
         owed[to] -= 1;
-        (to == nobody ? left_ : set_aside_[to]).push_back(tile);
+        (to == unassigned ? left_ : reserved_[to]).push_back(tile);
     }
     std::reverse(left_.begin(), left_.end());
 }
@@ -80,7 +80,7 @@ double TileScheduler::share(size_t device) const {
 
 std::vector<unsigned> TileScheduler::next(size_t device) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    if (!set_aside_[device].empty()) return std::exchange(set_aside_[device], {});
+    if (!reserved_[device].empty()) return std::exchange(reserved_[device], {});
     if (left_.empty() || !takes_part_[device]) return {};
     size_t count = 1;
     if (const double speed = measured_[device].speed(); speed > 0) {

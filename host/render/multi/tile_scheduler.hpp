@@ -34,14 +34,14 @@ class TileScheduler {
         double speed() const { return ms > 0 ? tiles / ms : 0; }
     };
     void learn();
-    void set_aside(unsigned tile_count, unsigned left_over);
+    void assign_in_advance(unsigned tile_count, unsigned left_over);
     double share_locked(size_t device) const;
 
     mutable std::mutex mutex_;
     std::vector<Measured> measured_;  // in this picture
     std::vector<double> shares_;      // of speed, from earlier pictures of the same devices; empty: not known
     std::vector<bool> takes_part_;
-    std::vector<std::vector<unsigned>> set_aside_;
+    std::vector<std::vector<unsigned>> reserved_;
     std::vector<unsigned> left_;  // assigned dynamically, the last one first
     bool dynamic_ = false;
 };

@@ -5,7 +5,7 @@
 
 namespace clarity {
 
-// The caller asks way() which variant to run, runs it, and reports its time to took(). Used from one thread.
+// The caller asks variant() which variant to run, runs it, and reports its time to took(). Used from one thread.
 //
 // How the choice is made: all variants run one after the other, in three rounds. The first round is a warm-up (it may include a
 // compilation, and the launcher may cut it into small pieces). The minimum of the other two rounds counts. A variant that is
@@ -19,19 +19,19 @@ namespace clarity {
 // The current choice stays unless another variant takes 3 % less time: smaller differences are noise.
 class Autotuner {
  public:
-    // ways: the number of variants, 1 to kMost.
-    explicit Autotuner(unsigned ways = 1) : ways_(ways) {
-        if (ways_ > 1) try_all(0);
+    // variants: how many there are, 1 to kMost.
+    explicit Autotuner(unsigned variants = 1) : variants_(variants) {
+        if (variants_ > 1) try_all(0);
     }
     // The variant to run next.
-    unsigned way() const { return trying() ? at_ : best_; }
+    unsigned variant() const { return trying() ? at_ : best_; }
     // True if the next run is a trial, possibly of a slow variant. A benchmark must not count its time.
     bool trying() const { return round_ < kRounds; }
     // True if a run of the chosen variant has confirmed the time that decided the choice.
-    bool settled() const { return ways_ == 1 || confirmed_; }
-    // Reports that the run of variant way() took `ms`.
+    bool settled() const { return variants_ == 1 || confirmed_; }
+    // Reports that the run of variant() took `ms`.
     void took(double ms) {
-        if (ways_ == 1) return;
+        if (variants_ == 1) return;
         if (trying())
             note_try(ms);
         else
@@ -56,7 +56,7 @@ class Autotuner {
     void note_try(double ms) {
         if (round_ > 0) ms_[at_] = std::min(ms_[at_], ms);
         do {
-            if (++at_ < ways_) continue;
+            if (++at_ < variants_) continue;
             at_ = 0;
             if (++round_ == kRounds - 1) worth_a_third_ = kFarBehind * ms_[fastest()];
         } while (round_ == kRounds - 1 && ms_[at_] > worth_a_third_);
@@ -81,9 +81,11 @@ class Autotuner {
         }
     }
 
-    unsigned fastest() const { return static_cast<unsigned>(std::min_element(ms_.begin(), ms_.begin() + ways_) - ms_.begin()); }
+    unsigned fastest() const {
+        return static_cast<unsigned>(std::min_element(ms_.begin(), ms_.begin() + variants_) - ms_.begin());
+    }
 
-    unsigned ways_, round_ = kRounds, at_ = 0, best_ = 0;
+    unsigned variants_, round_ = kRounds, at_ = 0, best_ = 0;
     unsigned uses_ = 0, look_again_ = 16;    // uses since the choice, and the number of uses after which it is reviewed
     unsigned unlike_ = 0, most_unlike_ = 3;  // consecutive runs that took another time than expected, and their limit
     bool confirmed_ = false;

@@ -18,7 +18,7 @@ LaunchTimes DynamicFetch::trace(const Prepared& prepared, const TraceProgram& pr
     cl::CommandQueue& queue = device_->queue();
     const cl::Buffer before = queue_.get();
     const cl::Buffer& drawn = queue_.fit(device_->context(), 2 * sizeof(cl_uint));
-    if (drawn() != before()) turns_.forget();
+    if (drawn() != before()) ping_pong_.forget();
 
     const unsigned most = std::max(1u, device_->info().compute_units) * kGroupsPerUnit;
     cl::Kernel kernel = program.kernel();
@@ -33,13 +33,13 @@ LaunchTimes DynamicFetch::trace(const Prepared& prepared, const TraceProgram& pr
         kernel.setArg(1, cl_uint(begin * kGroupSize));
         kernel.setArg(2, cl_uint(std::min(size_t(rays), (size_t(begin) + count) * kGroupSize)));
         cl::Event event;
-        turns_.take([&](cl_uint) { queue.enqueueFillBuffer(drawn, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
-                    [&](cl_uint turn) {
-                        kernel.setArg(8, turn);
-                        queue.enqueueNDRangeKernel(kernel, cl::NullRange,
-                                                   cl::NDRange(size_t(std::min(count, most)) * kGroupSize),
-                                                   cl::NDRange(kGroupSize), nullptr, &event);
-                    });
+        ping_pong_.take([&](cl_uint) { queue.enqueueFillBuffer(drawn, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
+                        [&](cl_uint parity) {
+                            kernel.setArg(8, parity);
+                            queue.enqueueNDRangeKernel(kernel, cl::NullRange,
+                                                       cl::NDRange(size_t(std::min(count, most)) * kGroupSize),
+                                                       cl::NDRange(kGroupSize), nullptr, &event);
+                        });
         return Launcher::Piece{event, event};
     };
     const unsigned groups = (rays + kGroupSize - 1) / kGroupSize;

@@ -1,9 +1,10 @@
 // dynamic_fetch.hpp -- nearest hits of the caller's own rays. Persistent work-items fetch a new ray whenever they are free
 // (cl/queries/dynamic_fetch.cl; Aila, Laine 2009, Understanding the Efficiency of Ray Traversal on GPUs).
 #pragma once
+#include "device/device.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/prepared.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/queries/ping_pong.hpp"
@@ -25,7 +26,7 @@ class DynamicFetch {
     std::shared_ptr<Device> device_;
     Launcher launcher_;
     GrowingBuffer queue_{CL_MEM_READ_WRITE};
-    PingPong turns_;
+    PingPong ping_pong_;
 };
 
 }  // namespace clarity

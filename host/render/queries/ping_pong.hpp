@@ -8,22 +8,22 @@ namespace clarity {
 // content of both sets is undefined.
 class PingPong {
  public:
-    // Calls enqueue(turn), where `turn` (0 or 1) is the set to use. If that set may not be zero, calls clear(turn) first.
+    // Calls enqueue(parity), where `parity` (0 or 1) is the set to use. If that set may not be zero, calls clear(parity) first.
     // Passes on exceptions of both.
     template <class Clear, class Enqueue>
     void take(const Clear& clear, const Enqueue& enqueue) {
-        if (!clean_) clear(turn_);
+        if (!clean_) clear(parity_);
         clean_ = false;  // stays false if enqueue() throws
-        enqueue(turn_);
-        turn_ ^= 1u;
+        enqueue(parity_);
+        parity_ ^= 1u;
         clean_ = true;
     }
     // Call this when the sets have moved to another buffer: their content is then undefined.
     void forget() { clean_ = false; }
 
  private:
-    cl_uint turn_ = 0;
-    bool clean_ = false;  // the set of this turn is zero
+    cl_uint parity_ = 0;
+    bool clean_ = false;  // the set of this parity is zero
 };
 
 }  // namespace clarity

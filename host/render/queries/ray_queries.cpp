@@ -1,7 +1,7 @@
 #include "render/queries/ray_queries.hpp"
 
 #include "base/error.hpp"
-#include "render/frame/cl_errors.hpp"
+#include "device/cl_errors.hpp"
 #include "render/frame/frame_constants.hpp"
 
 namespace clarity {
@@ -74,11 +74,11 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         if (packing_ != rays.packing()) {
             packing_ = rays.packing();
             kinds_ = kinds_for(*prepared.accel->plugin, layout, votes(device_->info(), prepared.settings), query);
-            way_ = Autotuner(static_cast<unsigned>(kinds_.size()));
+            autotuner_ = Autotuner(static_cast<unsigned>(kinds_.size()));
         }
-        const KernelKind kind = kinds_[way_.way()];
+        const KernelKind kind = kinds_[autotuner_.variant()];
         const auto program = programs_.get(kernel_for(prepared, kind));
-        tuning_ = {way_.way(), way_.trying(), false};
+        tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
         cl::CommandQueue& queue = device_->queue();
         view_.write(queue, *prepared.scene, {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
         const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));
@@ -94,8 +94,8 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
                 ? dynamic_fetch_.trace(prepared, *program, view_, static_cast<unsigned>(slots), fields, in, out, overflows_)
                 : trace_at_once(prepared, *program, layout, rays.block_count(), query.any_hit, fields, in, out);
         if (debug) report_overflows(overflows_.read(queue), prepared.accel->plugin->id);
-        way_.took(times.device_ms);
-        tuning_.settled = way_.settled();
+        autotuner_.took(times.device_ms);
+        tuning_.settled = autotuner_.settled();
         if (hits) {
             std::vector<float> answers(slots * fields);
             queue.enqueueReadBuffer(out, CL_TRUE, 0, answers.size() * sizeof(float), answers.data());

@@ -3,15 +3,18 @@
 #include <map>
 #include <tuple>
 
+#include "device/device.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/prepared.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/kernel_source.hpp"
+#include "render/kernels/layout.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/queries/autotuner.hpp"
 #include "render/queries/dynamic_fetch.hpp"
 #include "render/queries/ray_blocks.hpp"
+#include "render/queries/ray_query.hpp"
 #include "render/queries/requeued_rays.hpp"
 
 namespace clarity {
@@ -53,7 +56,7 @@ class RayQueries {
     // The fastest variant depends on the rays: mirror rays may need another one than diffuse rays.
     uint64_t packing_ = 0;
     std::vector<KernelKind> kinds_;
-    Autotuner way_;
+    Autotuner autotuner_;
     RayTuning tuning_;
     OverflowCounter overflows_;  // used for debug programs
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};

@@ -18,7 +18,7 @@ LaunchTimes RequeuedRays::trace(const Prepared& prepared, const TraceProgram& pr
     cl::CommandQueue& queue = device_->queue();
     const cl::Buffer before = list_.get();
     const cl::Buffer& list = list_.fit(device_->context(), (2 + size_t(rays)) * sizeof(cl_uint));
-    if (list() != before()) turns_.forget();
+    if (list() != before()) ping_pong_.forget();
 
     cl::Kernel first = program.kernel(), rest(program.program, any_hit ? "trace_long_any" : "trace_long_closest");
     first.setArg(0, view.frame());
@@ -40,15 +40,15 @@ LaunchTimes RequeuedRays::trace(const Prepared& prepared, const TraceProgram& pr
     const auto enqueue = [&](unsigned begin, unsigned count) {
         Launcher::Piece piece;
         first.setArg(1, cl_uint(begin));
-        turns_.take([&](cl_uint) { queue.enqueueFillBuffer(list, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
-                    [&](cl_uint turn) {
-                        first.setArg(8, turn);
-                        queue.enqueueNDRangeKernel(first, cl::NullRange, cl::NDRange(size_t(count) * kGroupSize),
-                                                   cl::NDRange(kGroupSize), nullptr, &piece.first);
-                        rest.setArg(5, turn);
-                        queue.enqueueNDRangeKernel(rest, cl::NullRange, cl::NDRange(long_items), cl::NDRange(kRequeueItems),
-                                                   nullptr, &piece.last);
-                    });
+        ping_pong_.take([&](cl_uint) { queue.enqueueFillBuffer(list, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
+                        [&](cl_uint parity) {
+                            first.setArg(8, parity);
+                            queue.enqueueNDRangeKernel(first, cl::NullRange, cl::NDRange(size_t(count) * kGroupSize),
+                                                       cl::NDRange(kGroupSize), nullptr, &piece.first);
+                            rest.setArg(5, parity);
+                            queue.enqueueNDRangeKernel(rest, cl::NullRange, cl::NDRange(long_items), cl::NDRange(kRequeueItems),
+                                                       nullptr, &piece.last);
+                        });
         return piece;
     };
     const unsigned groups = (rays + kGroupSize - 1) / kGroupSize;

@@ -1,9 +1,10 @@
 // requeued_rays.hpp -- traces the caller's own rays in two launches. The first stops rays that exceed a step budget
 // and lists them. The second traces each of these with several work-items side by side (cl/queries/requeued_rays.cl).
 #pragma once
+#include "device/device.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/launch.hpp"
-#include "render/frame/renderer.hpp"
+#include "render/frame/prepared.hpp"
 #include "render/frame/view_buffers.hpp"
 #include "render/kernels/program_cache.hpp"
 #include "render/queries/ping_pong.hpp"
@@ -25,7 +26,7 @@ class RequeuedRays {
     std::shared_ptr<Device> device_;
     Launcher launcher_;
     GrowingBuffer list_{CL_MEM_READ_WRITE};
-    PingPong turns_;
+    PingPong ping_pong_;
 };
 
 }  // namespace clarity

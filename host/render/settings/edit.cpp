@@ -6,20 +6,13 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "render/settings/camera_text.hpp"
 
 namespace clarity {
 namespace {
 
-constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
-
 [[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& expected) {
     throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
-}
-
-std::string text_of(const float* values, size_t count) {
-    std::string text;
-    for (size_t i = 0; i < count; ++i) text += (i ? "," : "") + exact_text(values[i]);
-    return text;
 }
 
 std::vector<std::string> split(const std::string& text, char at) {
@@ -34,30 +27,20 @@ std::vector<std::string> split(const std::string& text, char at) {
 
 // Reads `count` numbers with commas between them.
 void read_floats(const std::string& key, const std::string& text, float* values, size_t count, const char* expected) {
-    const std::vector<std::string> parts = split(text, ',');
-    bool good = parts.size() == count;
-    for (size_t i = 0; good && i < count; ++i) good = read_number(parts[i], values[i]);
-    if (!good) refuse(key, text, expected);
+    const std::vector<float> numbers = read_numbers<float>(text);
+    if (numbers.size() != count) refuse(key, text, expected);
+    std::copy(numbers.begin(), numbers.end(), values);
 }
 
 void read_camera(Camera& camera, const std::string& text) {
-    constexpr const char* expected = "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz";
-    float n[10];
-    read_floats("camera", text, n, 10, expected);
-    // A field of view in radians must survive the conversion to degrees and back exactly: float degrees are too coarse for
-    // that.
-    double fov = 0;
-    if (!read_number(split(text, ',')[6], fov) || fov <= 0 || fov >= 180)
-        refuse("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
-    camera.eye = {n[0], n[1], n[2]};
-    camera.target = {n[3], n[4], n[5]};
-    camera.fov_y_rad = static_cast<float>(fov * kRadPerDegree);
-    camera.up = {n[7], n[8], n[9]};
-}
-
-std::string camera_text(const Camera& camera) {
-    return text_of(camera.eye.data(), 3) + "," + text_of(camera.target.data(), 3) + "," +
-           exact_text(camera.fov_y_rad / kRadPerDegree) + "," + text_of(camera.up.data(), 3);
+    const std::optional<CameraNumbers> numbers = read_camera_numbers(text);
+    if (!numbers || !numbers->up) refuse("camera", text, "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz");
+    const double fov_deg = *numbers->fov_deg;
+    if (fov_deg <= 0 || fov_deg >= 180) refuse("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
+    camera.eye = numbers->eye;
+    camera.target = numbers->target;
+    camera.fov_y_rad = static_cast<float>(fov_deg * kRadPerDegree);
+    camera.up = *numbers->up;
 }
 
 void read_light(EditedView& edited, const std::string& key, const std::string& value) {
@@ -181,8 +164,8 @@ bool begins(const std::string& text, const char* with) {
 }
 
 std::string light_text(const rt_light& light) {
-    return std::string(light.kind == RT_LIGHT_POINT ? "point," : "directional,") + text_of(light.position, 3) + "," +
-           text_of(light.color, 3);
+    return std::string(light.kind == RT_LIGHT_POINT ? "point," : "directional,") + numbers_text(light.position, 3) + "," +
+           numbers_text(light.color, 3);
 }
 
 }  // namespace
@@ -221,8 +204,8 @@ std::vector<Word> edits_between(const Scene& scene, const View& base, const Edit
     std::vector<Word> words;
     const View& view = edited.view;
     words.push_back({"camera", camera_text(view.camera)});
-    if (view.background != base.background) words.push_back({"background", text_of(view.background.data(), 3)});
-    if (view.ambient != base.ambient) words.push_back({"ambient", text_of(view.ambient.data(), 3)});
+    if (view.background != base.background) words.push_back({"background", numbers_text(view.background.data(), 3)});
+    if (view.ambient != base.ambient) words.push_back({"ambient", numbers_text(view.ambient.data(), 3)});
     for (size_t i = 0; i < view.lights.size(); ++i) {
         const bool known = i < base.lights.size() && std::memcmp(&view.lights[i], &base.lights[i], sizeof(rt_light)) == 0;
         if (!known) words.push_back({"light." + std::to_string(i), light_text(view.lights[i])});
@@ -233,7 +216,8 @@ std::vector<Word> edits_between(const Scene& scene, const View& base, const Edit
         rt_material was = scene.materials[i].values, is = view.materials[i];
         for (const MaterialPart& part : kMaterialParts)
             if (!std::equal(part_of(is, part), part_of(is, part) + part.count, part_of(was, part)))
-                words.push_back({"material." + std::to_string(i) + "." + part.name, text_of(part_of(is, part), part.count)});
+                words.push_back(
+                    {"material." + std::to_string(i) + "." + part.name, numbers_text(part_of(is, part), part.count)});
     }
     if (!edited.hidden.empty()) words.push_back({"hide", hidden_text(edited.hidden)});
     return words;

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "render/frame/renderer.hpp"
+#include "render/settings/view.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {

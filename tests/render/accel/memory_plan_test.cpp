@@ -4,7 +4,12 @@
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"
-#include "render/frame/renderer.hpp"
+#include "base/progress.hpp"
+#include "device/device.hpp"
+#include "render/accel/build_scene.hpp"
+#include "render/frame/preparer.hpp"
+#include "render/settings/settings.hpp"
+#include "scene/scene.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
 

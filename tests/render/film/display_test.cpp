@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "render/film/false_colors.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 

@@ -73,7 +73,7 @@ TEST_P(Relay, GivesEachPictureWhileTheNextIsTraced) {
     EXPECT_EQ(times.size(), 2 * seen.size());
     ASSERT_EQ(seen.size(), 2 * expected.size());
     for (size_t i = 0; i < seen.size(); ++i) EXPECT_TRUE(bytes(seen[i]) == expected[i % expected.size()]) << i;
-    EXPECT_EQ(frames_->copies_aside(), std::string(GetParam()) == "gpu");
+    EXPECT_EQ(frames_->overlaps_copies(), std::string(GetParam()) == "gpu");
 }
 
 // Pictures may be waited for in any order, after their renderer is gone, or never.

@@ -88,89 +88,89 @@ TEST(RequeuedRays, AreThoseOfOneLaunchWithInstances) {
 }
 
 TEST(Autotuner, TakesTheLeastTimeOfEachButTheFirst) {
-    for (const unsigned ways : {1u, 2u, 3u, 5u})
-        for (unsigned best = 0; best < ways; ++best) {
-            Autotuner way(ways);
-            for (unsigned i = 0; i < 3 * ways; ++i) {
-                EXPECT_EQ(way.way(), i % ways);
-                const bool better = i % ways == best;
-                way.took(i < ways ? (better ? 9 : 1) : i < 2 * ways ? 50 : better ? 2 : 3);
+    for (const unsigned variants : {1u, 2u, 3u, 5u})
+        for (unsigned best = 0; best < variants; ++best) {
+            Autotuner autotuner(variants);
+            for (unsigned i = 0; i < 3 * variants; ++i) {
+                EXPECT_EQ(autotuner.variant(), i % variants);
+                const bool better = i % variants == best;
+                autotuner.took(i < variants ? (better ? 9 : 1) : i < 2 * variants ? 50 : better ? 2 : 3);
             }
             for (int i = 0; i < 3; ++i) {
-                EXPECT_EQ(way.way(), best);
-                way.took(way.way() == best ? 100 : 0);
+                EXPECT_EQ(autotuner.variant(), best);
+                autotuner.took(autotuner.variant() == best ? 100 : 0);
             }
         }
 }
 
 TEST(Autotuner, TriesWhatIsFarBehindTwice) {
-    Autotuner way(3);
+    Autotuner autotuner(3);
     std::vector<unsigned> tried;
     for (int i = 0; i < 10; ++i) {
-        tried.push_back(way.way());
-        way.took(way.way() == 1 ? 30 : way.way() == 2 ? 9 : 10);
+        tried.push_back(autotuner.variant());
+        autotuner.took(autotuner.variant() == 1 ? 30 : autotuner.variant() == 2 ? 9 : 10);
     }
     EXPECT_EQ(tried, (std::vector<unsigned>{0, 1, 2, 0, 1, 2, 0, 2, 2, 2}));
 }
 
 TEST(Autotuner, StaysWithTheFirstForLittle) {
-    Autotuner way(2);
-    for (int i = 0; i < 6; ++i) way.took(i % 2 == 0 ? 100 : 98);
-    EXPECT_EQ(way.way(), 0u);
+    Autotuner autotuner(2);
+    for (int i = 0; i < 6; ++i) autotuner.took(i % 2 == 0 ? 100 : 98);
+    EXPECT_EQ(autotuner.variant(), 0u);
 }
 
 // Runs of variants that take `ms`, on a machine slower by `slowdown`. Returns the number of trials.
-unsigned use(Autotuner& way, const std::vector<double>& ms, double slowdown, int runs) {
+unsigned use(Autotuner& autotuner, const std::vector<double>& ms, double slowdown, int runs) {
     unsigned trials = 0;
     for (int i = 0; i < runs; ++i) {
-        trials += way.trying();
-        way.took(slowdown * ms[way.way()]);
+        trials += autotuner.trying();
+        autotuner.took(slowdown * ms[autotuner.variant()]);
     }
     return trials;
 }
 
 TEST(Autotuner, IsSettledOnceARunConfirmsTheChoice) {
-    Autotuner way(2);
+    Autotuner autotuner(2);
     const std::vector<double> ms = {10, 5};
-    EXPECT_EQ(use(way, ms, 1, 5), 5u);
-    EXPECT_FALSE(way.trying());
-    EXPECT_FALSE(way.settled());
-    way.took(20);
-    EXPECT_FALSE(way.settled()) << "this run took another time than the one that decided the choice";
-    way.took(5.2);
-    EXPECT_TRUE(way.settled());
+    EXPECT_EQ(use(autotuner, ms, 1, 5), 5u);
+    EXPECT_FALSE(autotuner.trying());
+    EXPECT_FALSE(autotuner.settled());
+    autotuner.took(20);
+    EXPECT_FALSE(autotuner.settled()) << "this run took another time than the one that decided the choice";
+    autotuner.took(5.2);
+    EXPECT_TRUE(autotuner.settled());
     EXPECT_TRUE(Autotuner(1).settled());
     EXPECT_FALSE(Autotuner(1).trying());
 }
 
 TEST(Autotuner, LooksAgainWhenRunsTakeAnotherTime) {
-    Autotuner way(2);
-    use(way, {10, 12}, 8, 6);
-    EXPECT_EQ(way.way(), 0u);
+    Autotuner autotuner(2);
+    use(autotuner, {10, 12}, 8, 6);
+    EXPECT_EQ(autotuner.variant(), 0u);
     const std::vector<double> warm = {10, 7};  // at full clock the second variant is faster
-    EXPECT_EQ(use(way, warm, 1, 3), 0u);
-    EXPECT_TRUE(way.trying()) << "three runs took an eighth of the time";
-    EXPECT_EQ(use(way, warm, 1, 4), 4u);
-    EXPECT_EQ(way.way(), 1u);
+    EXPECT_EQ(use(autotuner, warm, 1, 3), 0u);
+    EXPECT_TRUE(autotuner.trying()) << "three runs took an eighth of the time";
+    EXPECT_EQ(use(autotuner, warm, 1, 4), 4u);
+    EXPECT_EQ(autotuner.variant(), 1u);
     // One or two disturbed runs change nothing.
-    for (const double ms : {7.0, 30.0, 30.0, 7.0, 30.0}) way.took(ms);
-    EXPECT_FALSE(way.trying());
+    for (const double ms : {7.0, 30.0, 30.0, 7.0, 30.0}) autotuner.took(ms);
+    EXPECT_FALSE(autotuner.trying());
 }
 
 TEST(Autotuner, LooksAgainLessAndLess) {
-    Autotuner way(2);
+    Autotuner autotuner(2);
     const std::vector<double> ms = {10, 9};
-    EXPECT_EQ(use(way, ms, 1, 6), 6u);
-    EXPECT_EQ(use(way, ms, 1, 16), 0u);
-    EXPECT_EQ(use(way, ms, 1, 4), 4u) << "after 16 uses";
-    EXPECT_EQ(use(way, ms, 1, 64), 0u);
-    EXPECT_EQ(use(way, ms, 1, 4), 4u) << "after 64 more";
-    EXPECT_EQ(use(way, ms, 1, 200), 0u);
+    EXPECT_EQ(use(autotuner, ms, 1, 6), 6u);
+    EXPECT_EQ(use(autotuner, ms, 1, 16), 0u);
+    EXPECT_EQ(use(autotuner, ms, 1, 4), 4u) << "after 16 uses";
+    EXPECT_EQ(use(autotuner, ms, 1, 64), 0u);
+    EXPECT_EQ(use(autotuner, ms, 1, 4), 4u) << "after 64 more";
+    EXPECT_EQ(use(autotuner, ms, 1, 200), 0u);
 }
 
 TEST(Autotuner, AMachineThatIsNeverSteadyDoesNotTuneForEver) {
-    Autotuner way(2);
+    Autotuner autotuner(2);
     unsigned trials = 0;
-    for (int i = 0; i < 2000; ++i) trials += use(way, {10, 9}, i / 5 % 2 ? 1 : 3, 1);
+    for (int i = 0; i < 2000; ++i) trials += use(autotuner, {10, 9}, i / 5 % 2 ? 1 : 3, 1);
     EXPECT_LT(trials, 100u);
 }

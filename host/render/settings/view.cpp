@@ -1,39 +1,25 @@
-// view.cpp -- the camera and the lights of a picture.
-#include <charconv>
+#include "render/settings/view.hpp"
+
 #include <cmath>
 
 #include "base/error.hpp"
-#include "render/frame/renderer.hpp"
+#include "base/numbers.hpp"
+#include "render/settings/camera_text.hpp"
 
 namespace clarity {
 namespace {
-
-// "1,2,3" -> numbers; empty if the text is not a list of finite numbers.
-std::vector<float> numbers(const std::string& text) {
-    std::vector<float> out;
-    const char *at = text.data(), *end = at + text.size();
-    for (;;) {
-        float value = 0;
-        const auto [next, error] = std::from_chars(at, end, value);
-        if (error != std::errc() || !std::isfinite(value)) return {};
-        out.push_back(value);
-        if (next == end) return out;
-        if (*next != ',') return {};
-        at = next + 1;
-    }
-}
 
 Camera camera_named(const Scene& scene, const std::string& text, float aspect) {
     if (text.empty()) return scene.cameras.empty() ? framing_camera(scene, aspect) : scene.cameras.front();
     for (const Camera& camera : scene.cameras)
         if (camera.name == text) return camera;
-    const std::vector<float> n = numbers(text);
-    if (n.size() == 6 || n.size() == 7) {
+    const std::optional<CameraNumbers> numbers = read_camera_numbers(text);
+    if (numbers && !numbers->up) {
         Camera camera;
         camera.name = "command line";
-        camera.eye = {n[0], n[1], n[2]};
-        camera.target = {n[3], n[4], n[5]};
-        const float fov = n.size() == 7 ? n[6] : 45.0f;
+        camera.eye = numbers->eye;
+        camera.target = numbers->target;
+        const auto fov = static_cast<float>(numbers->fov_deg.value_or(45));
         if (fov <= 0 || fov >= 180)
             throw Error(Exit::usage, "--camera: a field of view of " + text.substr(text.rfind(',') + 1) +
                                          " degrees is not between 0 and 180");
@@ -78,7 +64,7 @@ View make_view(const Scene& scene, float aspect, const std::string& camera, cons
     view.background = scene.background;
     view.ambient = scene.ambient;
     if (!light.empty()) {
-        const std::vector<float> n = numbers(light);
+        const std::vector<float> n = read_numbers<float>(light);
         if (n.size() != 3) throw Error(Exit::usage, "--light: `" + light + "` is not x,y,z");
         view.lights[0].kind = RT_LIGHT_POINT;
         for (int k = 0; k < 3; ++k) view.lights[0].position[k] = n[k];

@@ -1,4 +1,4 @@
-#include "render/kernels/frame_parts.hpp"
+#include "render/frame/frame_parts.hpp"
 
 namespace clarity {
 

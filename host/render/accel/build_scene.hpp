@@ -1,0 +1,33 @@
+// build_scene.hpp -- a scene as builders of structures see it.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "base/aligned_bytes.hpp"
+#include "base/progress.hpp"
+#include "rt_plugin.h"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// A scene as builders see it: boxes of primitives in groups. Group 0 is the world; each instanced mesh has one group more. A
+// mesh that is placed only once is flattened into the world.
+struct BuildScene {
+    UninitializedVector<rt_prim> prims;  // like the triangles, empty after the build
+    std::vector<rt_group> groups;
+    UninitializedVector<rt_packed_prim> triangles;  // by ref index, in the space of their group
+    std::vector<rt_instance> instances;             // with roots unset
+    std::vector<uint32_t> group_of_instance;
+    std::vector<Affine> world_from_object;             // for each instance
+    UninitializedVector<uint32_t> attribute_triangle;  // from a triangle's ref to its number in the Scene
+    std::vector<uint32_t> flattened;  // instances of the Scene whose triangles were transformed into the world's group
+    std::vector<rt_packed_prim> instance_leaves, spheres, polygons;  // by ref index
+    std::vector<rt_polygon> polygon_table;
+    std::vector<float> polygon_corners;  // 3 floats a corner
+    std::vector<rt_plane> planes;
+    Bounds bounds;  // of the world's group, that is of everything but planes
+};
+// Converts a scene. Throws Error(failed) if it has too many triangles, and Cancelled.
+BuildScene make_build_scene(const Scene& scene, Progress& progress);
+
+}  // namespace clarity

@@ -1,0 +1,54 @@
+// preparer.hpp -- from a scene and settings to a Prepared: builds, uploads and compiles.
+//
+// Rendering has two steps. Preparer::prepare() does the slow work (build, upload, compile) and returns an immutable Prepared.
+// It may run on any thread while frames continue with the previous Prepared. FrameRenderer::trace() then traces samples of one
+// frame with a Prepared. Two results of prepare() share everything that did not change between the calls.
+#pragma once
+#include <memory>
+#include <mutex>
+
+#include "base/progress.hpp"
+#include "device/device.hpp"
+#include "plugin/registry.hpp"
+#include "render/frame/prepared.hpp"
+
+namespace clarity {
+
+class ProgramCache;
+
+// Makes Prepared objects for one device. Thread-safe; each object runs one prepare() at a time.
+class Preparer {
+ public:
+    Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device);
+    ~Preparer();
+    // Builds, uploads and compiles what has changed since the last call, and returns the result.
+    // built: the result of build() for these settings, possibly made for another device. Without it, prepare() builds.
+    // Throws Error(failed) if the build or the upload fails, Error(kernel_build_failed) with the compiler's log in details(),
+    // Error(usage) for an unknown structure, and Cancelled. The previous Prepared stays valid.
+    std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress,
+                                            std::shared_ptr<const AccelData> built = nullptr);
+    // Builds the structure alone. This needs no device.
+    std::shared_ptr<const AccelData> build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                           Progress& progress);
+    // Whether the caller should close the device and open it again. PoCL keeps at least 0.15 MB for each program that it has
+    // compiled, and frees it only with the last context of the process. Editing kernels compiles hundreds of programs.
+    bool needs_reopen() const;
+    // Releases the device with all programs and buffers on it, and keeps the last structure. The device closes as soon as the
+    // caller has also released its Device, every Prepared, and every FrameRenderer and Inspector. Returns the info to open a
+    // new Device with. Until open_device(), prepare() throws Error(no_device).
+    DeviceInfo close_device();
+    void open_device(std::shared_ptr<Device> device);
+
+ private:
+    // settings: of a structure that is there.
+    std::shared_ptr<const AccelData> build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
+                                                   Progress& progress);
+    const PluginRegistry& plugins_;
+    const DeviceInfo info_;
+    std::shared_ptr<Device> device_;          // nullptr: closed
+    std::unique_ptr<ProgramCache> programs_;  // nullptr: closed
+    std::shared_ptr<const Prepared> last_;    // without buffers and program after close_device()
+    mutable std::mutex mutex_;
+};
+
+}  // namespace clarity

@@ -1,0 +1,24 @@
+// camera_text.hpp -- a camera as text: ex,ey,ez,tx,ty,tz,fov_deg,ux,uy,uz. Shorter forms leave out the up vector, or the field
+// of view as well.
+#pragma once
+#include <array>
+#include <optional>
+#include <string>
+
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+inline constexpr double kRadPerDegree = 3.14159265358979323846 / 180.0;
+
+struct CameraNumbers {
+    std::array<float, 3> eye{}, target{};
+    std::optional<double> fov_deg;  // double: radians must survive the conversion to degrees and back exactly
+    std::optional<std::array<float, 3>> up;
+};
+// Returns nothing unless the text is 6, 7 or 10 finite numbers with commas between them. Does not check their values.
+std::optional<CameraNumbers> read_camera_numbers(const std::string& text);
+// All ten numbers, with all their digits.
+std::string camera_text(const Camera& camera);
+
+}  // namespace clarity

@@ -1,0 +1,24 @@
+// view.hpp -- what may change from frame to frame: the camera, the lights, the materials and the background.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// The camera, lights, materials and background of a frame. They may change from frame to frame without a new prepare().
+struct View {
+    Camera camera;
+    std::vector<rt_light> lights;
+    std::vector<rt_material> materials;  // one for each material of the scene; empty: use the scene's own
+    std::array<float, 3> background{}, ambient{};
+};
+// Makes a view from the scene's camera, lights, ambient light and background. If the scene has no lights, it gets two that suit
+// its size.
+// camera: "" (the scene's first camera, or one that frames the scene), a camera's name, or "ex,ey,ez,tx,ty,tz[,fov_deg]".
+// light: "" or "x,y,z", which moves the first light and makes it a point light. Throws Error(usage) if it cannot read either.
+View make_view(const Scene& scene, float aspect, const std::string& camera = {}, const std::string& light = {});
+
+}  // namespace clarity
