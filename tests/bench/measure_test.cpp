@@ -157,16 +157,16 @@ TEST(Measure, ARowThatRunsOutOfMemoryFailsAlone) {
 // time of the n-th run, while the clock rises.
 Contender tuned(
     std::vector<double> ms, std::function<double(unsigned)> slowdown = [](unsigned) { return 1.0; }) {
-    const auto way = std::make_shared<Autotuner>(static_cast<unsigned>(ms.size()));
+    const auto tuner = std::make_shared<Autotuner>(static_cast<unsigned>(ms.size()));
     const auto runs = std::make_shared<unsigned>(0);
     return {"tuned", [=] {
-                Sample take;
-                take.way = way->way();
-                take.trial = way->trying();
-                take.time_ms = take.wall_ms = ms[take.way] * slowdown((*runs)++);
-                way->took(take.time_ms);
-                take.settled = way->settled();
-                return take;
+                Sample sample;
+                sample.variant = tuner->way();
+                sample.trial = tuner->trying();
+                sample.time_ms = sample.wall_ms = ms[sample.variant] * slowdown((*runs)++);
+                tuner->took(sample.time_ms);
+                sample.settled = tuner->settled();
+                return sample;
             }};
 }
 
@@ -203,7 +203,7 @@ TEST(Measure, SamplesOfAWayThatWasGivenUpAreDropped) {
     unsigned runs = 0;
     const Contender contender{"A", [&] {
                                   Sample take = base.once();
-                                  take.way = ++runs > 12 ? 7 : 3;  // the variant which the second tuning chooses
+                                  take.variant = ++runs > 12 ? 7 : 3;  // the variant which the second tuning chooses
                                   return take;
                               }};
     const auto measured = measure_interleaved({contender}, rules, progress);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "bench/baselines/baseline.hpp"
-#include "bench/run/analysis.hpp"
+#include "bench/cases/analysis.hpp"
 #include "bench/suites/ray_sets.hpp"
 #include "render/accel/accel_choice.hpp"
 #include "support/generated.hpp"

@@ -11,10 +11,6 @@
 namespace clarity::bench {
 namespace {
 
-std::string who(const BenchRecord& r) {
-    return r.baseline.empty() ? r.variant : r.baseline;
-}
-
 std::string percent(double share) {
     char text[16];
     std::snprintf(text, sizeof text, "%.1f", 100 * share);
@@ -68,7 +64,7 @@ std::string steps_table(const BenchReport& report, const std::string& suite) {
     const auto key = [](const BenchRecord& r) { return r.scene + "\n" + r.device_id + r.device; };
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || r.measure != "frame" || !shown(r)) continue;
-        groups.of(key(r) + "\n" + who(r)).push_back(&r);
+        groups.of(key(r) + "\n" + r.name()).push_back(&r);
         if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = &r;
     }
     TextTable table({"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel p50", "all in p50", "p95", "p99",
@@ -82,7 +78,7 @@ std::string steps_table(const BenchReport& report, const std::string& suite) {
         const auto naive = then.find(key(last) + "\n" + std::to_string(last.depth));
         Speedup by_then;
         if (naive != then.end() && last.variant != "then") by_then = speedup(last, *naive->second);
-        table.add({last.scene, who(last), device_cell(report, last), fps[1], fps[2], fps[3], fps[4],
+        table.add({last.scene, last.name(), device_cell(report, last), fps[1], fps[2], fps[3], fps[4],
                    short_number(last.time_ms.median), short_number(last.wall_ms.median), short_number(last.wall_ms.p95),
                    short_number(last.wall_ms.p99), percent(std::max(last.time_ms.spread(), last.wall_ms.spread())),
                    short_number(last.mrays_per_s),
@@ -144,7 +140,8 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || !shown(r) || r.measure == "dropped" || (suite == "quick" && r.measure == "frame")) continue;
         // A baseline is built once per quality and traced in several modes, so that its builds have lines of their own.
-        groups.of(r.scene + "\n" + (r.measure == "build" || !r.baseline.empty() ? "" : r.device) + "\n" + who(r)).push_back(&r);
+        groups.of(r.scene + "\n" + (r.measure == "build" || !r.baseline.empty() ? "" : r.device) + "\n" + r.name())
+            .push_back(&r);
     }
     // Our builds are shown in the lines of the same structure.
     std::vector<std::string> head = {"scene", "structure", "device", "triangles", "build ms"};
@@ -153,17 +150,18 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
     TextTable table(head, 3);
     std::map<std::string, const BenchRecord*> builds;
     for (const auto& group : groups.all())
-        if (const BenchRecord* build = find(group, "build")) builds[build->scene + "\n" + who(*build)] = build;
+        if (const BenchRecord* build = find(group, "build")) builds[build->scene + "\n" + build->name()] = build;
     for (const auto& group : ours_first(groups.all())) {
         const BenchRecord& first = *group.front();
         const bool only_build = group.size() == 1 && first.measure == "build";
         if (only_build && first.baseline.empty()) {
             bool traced = false;
             for (const auto& other : groups.all())
-                traced |= other.front() != &first && other.front()->scene == first.scene && who(*other.front()) == who(first);
+                traced |=
+                    other.front() != &first && other.front()->scene == first.scene && other.front()->name() == first.name();
             if (traced) continue;
         }
-        const auto built = builds.find(first.scene + "\n" + who(first));
+        const auto built = builds.find(first.scene + "\n" + first.name());
         const BenchRecord* build = built == builds.end() ? nullptr : built->second;
         double spread = 0;
         for (const BenchRecord* r : group) spread = std::max(spread, r->time_ms.spread());
@@ -173,7 +171,7 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
         };
         const BenchRecord* frame = find(group, "frame");
         if (!frame) frame = find(group, "whitted");
-        std::vector<std::string> cells = {first.scene, who(first),
+        std::vector<std::string> cells = {first.scene, first.name(),
                                           only_build || !first.baseline.empty() ? "" : device_cell(report, first),
                                           std::to_string(first.triangles), build ? short_number(build->time_ms.median) : ""};
         for (const char* key : kBuildKeys) cells.push_back(build ? shown_text(record_field(key), *build) : "");
@@ -192,7 +190,7 @@ std::string analysis_table(const BenchReport& report) {
     TextTable table(head, 3);
     for (const BenchRecord& r : report.records) {
         if (!r.analysis.present || r.status != RowStatus::ok) continue;
-        std::vector<std::string> cells = {r.scene, r.measure, who(r)};
+        std::vector<std::string> cells = {r.scene, r.measure, r.name()};
         for (const Field<Analysis>& field : analysis_fields())
             if (field.look.column) cells.push_back(shown_text(field, r.analysis));
         table.add(cells);
@@ -241,7 +239,7 @@ std::string refused_rows(const BenchReport& report) {
     for (const auto& group : groups.all()) {
         std::vector<std::string> parts;
         for (const BenchRecord* r : group)
-            parts.push_back(who(*r) + (device_cell(report, *r).empty() || !r->baseline.empty() ? "" : " on " + r->device) +
+            parts.push_back(r->name() + (device_cell(report, *r).empty() || !r->baseline.empty() ? "" : " on " + r->device) +
                             " " + percent(std::max(r->time_ms.spread(), r->wall_ms.spread())) + " %");
         text += wrapped("REFUSED  " + group.front()->suite + " " + group.front()->case_name + ":", parts);
     }
@@ -257,7 +255,7 @@ std::string left_out(const BenchReport& report) {
     for (const BenchRecord& r : report.records)
         if (r.status != RowStatus::ok && !unsteady(report, r))
             groups
-                .of(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + who(r) + "\n" + r.device +
+                .of(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + r.name() + "\n" + r.device +
                     "\n" + (r.status == RowStatus::skipped ? r.why : r.case_name))
                 .push_back(&r);
     std::string text = refused_rows(report);
@@ -266,7 +264,7 @@ std::string left_out(const BenchReport& report) {
         const char* word = r.status == RowStatus::refused ? "REFUSED" : r.status == RowStatus::failed ? "FAILED" : "skipped";
         text += std::string(word) + "  " + r.suite + " " + r.case_name;
         for (size_t i = 1; i < group.size(); ++i) text += ", " + group[i]->case_name.substr(group[i]->case_name.rfind('/') + 1);
-        if (!who(r).empty()) text += ", " + who(r);
+        if (!r.name().empty()) text += ", " + r.name();
         text += (r.baseline.empty() && !device_cell(report, r).empty() ? " on " + r.device : "") + ": " + r.why + "\n";
     }
     for (const std::string& note : report.notes) text += "left out  " + note + "\n";

@@ -39,8 +39,6 @@ class SeriesNames {
 
 // The runs which measured something. A run which only joins earlier runs has no date.
 std::vector<const BenchRun*> measured_runs(const BenchReport& report);
-// Name of the variant or the baseline.
-std::string who_is(const BenchRecord& record);
 // True if the record has figures to show.
 bool has_figures(const BenchRecord& record);
 // "1.23"; "about the same" if the difference is within the measured spread; "" if nothing was compared.
