@@ -65,6 +65,15 @@ TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
     EXPECT_EQ(bench({"large", "--list"}).out.find("near_100M/"), std::string::npos);
 }
 
+TEST_F(BenchCommand, BothNamesOfTheOptionLeaveBaselinesOut) {
+    EXPECT_NE(bench({"quick", file("tetrahedron.obj"), "--list"}).out.find("| peers "), std::string::npos);
+    for (const char* option : {"--no-peers", "--no-baselines"}) {
+        const ProgramResult result = bench({"quick", file("tetrahedron.obj"), "--list", option});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.out.find("| peers "), std::string::npos) << option;
+    }
+}
+
 TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
     const ProgramResult result = quick({file("tiny.scene"), "--accel", "bvh2", "--accel", "bvh2,max_leaf=1", "--json",
                                         file("a.json"), "--csv", file("a.csv"), "--report", file("page")});
