@@ -101,7 +101,7 @@ TEST(FrameParts, BeginAsAFrameBegins) {
 }
 
 // The whole way from a scene to its records.
-TEST(Breakdown, OfAScene) {
+TEST(Breakdown, MeasuresTheFrameOfAScene) {
     Workbench& bench = Workbench::get();
     BenchRequest request;
     request.breakdown = true;

@@ -122,7 +122,7 @@ TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
     EXPECT_EQ(Json::parse(joined.out).size(), 2 * list.size());
 }
 
-TEST_F(BenchCommand, PeersTakePartWhereTheSceneIsTriangles) {
+TEST_F(BenchCommand, BaselinesAreMeasuredIfTheSceneIsOnlyTriangles) {
     const ProgramResult result = quick({file("tetrahedron.obj"), "--accel", "bvh2", "--json", file("a.json")});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     size_t baselines = 0, ours = 0;
@@ -157,7 +157,7 @@ TEST_F(BenchCommand, DevicesShareAPicture) {
     EXPECT_NE(result.out.find("x the first"), std::string::npos) << result.out;
 }
 
-TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {
+TEST_F(BenchCommand, UnsteadyRowsAreRefusedWithAMessage) {
     const ProgramResult result = bench({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--size", "64x48",
                                         "--time-limit", "60", "--max-spread", "0", "--json", file("a.json")});
     EXPECT_EQ(result.exit_code, 1) << result.out;
@@ -172,7 +172,7 @@ TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {
     EXPECT_TRUE(refused);
 }
 
-TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
+TEST_F(BenchCommand, AnInterruptKeepsCompleteRows) {
     RunOptions options;
     options.signal = SIGINT;
     options.signal_when = "2/7 accel";
@@ -185,7 +185,7 @@ TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
     EXPECT_LT(list.size(), 14u);
 }
 
-TEST_F(BenchCommand, WhatIsNotUnderstoodIsAUsageError) {
+TEST_F(BenchCommand, UnknownOptionsAndValuesAreUsageErrors) {
     std::ofstream(file("broken.json")) << "[{\"status\": 3}]";
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
         {{}, "name a suite"},

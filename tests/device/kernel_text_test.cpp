@@ -50,7 +50,7 @@ class KernelText : public ::testing::Test {
     Environment environment_;
 };
 
-TEST_F(KernelText, OnDiskComesBeforeEmbedded) {
+TEST_F(KernelText, FilesOnDiskComeBeforeEmbeddedText) {
     const std::string embedded = kernel_text("tracers/camera.h");
     EXPECT_EQ(kernel_path("cl/tracers/camera.h"), "");
     from_disk();
@@ -67,7 +67,7 @@ TEST_F(KernelText, OnDiskComesBeforeEmbedded) {
     EXPECT_EQ(plugin_kernel_text(kPlugin, kAccel.traverse), "compiled");
 }
 
-TEST_F(KernelText, ARevisionForEachOtherText) {
+TEST_F(KernelText, RevisionGrowsWhenTheTextChanges) {
     from_disk();
     scratch_.write("cl/tracers/camera.h", "one");
     kernel_text("tracers/camera.h");
@@ -79,7 +79,7 @@ TEST_F(KernelText, ARevisionForEachOtherText) {
     EXPECT_EQ(kernel_text_revision(), before + 1);
 }
 
-TEST_F(KernelText, OtherStructsThanCompiledAreRefused) {
+TEST_F(KernelText, StructsThatDifferFromTheCompiledOnesAreRefused) {
     const std::string types = kernel_text("rt_types.h");
     from_disk();
     scratch_.write("cl/rt_types.h", types);
@@ -96,13 +96,13 @@ TEST_F(KernelText, OtherStructsThanCompiledAreRefused) {
     EXPECT_NE(said.find("build the plugin again"), std::string::npos) << said;
 }
 
-TEST_F(KernelText, AFolderThatIsMissingIsSaid) {
+TEST_F(KernelText, AMissingFolderIsAnError) {
     environment_.set("CLARITY_KERNEL_PATH", scratch_.path("nowhere"));
     const std::string said = why([] { kernel_text("tracers/camera.h"); });
     EXPECT_NE(said.find(scratch_.path("nowhere")), std::string::npos) << said;
 }
 
-TEST_F(KernelText, CandidatesAreAllThatMayDecide) {
+TEST_F(KernelText, CandidatesAreAllFilesThatMayBeUsed) {
     EXPECT_TRUE(kernel_candidates({&kPlugin}).empty());
     from_disk();
     const std::vector<std::string> all = kernel_candidates({&kPlugin});
@@ -111,7 +111,7 @@ TEST_F(KernelText, CandidatesAreAllThatMayDecide) {
         EXPECT_EQ(std::count(all.begin(), all.end(), scratch_.path(name)), 1) << name;
 }
 
-TEST_F(KernelText, FilesBesideAPluginsLibrary) {
+TEST_F(KernelText, CandidatesIncludeFilesBesideAPluginsLibrary) {
     environment_.set("CLARITY_KERNEL_PATH", "");
     const std::vector<std::string> all = kernel_candidates({&kPlugin});
     const std::string beside = (fs::read_symlink("/proc/self/exe").parent_path() / "watched.cl").string();
@@ -138,7 +138,7 @@ TEST(CompilerMessages, AreReadFromPoclAndClang) {
     EXPECT_EQ(clang.text, "cl/b.h:3:9: warning: unused: x\ncl/b.h:4:1: fatal error: no such: thing\n    x;\n    ^");
 }
 
-TEST(CompilerMessages, WithoutAPlaceOrAReason) {
+TEST(CompilerMessages, MayLackPlaceOrReason) {
     const CompilerLog bare = read_compiler_log("error: Invalid build option: -x\r\n");
     EXPECT_EQ(bare.first.file, "");
     EXPECT_EQ(bare.first.message, "Invalid build option: -x");

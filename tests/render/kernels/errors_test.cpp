@@ -20,7 +20,7 @@ namespace {
 
 // Copies the checkout's kernels and traversals to a folder that CLARITY_KERNEL_PATH names, so that they precede the embedded
 // ones.
-class Errors : public ::testing::Test {
+class KernelErrors : public ::testing::Test {
  protected:
     void SetUp() override {
         fs::copy(source_file("cl"), scratch_.path("cl"), fs::copy_options::recursive);
@@ -61,22 +61,22 @@ class Errors : public ::testing::Test {
     Settings settings_;
 };
 
-TEST_F(Errors, NameFileAndLineOfTheTracer) {
+TEST_F(KernelErrors, NameFileAndLineOfTheTracer) {
     break_line("cl/tracers/iterative.cl", 20);
     expect_error_at("cl/tracers/iterative.cl:21");
 }
 
-TEST_F(Errors, NameFileAndLineOfAPrimitive) {
+TEST_F(KernelErrors, NameFileAndLineOfAPrimitive) {
     break_line("cl/primitives/triangle.h", 7);
     expect_error_at("cl/primitives/triangle.h:8");
 }
 
-TEST_F(Errors, NameFileAndLineOfAPluginsTraversal) {
+TEST_F(KernelErrors, NameFileAndLineOfAPluginsTraversal) {
     break_line("plugins/accel/bvh2/bvh2.cl", 5);
     expect_error_at("plugins/accel/bvh2/bvh2.cl:6");
 }
 
-TEST_F(Errors, LeaveWhatWasPreparedBefore) {
+TEST_F(KernelErrors, KeepThePreviousProgramUsable) {
     const auto device = std::make_shared<Device>(choose_device(""));
     Preparer preparer(Workbench::get().plugins(), device);
     FrameRenderer frames(device);
@@ -96,7 +96,7 @@ TEST_F(Errors, LeaveWhatWasPreparedBefore) {
     EXPECT_NO_THROW(preparer.prepare(scene_, other, progress));
 }
 
-TEST_F(Errors, ExitCodeOfTheProgram) {
+TEST_F(KernelErrors, SetTheExitCode) {
     const char* program = std::getenv("CLARITY_WORKER");
     if (!program || !fs::exists(program)) GTEST_SKIP() << "SKIPPED: no program `clarity`; ctest names it in CLARITY_WORKER";
     break_line("cl/tracers/iterative.cl", 20);
