@@ -39,8 +39,10 @@ std::vector<size_t> team_sizes(size_t all) {
     return sizes;
 }
 
-std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size) {
+// row: describes case, scene and settings; the team's row is a copy of it that also describes devices and structure.
+std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size, const BenchRecord& row) {
     auto team = std::make_unique<Team>();
+    team->row = row;
     auto prepared = std::make_shared<MultiPrepared>();
     prepared->parts.assign(all.parts.begin(), all.parts.begin() + static_cast<std::ptrdiff_t>(size));
     Devices devices;
@@ -109,18 +111,11 @@ std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry
         try {
             const auto all = fixture.prepare_all(settings, progress);
             for (const size_t size : team_sizes(all->parts.size())) {
-                teams.push_back(make_team(*all, size));
+                teams.push_back(make_team(*all, size, row));
                 Team& team = *teams.back();
-                BenchRecord of = row;
-                of.device = team.row.device;
-                of.device_id = team.row.device_id;
-                of.driver = team.row.driver;
-                of.device_clock_mhz = team.row.device_clock_mhz;
-                of.threads = team.row.threads;
-                of.variant = (variant.label.empty() ? "" : variant.label + ", ") + std::to_string(size) +
-                             (size == 1 ? " device" : " devices");
-                describe(of, *team.prepared->first());
-                team.row = std::move(of);
+                team.row.variant = (variant.label.empty() ? "" : variant.label + ", ") + std::to_string(size) +
+                                   (size == 1 ? " device" : " devices");
+                describe(team.row, *team.prepared->first());
                 contenders.push_back({team.row.variant, [&team, &fixture, &progress, settings, samples] {
                                           const auto begin = std::chrono::steady_clock::now();
                                           FrameStats stats = team.frames->trace(team.prepared, settings, fixture.view(), 0,
