@@ -6,6 +6,7 @@
 #include "bench/baselines/speedup.hpp"
 #include "bench/output/output.hpp"
 #include "bench/output/record_fields.hpp"
+#include "bench/output/record_groups.hpp"
 #include "bench/output/text_table.hpp"
 
 namespace clarity::bench {
@@ -20,21 +21,6 @@ std::string percent(double share) {
 bool shown(const BenchRecord& r) {
     return r.status == RowStatus::ok && r.time_ms.n > 0;
 }
-
-// Groups records by a key, in the order of the keys' first records.
-class Groups {
- public:
-    std::vector<const BenchRecord*>& of(const std::string& key) {
-        const auto [place, fresh] = index_.try_emplace(key, groups_.size());
-        if (fresh) groups_.emplace_back();
-        return groups_[place->second];
-    }
-    const std::vector<std::vector<const BenchRecord*>>& all() const { return groups_; }
-
- private:
-    std::map<std::string, size_t> index_;
-    std::vector<std::vector<const BenchRecord*>> groups_;
-};
 
 const BenchRecord* find(const std::vector<const BenchRecord*>& group, const std::string& measure) {
     for (const BenchRecord* r : group)
@@ -59,12 +45,12 @@ std::string device_cell(const BenchReport& report, const BenchRecord& r) {
 
 // Frames per second by number of steps, as in the thesis's charts.
 std::string steps_table(const BenchReport& report, const std::string& suite) {
-    Groups groups;
+    RecordGroups groups;
     std::map<std::string, const BenchRecord*> then;  // scene, device, depth -> row
     const auto key = [](const BenchRecord& r) { return r.scene + "\n" + r.device_id + r.device; };
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || r.measure != "frame" || !shown(r)) continue;
-        groups.of(key(r) + "\n" + r.name()).push_back(&r);
+        groups.add(key(r) + "\n" + r.name(), r);
         if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = &r;
     }
     TextTable table({"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel p50", "all in p50", "p95", "p99",
@@ -94,11 +80,11 @@ std::string steps_table(const BenchReport& report, const std::string& suite) {
 
 // Frames per second: packet sizes down, numbers of lanes across.
 std::string packets_table(const BenchReport& report) {
-    Groups groups;
+    RecordGroups groups;
     std::vector<int> lanes;
     for (const BenchRecord& r : report.records) {
         if (r.suite != "packets" || !shown(r)) continue;
-        groups.of(r.scene + "\n" + r.device + "\n" + std::to_string(r.packet_w * 1000 + r.packet_h)).push_back(&r);
+        groups.add(r.scene + "\n" + r.device + "\n" + std::to_string(r.packet_w * 1000 + r.packet_h), r);
         if (std::find(lanes.begin(), lanes.end(), r.lanes) == lanes.end()) lanes.push_back(r.lanes);
     }
     std::sort(lanes.begin(), lanes.end());
@@ -136,12 +122,11 @@ constexpr const char* kBuildKeys[] = {"mtris_per_s", "bytes_per_triangle", "sah_
 
 // One line per scene and structure or baseline: build costs and speed by kind of ray.
 std::string accel_table(const BenchReport& report, const std::string& suite) {
-    Groups groups;
+    RecordGroups groups;
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || !shown(r) || r.measure == "dropped" || (suite == "quick" && r.measure == "frame")) continue;
         // A baseline is built once per quality and traced in several modes, so that its builds have lines of their own.
-        groups.of(r.scene + "\n" + (r.measure == "build" || !r.baseline.empty() ? "" : r.device) + "\n" + r.name())
-            .push_back(&r);
+        groups.add(r.scene + "\n" + (r.measure == "build" || !r.baseline.empty() ? "" : r.device) + "\n" + r.name(), r);
     }
     // Our builds are shown in the lines of the same structure.
     std::vector<std::string> head = {"scene", "structure", "device", "triangles", "build ms"};
@@ -232,9 +217,9 @@ std::string wrapped(std::string line, const std::vector<std::string>& parts) {
 
 // The rows of each case which were too unsteady, with their spread.
 std::string refused_rows(const BenchReport& report) {
-    Groups groups;
+    RecordGroups groups;
     for (const BenchRecord& r : report.records)
-        if (unsteady(report, r)) groups.of(r.suite + "\n" + r.case_name).push_back(&r);
+        if (unsteady(report, r)) groups.add(r.suite + "\n" + r.case_name, r);
     std::string text;
     for (const auto& group : groups.all()) {
         std::vector<std::string> parts;
@@ -251,13 +236,12 @@ std::string refused_rows(const BenchReport& report) {
 
 // Rows which were left out: rows of one scene with the same reason share a line.
 std::string left_out(const BenchReport& report) {
-    Groups groups;
+    RecordGroups groups;
     for (const BenchRecord& r : report.records)
         if (r.status != RowStatus::ok && !unsteady(report, r))
-            groups
-                .of(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + r.name() + "\n" + r.device +
-                    "\n" + (r.status == RowStatus::skipped ? r.why : r.case_name))
-                .push_back(&r);
+            groups.add(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + r.name() + "\n" +
+                           r.device + "\n" + (r.status == RowStatus::skipped ? r.why : r.case_name),
+                       r);
     std::string text = refused_rows(report);
     for (const auto& group : groups.all()) {
         const BenchRecord& r = *group.front();

@@ -26,12 +26,6 @@ std::string short_device(const BenchRecord& record) {
 
 }  // namespace
 
-void RecordGroups::add(const std::string& key, const BenchRecord& record) {
-    const auto [place, fresh] = index_.try_emplace(key, groups_.size());
-    if (fresh) groups_.emplace_back();
-    groups_[place->second].push_back(&record);
-}
-
 SeriesNames::SeriesNames(const BenchReport& report) {
     for (const BenchRecord& r : report.records) {
         // Baselines and builds run on the host's processor, which the report calls CPU; they add no device.

@@ -1,25 +1,13 @@
-// report_series.hpp -- prepares records for charts: groups, names of series and devices, colours.
+// report_series.hpp -- prepares records for charts: names of series and devices, colours.
 #pragma once
 #include <map>
 #include <string>
 #include <vector>
 
+#include "bench/output/record_groups.hpp"
 #include "bench/report/report_chart.hpp"
 
-#include "bench/output/record.hpp"
-
 namespace clarity::bench {
-
-// Groups records by a key, in the order of the keys' first records.
-class RecordGroups {
- public:
-    void add(const std::string& key, const BenchRecord& record);
-    const std::vector<std::vector<const BenchRecord*>>& all() const { return groups_; }
-
- private:
-    std::map<std::string, size_t> index_;
-    std::vector<std::vector<const BenchRecord*>> groups_;
-};
 
 // Names and colours of all series of a report; they are the same in every chart.
 class SeriesNames {
