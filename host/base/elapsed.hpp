@@ -1,4 +1,4 @@
-// elapsed.hpp -- elapsed time in milliseconds.
+// elapsed.hpp -- elapsed time in milliseconds and in seconds.
 #pragma once
 #include <chrono>
 
@@ -6,6 +6,10 @@ namespace clarity {
 
 inline double ms_since(std::chrono::steady_clock::time_point begin) {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count();
+}
+
+inline double seconds_since(std::chrono::steady_clock::time_point begin) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
 }
 
 }  // namespace clarity

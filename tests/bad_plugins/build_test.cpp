@@ -107,7 +107,7 @@ INSTANTIATE_TEST_SUITE_P(Breaches, BadBuilder, testing::ValuesIn(kBreaches),
 
 // The same builder without a defect is accepted. This shows that the scene is sound and that the tests above fail because of
 // the defect.
-TEST(GoodBuilder, IsTaken) {
+TEST(GoodBuilder, IsAccepted) {
     clarity::Progress progress;
     const clarity::AccelData accel = build("none", progress);
     EXPECT_EQ(accel.roots.size(), 2u);

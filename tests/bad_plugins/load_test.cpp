@@ -57,7 +57,7 @@ void PrintTo(const Refusal& refusal, std::ostream* out) {
 
 class BadPlugin : public testing::TestWithParam<Refusal> {};
 
-TEST_P(BadPlugin, IsRefusedAndSaysWhy) {
+TEST_P(BadPlugin, IsRefusedWithAReason) {
     const std::string path = library(GetParam().file);
     ASSERT_TRUE(fs::exists(path)) << path;
     const clarity::PluginRecord record = clarity::load_plugin(path);
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const testing::TestParamInfo<Refusal>& info) { return info.param.file; });
 
 // The same parts without a defect are accepted. This shows that the libraries above are refused because of the defect.
-TEST(GoodPlugin, IsTaken) {
+TEST(GoodPlugin, IsAccepted) {
     for (const char* name : {"sound", "bad_builder", "unknown_capability"}) {
         const clarity::PluginRecord record = clarity::load_plugin(library(name));
         ASSERT_NE(record.plugin, nullptr) << record.why;

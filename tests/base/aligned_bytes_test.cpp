@@ -19,7 +19,7 @@ bool all_are(const AlignedBytes& bytes, unsigned char value) {
     return std::all_of(p, p + bytes.bytes(), [value](unsigned char c) { return c == value; });
 }
 
-TEST(AlignedBytes, AreAlignedAndZeroedAndAllThere) {
+TEST(AlignedBytes, AreAlignedZeroedAndWritable) {
     for (const size_t bytes : {size_t{0}, size_t{1}, kMiB - 1, kMiB, kMiB + 1, 3 * kMiB - 1, 3 * kMiB, 4 * kMiB, 5 * kMiB + 17})
         for (int again = 0; again < 3; ++again) {  // the first block comes from the system, later ones were written to before
             AlignedBytes memory(bytes, true);
@@ -31,14 +31,14 @@ TEST(AlignedBytes, AreAlignedAndZeroedAndAllThere) {
         }
 }
 
-TEST(AlignedBytes, BlocksInUseAreNobodyElses) {
+TEST(AlignedBytes, BlocksInUseAreNotShared) {
     AlignedBytes a(3 * kMiB, false), b(3 * kMiB, false);
     std::memset(a.data(), 1, a.bytes());
     std::memset(b.data(), 2, b.bytes());
     EXPECT_TRUE(all_are(a, 1) && all_are(b, 2));
 }
 
-TEST(AlignedBytes, NoMoreIsKeptThanSaid) {
+TEST(AlignedBytes, KeptMemoryIsLimited) {
     { const AlignedBytes huge(AlignedBytes::kKept + 4 * kMiB, false); }
     EXPECT_LE(AlignedBytes::kept(), AlignedBytes::kKept);
     for (size_t size = 1; size <= 40; ++size) {
@@ -50,7 +50,7 @@ TEST(AlignedBytes, NoMoreIsKeptThanSaid) {
     EXPECT_EQ(AlignedBytes(40 * kMiB, false).data(), was);
 }
 
-TEST(AlignedBytes, VectorsGiveBackWhatTheyTook) {
+TEST(AlignedBytes, VectorsReturnTheirMemory) {
     const size_t before = AlignedBytes::kept();
     {
         UninitializedVector<uint32_t> numbers;
@@ -61,7 +61,7 @@ TEST(AlignedBytes, VectorsGiveBackWhatTheyTook) {
     EXPECT_GE(AlignedBytes::kept() + 8 * kMiB, before);
 }
 
-TEST(AlignedBytes, ThreadsTakeAndFreeAtOnce) {
+TEST(AlignedBytes, ThreadsMayAllocateAtTheSameTime) {
     std::atomic<int> wrong{0};
     const auto work = [&](unsigned char mine) {
         for (int i = 0; i < 200; ++i) {

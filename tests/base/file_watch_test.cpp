@@ -82,7 +82,7 @@ TEST_F(Watch, ABurstIsOneChange) {
     }
 }
 
-TEST_F(Watch, DeletedAndMadeAgain) {
+TEST_F(Watch, SeesAFileDeletedAndMadeAgain) {
     open();
     fs::remove(b_);
     ASSERT_TRUE(called(1));
@@ -96,14 +96,14 @@ TEST_F(Watch, DeletedAndMadeAgain) {
     ASSERT_TRUE(called(5));
 }
 
-TEST_F(Watch, AFileThatComesIntoBeing) {
+TEST_F(Watch, SeesANewFile) {
     open();
     scratch_.write("cl/sub/missing.h", "here");
     ASSERT_TRUE(called(1));
     EXPECT_EQ(watch_->last_changed(), std::vector<std::string>{missing_});
 }
 
-TEST_F(Watch, TheTargetOfALink) {
+TEST_F(Watch, SeesTheTargetOfALink) {
     const std::string target = scratch_.write("elsewhere/real.h", "one");
     fs::create_symlink(target, missing_);
     open();
@@ -122,7 +122,7 @@ TEST_F(Watch, SameContentAndOtherFilesAreNoChange) {
     EXPECT_EQ(watch_->revision(), 0u);
 }
 
-TEST_F(Watch, EndsAtOnceAndCostsNothingWhileNothingHappens) {
+TEST_F(Watch, EndsAtOnceAndIdlesWithoutCpuTime) {
     open();
     EXPECT_TRUE(watch_->prompt()) << "inotify is not to be had here";
     const std::clock_t before = std::clock();  // processor time of all threads

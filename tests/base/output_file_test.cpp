@@ -43,7 +43,7 @@ void killed_after(const Work& work) {
 
 }  // namespace
 
-TEST(OutputFile, AppearsWithCommitAndReplacesWithItsRightsKept) {
+TEST(OutputFile, CommitReplacesTheFileAndKeepsItsRights) {
     const Scratch scratch;
     const std::string path = scratch.path("a.txt");
     {
@@ -118,13 +118,13 @@ TEST(OutputFile, LeftoversAreRemovedButNotFilesThatAreBeingWritten) {
     close(file);
 }
 
-TEST(OutputFile, ADeviceIsWrittenStraightAway) {
+TEST(OutputFile, ADeviceFileIsWrittenDirectly) {
     if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full";
     clarity::write_text_file("/dev/null", "gone");
     EXPECT_THROW(clarity::write_text_file("/dev/full", "no room"), clarity::Error);
 }
 
-TEST(OutputFile, WhatCannotBeWrittenIsSaidBeforeAnyWork) {
+TEST(OutputFile, UnwritablePathsAreRefusedBeforeAnyWork) {
     const Scratch scratch;
     const auto why = [](const std::string& path) {
         try {

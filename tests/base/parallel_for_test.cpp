@@ -84,7 +84,7 @@ TEST(ParallelFor, NestsWithoutMoreThreadsThanCores) {
     EXPECT_LE(most, static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
 }
 
-TEST(ParallelFor, GivesItsThreadsBack) {
+TEST(ParallelFor, ReleasesItsThreads) {
     if (std::thread::hardware_concurrency() < 2) GTEST_SKIP() << "one core";
     for (int round = 0; round < 100; ++round) clarity::parallel_for(64, [](uint32_t) {});
     std::mutex mutex;

@@ -24,7 +24,7 @@ TEST(Printable, KeepsValidUtf8AndShowsTheRest) {
     EXPECT_EQ(printable("\xff"), "\\xff");
 }
 
-TEST(Printable, PrintTextIsPrintf) {
+TEST(Printable, PrintTextFormatsLikePrintf) {
     testing::internal::CaptureStdout();
     clarity::print_text("%s %d\n", "\x1b[31m", 5);
     clarity::print_text("%s", "");

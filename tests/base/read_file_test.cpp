@@ -32,12 +32,12 @@ TEST(ReadFile, ReadsAllBytesUpToTheLimit) {
     EXPECT_TRUE(contains(why_not(scratch.write("d", std::string((1 << 20) + 1, 'x')), 1 << 20), "larger than 1 MiB"));
 }
 
-TEST(ReadFile, FilesOfProcSayZeroBytesButAreRead) {
+TEST(ReadFile, ReadsFilesOfProcThatClaimZeroBytes) {
     EXPECT_FALSE(clarity::read_file("/proc/self/status", 1 << 20, clarity::Exit::failed).empty());
     EXPECT_TRUE(contains(why_not("/proc/self/status", 10), "larger than 10 bytes"));
 }
 
-TEST(ReadFile, RefusesWhatIsNoRegularFileAtOnce) {
+TEST(ReadFile, RefusesOtherThanRegularFilesAtOnce) {
     const Scratch scratch;
     ASSERT_EQ(mkfifo(scratch.path("pipe").c_str(), 0600), 0);
     EXPECT_TRUE(contains(why_not(scratch.path("")), "is a folder"));

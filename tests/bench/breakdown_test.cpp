@@ -1,6 +1,6 @@
 // breakdown_test.cpp -- the parts of a frame: they add up to the frame, reduced programs trace the same rays, and leaf tests
 // which are done twice do not change the result.
-#include "bench/run/breakdown.hpp"
+#include "bench/cases/breakdown.hpp"
 
 #include <gtest/gtest.h>
 
@@ -101,7 +101,7 @@ TEST(FrameParts, BeginAsAFrameBegins) {
 }
 
 // The whole way from a scene to its records.
-TEST(Breakdown, OfAScene) {
+TEST(Breakdown, MeasuresTheFrameOfAScene) {
     Workbench& bench = Workbench::get();
     BenchRequest request;
     request.breakdown = true;

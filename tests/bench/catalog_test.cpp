@@ -48,7 +48,7 @@ Suite suite_of(const std::vector<std::string>& suites, const std::vector<std::st
     return make_suite(request, project(), Workbench::get().plugins());
 }
 
-TEST_F(Catalog, TheThesisIsThere) {
+TEST_F(Catalog, ListsTheSixScenesOfTheThesis) {
     const auto scenes = project().thesis();
     ASSERT_EQ(scenes.size(), 6u);
     for (const BenchScene& scene : scenes) {
@@ -58,7 +58,7 @@ TEST_F(Catalog, TheThesisIsThere) {
     }
 }
 
-TEST_F(Catalog, WhatIsMissingSaysWhere) {
+TEST_F(Catalog, MissingScenesNameTheirPath) {
     const BenchScene scene = project().project("thesis/7_nothing");
     EXPECT_NE(scene.missing.find("thesis/7_nothing"), std::string::npos) << scene.missing;
     EXPECT_NE(scene.missing.find("CLARITY_SCENES"), std::string::npos) << scene.missing;
@@ -67,7 +67,7 @@ TEST_F(Catalog, WhatIsMissingSaysWhere) {
     EXPECT_NE(none[0].missing.find("CLARITY_SHARED"), std::string::npos) << none[0].missing;
 }
 
-TEST_F(Catalog, CamerasAndModelsOfTheSharedFolder) {
+TEST_F(Catalog, ReadsCamerasAndModelsOfTheSharedFolder) {
     write("one.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     write("bench/cameras.json",
@@ -91,7 +91,7 @@ TEST_F(Catalog, CamerasAndModelsOfTheSharedFolder) {
     EXPECT_FLOAT_EQ(loaded.view.lights[0].position[1], 2);
 }
 
-TEST_F(Catalog, BrokenCamerasAreOneNote) {
+TEST_F(Catalog, ABrokenCameraFileGivesOneNote) {
     for (const char* text : {"", "[]", "{\"scenes\": {\"a\": {}}}", "{\"scenes\": {\"a\": {\"file\": 7}}}", "{\"scenes\":"}) {
         write("bench/cameras.json", text);
         const auto scenes = shared().shared();
@@ -129,7 +129,7 @@ TEST_F(Catalog, CompressedModelsAreUnpackedAndRemoved) {
     EXPECT_EQ(load_scene(Workbench::get().plugins(), scene, 1, ImportOptions{}, progress).scene->triangle_count(), 1u);
 }
 
-TEST(Suites, EachIsListedWithSoundSettings) {
+TEST(Suites, AllHaveValidSettings) {
     for (const std::string& name : suite_names()) {
         const Suite suite = suite_of({name});
         EXPECT_FALSE(suite.cases.empty()) << name;
@@ -168,7 +168,7 @@ TEST(Suites, TheThesisHasSixTestsOfFourStepsThenAndNow) {
     for (const auto& [scene, depths] : steps) EXPECT_EQ(depths, (std::set<int>{1, 2, 3, 4})) << scene;
 }
 
-TEST(Suites, TheCpuHasFramesOfPeersFromNearAndFar) {
+TEST(Suites, CpuHasBaselineFramesOfNearAndFarViews) {
     const Suite suite = suite_of({"cpu"}, {}, {"bvh2", "bvh8"});
     std::map<std::string, std::set<std::string>> measures;
     for (const BenchCase& c : suite.cases) {
@@ -188,7 +188,7 @@ TEST(Suites, TheCpuHasFramesOfPeersFromNearAndFar) {
     EXPECT_EQ(suite_of({"cpu"}).cases[0].variants.at(0).accel, "bvh8");
 }
 
-TEST_F(Catalog, ViewsAreOfWhatIsThere) {
+TEST_F(Catalog, MissingModelsOfViewsAreReported) {
     fs::create_directories(folder_ / "scenes/models");
     write("scenes/models/fandisk.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     size_t there = 0;
@@ -203,7 +203,7 @@ TEST_F(Catalog, ViewsAreOfWhatIsThere) {
     EXPECT_GE(shared().views().size(), 8u);
 }
 
-TEST(Suites, OnlySomeCases) {
+TEST(Suites, OnlyKeepsTheCasesThatMatch) {
     BenchRequest request;
     request.suites = {"quick"};
     request.only = {"skull/sh", "/4 steps"};
@@ -214,7 +214,7 @@ TEST(Suites, OnlySomeCases) {
     EXPECT_THROW(make_suite(request, project(), Workbench::get().plugins()), Error);
 }
 
-TEST(Suites, FilesReplaceASuitesScenesAndAccelsAreCompared) {
+TEST(Suites, FilesReplaceScenesAndAccelsBecomeVariants) {
     const Suite suite = suite_of({"accel"}, {"a.obj", "b.scene"}, {"bvh2,max_leaf=2", "bvh2,max_leaf=7"});
     ASSERT_EQ(suite.scenes.size(), 2u);
     EXPECT_EQ(suite.scenes[1].source.name, "b");
@@ -223,7 +223,7 @@ TEST(Suites, FilesReplaceASuitesScenesAndAccelsAreCompared) {
     EXPECT_THROW(suite_of({"fastest"}), Error);
 }
 
-TEST(Suites, WhatTheUserSetsHoldsUnlessTheCaseIsAboutIt) {
+TEST(Suites, UserSettingsHoldUnlessACaseSetsThem) {
     BenchRequest request;
     request.settings = {{"size", "64x48"}, {"depth", "9"}};
     const Settings s = variant_settings(Workbench::get().plugins(), request, {"x", "bvh2", {{"depth", "2"}}, false});

@@ -65,6 +65,15 @@ TEST_F(BenchCommand, ListsEverySuiteWithoutADevice) {
     EXPECT_EQ(bench({"large", "--list"}).out.find("near_100M/"), std::string::npos);
 }
 
+TEST_F(BenchCommand, BothNamesOfTheOptionLeaveBaselinesOut) {
+    EXPECT_NE(bench({"quick", file("tetrahedron.obj"), "--list"}).out.find("| peers "), std::string::npos);
+    for (const char* option : {"--no-peers", "--no-baselines"}) {
+        const ProgramResult result = bench({"quick", file("tetrahedron.obj"), "--list", option});
+        EXPECT_EQ(result.exit_code, 0) << result.err;
+        EXPECT_EQ(result.out.find("| peers "), std::string::npos) << option;
+    }
+}
+
 TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
     const ProgramResult result = quick({file("tiny.scene"), "--accel", "bvh2", "--accel", "bvh2,max_leaf=1", "--json",
                                         file("a.json"), "--csv", file("a.csv"), "--report", file("page")});
@@ -113,7 +122,7 @@ TEST_F(BenchCommand, MeasuresASceneAndWritesEverything) {
     EXPECT_EQ(Json::parse(joined.out).size(), 2 * list.size());
 }
 
-TEST_F(BenchCommand, PeersTakePartWhereTheSceneIsTriangles) {
+TEST_F(BenchCommand, BaselinesAreMeasuredIfTheSceneIsOnlyTriangles) {
     const ProgramResult result = quick({file("tetrahedron.obj"), "--accel", "bvh2", "--json", file("a.json")});
     ASSERT_EQ(result.exit_code, 0) << result.err;
     size_t baselines = 0, ours = 0;
@@ -148,7 +157,7 @@ TEST_F(BenchCommand, DevicesShareAPicture) {
     EXPECT_NE(result.out.find("x the first"), std::string::npos) << result.out;
 }
 
-TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {
+TEST_F(BenchCommand, UnsteadyRowsAreRefusedWithAMessage) {
     const ProgramResult result = bench({file("tetrahedron.obj"), "--accel", "bvh2", "--no-peers", "--size", "64x48",
                                         "--time-limit", "60", "--max-spread", "0", "--json", file("a.json")});
     EXPECT_EQ(result.exit_code, 1) << result.out;
@@ -163,7 +172,7 @@ TEST_F(BenchCommand, UnsteadyRowsAreRefusedAndSaidSo) {
     EXPECT_TRUE(refused);
 }
 
-TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
+TEST_F(BenchCommand, AnInterruptKeepsCompleteRows) {
     RunOptions options;
     options.signal = SIGINT;
     options.signal_when = "2/7 accel";
@@ -176,7 +185,7 @@ TEST_F(BenchCommand, AnInterruptKeepsWhatIsComplete) {
     EXPECT_LT(list.size(), 14u);
 }
 
-TEST_F(BenchCommand, WhatIsNotUnderstoodIsAUsageError) {
+TEST_F(BenchCommand, UnknownOptionsAndValuesAreUsageErrors) {
     std::ofstream(file("broken.json")) << "[{\"status\": 3}]";
     const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
         {{}, "name a suite"},

@@ -77,14 +77,14 @@ void expect_same(const Both& both, const std::string& what) {
     EXPECT_NEAR(double(both.counts.secondary), double(both.stats.secondary), 0.002 * double(both.stats.secondary) + 1) << what;
 }
 
-#define PEERS_OR_SKIP()                                                       \
+#define BASELINES_OR_SKIP()                                                   \
     {                                                                         \
         std::string why;                                                      \
         if (baseline_kinds(&why).empty()) GTEST_SKIP() << "SKIPPED: " << why; \
     }
 
-TEST(PeerFrame, IsOurPicture) {
-    PEERS_OR_SKIP()
+TEST(BaselineFrame, EqualsOurPicture) {
+    BASELINES_OR_SKIP()
     for (const bool smooth : {false, true}) {
         const ScenePtr scene = shared_scene(ball_and_ring(smooth));
         for (const char* mode : {"packet16", "packet16 mixed"}) {
@@ -101,8 +101,8 @@ TEST(PeerFrame, IsOurPicture) {
     }
 }
 
-TEST(PeerFrame, OfALightWithoutPlaceAndOfAMovedMesh) {
-    PEERS_OR_SKIP()
+TEST(BaselineFrame, EqualsOursWithADirectionalLightAndATransformedMesh) {
+    BASELINES_OR_SKIP()
     Scene moved = ball_and_ring(true);
     moved.instances[0].world_from_object = {1.5f, 0, 0, 0.2f, 0, 0, -0.8f, 0.1f, 0, 1, 0, -0.3f};
     const ScenePtr scene = shared_scene(std::move(moved));
@@ -115,8 +115,8 @@ TEST(PeerFrame, OfALightWithoutPlaceAndOfAMovedMesh) {
 }
 
 // Checks the comparison itself: it must find a difference where there is one.
-TEST(PeerFrame, APictureOfAnotherLightDiffers) {
-    PEERS_OR_SKIP()
+TEST(BaselineFrame, DiffersUnderAnotherLight) {
+    BASELINES_OR_SKIP()
     const ScenePtr scene = shared_scene(ball_and_ring(false));
     const Both both = render(scene, view_of(*scene), settings_of(64, 64, 3), "packet16");
     View other = view_of(*scene);

@@ -45,14 +45,14 @@ TEST(Statistics, PercentilesByInterpolation) {
     EXPECT_DOUBLE_EQ(summarize({1, 2}).p95, 1.95);
 }
 
-TEST(Statistics, OddCountHasItsMiddleAndOutliersDoNotMatter) {
+TEST(Statistics, MedianIgnoresOutliers) {
     const Summary s = summarize({10, 11, 12, 13, 1000});
     EXPECT_DOUBLE_EQ(s.median, 12);
     EXPECT_DOUBLE_EQ(s.q1, 11);
     EXPECT_DOUBLE_EQ(s.q3, 13);
 }
 
-TEST(Statistics, NothingAndOne) {
+TEST(Statistics, NoSampleAndOneSample) {
     EXPECT_EQ(summarize({}).n, 0u);
     EXPECT_DOUBLE_EQ(summarize({}).spread(), 0);
     const Summary one = summarize({7});
@@ -60,7 +60,7 @@ TEST(Statistics, NothingAndOne) {
     EXPECT_DOUBLE_EQ(one.spread(), 0);
 }
 
-TEST(Measure, TakesTurns) {
+TEST(Measure, InterleavesTheContenders) {
     std::string order;
     MeasureRules rules;
     rules.min_rounds = rules.max_rounds = 5;
@@ -83,7 +83,7 @@ TEST(Measure, SteadyContendersEndEarly) {
     EXPECT_DOUBLE_EQ(measured[1].time_ms.median, 8);
 }
 
-TEST(Measure, TheUnsteadyIsRefusedAndTheSteadyIsNot) {
+TEST(Measure, OnlyTheUnsteadyContenderIsRefused) {
     MeasureRules rules;
     rules.max_rounds = 20;
     Progress progress;
@@ -95,7 +95,7 @@ TEST(Measure, TheUnsteadyIsRefusedAndTheSteadyIsNot) {
     EXPECT_GT(measured[1].spread(), rules.max_spread);
 }
 
-TEST(Measure, ADisturbedFirstAttemptIsForgotten) {
+TEST(Measure, ADisturbedAttemptIsRepeated) {
     MeasureRules rules;
     rules.max_rounds = 20;
     int taken = 0;
@@ -110,7 +110,7 @@ TEST(Measure, ADisturbedFirstAttemptIsForgotten) {
     EXPECT_DOUBLE_EQ(measured[0].time_ms.min, 10);
 }
 
-TEST(Measure, AFailureIsThatRowsAlone) {
+TEST(Measure, AFailureAffectsOnlyItsOwnContender) {
     const Contender broken{"broken", []() -> Sample { throw Error(Exit::failed, "no memory on the device"); }};
     Progress progress;
     const auto measured = measure_interleaved({broken, fake("A", {1})}, MeasureRules{}, progress);
@@ -119,7 +119,7 @@ TEST(Measure, AFailureIsThatRowsAlone) {
     EXPECT_EQ(measured[1].status, RowStatus::ok);
 }
 
-TEST(Measure, WhatDoesNotFitTheBudgetIsSkipped) {
+TEST(Measure, AContenderBeyondTheBudgetIsSkipped) {
     const Contender slow{"slow", [] {
                              std::this_thread::sleep_for(std::chrono::milliseconds(60));
                              return Sample{60, 60};
@@ -133,7 +133,7 @@ TEST(Measure, WhatDoesNotFitTheBudgetIsSkipped) {
     EXPECT_EQ(measured[1].status, RowStatus::ok);
 }
 
-TEST(Measure, ACancelEndsIt) {
+TEST(Measure, CancelThrows) {
     Progress progress;
     int taken = 0;
     const Contender contender{"A", [&] {
@@ -144,7 +144,7 @@ TEST(Measure, ACancelEndsIt) {
     EXPECT_EQ(taken, 4);
 }
 
-TEST(Measure, ARowThatRunsOutOfMemoryFailsAlone) {
+TEST(Measure, RunningOutOfMemoryAffectsOnlyItsOwnContender) {
     const Contender greedy{"greedy", []() -> Sample { throw std::bad_alloc(); }};
     Progress progress;
     const auto measured = measure_interleaved({greedy, fake("A", {1})}, MeasureRules{}, progress);
@@ -157,20 +157,20 @@ TEST(Measure, ARowThatRunsOutOfMemoryFailsAlone) {
 // time of the n-th run, while the clock rises.
 Contender tuned(
     std::vector<double> ms, std::function<double(unsigned)> slowdown = [](unsigned) { return 1.0; }) {
-    const auto way = std::make_shared<Autotuner>(static_cast<unsigned>(ms.size()));
+    const auto tuner = std::make_shared<Autotuner>(static_cast<unsigned>(ms.size()));
     const auto runs = std::make_shared<unsigned>(0);
     return {"tuned", [=] {
-                Sample take;
-                take.way = way->variant();
-                take.trial = way->trying();
-                take.time_ms = take.wall_ms = ms[take.way] * slowdown((*runs)++);
-                way->took(take.time_ms);
-                take.settled = way->settled();
-                return take;
+                Sample sample;
+                sample.variant = tuner->variant();
+                sample.trial = tuner->trying();
+                sample.time_ms = sample.wall_ms = ms[sample.variant] * slowdown((*runs)++);
+                tuner->took(sample.time_ms);
+                sample.settled = tuner->settled();
+                return sample;
             }};
 }
 
-TEST(Measure, TriesOfSlowWaysAreNoSamples) {
+TEST(Measure, TrialsOfVariantsAreNotSamples) {
     MeasureRules rules;
     rules.few_rounds = rules.min_rounds = rules.max_rounds = 3;
     Progress progress;
@@ -181,7 +181,7 @@ TEST(Measure, TriesOfSlowWaysAreNoSamples) {
     EXPECT_DOUBLE_EQ(measured[1].time_ms.median, 3);
 }
 
-TEST(Measure, AChoiceMadeWhileTheClockRoseIsMadeAgain) {
+TEST(Measure, AVariantChosenWhileTheClockRoseIsReviewed) {
     MeasureRules rules;
     rules.few_rounds = rules.min_rounds = rules.max_rounds = 3;
     Progress progress;
@@ -192,7 +192,7 @@ TEST(Measure, AChoiceMadeWhileTheClockRoseIsMadeAgain) {
     EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);
 }
 
-TEST(Measure, SamplesOfAWayThatWasGivenUpAreDropped) {
+TEST(Measure, SamplesOfAnAbandonedVariantAreDropped) {
     MeasureRules rules;
     rules.few_rounds = 3;
     rules.min_rounds = rules.max_rounds = 9;
@@ -202,9 +202,9 @@ TEST(Measure, SamplesOfAWayThatWasGivenUpAreDropped) {
     const Contender base = tuned({1, 1.5}, late);
     unsigned runs = 0;
     const Contender contender{"A", [&] {
-                                  Sample take = base.once();
-                                  take.way = ++runs > 12 ? 7 : 3;  // the variant which the second tuning chooses
-                                  return take;
+                                  Sample sample = base.once();
+                                  sample.variant = ++runs > 12 ? 7 : 3;  // the variant which the second tuning chooses
+                                  return sample;
                               }};
     const auto measured = measure_interleaved({contender}, rules, progress);
     EXPECT_DOUBLE_EQ(measured[0].time_ms.max, 1);

@@ -5,7 +5,7 @@
 #include <set>
 
 #include "bench/baselines/baseline.hpp"
-#include "bench/run/analysis.hpp"
+#include "bench/cases/analysis.hpp"
 #include "bench/suites/ray_sets.hpp"
 #include "render/accel/accel_choice.hpp"
 #include "support/generated.hpp"
@@ -25,7 +25,7 @@ Vec of(const float* p) {
     return {p[0], p[1], p[2]};
 }
 
-TEST(RayOrder, EveryPixelOnceAndPacketsAreBlocks) {
+TEST(RayOrder, CoversEveryPixelOnceInBlocksOfPackets) {
     const int w = 37, h = 21;
     const std::vector<rt_u32> order = ray_order(w, h);
     EXPECT_EQ(order.size() % 256, 0u);
@@ -58,7 +58,7 @@ TEST(RayOrder, EveryPixelOnceAndPacketsAreBlocks) {
 }
 
 // dir(x,y) = normalize(w + (2(x+.5)/W-1) tan(vfov/2) W/H u + (1-2(y+.5)/H) tan(vfov/2) v), y = 0 on top.
-TEST(CameraRays, AreThoseOfTheConvention) {
+TEST(CameraRays, FollowTheCameraConvention) {
     Camera camera;
     camera.eye = {0, 0, 5};
     camera.target = {0, 0, 0};
@@ -125,7 +125,7 @@ struct Floor {
     }
 };
 
-TEST(SecondaryRays, StartAboveTheSurfaceAndGoWhereTheyShould) {
+TEST(SecondaryRays, StartAboveTheSurfaceInTheRightDirection) {
     const Floor floor;
     const auto sets = secondary_rays(floor.scene, floor.light, floor.primary, floor.hits, Floor::kSize, Floor::kSize);
     ASSERT_EQ(sets.size(), 3u);
@@ -159,7 +159,7 @@ TEST(SecondaryRays, StartAboveTheSurfaceAndGoWhereTheyShould) {
     EXPECT_NEAR(up / double(hit_count), 2.0 / 3, 0.01);
 }
 
-TEST(SecondaryRays, InactiveOnesLookLikeTheirNeighbours) {
+TEST(SecondaryRays, InactiveRaysResembleTheirNeighbours) {
     const Floor floor;
     for (const RaySet& set : secondary_rays(floor.scene, floor.light, floor.primary, floor.hits, Floor::kSize, Floor::kSize))
         for (size_t first = 0; first < set.rays.size(); first += 16) {
@@ -202,7 +202,7 @@ TEST(SurfaceNormals, FaceTheRayOnEveryKindOfPrimitive) {
 }
 
 // The thesis's method for analytic spheres finds the same hits as trees.
-TEST(NaiveMode, HitsTheSame) {
+TEST(NaiveMode, GivesTheSameHits) {
     const ScenePtr scene = load_scene(source_file("scenes/spheres21.scene"));
     const RaySet primary = camera_rays(make_view(*scene, 1).camera, 96, 96);
     Settings tree, lone;
@@ -220,7 +220,7 @@ TEST(NaiveMode, HitsTheSame) {
     EXPECT_GT(spheres, 500u);
 }
 
-TEST(Analysis, OfTwoPacketsByHand) {
+TEST(Analysis, TwoPacketsMatchFiguresComputedByHand) {
     // Four lanes. First packet: all rays active, 10 nodes, 5 tests, 30 of the 40 lanes intersect the node. Second packet: one
     // ray active, 4 nodes, 2 tests, 4 lanes intersect.
     std::vector<rt_ray> rays(8);
@@ -242,7 +242,7 @@ TEST(Analysis, OfTwoPacketsByHand) {
     EXPECT_DOUBLE_EQ(a.warp_alive, 0);
 }
 
-TEST(Analysis, OneLaneHasWarpsAndSharesNothing) {
+TEST(Analysis, OneLaneHasWarpFiguresAndNoSharedBytes) {
     std::vector<rt_ray> rays(64);
     std::vector<rt_hit> hits(64);
     for (size_t i = 0; i < 64; ++i) {
@@ -256,7 +256,7 @@ TEST(Analysis, OneLaneHasWarpsAndSharesNothing) {
 }
 
 // The baselines' hits are ours in every mode; otherwise comparing times would mean nothing.
-TEST(Peers, HitWhatWeHit) {
+TEST(Baselines, GiveTheSameHitsAsOurs) {
     std::string why;
     const std::vector<BaselineKind> kinds = baseline_kinds(&why);
     if (kinds.empty()) GTEST_SKIP() << "SKIPPED: " << why;

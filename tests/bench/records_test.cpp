@@ -98,7 +98,7 @@ BenchReport sample() {
     return report;
 }
 
-TEST(Json, IsAListOfRecordsWithTheContractsKeys) {
+TEST(Json, IsAListOfRecordsWithTheDocumentedKeys) {
     const Json list = Json::parse(bench_json(sample()));
     ASSERT_TRUE(list.is_array());
     ASSERT_EQ(list.size(), 5u);
@@ -116,12 +116,12 @@ TEST(Json, IsAListOfRecordsWithTheContractsKeys) {
     EXPECT_EQ(list[0]["run"]["clock_mhz"]["before"], 2600.5);
 }
 
-TEST(Json, SurvivesBeingReadAndWritten) {
+TEST(Json, ReadAndWrittenAgainIsUnchanged) {
     const std::string once = bench_json(sample());
     EXPECT_EQ(bench_json(read_bench_json(once)), once);
 }
 
-TEST(Json, RunsOfJoinedListsAreKeptApart) {
+TEST(Json, RunsOfJoinedFilesStaySeparate) {
     BenchReport report = sample();
     BenchRun other = report.run;
     other.host_cpu = "another machine";
@@ -134,7 +134,7 @@ TEST(Json, RunsOfJoinedListsAreKeptApart) {
     EXPECT_EQ(read.run_of(read.records[2]).host_cpu, "a processor");
 }
 
-TEST(Json, WhatIsRefusedHasNoFigures) {
+TEST(Json, RefusedRecordsHaveNoFigures) {
     const Json refused = Json::parse(bench_json(sample()))[4];
     EXPECT_EQ(refused["status"], "refused");
     EXPECT_EQ(refused["why"], "spreads over 40 %");
@@ -143,7 +143,7 @@ TEST(Json, WhatIsRefusedHasNoFigures) {
     for (const char* key : {"fps", "mrays_per_s", "rays", "analysis", "hits"}) EXPECT_TRUE(refused[key].is_null()) << key;
 }
 
-TEST(Json, BadFilesAreRefusedWithTheirRecord) {
+TEST(Json, BadFilesAreRefusedAndTheRecordIsNamed) {
     for (const char* text :
          {"", "{}", "[1]", "[{\"status\": \"ok\"}, {\"status\": \"splendid\"}]", "[{\"status\": \"ok\", \"lanes\": \"x\"}]",
           "[{\"status\": \"ok\", \"packet\": \"4\"}]", "[[]]", "null", "[{\"status\":"}) {
@@ -189,7 +189,7 @@ std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
     return rows;
 }
 
-TEST(Csv, HasOneValueAColumnAndAgreesWithJson) {
+TEST(Csv, HasOneValuePerColumnAndAgreesWithJson) {
     const BenchReport report = sample();
     const auto rows = parse_csv(bench_csv(report));
     const Json list = Json::parse(bench_json(report));
@@ -211,7 +211,7 @@ TEST(Csv, HasOneValueAColumnAndAgreesWithJson) {
     for (const std::string& column : rows[0]) EXPECT_EQ(std::count(rows[0].begin(), rows[0].end(), column), 1) << column;
 }
 
-TEST(Table, FitsATerminalAndShowsWhatCounts) {
+TEST(Table, FitsATerminalAndShowsTheFigures) {
     BenchReport report = sample();
     report.notes = {"something was left out"};
     report.records.push_back(frame_record("a_scene_with_a_name_that_no_terminal_is_wide_enough_for_in_full", "now", 1e-3));
@@ -229,7 +229,7 @@ TEST(Table, FitsATerminalAndShowsWhatCounts) {
     EXPECT_NE(text.find("55.5"), std::string::npos) << text;
 }
 
-TEST(Table, UnsteadyRowsOfACaseAreTogetherWithTheirSpreads) {
+TEST(Table, ListsUnsteadyRowsOfACaseTogetherWithTheirSpreads) {
     BenchReport report = sample();
     for (int i = 0; i < 12; ++i) {
         BenchRecord wild = ray_record();
@@ -245,13 +245,13 @@ TEST(Table, UnsteadyRowsOfACaseAreTogetherWithTheirSpreads) {
     for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 120u) << line;
 }
 
-TEST(Table, OfNothingIsNothing) {
+TEST(Table, AnEmptyReportGivesEmptyOutput) {
     EXPECT_EQ(bench_table(BenchReport{}), "");
     EXPECT_EQ(bench_json(BenchReport{}), "[]\n");
     EXPECT_TRUE(read_bench_json("[]").records.empty());
 }
 
-TEST(Report, RefusedAndFailedRowsAreNotOkSkippedOnesAre) {
+TEST(Report, RefusedAndFailedRowsAreNotOkButSkippedRowsAre) {
     BenchReport report;
     EXPECT_TRUE(all_ok(report));
     report.records.resize(1);
@@ -307,7 +307,7 @@ TEST(Json, RecordsOfEarlierVersionsLoad) {
     EXPECT_EQ(bench_csv(report).find("nan"), std::string::npos);
 }
 
-TEST(Json, PercentilesHaveTheirUsualNamesAndTheOldOne) {
+TEST(Json, PercentilesAreP50P95P99AndTheMedianKeyStays) {
     BenchReport report = sample();
     report.records[0].time_ms = summarize({1, 2, 3, 4, 5});
     const Json time = Json::parse(bench_json(report))[0]["time_ms"];

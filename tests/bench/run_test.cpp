@@ -37,7 +37,7 @@ class Run : public testing::Test {
     BenchOptions options_;
 };
 
-TEST_F(Run, TellsEachRowAtOnce) {
+TEST_F(Run, ReportsEachRowAtOnce) {
     std::vector<size_t> counts;
     options_.on_row = [&](const BenchReport& report) { counts.push_back(report.records.size()); };
     Progress progress;

@@ -30,7 +30,7 @@ BenchRecord row(const std::string& scene, const std::string& measure, const std:
     return r;
 }
 
-TEST(Speedup, IsByTheFastestPeerThatWasMeasured) {
+TEST(Speedup, ComparesWithTheFastestMeasuredBaseline) {
     std::vector<BenchRecord> rows = {
         row("a", "shadow", "bvh2", "", 30), row("a", "shadow", "bvh8", "", 10), row("a", "shadow", "", "embree single high", 5),
         row("a", "shadow", "", "embree packet16 high", 20), row("a", "shadow", "", "embree packet8 high", 99)};
@@ -42,7 +42,7 @@ TEST(Speedup, IsByTheFastestPeerThatWasMeasured) {
     for (size_t i = 2; i < rows.size(); ++i) EXPECT_TRUE(rows[i].speedup.baseline.empty());
 }
 
-TEST(Speedup, ABuildIsByTheMediumOneAndHasBytes) {
+TEST(Speedup, ComparesBuildsWithTheMediumQualityAndComparesBytes) {
     std::vector<BenchRecord> rows = {row("a", "build", "bvh2", "", 3), row("a", "build", "", "embree low", 20),
                                      row("a", "build", "", "embree medium", 4)};
     rows[0].accel_bytes = 50;
@@ -53,7 +53,7 @@ TEST(Speedup, ABuildIsByTheMediumOneAndHasBytes) {
     EXPECT_DOUBLE_EQ(rows[0].speedup.bytes_ratio, 0.5);
 }
 
-TEST(Speedup, ABuildIsByAPeersOfItsKind) {
+TEST(Speedup, ComparesABuildWithTheBaselineBuildOfLikeQuality) {
     std::vector<BenchRecord> rows = {row("a", "build", "sorted", "", 30),       row("a", "build", "cut", "", 3),
                                      row("a", "build", "usual", "", 4),         row("a", "build", "", "embree low", 20),
                                      row("a", "build", "", "embree medium", 8), row("a", "build", "", "embree high", 2)};
@@ -69,7 +69,7 @@ TEST(Speedup, ABuildIsByAPeersOfItsKind) {
     EXPECT_DOUBLE_EQ(rows[2].speedup.ratio, 0.5);
 }
 
-TEST(Speedup, WithoutPeersThereIsNone) {
+TEST(Speedup, NoneWithoutAMeasuredBaseline) {
     std::vector<BenchRecord> rows = {row("a", "shadow", "bvh2", "", 30)};
     rows.push_back(row("a", "shadow", "", "embree single high", 5));
     rows[1].status = RowStatus::failed;
@@ -99,7 +99,7 @@ BenchReport three_scenes() {
     return report;
 }
 
-TEST(Speedup, MeansAreGeometricAndByStructure) {
+TEST(Speedup, MeansAreGeometricPerStructure) {
     const auto means = speedup_means(three_scenes());
     ASSERT_EQ(means.size(), 3u);
     EXPECT_EQ(means[0].variant, "bvh2");
@@ -112,7 +112,7 @@ TEST(Speedup, MeansAreGeometricAndByStructure) {
     EXPECT_DOUBLE_EQ(means[2].mean, 0.75);
 }
 
-TEST(Speedup, IsInTableAndRecordsAndComesBack) {
+TEST(Speedup, TableAndJsonShowItAndJsonReadsItBack) {
     const BenchReport report = three_scenes();
     const std::string table = speedup_table(report);
     for (const char* text : {"GEOMETRIC MEAN", "LEAST", "2.08", "4.16", "0.75", "three"})
@@ -154,7 +154,7 @@ TEST(Speedup, ADifferenceWithinTheSpreadIsAboutTheSame) {
     EXPECT_EQ(speedup_table(report).find(" same\n"), std::string::npos);
 }
 
-TEST(Speedup, TheSpreadOfAComparisonComesBack) {
+TEST(Speedup, JsonReadsTheSpreadBack) {
     BenchReport report;
     report.records = twice_on_a_busy_machine("primary", 1.23);
     EXPECT_NEAR(read_bench_json(bench_json(report)).records[0].speedup.spread, std::sqrt(2) * 0.25, 1e-5);
@@ -174,7 +174,7 @@ TEST(Speedup, MeansOfManyScenesHaveLessSpread) {
     EXPECT_TRUE(about_same(means[0].least, means[0].least_spread));
 }
 
-TEST(Speedup, FramesBesideThenAreAboutTheSameToo) {
+TEST(Speedup, FramesOfVariantsThenAndNowMayBeAboutTheSame) {
     BenchReport report;
     for (const char* variant : {"then", "now"}) {
         BenchRecord r = row("a", "frame", variant, "", 0);

@@ -22,7 +22,7 @@ TriangleMesh mesh_of(const Scene& scene) {
     return mesh;
 }
 
-TEST(Subdivide, ClosedStaysClosedAndCountsAreSquares) {
+TEST(Subdivide, ClosedMeshesStayClosedAndCountsGrowBySquares) {
     for (const TriangleMesh& base : {box(1), uv_sphere(2, 8, 5), torus(2, 0.5, 7, 5)})
         for (const unsigned n : {1u, 2u, 3u, 7u}) {
             const Scene fine = subdivide(scene_of(base), n);
@@ -42,7 +42,7 @@ TEST(Subdivide, EveryVertexIsUsedAndSet) {
     }
 }
 
-TEST(Subdivide, IsNoFlatCopy) {
+TEST(Subdivide, SurfacesAreDisplacedNotFlat) {
     // On a side of a box, triangles split without displacement would leave all points in its plane.
     const Scene fine = subdivide(scene_of(box(1)), 16);
     size_t off = 0;

@@ -23,7 +23,7 @@ size_t line_count(const std::string& text) {
 
 }  // namespace
 
-TEST(CommandLine, HelpAndVersionAreData) {
+TEST(CommandLine, HelpAndVersionGoToStdout) {
     const char* commands[] = {"", "view", "render", "info", "devices", "plugins"};
     for (const std::string command : commands) {
         std::vector<std::string> words;
@@ -167,7 +167,7 @@ TEST(CommandLine, EscapesInNamesAndMessagesAreShown) {
     EXPECT_NE(scratch.read("log.txt").find("\\x1b[31mb.scene"), std::string::npos);
 }
 
-TEST(CommandLine, ARefusedPluginThatWasNamedEndsIt) {
+TEST(CommandLine, ARefusedPluginNamedByTheUserIsAnError) {
     const Scratch scratch;
     const std::string scene = scratch.write("a.scene", kScene), library = scratch.write("bad.so", "no library");
     const ProgramResult result = run_program({"info", scene, "--plugin", library});
@@ -216,7 +216,7 @@ TEST(CommandLine, TheWindowWithoutADisplaySaysHowToRender) {
     }
 }
 
-TEST(CommandLine, TheWorkerAloneDoesNotHang) {
+TEST(CommandLine, TheImportWorkerAloneDoesNotHang) {
     RunOptions options;
     options.limit_s = 20;
     const ProgramResult result = run_program({"import-worker"}, options);

@@ -106,7 +106,7 @@ TEST_F(Devices, BrokenPlatformsDoNotHideWorkingOnes) {
     EXPECT_NE(run({"devices"}).out.find("default: "), std::string::npos);
 }
 
-TEST_F(Devices, AreChosenByNumberKindAndName) {
+TEST_F(Devices, CanBeChosenByNumberKindAndName) {
     if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
     const nlohmann::json list = nlohmann::json::parse(run({"devices", "--json"}).out);
     for (const auto& device : list["devices"]) {
@@ -126,7 +126,7 @@ TEST_F(Devices, AreChosenByNumberKindAndName) {
     }
 }
 
-TEST_F(Devices, SeveralMakeThePictureOfOne) {
+TEST_F(Devices, SeveralRenderThePictureOfOne) {
     if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
     const Rendered alone = render("cpu"), shared = render("cpu/2");
     if (shared.result.exit_code == 3) GTEST_SKIP() << "NOT TESTED: " << shared.result.err;
@@ -149,7 +149,7 @@ TEST_F(Devices, SeveralMakeThePictureOfOne) {
     EXPECT_TRUE(render(ids).picture == alone.picture) << "ids of the list are accepted by --device: " << ids;
 }
 
-TEST_F(Devices, OneThatIsMissingIsNamed) {
+TEST_F(Devices, AMissingDeviceIsNamed) {
     if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
     for (const char* words : {"0,99", "0,no such device", "0,gpu/2"}) {
         const Rendered rendered = render(words);
@@ -161,7 +161,7 @@ TEST_F(Devices, OneThatIsMissingIsNamed) {
     }
 }
 
-TEST_F(Devices, OneThatCannotBeOpenedIsAWarning) {
+TEST_F(Devices, ADeviceThatCannotBeOpenedIsAWarning) {
     if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
     const Rendered alone = render("0");
     add_fake("broken");
@@ -177,7 +177,7 @@ TEST_F(Devices, OneThatCannotBeOpenedIsAWarning) {
     EXPECT_NE(run({"devices"}).out.find("Broken device"), std::string::npos);
 }
 
-TEST_F(Devices, TheListSaysHowSeveralAreNamed) {
+TEST_F(Devices, TheListExplainsHowToNameSeveral) {
     if (!add_system_drivers()) GTEST_SKIP() << "no OpenCL device on this machine";
     const std::string text = run({"devices"}).out;
     EXPECT_EQ(text.find("0 = "), 0u) << text;

@@ -65,14 +65,14 @@ TEST(Info, SeveralFilesAreOneScene) {
     EXPECT_EQ(info["bounds"]["max"], nlohmann::json({6, 2, 2}));
 }
 
-TEST(Info, NothingWithAnEndHasNoBounds) {
+TEST(Info, ASceneOfPlanesHasNoBounds) {
     const Scratch scratch;
     const nlohmann::json info = info_of(scratch.write("a.scene", "plane normal 0 1 0 offset 0\n"));
     EXPECT_TRUE(info["bounds"].is_null());
     EXPECT_EQ(info["surface_area"], 0);
 }
 
-TEST(Info, PeopleReadWords) {
+TEST(Info, TextListsCountsWithoutZeros) {
     const Scratch scratch;
     const std::string file = scratch.write("cube.obj", kCube);
     const ProgramResult result = run_program({"info", file});
@@ -84,7 +84,7 @@ TEST(Info, PeopleReadWords) {
 }
 
 // A file gives the same scene in the worker process as in the program's own process.
-TEST(Info, InProcessSaysTheSame) {
+TEST(Info, ImportInProcessGivesTheSameScene) {
     const Scratch scratch;
     const std::string file = scratch.write("cube.obj", kCube);
     EXPECT_EQ(run_program({"info", "--json", file}).out, run_program({"info", "--json", "--import-in-process", file}).out);

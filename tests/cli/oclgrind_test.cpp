@@ -69,7 +69,7 @@ TEST_F(Oclgrind, EveryStructureIsClean) {
     EXPECT_EQ(report({"--accel", "bvh2", "--lanes", "4", "--tracer", "wavefront"}).substr(0, 2000), "");
 }
 
-TEST_F(Oclgrind, WouldTell) {
+TEST_F(Oclgrind, ReportsAnErrorMadeOnPurpose) {
     fs::copy(fs::path(CLARITY_SOURCE_DIR) / "cl", scratch_.path("cl"), fs::copy_options::recursive);
     std::string film = scratch_.read("cl/film.cl");
     const std::string store = "alpha, i, display)";

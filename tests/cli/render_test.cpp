@@ -117,7 +117,7 @@ TEST_F(Render, FramesAreNumbered) {
 }
 
 // `animate` gives a warning of the importer, and --time one of its own: each is printed once.
-TEST_F(Render, AWarningIsSaidOnce) {
+TEST_F(Render, AWarningIsPrintedOnce) {
     const auto count = [](const std::string& text, const std::string& part) {
         size_t found = 0;
         for (size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) ++found;
@@ -145,7 +145,7 @@ TEST_F(Render, CameraAndLightChangeThePicture) {
     EXPECT_EQ(scratch_.read("out/a.png"), scratch_.read("out/d.png"));
 }
 
-TEST_F(Render, QuietSaysNothingVerboseSaysMore) {
+TEST_F(Render, QuietPrintsNothingVerbosePrintsMore) {
     EXPECT_EQ(run_program(words({"-o", out("a.png"), "-q"})).err, "");
     const std::string normal = run_program(words({"-o", out("a.png")})).err;
     EXPECT_NE(normal.find(out("a.png")), std::string::npos) << normal;
@@ -183,7 +183,7 @@ TEST_F(Render, CtrlCLaterKeepsTheSamplesSoFar) {
     EXPECT_NE(result.err.find("of 65536 samples"), std::string::npos) << result.err;
 }
 
-TEST_F(Render, TheBarIsForTerminalsAndColourOnlyWithoutNoColor) {
+TEST_F(Render, ATerminalHasAProgressBarAndNoColorDisablesColours) {
     RunOptions options;
     options.terminal = true;
     options.environment = {{"TERM", "xterm"}, {"NO_COLOR", ""}};
@@ -200,7 +200,7 @@ TEST_F(Render, TheBarIsForTerminalsAndColourOnlyWithoutNoColor) {
     EXPECT_EQ(plain.err.find("\033[3"), std::string::npos) << plain.err;
 }
 
-TEST_F(Render, ABrokenKernelExits5WithTheCompilersWords) {
+TEST_F(Render, ABrokenKernelExits5WithTheCompilersMessage) {
     // A developer's copy of the kernels with an error in it.
     fs::copy(fs::path(CLARITY_SOURCE_DIR) / "cl", scratch_.path("cl"), fs::copy_options::recursive);
     scratch_.write("cl/shading/surface.h", "this is no OpenCL C;\n");

@@ -97,7 +97,7 @@ constexpr const char* kWaiting = "waiting for a change";
 
 }  // namespace
 
-TEST_F(Watch, EditMistakeRepairAndEnd) {
+TEST_F(Watch, RendersAgainAfterAnEditAMistakeAndItsRepair) {
     const std::string kernel = "cl/tracers/iterative.cl", sound = scratch_.read(kernel);
     const std::string store = "rt_put_pixels(frame, origin, sums, film);",
                       swapped = "for (uint i = 0; i < RT_MAX_PIXELS; ++i) sums[i] = sums[i].zyxw;\n" + store;
@@ -128,7 +128,7 @@ TEST_F(Watch, EditMistakeRepairAndEnd) {
     EXPECT_EQ(watcher.interrupt(), 0) << watcher.said();
 }
 
-TEST_F(Watch, WrongFromTheStartAndEndedSo) {
+TEST_F(Watch, StartsWithABrokenSceneAndExitsWithTheLastError) {
     scratch_.write("a.scene", "sphere of nothing\n");
     Watcher watcher(words(), scratch_.path("cl"), scratch_.path("said"));
     ASSERT_TRUE(watcher.says(kWaiting)) << watcher.said();
@@ -141,7 +141,7 @@ TEST_F(Watch, WrongFromTheStartAndEndedSo) {
     EXPECT_EQ(watcher.interrupt(), 5) << "the last attempt failed: " << watcher.said();
 }
 
-TEST_F(Watch, ASaveEndsARenderThatItMakesUseless) {
+TEST_F(Watch, ASaveCancelsTheCurrentRender) {
     std::vector<std::string> slow = words();
     slow.insert(slow.end(), {"--spp", "65536", "--size", "256x192", "-v"});
     Watcher watcher(slow, scratch_.path("cl"), scratch_.path("said"));

@@ -106,7 +106,7 @@ ScenePtr shapes() {
     return scene;
 }
 
-TEST(Rays, RandomOnesOnShapes) {
+TEST(Rays, RandomRaysOnShapes) {
     const Oracle oracle(shapes());
     expect_everywhere(shapes(), oracle, random_rays(*shapes(), 20000, 1), 0);
 }
@@ -130,7 +130,7 @@ TEST(Rays, NoPrimitiveIsLostWhereDenormalsAreFlushed) {
 #endif
 
 // One lane and `portable`: the kernel variant for GPUs, tested on any device.
-TEST(Rays, AsGpusTraceThem) {
+TEST(Rays, OneLaneAndPortable) {
     for (const ScenePtr& scene : {shapes(), geometry_of(load_scene(source_file("scenes/primitives.scene")))}) {
         const Oracle oracle(scene);
         for (const std::string& accel : bench().accels())
@@ -138,14 +138,14 @@ TEST(Rays, AsGpusTraceThem) {
     }
 }
 
-TEST(Rays, RandomOnesOnEveryPrimitive) {
+TEST(Rays, RandomRaysOnEveryPrimitive) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Oracle oracle(scene);
     for (const std::string& accel : bench().accels())
         expect_as_oracle(scene, oracle, random_rays(*scene, 20000, 2), accel, 16, 0);
 }
 
-TEST(Rays, RandomOnesOnTheBunny) {
+TEST(Rays, RandomRaysOnTheBunny) {
     CLARITY_SHARED_OR_SKIP(file, "scenes/models/bunny.ply");
     const ScenePtr scene = geometry_of(load_scene(file));
     const Oracle oracle(scene);
@@ -153,7 +153,7 @@ TEST(Rays, RandomOnesOnTheBunny) {
         for (const int lanes : {1, 16}) expect_as_oracle(scene, oracle, random_rays(*scene, 200000, 3), accel, lanes, 2);
 }
 
-TEST(Rays, LimitsAreHonoured) {
+TEST(Rays, HitsAreWithinTheirInterval) {
     std::vector<rt_ray> rays = random_rays(*shapes(), 20000, 4);
     std::mt19937 random(5);
     std::uniform_real_distribution<float> t(0, 4);
@@ -167,7 +167,7 @@ TEST(Rays, LimitsAreHonoured) {
 
 // Rays from far away, where the coordinates of neighbouring surfaces agree in most digits. Half of them are aimed at the scene,
 // half pass it at any distance, up to a million times the size of a triangle.
-TEST(Rays, FromAfar) {
+TEST(Rays, FromFarAway) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Oracle oracle(scene);
     std::vector<rt_ray> rays = random_rays(*scene, 20000, 9);
@@ -233,7 +233,7 @@ TEST(Rays, AtCornersAndAlongFaces) {
 
 // Directions that are zero, NaN or infinite: every answer must come in time and be valid. Rays in the same packet must get the
 // same answers as without them.
-TEST(Rays, StrangeOnesHarmNobody) {
+TEST(Rays, ZeroNanAndInfiniteDirectionsDoNotDisturbOtherRays) {
     const float denormal = 1e-40f;
     const std::vector<rt_ray> strange = {
         ray_of({0, 0, 5}, {0, 0, 0}),
@@ -282,7 +282,7 @@ TEST(Rays, StrangeOnesHarmNobody) {
     }
 }
 
-TEST(Rays, NoneAndOne) {
+TEST(Rays, NoRayAndOneRay) {
     for (const std::string& accel : bench().accels()) {
         EXPECT_TRUE(bench().rays(shapes(), settings_of(accel, 16), {}, false).empty());
         const std::vector<rt_ray> seventeen(17, ray_of({0.1f, 0.2f, 5}, {0, 0, -1}));
@@ -296,7 +296,7 @@ TEST(Rays, NoneAndOne) {
     }
 }
 
-TEST(Rays, AnEmptySceneIsEmpty) {
+TEST(Rays, AnEmptySceneHasNoHits) {
     const ScenePtr empty = shared_scene(scene_of(TriangleMesh()));
     for (const std::string& accel : bench().accels())
         for (const bool any : {false, true})

@@ -28,7 +28,7 @@ class DeviceChoice : public ::testing::Test {
 
 }  // namespace
 
-TEST_F(DeviceChoice, OneByNumberIdKindAndName) {
+TEST_F(DeviceChoice, FindsOneByNumberIdKindAndName) {
     for (size_t i = 0; i < all_.size(); ++i) {
         EXPECT_EQ(ids(std::to_string(i)), all_[i].id());
         EXPECT_EQ(ids(all_[i].id()), all_[i].id());
@@ -37,7 +37,7 @@ TEST_F(DeviceChoice, OneByNumberIdKindAndName) {
     EXPECT_EQ(ids(all_[0].gpu ? "GPU" : "CPU"), all_[0].id());
 }
 
-TEST_F(DeviceChoice, SeveralEachOnce) {
+TEST_F(DeviceChoice, FindsSeveralEachOnce) {
     EXPECT_EQ(ids("all"), device_list_text(all_));
     EXPECT_EQ(ids("0,0," + all_[0].id()), all_[0].id());
     EXPECT_EQ(ids("0,all"), device_list_text(all_));
@@ -48,7 +48,7 @@ TEST_F(DeviceChoice, SeveralEachOnce) {
     }
 }
 
-TEST_F(DeviceChoice, PartsOfACpu) {
+TEST_F(DeviceChoice, DividesACpuIntoParts) {
     DeviceInfo cpu;
     for (const DeviceInfo& device : all_)
         if (device.cpu && cpu.name.empty()) cpu = device;
@@ -65,7 +65,7 @@ TEST_F(DeviceChoice, PartsOfACpu) {
     EXPECT_NE(refusal("cpu/4000").find("compute units"), std::string::npos) << refusal("cpu/4000");
 }
 
-TEST_F(DeviceChoice, NobodyIsNamedAndToldWhoThereIs) {
+TEST_F(DeviceChoice, AnUnknownDeviceIsAnErrorThatListsTheDevices) {
     for (const char* wrong : {"9:9", "0:", "999", "no such device", "0,99", "", "0,,0", ",", "0,no such device"}) {
         if (!*wrong) continue;  // an empty choice means the best device
         const std::string why = refusal(wrong);

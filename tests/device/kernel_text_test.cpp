@@ -51,7 +51,7 @@ class KernelText : public ::testing::Test {
     Environment environment_;
 };
 
-TEST_F(KernelText, OnDiskComesBeforeEmbedded) {
+TEST_F(KernelText, FilesOnDiskComeBeforeEmbeddedText) {
     const std::string embedded = kernel_text("tracers/camera.h");
     EXPECT_EQ(kernel_path("cl/tracers/camera.h"), "");
     from_disk();
@@ -68,7 +68,7 @@ TEST_F(KernelText, OnDiskComesBeforeEmbedded) {
     EXPECT_EQ(plugin_kernel_text(kPlugin, kAccel.traverse), "compiled");
 }
 
-TEST_F(KernelText, ARevisionForEachOtherText) {
+TEST_F(KernelText, RevisionGrowsWhenTheTextChanges) {
     from_disk();
     scratch_.write("cl/tracers/camera.h", "one");
     kernel_text("tracers/camera.h");
@@ -80,7 +80,7 @@ TEST_F(KernelText, ARevisionForEachOtherText) {
     EXPECT_EQ(kernel_text_revision(), before + 1);
 }
 
-TEST_F(KernelText, OtherStructsThanCompiledAreRefused) {
+TEST_F(KernelText, StructsThatDifferFromTheCompiledOnesAreRefused) {
     const std::string types = kernel_text("rt_types.h");
     from_disk();
     scratch_.write("cl/rt_types.h", types);
@@ -97,13 +97,13 @@ TEST_F(KernelText, OtherStructsThanCompiledAreRefused) {
     EXPECT_NE(said.find("build the plugin again"), std::string::npos) << said;
 }
 
-TEST_F(KernelText, AFolderThatIsMissingIsSaid) {
+TEST_F(KernelText, AMissingFolderIsAnError) {
     environment_.set("CLARITY_KERNEL_PATH", scratch_.path("nowhere"));
     const std::string said = why([] { kernel_text("tracers/camera.h"); });
     EXPECT_NE(said.find(scratch_.path("nowhere")), std::string::npos) << said;
 }
 
-TEST_F(KernelText, CandidatesAreAllThatMayDecide) {
+TEST_F(KernelText, CandidatesAreAllFilesThatMayBeUsed) {
     EXPECT_TRUE(kernel_candidates({&kPlugin}).empty());
     from_disk();
     const std::vector<std::string> all = kernel_candidates({&kPlugin});
@@ -162,7 +162,7 @@ TEST(KernelIncludes, OnlyWholeLinesCount) {
               "#line 1 \"f/a.h\"\n<a.h>\n#line 2 \"f/b.cl\"\n");
 }
 
-TEST_F(KernelText, FilesBesideAPluginsLibrary) {
+TEST_F(KernelText, CandidatesIncludeFilesBesideAPluginsLibrary) {
     environment_.set("CLARITY_KERNEL_PATH", "");
     const std::vector<std::string> all = kernel_candidates({&kPlugin});
     const std::string beside = (fs::read_symlink("/proc/self/exe").parent_path() / "watched.cl").string();
@@ -189,7 +189,7 @@ TEST(CompilerMessages, AreReadFromPoclAndClang) {
     EXPECT_EQ(clang.text, "cl/b.h:3:9: warning: unused: x\ncl/b.h:4:1: fatal error: no such: thing\n    x;\n    ^");
 }
 
-TEST(CompilerMessages, WithoutAPlaceOrAReason) {
+TEST(CompilerMessages, MayLackPlaceOrReason) {
     const CompilerLog bare = read_compiler_log("error: Invalid build option: -x\r\n");
     EXPECT_EQ(bare.first.file, "");
     EXPECT_EQ(bare.first.message, "Invalid build option: -x");

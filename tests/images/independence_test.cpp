@@ -73,7 +73,7 @@ TEST(Independence, TexturedShowpiece) {
 
 // Packets of camera rays that see nothing of the scene are filled without tracing. The test makes sure that no object at the
 // edge of a packet is lost.
-TEST(Independence, WhatPacketsHardlySee) {
+TEST(Independence, ObjectsAtTheEdgeOfAPacket) {
     auto bounded = std::make_shared<Scene>(*geometry_of(load_scene(source_file("scenes/primitives.scene"))));
     bounded->planes.clear();  // planes are visible nearly everywhere
     const ScenePtr scene = bounded;
@@ -137,7 +137,7 @@ TEST(Independence, OddSizes) {
 }
 
 // Samples of a picture are numbered, so it does not matter how they are divided among frames.
-TEST(Independence, SamplesDependOnTheirNumberAlone) {
+TEST(Independence, SamplesDependOnTheirIndexOnly) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const View view = make_view(*scene, 4.0f / 3);
     const auto device = std::make_shared<Device>(choose_device(""));

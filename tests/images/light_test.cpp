@@ -180,7 +180,7 @@ TEST(Shadow, NotFromBehindTheLamp) {
 }
 
 // No shadow acne: a surface does not shade itself, for every scale, place and angle.
-TEST(Shadow, NoneOfTheSurfaceItself) {
+TEST(Shadow, NoSurfaceShadowsItself) {
     for (const double scale : {1e-3, 1.0, 1e3})
         for (const double offset : {0.0, 10.0}) {
             TriangleMesh mesh = uv_sphere(1, 96, 64);

@@ -56,13 +56,13 @@ double lamp_truth(const Line& line, double share) {
     return mirrored < INFINITY && line.direction[1] < 0 ? share : 0;
 }
 
-TEST(Mirror, ShowsThingsAsFarBehindAsTheyAreBefore) {
+TEST(Mirror, ShowsObjectsAtTheirMirroredPlace) {
     const View view = lamp_view();
     expect_picture(
         trace(lamp_over_mirror(), view, 160, 120, 2), view, [](const Line& l) { return lamp_truth(l, 0.6); }, 1e-5, 15000);
 }
 
-TEST(Mirror, DepthOneShowsNone) {
+TEST(Mirror, DepthOneShowsNoReflection) {
     const View view = lamp_view();
     const Picture picture = trace(lamp_over_mirror(), view, 160, 120, 1);
     expect_picture(
@@ -88,7 +88,7 @@ TEST(Mirror, DepthCountsGenerations) {
     }
 }
 
-TEST(Mirror, OfAMeshReflectsLikeAPlane) {
+TEST(Mirror, AMeshReflectsLikeAPlane) {
     Scene flat = lamp_over_mirror(), mesh = lamp_over_mirror();
     mesh.planes.clear();
     TriangleMesh floor;
@@ -165,7 +165,7 @@ TEST(Glass, TotalInternalReflection) {
     EXPECT_GT(total, 500u);
 }
 
-TEST(Glass, TintsWhatPasses) {
+TEST(Glass, TintsTransmittedLight) {
     Scene scene = scene_of(TriangleMesh());
     rt_material tinted = glass(1.0f);  // no refraction, no reflection
     tinted.color[0] = 0.5f;
@@ -197,7 +197,7 @@ TEST(Glass, ABallInAnEvenlyBrightWorldIsInvisible) {
     expect_picture(trace(scene, view, 120, 90, 12), view, expected, 1e-3, 5000);
 }
 
-TEST(RayArrays, FullOnesDropAndCount) {
+TEST(RayArrays, FullArraysDropRaysAndCountThem) {
     Scene scene = scene_of(TriangleMesh());
     rt_material both = glass(1.5f);
     both.reflect = 0.3f;

@@ -70,7 +70,7 @@ TEST(Texture, RepeatsOutsideItsRange) {
         ASSERT_NEAR(shifted.image.pixels[i], plain.image.pixels[i], 1e-3) << i;
 }
 
-TEST(Texture, GoesWithTheMeshThatIsTurned) {
+TEST(Texture, RotatesWithTheMesh) {
     // A quarter turn about the square's centre, counter-clockwise: the top right corner moves to the top left.
     const Picture picture = trace(textured_square({0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, 0}), flat_view(), 64, 64, 1);
     expect_color(picture.at(15, 15), {0, 1, 0}, "top left");
@@ -79,7 +79,7 @@ TEST(Texture, GoesWithTheMeshThatIsTurned) {
     expect_color(picture.at(48, 48), {0, 0, 1}, "bottom right");
 }
 
-TEST(Texture, OnInstancesToo) {
+TEST(Texture, OnInstances) {
     Scene scene = textured_square();
     Instance second = scene.instances[0];
     second.world_from_object = {0, -1, 0, 2, 1, 0, 0, 0, 0, 0, 1, -1};  // rotated, and hidden behind the first

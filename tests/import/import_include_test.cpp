@@ -86,7 +86,7 @@ TEST_P(Include, cycles_and_depth_are_bounded) {
     EXPECT_EQ(import({path("d0.cltest")}).placed_triangle_count(), 1u) << "16 files deep is allowed";
 }
 
-TEST_P(Include, doubling_files_end_in_an_error_not_in_the_machine) {
+TEST_P(Include, files_that_double_their_parts_end_in_an_error) {
     file("e0.cltest", "triangles good 1");
     for (int i = 1; i < 15; ++i) {
         std::string text;

@@ -115,7 +115,7 @@ TEST(HostServices, CancelledOnlyAfterItWasTold) {
 struct Refusing : clarity::Progress {
     bool report(float) override { return false; }
 };
-TEST(HostServices, CancelledByAProgressThatAnswersNo) {
+TEST(HostServices, ProgressThatReturnsFalseCancels) {
     Refusing progress;
     EXPECT_EQ(
         outcome(progress,

@@ -60,7 +60,7 @@ TEST(Parameters, ReadsEachKind) {
     EXPECT_EQ(set("split", "half"), 1);
 }
 
-TEST(Parameters, ANameOfAChoiceGoesBeforeAnIndex) {
+TEST(Parameters, NamesOfChoicesComeBeforeIndices) {
     EXPECT_EQ(set("split", "1"), 2);
     EXPECT_EQ(set("split", "0"), 0);
 }
@@ -86,7 +86,7 @@ TEST(Parameters, AFailedSettingChangesNothing) {
     EXPECT_EQ(values, before);
 }
 
-TEST(Parameters, AnUnknownKeyListsThoseThatThereAre) {
+TEST(Parameters, AnUnknownKeyIsAnErrorThatListsTheKeys) {
     const std::string what = usage_error([] { set("leaf", "4"); });
     for (const char* word : {"bvh2", "'leaf'", "max_leaf", "cost", "packed", "split"})
         EXPECT_NE(what.find(word), std::string::npos) << what;

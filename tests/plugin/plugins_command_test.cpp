@@ -78,7 +78,7 @@ TEST_F(PluginsCommand, JsonSurvivesAPathThatIsNotUtf8) {
     EXPECT_NO_THROW({ const auto json = nlohmann::json::parse(output(true)); });
 }
 
-TEST_F(PluginsCommand, TextSaysTheSame) {
+TEST_F(PluginsCommand, TextHasTheContentOfJson) {
     const std::string text = output(false);
     for (const char* words :
          {"accel     sound  (A sound plugin, 1.0)", "max_leaf=4", "primitives in a leaf, at most", "1 to 16", "needs a rebuild",

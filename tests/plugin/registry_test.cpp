@@ -87,13 +87,13 @@ TEST_F(Registry, FindsByKindAndId) {
     EXPECT_EQ(std::count(ids.begin(), ids.end(), "sound"), 1);
 }
 
-TEST_F(Registry, FoldersMayBeLaidOutAsTheBuilds) {
+TEST_F(Registry, FindsPluginsInSubfoldersByKind) {
     copy(kSound, "tree/accel/sound.so");
     environment_.set("CLARITY_PLUGIN_PATH", scratch_.path("tree"));
     EXPECT_EQ(ours(PluginRegistry::discover()).size(), 1u);
 }
 
-TEST_F(Registry, OnlyLibrariesAreLookedAt) {
+TEST_F(Registry, IgnoresOtherFilesThanLibraries) {
     scratch_.write("one/readme.txt", "text");
     scratch_.write("one/sound.so.bak", "text");
     fs::create_directories(scratch_.path("one/deeper"));
@@ -147,7 +147,7 @@ TEST_F(Registry, ABrokenSymlinkIsRefusedAndNotFatal) {
 }
 
 // As in PATH, an empty element could mean the working directory. Nobody expects code to be run from there.
-TEST_F(Registry, NeverTheWorkingDirectory) {
+TEST_F(Registry, NeverSearchesTheWorkingDirectory) {
     copy(kSound, "here/sound.so");
     const fs::path before = fs::current_path();
     fs::current_path(scratch_.path("here"));
@@ -181,19 +181,19 @@ class ImporterChoice : public Registry {
     PluginRegistry registry_;
 };
 
-TEST_F(ImporterChoice, ByExtensionWhateverItsCase) {
+TEST_F(ImporterChoice, ByExtensionInUpperOrLowerCase) {
     EXPECT_EQ(choice(scratch_.write("a.shape", "")), "by_name");
     EXPECT_EQ(choice(scratch_.write("b.SHAPE", "text")), "by_name");
     EXPECT_EQ(choice(scratch_.path("missing.shape")), "by_name") << "the importer says best what is wrong with the file";
 }
 
-TEST_F(ImporterChoice, ContentGoesBeforeTheName) {
+TEST_F(ImporterChoice, ContentComesBeforeTheExtension) {
     EXPECT_EQ(choice(scratch_.write("c.shape", "MAGIC and more")), "by_content");
     EXPECT_EQ(choice(scratch_.write("d.unknown", "MAGIC and more")), "by_content");
     EXPECT_EQ(choice(scratch_.write("noextension", "MAGIC")), "by_content");
 }
 
-TEST_F(ImporterChoice, NobodyTakesWhatNobodyKnows) {
+TEST_F(ImporterChoice, NoneForUnknownFiles) {
     EXPECT_EQ(choice(scratch_.write("e.unknown", "text")), "none");
     EXPECT_EQ(choice(scratch_.write("shape", "text")), "none") << "a name is no extension";
     EXPECT_EQ(choice(scratch_.write("f.unknown", "MAYBE")), "none") << "too little certainty for a file of another name";
@@ -201,7 +201,7 @@ TEST_F(ImporterChoice, NobodyTakesWhatNobodyKnows) {
     EXPECT_EQ(choice(scratch_.path("")), "none");
 }
 
-TEST_F(ImporterChoice, AProbeThatThrowsOnlyLosesItsSay) {
+TEST_F(ImporterChoice, AProbeThatThrowsIsIgnored) {
     EXPECT_EQ(choice(scratch_.write("g.shape", "THROW")), "by_name");
     EXPECT_EQ(choice(scratch_.write("g.magic", "THROW")), "by_content");
     EXPECT_EQ(choice(scratch_.write("g.unknown", "THROW")), "none");

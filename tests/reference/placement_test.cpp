@@ -30,7 +30,7 @@ Affine placed(double sx, double sy, double sz) {
 
 class Placements : public testing::TestWithParam<const char*> {};
 
-TEST_P(Placements, LookAsTheReferenceSays) {
+TEST_P(Placements, EqualTheReferencePicture) {
     const ScenePtr model = load_scene(source_file(std::string("scenes/thesis/models/") + GetParam()));
     const Placement placements[] = {{"turned", placed(1, 1, 1)},
                                     {"stretched", placed(.6, 1.3, .8)},

@@ -33,7 +33,7 @@ std::set<rt_u32> used_materials(const Scene& scene) {
     return used;
 }
 
-TEST(ThesisCounts, HoldWhatTheThesisSays) {
+TEST(ThesisCounts, EqualThoseOfTheThesis) {
     for (const Expected& expected : kExpected) {
         const ScenePtr scene = load_scene(source_file(std::string("scenes/thesis/") + expected.scene + ".scene"));
         EXPECT_EQ(scene->placed_triangle_count(), expected.triangles) << expected.scene;
@@ -51,7 +51,7 @@ TEST(ThesisCounts, HoldWhatTheThesisSays) {
 }
 
 // Every triangle has an area: none was added only to reach the number.
-TEST(ThesisCounts, HaveNoTrianglesOfNoArea) {
+TEST(ThesisCounts, NoTriangleHasZeroArea) {
     for (const char* name : {"4_35_triangles", "6_2406_triangles"}) {
         const ScenePtr scene = load_scene(source_file(std::string("scenes/thesis/") + name + ".scene"));
         for (size_t i = 0; i < scene->triangles.size(); i += 3) {

@@ -68,13 +68,13 @@ class ThesisScenes : public testing::TestWithParam<const char*> {
     View view_;
 };
 
-TEST_P(ThesisScenes, AgreeAtEveryStep) {
+TEST_P(ThesisScenes, EqualTheReferenceAtEveryDepth) {
     for (const int depth : {1, 2, 3}) expect_agreement(256, 192, depth);
     expect_agreement(512, 384, 4);
 }
 
 // Makes sure that the comparison can fail: every step up to the fourth changes the picture.
-TEST_P(ThesisScenes, EveryStepShows) {
+TEST_P(ThesisScenes, EveryDepthChangesThePicture) {
     for (const int depth : {1, 2, 3})
         EXPECT_GT(compare(ours(256, 192, depth), ours(256, 192, depth + 1)).share(), kExcepted) << "step " << depth + 1;
 }

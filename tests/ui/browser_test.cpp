@@ -67,7 +67,7 @@ TEST_F(Folder, ListsFoldersFirstWithoutHiddenOnesAndDeadLinks) {
     EXPECT_EQ(names(list_folder({path_.string(), {}, false})), (Names{"zoo"}));
 }
 
-TEST_F(Folder, TakesExtensionsOfTwoPartsButNoBareOnes) {
+TEST_F(Folder, AcceptsExtensionsOfTwoPartsButNoBareExtensions) {
     file("dragon.ply.gz");
     file("archive.gz");
     file("ply.gz");
@@ -89,7 +89,7 @@ TEST_F(Folder, ListsManyFiles) {
     EXPECT_EQ(list({"obj"}).entries.size(), 3000u);
 }
 
-TEST_F(Folder, CompletesAsFarAsItIsCertain) {
+TEST_F(Folder, CompletesTheCommonPrefix) {
     fs::create_directories(path_ / "models");
     file("mosaic.obj");
     file("teapot_high.obj");
@@ -121,7 +121,7 @@ TEST_F(Folder, FindsWordsAnywhereAndBeginningsFirst) {
     EXPECT_TRUE(matching(listing, "xyz").empty());
 }
 
-TEST(Typed, IsAFolderAndAWord) {
+TEST(Typed, TextIsSplitIntoFolderAndWord) {
     const auto check = [](const char* text, const std::string& folder, const std::string& word) {
         const Typed typed = split_typed(text, "/data/models");
         EXPECT_EQ(typed.folder, folder) << text;
@@ -212,7 +212,7 @@ Preferences sample_preferences() {
     return p;
 }
 
-TEST(PreferencesJson, ComeBackAsTheyWere) {
+TEST(PreferencesJson, IsReadBackUnchanged) {
     const Preferences p = sample_preferences(), q = preferences_from(nlohmann::json::parse(to_json(p).dump()));
     EXPECT_EQ(to_json(q), to_json(p));
     EXPECT_EQ(q.panel_width, 512);
@@ -223,7 +223,7 @@ TEST(PreferencesJson, ComeBackAsTheyWere) {
     EXPECT_EQ(q.bookmarks.at("/a.obj")[0].camera.eye, p.bookmarks.at("/a.obj")[0].camera.eye);
 }
 
-TEST(PreferencesJson, AreBroughtIntoRangeOrRefused) {
+TEST(PreferencesJson, ValuesAreClampedOrRefused) {
     nlohmann::json json = to_json(sample_preferences());
     json["panel_width"] = -5;
     json["moving_fps"] = 1e9;
@@ -274,7 +274,7 @@ std::shared_ptr<Scene> scene_of(size_t instances) {
     return scene;
 }
 
-TEST(SceneRows, ListWhatIsOpenAndWhatIsFound) {
+TEST(SceneRows, ListOpenAndFoundScenes) {
     const auto scene = scene_of(20);
     SceneRows rows;
     std::array<bool, kRowKinds> open{};
@@ -292,7 +292,7 @@ TEST(SceneRows, ListWhatIsOpenAndWhatIsFound) {
     EXPECT_TRUE(rows.update(nullptr, "", open).empty());
 }
 
-TEST(Keys, EveryBindingIsInTheList) {
+TEST(Keys, TheListShowsEveryBinding) {
     const auto lines = key_lines();
     for (const KeyMap& map : key_maps())
         for (const KeyBinding& binding : map.bindings)

@@ -17,7 +17,7 @@ class Buttons : public WindowTest {
     }
 };
 
-TEST_F(Buttons, OfTheToolbar) {
+TEST_F(Buttons, ToolbarButtonsWork) {
     const auto window = open();
     window->click_on("Volumes");
     EXPECT_TRUE(window->reaches([](const nlohmann::json& state) { return state["level"] != -1 && state["volumes"] > 0; }, 20));
@@ -40,7 +40,7 @@ TEST_F(Buttons, OfTheToolbar) {
     EXPECT_EQ(window->state()["message"], "");
 }
 
-TEST_F(Buttons, StepsBackAndForth) {
+TEST_F(Buttons, UndoAndRedo) {
     const auto window = open();
     const int depth = window->state()["depth"];
     ASSERT_EQ(window->command("set depth 1"), "");

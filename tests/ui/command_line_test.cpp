@@ -33,7 +33,7 @@ class CommandLine : public WindowTest {
     TemporaryFolder folder;
 };
 
-TEST_F(CommandLine, MakesThePictureBitByBit) {
+TEST_F(CommandLine, RendersTheWindowsPictureBitByBit) {
     const auto window = open();
     // First as the scene opens, then with the camera moved by keys and mouse.
     expect_same(*window, "png");
@@ -72,7 +72,7 @@ TEST_F(CommandLine, NamesStructureAndSize) {
 }
 
 // File names with characters that are special to a shell.
-TEST_F(CommandLine, QuotesWhatAShellWouldTakeApart) {
+TEST_F(CommandLine, QuotesWordsForTheShell) {
     const std::string scene = folder.path() + "/it's $HOME; a scene.scene";
     std::ofstream(scene) << "camera main eye 0 0 5 target 0 0 0 fov 40\nsphere center 0 0 0 radius 1\n"
                             "light point position 2 4 5 color 1 1 1 intensity 1\n";

@@ -82,7 +82,7 @@ TEST_F(Compare, DifferenceIsDarkWhereNothingDiffers) {
     EXPECT_LT(dark(window->screenshot(), widget_rects[0]["area"]), 0.97);
 }
 
-TEST_F(Compare, SideBySideBothAreClicked) {
+TEST_F(Compare, SideBySideBothPicturesCanBeClicked) {
     const auto window = compared();
     ASSERT_EQ(window->command("mode side"), "");
     window->settle();
@@ -106,7 +106,7 @@ TEST_F(Compare, SideBySideBothAreClicked) {
     }
 }
 
-TEST_F(Compare, SidesSwapAndOneIsLeft) {
+TEST_F(Compare, SidesCanBeSwappedAndOneClosed) {
     const auto window = compared();
     const Pixels before = window->picture();
     window->key("x");
@@ -127,7 +127,7 @@ TEST_F(Compare, SidesSwapAndOneIsLeft) {
 }
 
 // If the second side cannot be prepared, a message says so and the first side goes on.
-TEST_F(Compare, AnImpossibleSecondSideCostsAMessage) {
+TEST_F(Compare, AnImpossibleSecondSideGivesAMessage) {
     const auto window = compared();
     const Pixels before = window->picture();
     ASSERT_EQ(window->command("device 99:99"), "");

@@ -8,7 +8,7 @@ namespace {
 
 class Devices : public WindowTest {};
 
-TEST_F(Devices, SwitchLive) {
+TEST_F(Devices, CanBeSwitchedWhileRendering) {
     const auto window = open({{"POCL_DEVICES", "pthread basic"}});
     const auto was = window->state();
     const std::string first = was["device"], second = first == "0:0" ? "0:1" : "0:0";
@@ -40,7 +40,7 @@ TEST_F(Devices, SwitchLive) {
     EXPECT_EQ(window->state()["message"], "");
 }
 
-TEST_F(Devices, OneThatIsGoneCostsAMessage) {
+TEST_F(Devices, AMissingDeviceGivesAMessage) {
     const auto window = open();
     const Pixels before = window->picture();
     const auto was = window->state();

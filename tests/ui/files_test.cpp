@@ -19,7 +19,7 @@ class Files : public WindowTest {
     }
 };
 
-TEST_F(Files, ABrokenFileIsAMessageAndTheOldPictureGoesOn) {
+TEST_F(Files, ABrokenFileGivesAMessageAndKeepsTheOldScene) {
     const auto window = open();
     const TemporaryFolder folder;
     const Pixels before = window->picture();
@@ -51,7 +51,7 @@ TEST_F(Files, ABrokenFileIsAMessageAndTheOldPictureGoesOn) {
     EXPECT_EQ(window->exit_code(), 0);
 }
 
-TEST_F(Files, OpensWithoutASceneAndTakesOne) {
+TEST_F(Files, OpensWithoutASceneAndLoadsOneLater) {
     WindowDriver window({});
     window.settle();
     EXPECT_EQ(window.state()["message"], "");
@@ -65,7 +65,7 @@ TEST_F(Files, OpensWithoutASceneAndTakesOne) {
     EXPECT_GT(window.state()["primary"], 0);
 }
 
-TEST_F(Files, DroppedOnesAreOpenedAndSeveralBecomeOneScene) {
+TEST_F(Files, DroppedFilesAreOpenedAsOneScene) {
     const auto window = open();
     const TemporaryFolder folder;
     const std::string one = folder.path() + "/one square.obj", two = folder.path() + "/two.obj";
@@ -133,7 +133,7 @@ TEST_F(Files, ScenesThatLackSomething) {
     EXPECT_EQ(window->exit_code(), 0);
 }
 
-TEST_F(Files, WhatCannotBeWrittenCostsAMessage) {
+TEST_F(Files, AFailedWriteGivesAMessage) {
     const auto window = open();
     EXPECT_NE(window->command("save /no/such/folder/a.png").find("/no/such/folder"), std::string::npos);
     EXPECT_NE(window->command("save a.jpeg"), "");

@@ -151,7 +151,7 @@ class FrameThreads : public ::testing::TestWithParam<const char*> {
 };
 
 // A motion that always leaves something to trace, so that pictures overlap where the device can; then rest.
-TEST_P(FrameThreads, EveryPictureOfAMotionAndItsEnd) {
+TEST_P(FrameThreads, ShowEveryPictureOfAMotionAndTheLastOne) {
     for (const unsigned copy_ms : {0u, 20u}) {
         faults.copy_ms = copy_ms;
         const uint64_t first = newest() + 1;
@@ -196,7 +196,7 @@ TEST_P(FrameThreads, AFinishedPictureStaysWhileItIsMeasured) {
 }
 
 // Jobs posted faster than they can be traced, as a window does.
-TEST_P(FrameThreads, JobsThatOvertakeEachOther) {
+TEST_P(FrameThreads, JobsPostedFasterThanTheyAreTraced) {
     faults.copy_ms = 3;
     for (uint64_t number = 1; number <= 60; ++number) {
         post(number, false);
@@ -208,7 +208,7 @@ TEST_P(FrameThreads, JobsThatOvertakeEachOther) {
 }
 
 // Size, exposure and requested distances change between two pictures.
-TEST_P(FrameThreads, ChangesOnTheWay) {
+TEST_P(FrameThreads, SettingsThatChangeBetweenPictures) {
     faults.copy_ms = 10;
     uint64_t number = 0;
     for (const auto& [width, height] : {std::pair{96, 72}, {200, 150}, {33, 31}, {64, 48}}) {
@@ -250,7 +250,7 @@ TEST_P(FrameThreads, ChangesOnTheWay) {
 }
 
 // Device work that fails at any point of two pictures: there is a message, and the next picture is right.
-TEST_P(FrameThreads, WorkThatIsRefused) {
+TEST_P(FrameThreads, FailingDeviceWork) {
     uint64_t number = 1;
     post(number, true);
     ASSERT_TRUE(wait_for([&] { return newest() == 1; }));

@@ -6,7 +6,7 @@
 namespace clarity::ui {
 namespace {
 
-TEST(History, TakesBackAndDoesAgain) {
+TEST(History, UndoesAndRedoes) {
     History history;
     DesiredState desired;
     history.observe(desired, false);
@@ -46,7 +46,7 @@ TEST(History, AGestureIsOneStep) {
     EXPECT_FALSE(history.can_undo());
 }
 
-TEST(History, UndoInTheMiddleOfAGestureTakesItBackWhole) {
+TEST(History, UndoDuringAGestureUndoesAllOfIt) {
     History history;
     DesiredState desired;
     history.observe(desired, false);
@@ -58,7 +58,7 @@ TEST(History, UndoInTheMiddleOfAGestureTakesItBackWhole) {
     EXPECT_EQ(desired.background[0], 1);
 }
 
-TEST(History, TheCameraStaysWhereItIs) {
+TEST(History, UndoDoesNotMoveTheCamera) {
     History history;
     DesiredState desired;
     history.observe(desired, false);
@@ -72,7 +72,7 @@ TEST(History, TheCameraStaysWhereItIs) {
     EXPECT_EQ(desired.camera.eye[2], 3);
 }
 
-TEST(History, ANewChangeForgetsWhatWasTakenBack) {
+TEST(History, ANewChangeDiscardsRedo) {
     History history;
     DesiredState desired;
     history.observe(desired, false);

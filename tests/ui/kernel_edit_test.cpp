@@ -52,7 +52,7 @@ class KernelEdit : public WindowTest {
     std::string good;
 };
 
-TEST_F(KernelEdit, IsCompiledAndShownByItself) {
+TEST_F(KernelEdit, IsCompiledAndShownAutomatically) {
     const auto window = open(environment());
     const Pixels before = window->picture();
     const int revision = window->state()["kernel_revision"];
@@ -64,7 +64,7 @@ TEST_F(KernelEdit, IsCompiledAndShownByItself) {
     EXPECT_EQ(window->state()["message"], "");
 }
 
-TEST_F(KernelEdit, AMistakeIsNamedAndItsRepairTaken) {
+TEST_F(KernelEdit, AMistakeIsReportedUntilItIsRepaired) {
     const auto window = open(environment());
     const Pixels before = window->picture();
     const auto lines = std::count(good.begin(), good.end(), '\n');
@@ -95,7 +95,7 @@ TEST_F(KernelEdit, AMistakeIsNamedAndItsRepairTaken) {
     EXPECT_EQ(window->exit_code(), 0);
 }
 
-TEST_F(KernelEdit, ABurstEndsInTheLastText) {
+TEST_F(KernelEdit, ABurstOfEditsShowsTheLastText) {
     const auto window = open(environment());
     const Pixels before = window->picture();
     for (int i = 0; i < 6; ++i) {

@@ -77,7 +77,7 @@ TEST_F(Loading, EscapeCancelsAnImport) {
 }
 
 // While the large model is built: another structure, a cancel, another file.
-TEST_F(Loading, ARunningBuildGivesWay) {
+TEST_F(Loading, ANewChangeCancelsARunningBuild) {
     const auto window = open();
     const TemporaryFolder folder;
     const std::string model = large_model(folder);

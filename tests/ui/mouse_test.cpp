@@ -189,7 +189,7 @@ TEST_F(Mouse, OtherButtonsShiftTheView) {
     }
 }
 
-TEST_F(Mouse, TheWheelNears) {
+TEST_F(Mouse, TheWheelMovesTheCameraCloser) {
     const auto was = window->state();
     window->wheel(at(-1, 0), 3);
     window->settle();

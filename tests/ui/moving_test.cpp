@@ -38,7 +38,7 @@ TEST_F(Moving, PicturesAreReducedAndSharpenAtRest) {
     EXPECT_EQ(difference(sharp, read_png(path), 0), 0) << line;
 }
 
-TEST_F(Moving, AllPixelsWhereThatIsAskedFor) {
+TEST_F(Moving, FullResolutionIfRequested) {
     const auto window = open();
     ASSERT_EQ(window->command("moving_fps 0"), "");
     window->key("Left");

@@ -28,7 +28,7 @@ Camera camera_along_minus_z() {
     return camera;
 }
 
-TEST(CameraControl, MovesInXAndZHoweverItIsPitched) {
+TEST(CameraControl, MovesInXAndZAtAnyPitch) {
     Camera camera = camera_along_minus_z();
     turn_camera(camera, 0, -0.7f);
     const Vec3 eye = camera.eye;
@@ -47,7 +47,7 @@ TEST(CameraControl, TurnsKeepEyeAndDistance) {
     EXPECT_GT(camera.target[1], 1);  // pitch upwards
 }
 
-TEST(CameraControl, NeverTipsOver) {
+TEST(CameraControl, PitchStaysBelowTheVertical) {
     Camera camera = camera_along_minus_z();
     for (int i = 0; i < 200; ++i) turn_camera(camera, 0.01f, 0.2f);
     EXPECT_GT(camera.target[1] - camera.eye[1], 4.9f);
@@ -107,7 +107,7 @@ TEST(KeyMap, NoKeyHasTwoMeanings) {
                 << map.id << " " << map.bindings[i].name;
 }
 
-TEST(KeyMap, HeldKeysForgetWhatIsReleased) {
+TEST(KeyMap, ReleasedKeysAreNoLongerHeld) {
     const KeyMap& map = key_maps().front();
     HeldKeys held;
     held.press(map.bindings[0].key);
@@ -133,7 +133,7 @@ TEST(Viewport, LetterBoxKeepsTheAspectInside) {
     }
 }
 
-TEST(FrameSettings, TakesFromTheWishOnlyWhatNeedsNoPreparation) {
+TEST(FrameSettings, AppliesOnlySettingsThatNeedNoPreparation) {
     Settings prepared, desired_now;
     prepared.lanes = 16;
     prepared.aov = "color";
@@ -148,7 +148,7 @@ TEST(FrameSettings, TakesFromTheWishOnlyWhatNeedsNoPreparation) {
     EXPECT_EQ(settings.aov, "color");
 }
 
-TEST(Preferences, ReturnAsTheyWere) {
+TEST(Preferences, AreReadBackUnchanged) {
     const fs::path folder = fs::path(::testing::TempDir()) / "clarity_preferences_test";
     fs::create_directories(folder);
     Preferences written;
@@ -212,7 +212,7 @@ TEST(Preferences, KeepADamagedFileAside) {
     fs::remove_all(folder);
 }
 
-TEST(Preferences, LieUnderTheConfigurationFolder) {
+TEST(Preferences, AreInTheConfigurationFolder) {
     const fs::path folder = fs::path(::testing::TempDir()) / "clarity_xdg_test";
     setenv("XDG_CONFIG_HOME", folder.c_str(), 1);
     unsetenv("CLARITY_UI_NO_SAVE");

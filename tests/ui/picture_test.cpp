@@ -75,7 +75,7 @@ TEST(LineQuads, ALineThroughTheEyeIsClippedThere) {
     EXPECT_NEAR((vertices[2].y + vertices[3].y) / 2, 150, 1);
 }
 
-TEST(LineQuads, NothingOfWhatDoesNotShow) {
+TEST(LineQuads, InvisibleLinesHaveNone) {
     const Projection projection(kArea, some_camera());
     LineList lines;
     lines.line({6, 3, 13}, {7, 3, 14}, ~0u, 1);                                        // behind the eye
@@ -88,7 +88,7 @@ TEST(LineQuads, NothingOfWhatDoesNotShow) {
 }
 
 // The shader computes the distance of each point from 1 / depth, which is linear on the screen.
-TEST(LineQuads, DistanceAlongALineIsThatOfThePoint) {
+TEST(LineQuads, DistanceAlongALineEqualsThePoints) {
     const Camera camera = some_camera();
     const Projection projection(kArea, camera);
     const glm::vec3 a(-2, 0, -3), b(1, 2, 3);
@@ -168,7 +168,7 @@ TEST(Layout, SideBySideLeavesRoomForCaptions) {
     EXPECT_GE(room.y + room.height - wide[0].area.y - wide[0].area.height, 120);
 }
 
-TEST(Layout, OnePictureIsThatOfTheMainSide) {
+TEST(Layout, WithoutAComparisonOnlyTheMainSideIsShown) {
     const auto places = lay_out_pictures({0, 0, 100, 100}, 1, false, CompareMode::side_by_side, 0.5f, 10, 10);
     ASSERT_EQ(places.size(), 1u);
     EXPECT_EQ(places[0].side(), 0u);
@@ -233,7 +233,7 @@ TEST(LightHandles, APointLightFollowsTheMouseAcrossTheView) {
     EXPECT_NEAR(pushed[0].distance, 2 * handles[0].distance, 1e-3);
 }
 
-TEST(LightHandles, WhatThePictureDoesNotShowIsMarkedAtItsBorder) {
+TEST(LightHandles, LightsOutsideThePictureAreMarkedAtItsBorder) {
     const Projection projection(kArea, some_camera());
     const auto handles =
         light_handles(projection, {light_at({40, 1, -1}, RT_LIGHT_POINT), light_at({3, 2, 20}, RT_LIGHT_POINT)});
@@ -298,7 +298,7 @@ TEST(RayLines, EndWhereRaysEnd) {
     EXPECT_GT(lines.size(), without);  // a selected ray is drawn even if it was not traced
 }
 
-TEST(SelectionBox, LiesAlongTheInstance) {
+TEST(SelectionBox, IsAlignedWithTheInstance) {
     Scene scene;
     scene.positions = {0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0, 3};
     scene.triangles = {0, 1, 2, 0, 1, 3};

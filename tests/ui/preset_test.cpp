@@ -8,7 +8,7 @@ namespace {
 
 class Presets : public WindowTest {};
 
-TEST_F(Presets, BringThePictureBackBitByBit) {
+TEST_F(Presets, RestoreThePictureBitByBit) {
     const auto window = open();
     const TemporaryFolder folder;
     const std::string path = folder.path() + "/my preset.json";
@@ -48,7 +48,7 @@ TEST_F(Presets, BringThePictureBackBitByBit) {
     EXPECT_EQ(difference(picture, other->picture(), 0), 0);
 }
 
-TEST_F(Presets, AWrongOneChangesNothing) {
+TEST_F(Presets, AnInvalidPresetChangesNothing) {
     const auto window = open();
     const TemporaryFolder folder;
     ASSERT_EQ(window->command("edit light.1 off"), "");

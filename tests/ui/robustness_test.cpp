@@ -13,7 +13,7 @@ using Clock = std::chrono::steady_clock;
 
 class Window : public WindowTest {};
 
-TEST_F(Window, ManyChangesAtOnceEndInTheLast) {
+TEST_F(Window, ManyChangesAtOnceShowTheLastOne) {
     const auto window = open();
     for (int round = 0; round < 10; ++round)
         for (const char* change :
@@ -28,7 +28,7 @@ TEST_F(Window, ManyChangesAtOnceEndInTheLast) {
 }
 
 // A PoCL device is closed and reopened after 16 programs. Meanwhile the Stats tab still shows what was on it.
-TEST_F(Window, StatisticsStayWhileDevicesAreOpenedAnew) {
+TEST_F(Window, StatisticsStayWhileDevicesAreReopened) {
     const auto window = open_scene(source_path("scenes/cornell.scene"), "64x48");
     ASSERT_EQ(window->command("tab Stats"), "");
     for (const char* change : {"accel linear", "set aov t", "set lanes 1"}) ASSERT_EQ(window->command(change), "");
@@ -47,7 +47,7 @@ TEST_F(Window, StatisticsStayWhileDevicesAreOpenedAnew) {
 }
 
 // Samples accumulate while nothing changes. The result is the picture that the command line makes.
-TEST_F(Window, SamplesAddUpAtRest) {
+TEST_F(Window, SamplesAccumulateAtRest) {
     const TemporaryFolder folder;
     const auto window = open();
     EXPECT_EQ(window->state()["samples"], 16);
@@ -73,7 +73,7 @@ TEST_F(Window, SamplesAddUpAtRest) {
     EXPECT_GT(difference(window->picture(), single.picture(), 0), 0.01);
 }
 
-TEST_F(Window, SaysAWarningOfAnImportOnce) {
+TEST_F(Window, ShowsAnImportWarningOnce) {
     const TemporaryFolder folder;
     std::ofstream(folder.path() + "/a.obj") << "mtllib missing.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     const auto window = open_scene(folder.path() + "/a.obj", "64x48");
@@ -83,7 +83,7 @@ TEST_F(Window, SaysAWarningOfAnImportOnce) {
     EXPECT_EQ(errors.find("missing.mtl", errors.find('\n', first)), std::string::npos) << errors;
 }
 
-TEST_F(Window, SaysHowToRenderWithoutADisplay) {
+TEST_F(Window, WithoutADisplayExplainsHowToRender) {
     WindowDriver window({source_path("scenes/primitives.scene")}, {{"DISPLAY", ""}});
     const auto begin = Clock::now();
     while (window.running() && seconds_since(begin) < 20) usleep(20000);
@@ -96,7 +96,7 @@ TEST_F(Window, SaysHowToRenderWithoutADisplay) {
     EXPECT_NE(gone.errors().find("clarity render"), std::string::npos) << gone.errors();
 }
 
-TEST_F(Window, RemembersUnderTheConfigurationFolderOnly) {
+TEST_F(Window, WritesPreferencesToTheConfigurationFolderOnly) {
     const TemporaryFolder config;
     {
         const auto window = open({{"CLARITY_UI_NO_SAVE", ""}, {"XDG_CONFIG_HOME", config.path()}});

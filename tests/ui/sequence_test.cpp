@@ -101,7 +101,7 @@ TEST_F(SequenceOf, APendingFrameIsNotWrittenAfterAStop) {
     EXPECT_EQ(window->state()["eye"], was["eye"]);
 }
 
-TEST_F(SequenceOf, RefusesWhatCannotBeWritten) {
+TEST_F(SequenceOf, RefusesUnwritablePaths) {
     const auto window = open_scene(source_path("scenes/cornell.scene"), "96x72");
     const auto was = window->state();
     EXPECT_NE(window->command("turntable 5 " + folder.path() + "/one.png").find("####"), std::string::npos);

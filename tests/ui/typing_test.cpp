@@ -29,7 +29,7 @@ class Typing : public WindowTest {
     }
 };
 
-TEST_F(Typing, MovesNothing) {
+TEST_F(Typing, DoesNotTriggerKeys) {
     const auto window = open();
     ASSERT_EQ(window->command("set depth 3"), "");  // something to undo
     window->settle();
@@ -60,7 +60,7 @@ TEST_F(Typing, MovesNothing) {
     EXPECT_NE(window->state()["depth"], 3);
 }
 
-TEST_F(Typing, AKeyThatWasDownComesUpInTheField) {
+TEST_F(Typing, AKeyHeldBeforeIsReleasedInTheTextField) {
     const auto window = open();
     const auto before = window->state();
     window->key_down("Left");
@@ -75,7 +75,7 @@ TEST_F(Typing, AKeyThatWasDownComesUpInTheField) {
 }
 
 // The key's release goes to the other window. The key must count as released all the same.
-TEST_F(Typing, AKeyIsUpOnceTheFocusIsLost) {
+TEST_F(Typing, LosingTheFocusReleasesKeys) {
     const auto window = open();
     WindowDriver other({});
     other.settle();

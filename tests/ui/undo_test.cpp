@@ -19,7 +19,7 @@ class Undo : public WindowTest {
     }
 };
 
-TEST_F(Undo, EveryKindOfChangeGoesBackAndForth) {
+TEST_F(Undo, EveryKindOfChangeCanBeUndoneAndRedone) {
     const auto window = open();
     std::vector<std::string> desired_states = {desired(*window)};
     std::vector<Pixels> pictures = {window->picture()};

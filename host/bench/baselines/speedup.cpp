@@ -50,7 +50,7 @@ double speed_spread(const BenchRecord& record) {
 
 Speedup speedup(const BenchRecord& row, const BenchRecord& other) {
     Speedup result;
-    result.baseline = other.baseline.empty() ? other.variant : other.baseline;
+    result.baseline = other.name();
     if (speed(other) <= 0) return result;
     result.ratio = speed(row) / speed(other);
     result.spread = std::hypot(speed_spread(row), speed_spread(other));

@@ -6,14 +6,11 @@
 #include "bench/baselines/speedup.hpp"
 #include "bench/output/output.hpp"
 #include "bench/output/record_fields.hpp"
+#include "bench/output/record_groups.hpp"
 #include "bench/output/text_table.hpp"
 
 namespace clarity::bench {
 namespace {
-
-std::string who(const BenchRecord& r) {
-    return r.baseline.empty() ? r.variant : r.baseline;
-}
 
 std::string percent(double share) {
     char text[16];
@@ -24,21 +21,6 @@ std::string percent(double share) {
 bool shown(const BenchRecord& r) {
     return r.status == RowStatus::ok && r.time_ms.n > 0;
 }
-
-// Groups records by a key, in the order of the keys' first records.
-class Groups {
- public:
-    std::vector<const BenchRecord*>& of(const std::string& key) {
-        const auto [place, fresh] = index_.try_emplace(key, groups_.size());
-        if (fresh) groups_.emplace_back();
-        return groups_[place->second];
-    }
-    const std::vector<std::vector<const BenchRecord*>>& all() const { return groups_; }
-
- private:
-    std::map<std::string, size_t> index_;
-    std::vector<std::vector<const BenchRecord*>> groups_;
-};
 
 const BenchRecord* find(const std::vector<const BenchRecord*>& group, const std::string& measure) {
     for (const BenchRecord* r : group)
@@ -63,12 +45,12 @@ std::string device_cell(const BenchReport& report, const BenchRecord& r) {
 
 // Frames per second by number of steps, as in the thesis's charts.
 std::string steps_table(const BenchReport& report, const std::string& suite) {
-    Groups groups;
+    RecordGroups groups;
     std::map<std::string, const BenchRecord*> then;  // scene, device, depth -> row
     const auto key = [](const BenchRecord& r) { return r.scene + "\n" + r.device_id + r.device; };
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || r.measure != "frame" || !shown(r)) continue;
-        groups.of(key(r) + "\n" + who(r)).push_back(&r);
+        groups.add(key(r) + "\n" + r.name(), r);
         if (r.variant == "then") then[key(r) + "\n" + std::to_string(r.depth)] = &r;
     }
     TextTable table({"scene", "", "device", "fps at 1 step", "2", "3", "4 steps", "kernel p50", "all in p50", "p95", "p99",
@@ -82,7 +64,7 @@ std::string steps_table(const BenchReport& report, const std::string& suite) {
         const auto naive = then.find(key(last) + "\n" + std::to_string(last.depth));
         Speedup by_then;
         if (naive != then.end() && last.variant != "then") by_then = speedup(last, *naive->second);
-        table.add({last.scene, who(last), device_cell(report, last), fps[1], fps[2], fps[3], fps[4],
+        table.add({last.scene, last.name(), device_cell(report, last), fps[1], fps[2], fps[3], fps[4],
                    short_number(last.time_ms.median), short_number(last.wall_ms.median), short_number(last.wall_ms.p95),
                    short_number(last.wall_ms.p99), percent(std::max(last.time_ms.spread(), last.wall_ms.spread())),
                    short_number(last.mrays_per_s),
@@ -98,11 +80,11 @@ std::string steps_table(const BenchReport& report, const std::string& suite) {
 
 // Frames per second: packet sizes down, numbers of lanes across.
 std::string packets_table(const BenchReport& report) {
-    Groups groups;
+    RecordGroups groups;
     std::vector<int> lanes;
     for (const BenchRecord& r : report.records) {
         if (r.suite != "packets" || !shown(r)) continue;
-        groups.of(r.scene + "\n" + r.device + "\n" + std::to_string(r.packet_w * 1000 + r.packet_h)).push_back(&r);
+        groups.add(r.scene + "\n" + r.device + "\n" + std::to_string(r.packet_w * 1000 + r.packet_h), r);
         if (std::find(lanes.begin(), lanes.end(), r.lanes) == lanes.end()) lanes.push_back(r.lanes);
     }
     std::sort(lanes.begin(), lanes.end());
@@ -140,11 +122,11 @@ constexpr const char* kBuildKeys[] = {"mtris_per_s", "bytes_per_triangle", "sah_
 
 // One line per scene and structure or baseline: build costs and speed by kind of ray.
 std::string accel_table(const BenchReport& report, const std::string& suite) {
-    Groups groups;
+    RecordGroups groups;
     for (const BenchRecord& r : report.records) {
         if (r.suite != suite || !shown(r) || r.measure == "dropped" || (suite == "quick" && r.measure == "frame")) continue;
         // A baseline is built once per quality and traced in several modes, so that its builds have lines of their own.
-        groups.of(r.scene + "\n" + (r.measure == "build" || !r.baseline.empty() ? "" : r.device) + "\n" + who(r)).push_back(&r);
+        groups.add(r.scene + "\n" + (r.measure == "build" || !r.baseline.empty() ? "" : r.device) + "\n" + r.name(), r);
     }
     // Our builds are shown in the lines of the same structure.
     std::vector<std::string> head = {"scene", "structure", "device", "triangles", "build ms"};
@@ -153,17 +135,18 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
     TextTable table(head, 3);
     std::map<std::string, const BenchRecord*> builds;
     for (const auto& group : groups.all())
-        if (const BenchRecord* build = find(group, "build")) builds[build->scene + "\n" + who(*build)] = build;
+        if (const BenchRecord* build = find(group, "build")) builds[build->scene + "\n" + build->name()] = build;
     for (const auto& group : ours_first(groups.all())) {
         const BenchRecord& first = *group.front();
         const bool only_build = group.size() == 1 && first.measure == "build";
         if (only_build && first.baseline.empty()) {
             bool traced = false;
             for (const auto& other : groups.all())
-                traced |= other.front() != &first && other.front()->scene == first.scene && who(*other.front()) == who(first);
+                traced |=
+                    other.front() != &first && other.front()->scene == first.scene && other.front()->name() == first.name();
             if (traced) continue;
         }
-        const auto built = builds.find(first.scene + "\n" + who(first));
+        const auto built = builds.find(first.scene + "\n" + first.name());
         const BenchRecord* build = built == builds.end() ? nullptr : built->second;
         double spread = 0;
         for (const BenchRecord* r : group) spread = std::max(spread, r->time_ms.spread());
@@ -173,7 +156,7 @@ std::string accel_table(const BenchReport& report, const std::string& suite) {
         };
         const BenchRecord* frame = find(group, "frame");
         if (!frame) frame = find(group, "whitted");
-        std::vector<std::string> cells = {first.scene, who(first),
+        std::vector<std::string> cells = {first.scene, first.name(),
                                           only_build || !first.baseline.empty() ? "" : device_cell(report, first),
                                           std::to_string(first.triangles), build ? short_number(build->time_ms.median) : ""};
         for (const char* key : kBuildKeys) cells.push_back(build ? shown_text(record_field(key), *build) : "");
@@ -192,7 +175,7 @@ std::string analysis_table(const BenchReport& report) {
     TextTable table(head, 3);
     for (const BenchRecord& r : report.records) {
         if (!r.analysis.present || r.status != RowStatus::ok) continue;
-        std::vector<std::string> cells = {r.scene, r.measure, who(r)};
+        std::vector<std::string> cells = {r.scene, r.measure, r.name()};
         for (const Field<Analysis>& field : analysis_fields())
             if (field.look.column) cells.push_back(shown_text(field, r.analysis));
         table.add(cells);
@@ -234,14 +217,14 @@ std::string wrapped(std::string line, const std::vector<std::string>& parts) {
 
 // The rows of each case which were too unsteady, with their spread.
 std::string refused_rows(const BenchReport& report) {
-    Groups groups;
+    RecordGroups groups;
     for (const BenchRecord& r : report.records)
-        if (unsteady(report, r)) groups.of(r.suite + "\n" + r.case_name).push_back(&r);
+        if (unsteady(report, r)) groups.add(r.suite + "\n" + r.case_name, r);
     std::string text;
     for (const auto& group : groups.all()) {
         std::vector<std::string> parts;
         for (const BenchRecord* r : group)
-            parts.push_back(who(*r) + (device_cell(report, *r).empty() || !r->baseline.empty() ? "" : " on " + r->device) +
+            parts.push_back(r->name() + (device_cell(report, *r).empty() || !r->baseline.empty() ? "" : " on " + r->device) +
                             " " + percent(std::max(r->time_ms.spread(), r->wall_ms.spread())) + " %");
         text += wrapped("REFUSED  " + group.front()->suite + " " + group.front()->case_name + ":", parts);
     }
@@ -253,20 +236,19 @@ std::string refused_rows(const BenchReport& report) {
 
 // Rows which were left out: rows of one scene with the same reason share a line.
 std::string left_out(const BenchReport& report) {
-    Groups groups;
+    RecordGroups groups;
     for (const BenchRecord& r : report.records)
         if (r.status != RowStatus::ok && !unsteady(report, r))
-            groups
-                .of(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + who(r) + "\n" + r.device +
-                    "\n" + (r.status == RowStatus::skipped ? r.why : r.case_name))
-                .push_back(&r);
+            groups.add(std::to_string(static_cast<int>(r.status)) + r.suite + "\n" + r.scene + "\n" + r.name() + "\n" +
+                           r.device + "\n" + (r.status == RowStatus::skipped ? r.why : r.case_name),
+                       r);
     std::string text = refused_rows(report);
     for (const auto& group : groups.all()) {
         const BenchRecord& r = *group.front();
         const char* word = r.status == RowStatus::refused ? "REFUSED" : r.status == RowStatus::failed ? "FAILED" : "skipped";
         text += std::string(word) + "  " + r.suite + " " + r.case_name;
         for (size_t i = 1; i < group.size(); ++i) text += ", " + group[i]->case_name.substr(group[i]->case_name.rfind('/') + 1);
-        if (!who(r).empty()) text += ", " + who(r);
+        if (!r.name().empty()) text += ", " + r.name();
         text += (r.baseline.empty() && !device_cell(report, r).empty() ? " on " + r.device : "") + ": " + r.why + "\n";
     }
     for (const std::string& note : report.notes) text += "left out  " + note + "\n";

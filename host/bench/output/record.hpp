@@ -93,6 +93,8 @@ struct BenchRecord {
 
     size_t run = 0;  // 0: BenchReport::run, else joined[run - 1]
 
+    // Name of the variant or the baseline.
+    const std::string& name() const { return baseline.empty() ? variant : baseline; }
     uint64_t rays() const { return rays_primary + rays_shadow + rays_secondary; }
 };
 

@@ -50,6 +50,13 @@ void describe(BenchRecord& row, const Prepared& prepared) {
     describe(row, *prepared.accel);
 }
 
+void set_ray_counts(BenchRecord& row, const FrameStats& stats) {
+    row.rays_primary = stats.primary;
+    row.rays_shadow = stats.shadow;
+    row.rays_secondary = stats.secondary;
+    row.rays_dropped = stats.dropped;
+}
+
 std::string parameters_text(const rt_plugin& plugin, const ParameterValues& values) {
     std::string text;
     for (rt_u32 i = 0; i < plugin.param_count && i < values.size(); ++i)

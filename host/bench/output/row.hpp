@@ -16,6 +16,8 @@ void describe_host(BenchRecord& row, unsigned threads);
 void describe(BenchRecord& row, const Settings& settings);
 void describe(BenchRecord& row, const AccelData& accel);
 void describe(BenchRecord& row, const Prepared& prepared);
+// Copies the numbers of rays by kind.
+void set_ray_counts(BenchRecord& row, const FrameStats& stats);
 // The parameters as text, "max_leaf=4,bins=32".
 std::string parameters_text(const rt_plugin& plugin, const ParameterValues& values);
 

@@ -45,7 +45,7 @@ std::string builds_of(const std::vector<const BenchRecord*>& scene) {
     MarkupTable table(head, 1);
     for (const BenchRecord* r : scene) {
         if (r->measure != "build" || !has_figures(*r)) continue;
-        std::vector<std::string> cells = {who_is(*r), figure(r->time_ms.median)};
+        std::vector<std::string> cells = {r->name(), figure(r->time_ms.median)};
         for (const char* key : kKeys) cells.push_back(figure_or_nothing(record_field(key).number(*r)));
         table.add(cells);
     }
@@ -64,7 +64,7 @@ std::string against_baselines(const RecordGroups& scenes, const SeriesNames& nam
                 if (!best || value_of(*best) < value_of(*r)) best = r;
             }
             if (!ours || !theirs) continue;
-            table.add({ours->scene, measure.title, names.label(*ours), who_is(*theirs), figure(value_of(*ours)),
+            table.add({ours->scene, measure.title, names.label(*ours), theirs->name(), figure(value_of(*ours)),
                        figure(value_of(*theirs)), ratio_figure(speedup(*ours, *theirs))});
         }
     return table.markup();

@@ -26,12 +26,6 @@ std::string short_device(const BenchRecord& record) {
 
 }  // namespace
 
-void RecordGroups::add(const std::string& key, const BenchRecord& record) {
-    const auto [place, fresh] = index_.try_emplace(key, groups_.size());
-    if (fresh) groups_.emplace_back();
-    groups_[place->second].push_back(&record);
-}
-
 SeriesNames::SeriesNames(const BenchReport& report) {
     for (const BenchRecord& r : report.records) {
         // Baselines and builds run on the host's processor, which the report calls CPU; they add no device.
@@ -52,7 +46,7 @@ SeriesNames::SeriesNames(const BenchReport& report) {
         const std::string key = label(r);
         if (colors_.count(key)) continue;
         colors_[key] = next++ % kGrey;
-        colors_.emplace(who_is(r), colors_[key]);  // for its builds, on any device
+        colors_.emplace(r.name(), colors_[key]);  // for its builds, on any device
     }
     for (const BenchRecord& r : report.records)
         if (r.baseline.empty() && r.measure == "build" && colors_.emplace(label(r), next % kGrey).second) ++next;
@@ -64,8 +58,8 @@ std::string SeriesNames::device(const BenchRecord& record) const {
 }
 
 std::string SeriesNames::label(const BenchRecord& record) const {
-    const std::string who = who_is(record);
-    return several_devices() && record.baseline.empty() && record.measure != "build" ? who + ", " + device(record) : who;
+    if (!several_devices() || !record.baseline.empty() || record.measure == "build") return record.name();
+    return record.name() + ", " + device(record);
 }
 
 int SeriesNames::color(const BenchRecord& record) const {
@@ -78,10 +72,6 @@ std::vector<const BenchRun*> measured_runs(const BenchReport& report) {
     if (!report.run.date.empty()) runs.push_back(&report.run);
     for (const BenchRun& run : report.joined) runs.push_back(&run);
     return runs;
-}
-
-std::string who_is(const BenchRecord& record) {
-    return record.baseline.empty() ? record.variant : record.baseline;
 }
 
 bool has_figures(const BenchRecord& record) {
@@ -99,7 +89,7 @@ std::string figure_or_nothing(double value) {
 
 std::string hint_of(const BenchRecord& r) {
     if (r.status != RowStatus::ok) return r.why;
-    std::string text = who_is(r) + ": kernels p50 " + figure(r.time_ms.median) + " ms, all in p50 " + figure(r.wall_ms.median) +
+    std::string text = r.name() + ": kernels p50 " + figure(r.time_ms.median) + " ms, all in p50 " + figure(r.wall_ms.median) +
                        " ms, spread " + percent_figure(std::max(r.time_ms.spread(), r.wall_ms.spread())) + " of " +
                        std::to_string(std::max(r.time_ms.n, r.wall_ms.n)) + " repetitions";
     if (r.rays() > 0) text += ", " + figure(double(r.rays())) + " rays";

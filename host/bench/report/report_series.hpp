@@ -1,25 +1,13 @@
-// report_series.hpp -- prepares records for charts: groups, names of series and devices, colours.
+// report_series.hpp -- prepares records for charts: names of series and devices, colours.
 #pragma once
 #include <map>
 #include <string>
 #include <vector>
 
+#include "bench/output/record_groups.hpp"
 #include "bench/report/report_chart.hpp"
 
-#include "bench/output/record.hpp"
-
 namespace clarity::bench {
-
-// Groups records by a key, in the order of the keys' first records.
-class RecordGroups {
- public:
-    void add(const std::string& key, const BenchRecord& record);
-    const std::vector<std::vector<const BenchRecord*>>& all() const { return groups_; }
-
- private:
-    std::map<std::string, size_t> index_;
-    std::vector<std::vector<const BenchRecord*>> groups_;
-};
 
 // Names and colours of all series of a report; they are the same in every chart.
 class SeriesNames {
@@ -39,8 +27,6 @@ class SeriesNames {
 
 // The runs which measured something. A run which only joins earlier runs has no date.
 std::vector<const BenchRun*> measured_runs(const BenchReport& report);
-// Name of the variant or the baseline.
-std::string who_is(const BenchRecord& record);
 // True if the record has figures to show.
 bool has_figures(const BenchRecord& record);
 // "1.23"; "about the same" if the difference is within the measured spread; "" if nothing was compared.

@@ -6,9 +6,11 @@
 #include <optional>
 #include <thread>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "bench/run/case_runner.hpp"
+#include "bench/cases/case_runner.hpp"
+#include "bench/cases/entry.hpp"
 #include "bench/run/failure.hpp"
 #include "bench/run/fixture.hpp"
 #include "bench/run/machine.hpp"
@@ -19,14 +21,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 std::string row_text(const BenchRecord& row) {
     char text[160] = "";
-    const std::string who = row.baseline.empty() ? row.variant : row.baseline;
-    if (row.status != RowStatus::ok) return "  " + who + ": " + row.why;
+    if (row.status != RowStatus::ok) return "  " + row.name() + ": " + row.why;
     if (row.measure == "dropped")
         std::snprintf(text, sizeof text, "%llu of %llu rays dropped", static_cast<unsigned long long>(row.rays_dropped),
                       static_cast<unsigned long long>(row.rays_dropped + row.rays_secondary));
@@ -43,7 +40,7 @@ std::string row_text(const BenchRecord& row) {
     char spread[48] = "";
     if (row.time_ms.n > 0)
         std::snprintf(spread, sizeof spread, "  (n %u, spread %.1f %%)", row.time_ms.n, 100 * row.time_ms.spread());
-    return "  " + who + ": " + text + spread;
+    return "  " + row.name() + ": " + text + spread;
 }
 
 // Measures the cases in their order. Each case gets an equal share of the time which is left.
@@ -113,11 +110,8 @@ class Session {
     }
 
     BenchRecord failed_row(const BenchCase& c, const std::string& why) const {
-        BenchRecord row;
-        row.suite = c.suite;
-        row.case_name = c.name;
+        BenchRecord row = make_row(c);
         row.scene = suite_.scenes[c.scene].source.name;
-        row.measure = c.measure;
         row.status = RowStatus::failed;
         row.why = why;
         return row;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cstdio>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/run/failure.hpp"
 
@@ -12,15 +13,11 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point begin) {
-    return std::chrono::duration<double>(Clock::now() - begin).count();
-}
-
 struct Runner {
     const Contender* contender = nullptr;
     Measured result;
-    double once_s = 0;  // wall time of the last repetition of the warm-up, seconds
-    unsigned way = 0;   // variant which the samples were taken with
+    double once_s = 0;     // wall time of the last repetition of the warm-up, seconds
+    unsigned variant = 0;  // variant which the samples were taken with
     std::vector<double> time_ms, wall_ms;
     bool running() const { return result.status == RowStatus::ok; }
 };
@@ -29,7 +26,7 @@ struct Runner {
 constexpr unsigned kMostTrials = 100;
 
 // Runs one repetition. Returns false if the contender failed; it is then dropped.
-bool take(Runner& runner, Sample& result) {
+bool run_once(Runner& runner, Sample& result) {
     try {
         result = runner.contender->once();
         return true;
@@ -52,9 +49,9 @@ void warm_up(std::vector<Runner>& runners, const MeasureRules& rules, Progress& 
             if (!progress.report(-1)) throw Cancelled();
             const auto begin = Clock::now();
             Sample last;
-            if (!take(runner, last)) break;
+            if (!run_once(runner, last)) break;
             runner.once_s = seconds_since(begin);
-            runner.way = last.way;
+            runner.variant = last.variant;
             if (runner.once_s > rules.budget_s) break;
             if (pass > 0 && (last.settled || seconds_since(first) > 0.25 * rules.budget_s)) break;
         }
@@ -77,18 +74,18 @@ bool all_steady(const std::vector<Runner>& runners, double spread) {
 // Adds one sample. Trials of a contender that tunes itself are run but not counted. If its tuning has chosen another variant
 // than before, the samples of the old variant are dropped.
 void take_sample(Runner& runner) {
-    Sample t;
+    Sample sample;
     for (unsigned i = 0; i < kMostTrials; ++i) {
-        if (!take(runner, t)) return;
-        if (!t.trial) break;
+        if (!run_once(runner, sample)) return;
+        if (!sample.trial) break;
     }
-    if (t.way != runner.way) {
+    if (sample.variant != runner.variant) {
         runner.time_ms.clear();
         runner.wall_ms.clear();
-        runner.way = t.way;
+        runner.variant = sample.variant;
     }
-    runner.time_ms.push_back(t.time_ms);
-    runner.wall_ms.push_back(t.wall_ms);
+    runner.time_ms.push_back(sample.time_ms);
+    runner.wall_ms.push_back(sample.wall_ms);
 }
 
 bool all_have(const std::vector<Runner>& runners, size_t samples) {

@@ -15,9 +15,9 @@ struct Sample {
     double wall_ms = 0;  // by the host's
 
     // Of a contender that tunes itself (render/queries/autotuner.hpp):
-    bool trial = false;   // this repetition tried one of several variants: its time does not count, and it is repeated
-    bool settled = true;  // a variant is chosen: the warm-up may end
-    unsigned way = 0;     // index of the variant; samples of other variants than the last one are dropped
+    bool trial = false;    // this repetition tried one of several variants: its time does not count, and it is repeated
+    bool settled = true;   // a variant is chosen: the warm-up may end
+    unsigned variant = 0;  // index of the variant; samples of other variants than the last one are dropped
 };
 
 struct Contender {

@@ -72,7 +72,7 @@ TEST(ReportPage, RefusedRowsHaveNoFigures) {
     EXPECT_GT(count_of(page, ">refused<"), 10u);
 }
 
-TEST(ReportPage, EmptySuites) {
+TEST(ReportPage, SuitesMayBeEmpty) {
     BenchReport nothing;
     EXPECT_EQ(xml_error(report_page(nothing)), "");
     EXPECT_NE(report_page(nothing).find("Nothing was measured"), std::string::npos);
@@ -98,7 +98,7 @@ TEST(ReportPage, JoinsRuns) {
     EXPECT_NE(page.find("stays above 10.0 %"), std::string::npos);
 }
 
-TEST(ReportPage, HostileNamesStayText) {
+TEST(ReportPage, NamesWithMarkupAreEscaped) {
     const std::string hostile[] = {
         "</title><script>alert(1)</script>",
         "a\"b'c&d<e>",
@@ -123,7 +123,7 @@ TEST(ReportPage, HostileNamesStayText) {
     }
 }
 
-TEST(ReportPage, NumbersThatAreNone) {
+TEST(ReportPage, NanAndInfinityAreNotShownAsNumbers) {
     BenchReport report = sample_report();
     for (BenchRecord& r : report.records) {
         r.fps = NAN;
@@ -186,7 +186,7 @@ TEST(ReportCharts, AxisFollowsTheRange) {
     EXPECT_EQ(bar_chart(chart), "");
 }
 
-TEST(ReportCharts, NamesOfCurvesKeepApart) {
+TEST(ReportCharts, LabelsOfCurvesDoNotOverlap) {
     CurveChart chart{"t", "x", "y", {}};
     for (int i = 0; i < 12; ++i) chart.curves.push_back({"curve " + std::to_string(i), i, {{10, 1}, {1000, 5 + .001 * i}}});
     const std::string svg = curve_chart(chart);

@@ -21,7 +21,7 @@ float tagged(float value, uint32_t tag) {
 
 }  // namespace
 
-TEST(AssignPlaces, TheBestPairGoesTogetherFirst) {
+TEST(AssignPlaces, AssignsTheBestPairFirst) {
     std::mt19937 random(7);
     for (int turn = 0; turn < 3000; ++turn) {
         const uint32_t count = 1 + turn % kPlaces;

@@ -70,7 +70,7 @@ double full_sweep_cost(std::vector<rt_prim> prims) {
 
 }  // namespace
 
-TEST(Bvh2Quality, IsThatOfAFullSweep) {
+TEST(Bvh2Quality, IsCloseToAFullSweep) {
     for (const std::vector<rt_prim>& prims : {bumpy_sphere(8000), scattered(5000, 1, 0, 6)}) {
         Input input;
         input.add_group(prims);
@@ -80,7 +80,7 @@ TEST(Bvh2Quality, IsThatOfAFullSweep) {
     }
 }
 
-TEST(Bvh2Quality, PartsALineEvenly) {
+TEST(Bvh2Quality, SplitsALineOfPointsEvenly) {
     // Boxes around points on a line have no surface. Without the padding of areas, every plane would look equally good.
     Input input;
     std::vector<rt_prim> prims;
@@ -94,7 +94,7 @@ TEST(Bvh2Quality, PartsALineEvenly) {
     EXPECT_LE(built.stats.at("depth"), 14);  // 2^12 points
 }
 
-TEST(Bvh2Quality, HalvesByCountAreEvenAndCostMore) {
+TEST(Bvh2Quality, SplitsByCountAreEvenAndCostMore) {
     for (const uint32_t count : {1000u, 40000u}) {  // one task, and several levels
         Input input;
         input.add_group(bumpy_sphere(count));

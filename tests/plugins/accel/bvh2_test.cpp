@@ -87,7 +87,7 @@ TEST(Bvh2, BuildsManyGroups) {
     expect_sound(input);
 }
 
-TEST(Bvh2, SplitsWhatTheHeuristicCannot) {
+TEST(Bvh2, SplitsPrimitivesThatTheSahCannotSeparate) {
     // All the same box; all the same point; points on a line; boxes around one centre.
     expect_sound(one_group(make(100000, [](uint32_t i) { return cube(1, 2, 3, 4, i); })));
     expect_sound(one_group(make(100000, [](uint32_t i) { return cube(1, 2, 3, 0, i); })));
@@ -132,7 +132,7 @@ TEST(Bvh2, NearlyOverflowingScenesStillGetGoodTrees) {
         EXPECT_NEAR(build(bvh2(), one_group(scattered(20000, size, 0, 3))).stats.at("sah_cost"), plain, 0.01 * plain) << size;
 }
 
-TEST(Bvh2, SurvivesBoxesThatAreNone) {
+TEST(Bvh2, BuildsDespiteInvalidBoxes) {
     std::vector<rt_prim> prims = scattered(5000, 1, 0, 5);
     prims[10].lo[0] = NAN;
     prims[20].hi[1] = NAN;
@@ -154,7 +154,7 @@ TEST(Bvh2, SurvivesBoxesThatAreNone) {
         }
 }
 
-TEST(Bvh2, IsTheSameOnAnyNumberOfThreads) {
+TEST(Bvh2, BuildsTheSameTreeOnAnyNumberOfThreads) {
     Input input;
     input.add_group(bumpy_sphere(150000));
     input.add_group(scattered(70000, 5, 1, 9));
@@ -167,7 +167,7 @@ TEST(Bvh2, IsTheSameOnAnyNumberOfThreads) {
         EXPECT_TRUE(same_tree(once, build(bvh2(), input, {{}, threads, {}}))) << threads;
 }
 
-TEST(Bvh2, IsTheSameWithAnyInstructions) {
+TEST(Bvh2, BuildsTheSameTreeWithAnyInstructionSet) {
     for (const char* library : {BVH2_PORTABLE_LIBRARY, BVH2_NO_AVX2_LIBRARY})
         for (const Input& input : {one_group(bumpy_sphere(60000)), one_group(scattered(30000, 1e30f, 0, 2)),
                                    one_group(scattered(3000, 1e-38f, 0, 2)), one_group(scattered(5000, 3e38f, 0, 2))})

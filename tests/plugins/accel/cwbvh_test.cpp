@@ -98,7 +98,7 @@ TEST(Cwbvh, IsTheTreeOfBvh8) {
 }
 
 // The cost of rounding the planes to bytes, as the area of all leaf boxes; rays hit boxes in proportion to it.
-TEST(Cwbvh, BoxesAreHardlyWider) {
+TEST(Cwbvh, QuantizedBoxesAreHardlyWider) {
     const Input input = one_group(bumpy_sphere(50000));
     const Options same_costs{{{"max_leaf", 4}, {"intersection_cost", 1}}, 2, {}};
     const Built wide = build(load("bvh8"), input, same_costs), compressed = build(cwbvh(), input, same_costs);
@@ -116,7 +116,7 @@ TEST(Cwbvh, BoxesAreHardlyWider) {
     EXPECT_LT(rounded, 1.1 * exact);
 }
 
-TEST(Cwbvh, TheSameWhateverTheThreads) {
+TEST(Cwbvh, BuildsTheSameTreeOnAnyNumberOfThreads) {
     const Input input = one_group(bumpy_sphere(60000));
     const Built one = build(cwbvh(), input, {{}, 1, {}}), four = build(cwbvh(), input, {{}, 4, {}});
     EXPECT_EQ(one.leaves, four.leaves);

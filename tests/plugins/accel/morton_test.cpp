@@ -46,7 +46,7 @@ TEST(Morton, CoversEveryPrimitiveOnceWithExactBoxes) {
     expect_sound({});
 }
 
-TEST(Morton, TakesWhatHasNoExtentOrTooMuch) {
+TEST(Morton, BuildsForTinyAndHugeExtents) {
     expect_sound(same_box(50000, 4));
     expect_sound(same_box(50000, 0));
     for (const float size : {1e-44f, 1e-38f, 1e-20f, 1e20f, 1e37f, 3e38f}) expect_sound(scattered(20000, size, 0, 3));
@@ -59,7 +59,7 @@ TEST(Morton, TakesWhatHasNoExtentOrTooMuch) {
     expect_sound(line);
 }
 
-TEST(Morton, LeavesFollowTheCurve) {
+TEST(Morton, LeavesFollowTheMortonCurve) {
     // Cubes on a grid of 8 x 8 x 8. The curve visits one octant after the other.
     std::vector<rt_prim> prims;
     for (rt_u32 i = 0; i < 512; ++i) {
@@ -74,7 +74,7 @@ TEST(Morton, LeavesFollowTheCurve) {
     for (rt_u32 i = 0; i < 512; ++i) EXPECT_EQ(octant(built.leaves[i]), i / 64) << "position " << i;
 }
 
-TEST(Morton, TheLongestSideOfACellIsCutFirst) {
+TEST(Morton, CutsTheLongestSideOfACellFirst) {
     // 4 x 4 rows of 32 cubes. The first three cuts go across the rows. So each eighth of the leaf order holds one eighth of all
     // rows.
     std::vector<rt_prim> prims;
@@ -89,7 +89,7 @@ TEST(Morton, TheLongestSideOfACellIsCutFirst) {
     for (rt_u32 i = 0; i < 512; ++i) EXPECT_EQ(built.leaves[i] % 32 / 4, i / 64) << "position " << i;
 }
 
-TEST(Morton, WhatIsSmallInALargeSceneIsPartedToo) {
+TEST(Morton, ASmallMeshInALargeSceneIsSubdividedToo) {
     // All of the sphere is in one cell of the scene's curve. Its leaves must be as small as in a scene of its own.
     const std::vector<rt_prim> sphere = bumpy_sphere(60000);
     std::vector<rt_prim> stadium = sphere;
@@ -120,7 +120,7 @@ TEST(Morton, WhatIsSmallInALargeSceneIsPartedToo) {
     EXPECT_LT(sides_of_leaves(stadium), 1.2 * sides_of_leaves(sphere));
 }
 
-TEST(Morton, IsNeverTooDeep) {
+TEST(Morton, LimitsTheDepth) {
     // Nested clusters, each in one cell of the curve of the cluster around it.
     std::vector<rt_prim> prims;
     for (int level = 0; level < 30; ++level)
@@ -143,7 +143,7 @@ TEST(Morton, BuildsManyGroups) {
     EXPECT_EQ(check_bvh8(input, build(load("bvh8"), input, fast()), 4), "");
 }
 
-TEST(Morton, IsTheSameOnAnyMachine) {
+TEST(Morton, BuildsTheSameTreeOnAnyMachine) {
     Input input;
     input.add_group(bumpy_sphere(120000));
     input.add_group(scattered(70000, 5, 1, 9));
@@ -157,7 +157,7 @@ TEST(Morton, IsTheSameOnAnyMachine) {
         EXPECT_TRUE(same_leaves_and_nodes(once, build(load("bvh2", library), input, fast()), sizeof(bvh2_node))) << library;
 }
 
-TEST(Morton, CostsMoreThanTheHeuristicButNotTwice) {
+TEST(Morton, SahCostIsLessThanTwiceTheSahBuilders) {
     Input input;
     input.add_group(bumpy_sphere(50000));
     for (const char* id : {"bvh2", "bvh8"}) {

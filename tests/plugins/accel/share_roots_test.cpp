@@ -9,7 +9,7 @@
 
 using namespace bvh2;
 
-TEST(ShareRoots, AreTheCheapestAndFewestToTheLeft) {
+TEST(ShareRoots, MinimizeTheCostAndThenTheLeftShare) {
     std::mt19937 random(5);
     for (int turn = 0; turn < 5000; ++turn) {
         float left[kRoots], right[2 * kRoots];

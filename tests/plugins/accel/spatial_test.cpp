@@ -142,7 +142,7 @@ TEST(Spatial, LosesNothingOfAnyTriangle) {
             }
 }
 
-TEST(Spatial, KeepsToItsShareOfDuplicates) {
+TEST(Spatial, LimitsTheShareOfDuplicates) {
     const Input input = sticks(20000, 1);
     double last = 0;
     for (const double share : {0.0, 0.05, 0.3, 2.0}) {
@@ -156,7 +156,7 @@ TEST(Spatial, KeepsToItsShareOfDuplicates) {
     EXPECT_GT(last, 1.3 * 20000);  // the allowed duplicates are really used
 }
 
-TEST(Spatial, GainsWhereBoxesAreMostlyAir) {
+TEST(Spatial, LowersTheCostOfLongTriangles) {
     const Input input = sticks(4000, 1);
     for (const char* id : {"bvh2", "bvh8"}) {
         const double plain = build(load(id), input, with(kSah)).stats.at("sah_cost"),
@@ -165,7 +165,7 @@ TEST(Spatial, GainsWhereBoxesAreMostlyAir) {
     }
 }
 
-TEST(Spatial, LeavesOtherPrimitivesWhole) {
+TEST(Spatial, DoesNotSplitOtherPrimitives) {
     // Spheres and instances among long triangles: each is in exactly one leaf.
     Input input = sticks(2000, 1);
     std::vector<rt_prim> group = input.prims;
@@ -183,7 +183,7 @@ TEST(Spatial, LeavesOtherPrimitivesWhole) {
         EXPECT_EQ(std::count(built.leaves.begin(), built.leaves.end(), (i % 2 ? RT_REF_SPHERE : RT_REF_INSTANCE) | i), 1);
 }
 
-TEST(Spatial, TakesFewAndFlatAndEqualOnes) {
+TEST(Spatial, BuildsForFewFlatAndEqualTriangles) {
     for (const uint32_t count : {1u, 2u, 3u, 5u, 9u, 40u}) {
         const Input input = sticks(count, 1);
         for (const char* id : {"bvh2", "bvh8"}) expect_sound(input, build(load(id), input, with(kSpatial)), id[3] == '8');
@@ -204,7 +204,7 @@ TEST(Spatial, TakesFewAndFlatAndEqualOnes) {
     EXPECT_EQ(build(load("bvh2"), Input{{}, {{0, 0}}, {}}, with(kSpatial)).status, RT_OK);
 }
 
-TEST(Spatial, GroupsKeepApart) {
+TEST(Spatial, GroupsStaySeparate) {
     Input input = sticks(3000, 1);
     std::vector<rt_prim> first(input.prims.begin(), input.prims.begin() + 1000),
         rest(input.prims.begin() + 1000, input.prims.end());
@@ -216,7 +216,7 @@ TEST(Spatial, GroupsKeepApart) {
     for (const char* id : {"bvh2", "bvh8"}) expect_sound(parted, build(load(id), parted, with(kSpatial)), id[3] == '8');
 }
 
-TEST(Spatial, IsTheSameOnAnyMachine) {
+TEST(Spatial, BuildsTheSameTreeOnAnyMachine) {
     const Input input = sticks(20000, 1);
     const Built once = build(load("bvh2"), input, with(kSpatial, 0.5, 1));
     const auto expect_same = [&](const Built& other, const char* which) {

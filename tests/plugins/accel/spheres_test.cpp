@@ -143,7 +143,7 @@ TEST(Spheres, KeepToTheirParameters) {
     }
 }
 
-TEST(Spheres, HalvesAreEven) {
+TEST(Spheres, SplitsIntoEqualHalves) {
     const Input input = meshes({1000});
     const Built built = build(spheres(), input, {{{"max_leaf", 8}}, 2, {}});
     Checker checker(input, built, 8, 32);
@@ -171,7 +171,7 @@ TEST(Spheres, OneTreeForEachMeshAndNoneAbove) {
     EXPECT_EQ(volumes(spheres(), above, 0, 2).size(), 4u);  // the roots of the meshes
 }
 
-TEST(Spheres, LoneOnesAreOneLeafThatAllEnter) {
+TEST(Spheres, PrimitivesWithoutAMeshShareOneLeaf) {
     Input input;
     std::vector<rt_prim> prims = scattered(40, 1, 0, 1);
     for (rt_u32 i = 0; i < 30; ++i) {
@@ -213,7 +213,7 @@ TEST(Spheres, GroupsMayBeEmptyOrMany) {
     }
 }
 
-TEST(Spheres, BoundTruly) {
+TEST(Spheres, BoundsHoldDespiteRounding) {
     // Sizes and positions at which centres and radii are rounded.
     for (const float size : {1e-38f, 1e-10f, 1e10f, 1e30f}) {
         const Input input = meshes({500, 300}, size);
@@ -238,7 +238,7 @@ TEST(Spheres, BoundTruly) {
     for (size_t i = 0; i < built.slot_counts[0]; ++i) EXPECT_FALSE(std::isnan(built.slot<spheres_node>()[i].radius));
 }
 
-TEST(Spheres, AreTheSameOnAnyNumberOfThreads) {
+TEST(Spheres, BuildTheSameTreeOnAnyNumberOfThreads) {
     Input input;
     input.add_group(bumpy_sphere(100000));
     const Built once = build(spheres(), input, {{}, 1, {}});

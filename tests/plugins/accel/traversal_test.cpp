@@ -130,7 +130,7 @@ class Traversal : public ::testing::TestWithParam<int> {
     }
 };
 
-TEST_P(Traversal, FindsWhatTryingEverythingFinds) {
+TEST_P(Traversal, FindsTheHitsThatTestingEveryPrimitiveFinds) {
     const Scene scene(prims());
     const Built bvh2 = build(load("bvh2"), scene.input), spheres = build(load("spheres"), scene.input);
     ASSERT_EQ(bvh2.status, RT_OK);

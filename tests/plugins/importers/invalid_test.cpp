@@ -37,7 +37,7 @@ bool anybody_reads(const json& record) {
 class Invalid : public testing::TestWithParam<std::string> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(Invalid);
 
-TEST_P(Invalid, CostsOneMessage) {
+TEST_P(Invalid, IsRefusedWithOneMessage) {
     const json record = read_json(shared_scenes() + "truth/" + GetParam());
     const std::string file = record["file"], path = shared_scenes() + file;
     if (!has_importer_for(path)) GTEST_SKIP() << "SKIPPED: the importer for " << file << " was not built";
@@ -75,7 +75,7 @@ TEST_P(Invalid, CostsOneMessage) {
 INSTANTIATE_TEST_SUITE_P(Shared, Invalid, testing::ValuesIn(invalid_names()),
                          [](const auto& about) { return test_name(about.param.substr(0, about.param.size() - 5)); });
 
-TEST(InvalidSet, IsThere) {
+TEST(InvalidSet, HasMoreThan50Records) {
     if (shared_scenes().empty()) GTEST_SKIP() << "SKIPPED: no shared scenes; CLARITY_SHARED names their folder";
     EXPECT_GT(invalid_names().size(), 50u);
 }

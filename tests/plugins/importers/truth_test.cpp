@@ -159,7 +159,7 @@ void expect_fbx(const std::string& file, const Scene& scene, const json& truth) 
     if (!deviates(file, Differs::area)) expect_nodes(scene, truth["mesh_nodes"]);
 }
 
-TEST_P(Truth, IsMatched) {
+TEST_P(Truth, ImportMatchesTheRecord) {
     const json record = read_json(shared_scenes() + "truth/" + GetParam());
     const std::string file = record["file"];
     const ModelFile model(file);
@@ -187,7 +187,7 @@ TEST_P(Truth, IsMatched) {
 INSTANTIATE_TEST_SUITE_P(Shared, Truth, testing::ValuesIn(truth_names()),
                          [](const auto& about) { return test_name(about.param.substr(0, about.param.size() - 5)); });
 
-TEST(TruthSet, IsThere) {
+TEST(TruthSet, HasMoreThan90Records) {
     if (shared_scenes().empty()) GTEST_SKIP() << "SKIPPED: no shared scenes; CLARITY_SHARED names their folder";
     EXPECT_GT(truth_names().size(), 90u);
     for (const auto& [file, why] : kDeviations) {

@@ -118,7 +118,7 @@ TEST(SceneFormatErrors, NameLineColumnWhatWasReadAndWhatWasExpected) {
     }
 }
 
-TEST(SceneFormatErrors, SeveralAreToldAtOnceInTheOrderOfTheFile) {
+TEST(SceneFormatErrors, SeveralAreReportedAtOnceInFileOrder) {
     const Recording r = import_text("sphere material gone\nsphere radious 1\nsphere\nplane normal 0 0 0\n");
     EXPECT_EQ(r.status, RT_FAILED);
     EXPECT_EQ(r.why,
@@ -129,7 +129,7 @@ TEST(SceneFormatErrors, SeveralAreToldAtOnceInTheOrderOfTheFile) {
     EXPECT_EQ(r.log[1], "test.scene:4:14: the zero vector has no direction; expected another for `normal` (x y z)");
 }
 
-TEST(SceneFormatErrors, TenAreEnough) {
+TEST(SceneFormatErrors, AtMostTenAreReported) {
     std::string text;
     for (int i = 0; i < 1000; ++i) text += "spere\n";
     const Recording r = import_text(text);
@@ -145,7 +145,7 @@ TEST(SceneFormatErrors, AFaultyLineDoesNotHideNamesItDefines) {
     EXPECT_NE(r.why.find("test.scene:1:16: unknown key `radious`"), std::string::npos) << r.why;
 }
 
-TEST(SceneFormatErrors, WhatIsNoTextIsReadNoFurther) {
+TEST(SceneFormatErrors, ReadingStopsAtBinaryContent) {
     const Recording r = import_text("sphere material late\nsphere \x01\nsphere \x02\nmaterial late\n");
     EXPECT_TRUE(r.log.empty()) << r.log[0];
     EXPECT_EQ(r.why, "test.scene:2:8: byte 0x01 is a control character; expected text (is this a scene file?)");

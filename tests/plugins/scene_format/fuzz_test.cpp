@@ -181,7 +181,7 @@ TEST(SceneFormatFuzz, SurvivesNoise) {
     }
 }
 
-TEST(SceneFormatFuzz, SurvivesWhatIsLarge) {
+TEST(SceneFormatFuzz, SurvivesLargeInput) {
     check(std::string(1u << 20, '"'), "quotes");
     check(std::string(1u << 20, '\n') + "sphere\n", "empty lines");
     check("polygon vertices" + std::string(1u << 19, ' ') + "1", "spaces");

@@ -54,7 +54,7 @@ const Golden kGoldens[] = {
 
 class SceneFiles : public testing::TestWithParam<Golden> {};
 
-TEST_P(SceneFiles, HoldWhatTheySay) {
+TEST_P(SceneFiles, MatchTheirGoldenFiles) {
     const Golden& golden = GetParam();
 #ifndef CLARITY_HAVE_MODEL_IMPORTERS
     if (golden.has_models) GTEST_SKIP() << "SKIPPED: the importers assimp and openmesh are not built";
@@ -147,7 +147,7 @@ TEST_F(Scenes, ErrorInALoadedFileNamesBothPlaces) {
     EXPECT_NE(error.find("part.scene:3:15: a radius is positive"), std::string::npos) << error;
 }
 
-TEST_F(Scenes, CirclesAreErrors) {
+TEST_F(Scenes, ScenesThatLoadEachOtherAreErrors) {
     write("b.scene", "load a.scene\n");
     const std::string file = write("a.scene", "load b.scene\n");
     EXPECT_NE(error_of(file).find("circle: a.scene -> b.scene -> a.scene"), std::string::npos) << error_of(file);

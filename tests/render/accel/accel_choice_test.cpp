@@ -14,7 +14,7 @@ const PluginRegistry& plugins() {
     return Workbench::get().plugins();
 }
 
-TEST(AccelChoice, ByMeritOnTheDevicesKind) {
+TEST(AccelChoice, TakesTheBestForTheKindOfDevice) {
     EXPECT_STREQ(best_accel(plugins(), DeviceKind::cpu).id, "bvh8");
     EXPECT_STREQ(best_accel(plugins(), DeviceKind::gpu).id, "bvh4");
     const auto by_merit = accels_by_merit(plugins(), DeviceKind::gpu);
@@ -54,7 +54,7 @@ TEST(AccelChoice, ResolvedSettingsNameTheStructureAndItsParameters) {
     }
 }
 
-TEST(AccelChoice, WhatWasPreparedNamesIt) {
+TEST(AccelChoice, PreparedSettingsNameTheStructure) {
     const auto prepared = Workbench::get().prepare(shared_scene(scene_of(box(1))), make_settings({{"size", "8x8"}}));
     const DeviceKind kind = kind_of({Workbench::get().device().info()});
     EXPECT_EQ(prepared->settings.accel, best_accel(plugins(), kind).id);

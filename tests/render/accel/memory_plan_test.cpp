@@ -99,7 +99,7 @@ std::string prepared_on(uint64_t global_bytes, uint64_t max_allocation_bytes, st
     return why;
 }
 
-TEST(MemoryPlan, CountsWhatIsBuiltNotWhatIsSeen) {
+TEST(MemoryPlan, CountsInstancedTrianglesOnce) {
     const SceneCounts once = count_scene(counted({{100'000'000, 1}}));
     EXPECT_EQ(once.triangles, 100'000'000u);
     EXPECT_EQ(once.references, 100'000'000u);
@@ -118,7 +118,7 @@ TEST(MemoryPlan, SumsAreOf64Bits) {
     EXPECT_LT(total(pieces), 16 * kGibibyte);
 }
 
-TEST(MemoryPlan, RefusesWithTheNumbers) {
+TEST(MemoryPlan, RefusalNamesTheSizes) {
     const std::vector<MemoryPiece> pieces = plan_memory({100'000'000, 100'000'000}, Scene(), bvh4());
     EXPECT_EQ(refusal(pieces, device_of(8 * kGibibyte, 8 * kGibibyte)), "");
     EXPECT_EQ(refusal(pieces, device_of(0, 0)), "");  // the driver does not know its memory
@@ -131,7 +131,7 @@ TEST(MemoryPlan, RefusesWithTheNumbers) {
         EXPECT_NE(all.find(part), std::string::npos) << part << " is not in: " << all;
 }
 
-TEST(MemoryPlan, NothingIsBuiltOfWhatDoesNotFit) {
+TEST(MemoryPlan, RefusesBeforeBuildingIfASceneDoesNotFit) {
     std::vector<std::string> stages;
     EXPECT_EQ(prepared_on(kGibibyte, kGibibyte, stages), "");
     EXPECT_FALSE(stages.empty());
@@ -146,7 +146,7 @@ TEST(MemoryPlan, NothingIsBuiltOfWhatDoesNotFit) {
     EXPECT_FALSE(stages.empty());
 }
 
-TEST(MemoryPlan, TooManyToNumberIsAnError) {
+TEST(MemoryPlan, TooManyPrimitivesForTheirIndicesIsAnError) {
     const std::string refs = error_of(counted({{200'000'000, 1}, {200'000'000, 1}}));
     EXPECT_NE(refs.find("400000000 triangles"), std::string::npos) << refs;
     const std::string numbers = error_of(counted({{100'000'000, 30}}));

@@ -82,7 +82,7 @@ TEST(Tones, AgxBleachesBrightColors) {
     EXPECT_GT(clipped[0] - clipped[2], 200);
 }
 
-TEST(Display, IsWhatTheFilmSays) {
+TEST(Display, MatchesTheFilm) {
     const View view = make_view(*primitives(), 4.0f / 3);
     for (const char* size : {"1x1", "3x1", "5x3", "64x48", "33x31"}) {
         const Settings settings = make_settings({{"size", size}});
@@ -109,7 +109,7 @@ TEST(Display, IsWhatTheFilmSays) {
 }
 
 // A picture keeps its content while others of any size are made. Only the memory of a picture that nothing holds is used again.
-TEST(Display, StaysWhileSomebodyHasIt) {
+TEST(Display, PixelsStayUnchangedWhileTheyAreHeld) {
     const char* const eyes[] = {"0,2.5,11,0,2.2,0,50", "3,2.5,9,0,2.2,0,50"};
     std::vector<std::pair<ByteImage, std::vector<uint8_t>>> kept;
     const auto all_stay = [&] {
@@ -183,7 +183,7 @@ TEST(Display, DistancesMatchThePicture) {
     EXPECT_TRUE(FrameRenderer(bench().shared_device()).read_distance().pixels.empty());
 }
 
-TEST(View, MaterialsOfItsOwn) {
+TEST(View, MaterialsReplaceTheScenes) {
     const ScenePtr scene = primitives();
     View view = make_view(*scene, 4.0f / 3);
     EXPECT_TRUE(view.materials.empty());
@@ -218,7 +218,7 @@ TEST(View, MaterialsOfItsOwn) {
     EXPECT_EQ(picture(scene), before) << "a refused view affected the next picture";
 }
 
-TEST(Generations, AreAsDeepAsRaysGo) {
+TEST(Generations, CountTheDepthOfRays) {
     const ScenePtr scene = primitives();
     const View view = make_view(*scene, 4.0f / 3);
     const auto picture = [&](int depth) {
@@ -270,7 +270,7 @@ TEST(FalseColors, RiseInEvenSteps) {
     }
 }
 
-TEST(FalseColors, ArePaintedAsTheBarSays) {
+TEST(FalseColors, MatchTheColorBar) {
     FloatImage values = ramp(101, 2);
     values.pixels[50] = INFINITY;
     values.pixels[51] = NAN;
@@ -302,7 +302,7 @@ TEST(FalseColors, ArePaintedAsTheBarSays) {
 }
 
 // A frame of the device, with the end of the scale chosen by the user.
-TEST(FalseColors, OfAFrame) {
+TEST(FalseColors, FrameWithAScaleSetByTheUser) {
     Settings settings = make_settings({{"size", "64x48"}, {"aov", "steps"}});
     bench().trace(primitives(), settings, make_view(*primitives(), 4.0f / 3));
     const FloatImage values = bench().frames().read_values();

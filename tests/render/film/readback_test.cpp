@@ -14,14 +14,14 @@ namespace {
 const char* const kEyes[] = {"0,2.5,11,0,2.2,0,50", "1,2.5,10,0,2.2,0,50", "2,2.5,9,0,2.2,0,50", "3,2.5,9,0,2.2,0,50",
                              "4,2.6,9,0,2.2,0,50"};
 
-class Relay : public ::testing::TestWithParam<const char*> {
+class AsyncReadbacks : public ::testing::TestWithParam<const char*> {
  protected:
     static DeviceInfo posing() {
         DeviceInfo info = choose_device("");
         if (std::string(GetParam()) == "gpu") info.cpu = false, info.gpu = true;
         return info;
     }
-    Relay()
+    AsyncReadbacks()
         : device_(std::make_shared<Device>(posing())),
           preparer_(Workbench::get().plugins(), device_),
           frames_(std::make_unique<FrameRenderer>(device_)) {
@@ -46,7 +46,7 @@ class Relay : public ::testing::TestWithParam<const char*> {
     std::shared_ptr<const Prepared> prepared_;
 };
 
-TEST_P(Relay, GivesEachPictureWhileTheNextIsTraced) {
+TEST_P(AsyncReadbacks, ReturnEachPictureWhileTheNextIsTraced) {
     std::vector<std::vector<uint8_t>> expected;
     for (const char* eye : kEyes) {
         trace(eye);
@@ -77,7 +77,7 @@ TEST_P(Relay, GivesEachPictureWhileTheNextIsTraced) {
 }
 
 // Pictures may be waited for in any order, after their renderer is gone, or never.
-TEST_P(Relay, PicturesBelongToWhoHasThem) {
+TEST_P(AsyncReadbacks, OutliveTheirRendererAndMayBeWaitedForInAnyOrder) {
     std::vector<std::vector<uint8_t>> expected;
     std::vector<AsyncReadback> pending;
     for (const char* eye : kEyes) {
@@ -96,7 +96,7 @@ TEST_P(Relay, PicturesBelongToWhoHasThem) {
 
 // A copy that was begun is not used if the tone mapping changes, more samples are added, or the picture is displayed in another
 // way.
-TEST_P(Relay, GivesTheFilmAsItIs) {
+TEST_P(AsyncReadbacks, ReturnTheCurrentFilmAfterChangesOfToneOrSamples) {
     for (const char* eye : {kEyes[0], kEyes[1]}) {
         trace(eye);
         frames_->begin_display(settings_).wait();
@@ -117,7 +117,7 @@ TEST_P(Relay, GivesTheFilmAsItIs) {
     EXPECT_TRUE(bytes(second.wait()) == smoother);
 }
 
-TEST_P(Relay, SizesMayChangeOnTheWay) {
+TEST_P(AsyncReadbacks, SizesMayChangeBetweenPictures) {
     std::vector<std::vector<uint8_t>> expected;
     std::vector<AsyncReadback> pending;
     for (const auto& [width, height] : {std::pair{96, 72}, {40, 30}, {200, 150}, {33, 31}, {64, 48}}) {
@@ -130,7 +130,7 @@ TEST_P(Relay, SizesMayChangeOnTheWay) {
 }
 
 // `meanwhile` is not called if no launch was made, for example after a cancel.
-TEST_P(Relay, ACancelledTraceLeavesThePictureBefore) {
+TEST_P(AsyncReadbacks, ACancelledTraceKeepsThePendingPicture) {
     trace(kEyes[0]);
     const std::vector<uint8_t> before = picture();
     AsyncReadback pending = frames_->begin_display(settings_);
@@ -144,6 +144,6 @@ TEST_P(Relay, ACancelledTraceLeavesThePictureBefore) {
     EXPECT_TRUE(bytes(pending.wait()) == before);
 }
 
-INSTANTIATE_TEST_SUITE_P(Devices, Relay, ::testing::Values("cpu", "gpu"));
+INSTANTIATE_TEST_SUITE_P(Devices, AsyncReadbacks, ::testing::Values("cpu", "gpu"));
 
 }  // namespace

@@ -49,7 +49,7 @@ ScenePtr ball() {
     return scene;
 }
 
-TEST(Counters, ALooseListTestsEverything) {
+TEST(Counters, LinearTestsEveryPrimitive) {
     const unsigned triangles = static_cast<unsigned>(ball()->triangle_count());
     for (const int lanes : {1, 16}) {
         const std::vector<rt_ray> rays = rays_at(1.5, 64);
@@ -89,7 +89,7 @@ TEST(Counters, EveryKindOfPrimitive) {
     EXPECT_EQ(hits[1].leaf_tests, 2u * 12 + 2);
 }
 
-TEST(Counters, LanesOfANode) {
+TEST(Counters, CountActiveLanesPerNode) {
     for (const std::string& accel : bench().accels()) {
         const rt_ray straight = ray_of({0.1f, 0.2f, 5}, {0, 0, -1});
         const rt_hit alone = counted(ball(), accel, 16, {straight})[0];  // a packet of one ray, visited in a packet's order
@@ -115,7 +115,7 @@ TEST(Counters, LanesOfANode) {
 
 // A packet visits every node that any of its rays would visit. Each ray is counted about where it would go alone. The counts
 // may differ, because the visits that a hit saves depend on the packet's order.
-TEST(Counters, PacketsAgainstTheirRaysAlone) {
+TEST(Counters, PacketsAndSingleRaysHaveSimilarCounts) {
     std::vector<rt_ray> rays;
     for (const rt_ray& at : rays_at(1.2, 100))
         for (int i = 0; i < 16; ++i)
@@ -136,7 +136,7 @@ TEST(Counters, PacketsAgainstTheirRaysAlone) {
     EXPECT_LT(lanes, visits_alone * 130 / 100);
 }
 
-TEST(Counters, CountingChangesNothing) {
+TEST(Counters, CountingChangesNoHit) {
     const std::vector<rt_ray> rays = rays_at(1.5, 1000);
     for (const std::string& accel : bench().accels())
         for (const bool any : {false, true}) {
@@ -149,7 +149,7 @@ TEST(Counters, CountingChangesNothing) {
         }
 }
 
-TEST(Counters, AsPictures) {
+TEST(Counters, AovsShowTheCounts) {
     const View view = view_from({0, 0, 5}, {0, 0, 0}, 40);
     const auto picture = [&](const std::string& aov, const std::string& accel, int lanes) {
         return bench().values(

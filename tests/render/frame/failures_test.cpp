@@ -61,7 +61,7 @@ class Failures : public ::testing::TestWithParam<const char*> {
     std::vector<float> truth_;
 };
 
-TEST_P(Failures, NoRoomForAPicture) {
+TEST_P(Failures, TooLittleMemoryForAPicture) {
     faults.largest_buffer = 1 << 20;
     const std::string said = message([&] { frames_.trace(*prepared_, large_, view_, 0, false, progress_); });
     EXPECT_NE(said.find(device_->info().name), std::string::npos) << said;
@@ -69,7 +69,7 @@ TEST_P(Failures, NoRoomForAPicture) {
     expect_all_is_well("no room for a picture");
 }
 
-TEST_P(Failures, NoRoomForASceneLeavesTheLastOne) {
+TEST_P(Failures, TooLittleMemoryForASceneKeepsTheLastScene) {
     faults.largest_buffer = 0;
     const ScenePtr other = load_scene(source_file("scenes/cornell.scene"));
     const std::string said = message([&] { preparer_.prepare(other, small_, progress_); });
@@ -80,7 +80,7 @@ TEST_P(Failures, NoRoomForASceneLeavesTheLastOne) {
 }
 
 // Refuses each launch of a picture in turn: tracing, sums of counters, tone mapping.
-TEST_P(Failures, ALaunchThatIsRefused) {
+TEST_P(Failures, ARefusedLaunch) {
     for (int launch = 0; launch < 12; ++launch) {
         faults.launches_left = launch;
         try {
@@ -114,7 +114,7 @@ class CopyFailures : public Failures {
 };
 
 // Consecutive pictures.
-TEST_P(CopyFailures, ALaunchThatIsRefusedBetweenPictures) {
+TEST_P(CopyFailures, ARefusedLaunchBetweenPictures) {
     AsyncReadback pending;
     ByteImage shown;
     const auto show = [&] {
@@ -151,7 +151,7 @@ TEST_P(CopyFailures, ALaunchThatIsRefusedBetweenPictures) {
 }
 
 // A refused copy causes an error message, and the pictures after it are complete.
-TEST_P(CopyFailures, ACopyThatIsRefused) {
+TEST_P(CopyFailures, ARefusedCopy) {
     copying_->trace(*prepared_, small_, view_, 0, false, progress_);
     AsyncReadback before = copying_->begin_display(small_);
     const ByteImage truth = copying_->read_display(small_);

@@ -146,22 +146,22 @@ void expect_counted_rays(const Case& c, size_t* dropped = nullptr) {
     if (dropped) *dropped = lost;
 }
 
-TEST(Inspect, EveryPixelsRaysAreThePicturesOnes) {
+TEST(Inspect, RaysOfAllPixelsAddUpToTheFramesCounts) {
     expect_counted_rays(primitives({"bvh2", 16, 4, 4}, "28x21", {{"depth", "6"}}));
 }
 
-TEST(Inspect, PacketsThatNoLanesFillAndAnotherStructure) {
+TEST(Inspect, RaysAddUpForPartlyFilledPacketsAndAnotherStructure) {
     expect_counted_rays(primitives({"spheres", 4, 3, 5}, "22x17", {{"depth", "4"}, {"portable", "true"}}));
 }
 
-TEST(Inspect, RaysWithoutASlotAreNamed) {
+TEST(Inspect, DroppedRaysAreRecorded) {
     size_t dropped = 0;
     expect_counted_rays(primitives({"bvh2", 16, 4, 4}, "28x21", {{"depth", "8"}, {"ray_slots", "1"}, {"debug", "true"}}),
                         &dropped);
     EXPECT_GT(dropped, 0u);
 }
 
-TEST(Inspect, CameraRayMeetsWhatTheAovsSay) {
+TEST(Inspect, CameraRayAgreesWithTheAovs) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const Case c(scene, make_view(*scene, 4.0f / 3, "0,2.5,11,0,2.2,0,50"), settings_of({"bvh2", 16, 4, 4}, "160x120"));
     const FloatImage t = c.aov("t"), prim = c.aov("prim"), instance = c.aov("instance"), steps = c.aov("steps"),
@@ -198,7 +198,7 @@ TEST(Inspect, CameraRayMeetsWhatTheAovsSay) {
 }
 
 // A mirror before a lamp, straight ahead: every number of the rays is known.
-TEST(Inspect, KnownByHand) {
+TEST(Inspect, MatchesRaysComputedByHand) {
     Scene scene = scene_of(TriangleMesh());
     scene.planes.push_back({{0, 0, 1}, 0, add_material(scene, mirror(0.5f))});
     rt_material lamp = diffuse(0, 0, 0);
@@ -232,7 +232,7 @@ TEST(Inspect, KnownByHand) {
     EXPECT_EQ(tree.color, (std::array<float, 3>{0.5f, 1, 2}));
 }
 
-TEST(Inspect, FatesOfRaysThatAreNotTraced) {
+TEST(Inspect, UntracedRaysHaveAReason) {
     const auto count = [](const Case& c, Fate fate) {
         size_t n = 0;
         for (unsigned y = 2; y < 48; y += 4)
@@ -252,7 +252,7 @@ TEST(Inspect, FatesOfRaysThatAreNotTraced) {
 }
 
 // Spheres of half-mirroring glass inside another one: every hit splits a ray in two.
-TEST(Inspect, TooManyRaysAreSaidToBeSo) {
+TEST(Inspect, ATruncatedTreeIsMarked) {
     Scene scene = scene_of(TriangleMesh());
     rt_material both = glass(1.2f);
     both.reflect = both.refract = 0.5f;
@@ -276,7 +276,7 @@ TEST(Inspect, TooManyRaysAreSaidToBeSo) {
     expect_sound(c, tree);
 }
 
-TEST(Inspect, MaterialsOfTheViewCount) {
+TEST(Inspect, UsesTheMaterialsOfTheView) {
     Case c = primitives({"bvh2", 16, 4, 4}, "64x48");
     for (const Material& material : c.scene->materials) {
         c.view.materials.push_back(material.values);
@@ -293,7 +293,7 @@ TEST(Inspect, MaterialsOfTheViewCount) {
     EXPECT_GT(brighter, 50u);
 }
 
-TEST(Inspect, NoSuchPixel) {
+TEST(Inspect, APixelOutsideThePictureIsAnError) {
     const Case c = primitives({"bvh2", 16, 4, 4}, "64x48");
     for (const auto& [x, y] : {std::pair{64u, 0u}, {0u, 48u}, {~0u, ~0u}}) try {
             c.tree(x, y);
@@ -305,7 +305,7 @@ TEST(Inspect, NoSuchPixel) {
 }
 
 // Frames continue while pixels are inspected.
-TEST(Inspect, BesideFrames) {
+TEST(Inspect, WorksWhileFramesAreTraced) {
     const Case c = primitives({"bvh2", 16, 4, 4}, "64x48");
     const FloatImage picture = c.picture;
     std::atomic<bool> stop{false};

@@ -38,7 +38,7 @@ Picture trace(Pace& pace, unsigned groups, const std::function<double(unsigned)>
     return picture;
 }
 
-TEST(Pace, OfAnyDeviceIsUnderHalfASecond) {
+TEST(Pace, PiecesTakeLessThanHalfASecondOnAnyDevice) {
     // From 40 ms a group (64 pixels, 64 lights and depth 16 at 1.6 Mrays/s) to the speed of a large GPU.
     for (const double ms : {40.0, 8.0, 1.0, 0.1, 0.01, 1e-3, 1e-5})
         for (const unsigned groups : {1u, 192u, 12288u, 129600u}) {
@@ -54,14 +54,14 @@ TEST(Pace, OfAnyDeviceIsUnderHalfASecond) {
         }
 }
 
-TEST(Pace, OfAFastPictureIsOnePieceFromTheSecondOn) {
+TEST(Pace, FastPicturesAreOnePieceFromTheSecondOn) {
     Pace pace;
     trace(pace, 12288, [](unsigned) { return 4e-5; });
     for (int picture = 1; picture < 4; ++picture) EXPECT_EQ(trace(pace, 12288, [](unsigned) { return 4e-5; }).pieces, 1u);
 }
 
 // Sky, then a model that takes ten times as long, then sky again. The next picture's pace must not follow the last sky.
-TEST(Pace, OfUnevenPicturesHoldsToo) {
+TEST(Pace, PiecesOfUnevenPicturesStayShort) {
     const auto uneven = [](unsigned group) { return group > 4000 && group < 9000 ? 0.5 : 0.05; };
     Pace pace;
     for (int picture = 0; picture < 4; ++picture) EXPECT_LE(trace(pace, 12288, uneven).longest_ms, kLimitMs) << picture;
@@ -71,14 +71,14 @@ TEST(Pace, OfUnevenPicturesHoldsToo) {
     for (int picture = 1; picture < 4; ++picture) EXPECT_LE(trace(pace, 12288, steep).longest_ms, kLimitMs) << picture;
 }
 
-TEST(Pace, IsNotMisledByACompilation) {
+TEST(Pace, IgnoresTheTimeOfACompilation) {
     Pace pace;
     trace(
         pace, 12288, [](unsigned) { return 1e-4; }, 3000);
     EXPECT_EQ(trace(pace, 12288, [](unsigned) { return 1e-4; }).pieces, 1u);
 }
 
-TEST(Pace, ExpectsWhatThePictureBeforeTook) {
+TEST(Pace, ExpectsTheTimeOfThePreviousPicture) {
     Pace pace;
     EXPECT_TRUE(std::isinf(pace.expected_ms(1)));
     for (int picture = 0; picture < 2; ++picture) trace(pace, 12288, [](unsigned) { return 1e-3; });
@@ -87,7 +87,7 @@ TEST(Pace, ExpectsWhatThePictureBeforeTook) {
     EXPECT_TRUE(std::isinf(pace.expected_ms(1)));
 }
 
-TEST(Pace, KeepsToTheMost) {
+TEST(Pace, PiecesAreNotLargerThanTheLimit) {
     Pace pace;
     for (int picture = 0; picture < 2; ++picture)
         EXPECT_GE(trace(

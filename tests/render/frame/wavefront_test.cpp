@@ -62,7 +62,7 @@ struct Way {
 };
 const Way kGroup{1, 1, 1, true}, kOdd{8, 3, 5, false}, kDefault{16, 4, 4, false};
 
-TEST(Wavefront, WhereNothingPartsHasTheSameBits) {
+TEST(Wavefront, EqualsIterativeBitByBitIfNoRaySplits) {
     TriangleMesh mesh = torus(2, 0.7, 48, 24), ball = uv_sphere(0.9, 48, 24);
     ball.transform(1, {0, 0.9, 0});
     mesh.add(ball);
@@ -79,7 +79,7 @@ TEST(Wavefront, WhereNothingPartsHasTheSameBits) {
     }
 }
 
-TEST(Wavefront, GlassHasTheSameColours) {
+TEST(Wavefront, EqualsIterativeWithGlass) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const View view = make_view(*scene, 4.0f / 3);
     for (const Way& way : {kGroup, kDefault}) {
@@ -98,7 +98,7 @@ TEST(Wavefront, GlassHasTheSameColours) {
 }
 
 // With more room for each pixel, fewer pixels fit into a piece.
-TEST(Wavefront, ManySmallPiecesAreOnePicture) {
+TEST(Wavefront, PiecesJoinToTheSamePicture) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const View view = make_view(*scene, 4.0f / 3);
     Settings settings = kDefault.settings("400x300", "5");
@@ -110,7 +110,7 @@ TEST(Wavefront, ManySmallPiecesAreOnePicture) {
 }
 
 // Concentric balls: a ray splits more often than there is room for.
-TEST(Wavefront, WhatFindsNoRoomIsCounted) {
+TEST(Wavefront, CountsDroppedRays) {
     Scene balls;
     const rt_u32 material = add_material(balls, glass(2.4f));
     for (int i = 1; i <= 4; ++i) {

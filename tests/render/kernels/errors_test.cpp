@@ -20,7 +20,7 @@ namespace {
 
 // Copies the checkout's kernels and traversals to a folder that CLARITY_KERNEL_PATH names, so that they precede the embedded
 // ones.
-class Errors : public ::testing::Test {
+class KernelErrors : public ::testing::Test {
  protected:
     void SetUp() override {
         fs::copy(source_file("cl"), scratch_.path("cl"), fs::copy_options::recursive);
@@ -66,34 +66,34 @@ class Errors : public ::testing::Test {
     Settings settings_;
 };
 
-TEST_F(Errors, NameFileAndLineOfTheTracer) {
+TEST_F(KernelErrors, NameFileAndLineOfTheTracer) {
     expect_error_at(break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL"));
 }
 
-TEST_F(Errors, NameFileAndLineOfAPrimitive) {
+TEST_F(KernelErrors, NameFileAndLineOfAPrimitive) {
     expect_error_at(break_line("cl/primitives/triangle.h", "#if RT_CPU"));
 }
 
-TEST_F(Errors, NameFileAndLineOfAPluginsTraversal) {
+TEST_F(KernelErrors, NameFileAndLineOfAPluginsTraversal) {
     expect_error_at(break_line("plugins/accel/bvh2/bvh2.cl", "void RT_TRAVERSE"));
 }
 
-TEST_F(Errors, NameFileAndLineOfAPartOfAPlugin) {
+TEST_F(KernelErrors, NameFileAndLineOfAPartOfAPlugin) {
     settings_ = make_settings({{"accel", "bvh8"}, {"size", "32x24"}, {"lanes", "4"}});
     expect_error_at(break_line("plugins/accel/bvh8/bvh8_interval_packet.cl", "RT_INLINE"));
 }
 
-TEST_F(Errors, NameFileAndLineOfAHeaderThatAPluginIncludes) {
+TEST_F(KernelErrors, NameFileAndLineOfAHeaderThatAPluginIncludes) {
     settings_ = make_settings({{"accel", "bvh4"}, {"size", "32x24"}, {"lanes", "4"}});
     expect_error_at(break_line("cl/lanes/packet_traversal.h", "#ifndef RT_PACKET_TRAVERSAL_H"));
 }
 
-TEST_F(Errors, NameFileAndLineBehindAnInclude) {
+TEST_F(KernelErrors, NameFileAndLineBehindAnInclude) {
     settings_ = make_settings({{"accel", "bvh4"}, {"size", "32x24"}, {"lanes", "4"}});
     expect_error_at(break_line("plugins/accel/bvh4/bvh4.cl", "#undef RT_PACKET_STACK_SIZE"));
 }
 
-TEST_F(Errors, LeaveWhatWasPreparedBefore) {
+TEST_F(KernelErrors, KeepThePreviousProgramUsable) {
     const auto device = std::make_shared<Device>(choose_device(""));
     Preparer preparer(Workbench::get().plugins(), device);
     FrameRenderer frames(device);
@@ -113,7 +113,7 @@ TEST_F(Errors, LeaveWhatWasPreparedBefore) {
     EXPECT_NO_THROW(preparer.prepare(scene_, other, progress));
 }
 
-TEST_F(Errors, ExitCodeOfTheProgram) {
+TEST_F(KernelErrors, SetTheExitCode) {
     const char* program = std::getenv("CLARITY_WORKER");
     if (!program || !fs::exists(program)) GTEST_SKIP() << "SKIPPED: no program `clarity`; ctest names it in CLARITY_WORKER";
     const std::string place = break_line("cl/tracers/iterative.cl", "RT_PICTURE_KERNEL");

@@ -109,17 +109,17 @@ void expect_as_alone(const ScenePtr& scene, const std::vector<rt_ray>& rays, siz
 
 }  // namespace
 
-TEST(Bundles, BeamsOfAllWidths) {
+TEST(PacketStreams, BeamsOfAllWidths) {
     expect_as_alone(rubble(), all_beams(), 10000, {4, 8, 16});
 }
 
 // The packets of a stream that reach an instance enter it one after the other.
-TEST(Bundles, AmongInstances) {
+TEST(PacketStreams, InstancedScene) {
     expect_as_alone(instanced_rubble(), all_beams(), 10000, {16});
 }
 
 // Lanes and whole packets without rays, and rays whose intervals begin late and end early.
-TEST(Bundles, GapsAndLimits) {
+TEST(PacketStreams, InactiveRaysAndIntervals) {
     std::vector<rt_ray> rays = all_beams();
     std::mt19937 random(22);
     std::uniform_real_distribution<float> t(0, 4);
@@ -132,7 +132,7 @@ TEST(Bundles, GapsAndLimits) {
 }
 
 // Numbers of packets that are no multiple of a stream's.
-TEST(Bundles, TheLastOne) {
+TEST(PacketStreams, IncompleteLastStream) {
     std::vector<rt_ray> rays = all_beams();
     for (const size_t left : {1, 17, 255, 256 + 40}) {
         rays.resize(left);
@@ -142,7 +142,7 @@ TEST(Bundles, TheLastOne) {
 
 // Streams count each packet's visits separately, so fetching a node once for all saves nothing here. But no packet may visit
 // many more nodes than alone.
-TEST(Bundles, VisitNoMoreThanAlone) {
+TEST(PacketStreams, VisitHardlyMoreNodesThanSinglePackets) {
     const std::vector<rt_ray> rays = all_beams();
     RayQuery counted;
     counted.count = true;
@@ -155,7 +155,7 @@ TEST(Bundles, VisitNoMoreThanAlone) {
 
 // Triangles smaller than pixels, all half mirrors. Mirror and shadow rays start far apart compared with that size, so packets
 // of a stream are split. This must not change any bit of the picture.
-TEST(Bundles, ScatteredRaysPartUnseen) {
+TEST(PacketStreams, SplittingAStreamChangesNoPixel) {
     Scene scene = scene_of(torus(1, 0.4, 200, 100));
     const ScenePtr shared = shared_scene(std::move(scene));
     View view = view_from({1, 3, 2}, {0, 0, 0}, 40);

@@ -97,7 +97,7 @@ class Author {
     std::unique_ptr<FrameRenderer> frames_;
 };
 
-TEST(Reload, EachTextRunsAndMemoryStays) {
+TEST(Reload, RunsEachNewTextWithoutGrowingMemory) {
     constexpr int kFirst = 20;
     const char* wished = std::getenv("CLARITY_RELOADS");
     const int count = wished ? std::max(1, std::atoi(wished)) : 16;

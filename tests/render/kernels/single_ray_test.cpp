@@ -74,7 +74,7 @@ rt_ray towards(const float* from, const float* to, std::mt19937& random) {
     return ray;
 }
 
-TEST(LoneRays, RandomOnes) {
+TEST(SingleRays, EqualPacketsForRandomRays) {
     std::mt19937 random(12);
     std::uniform_real_distribution<float> at(-1.2f, 1.2f);
     std::vector<rt_ray> rays;
@@ -86,7 +86,7 @@ TEST(LoneRays, RandomOnes) {
 }
 
 // Through corners and along edges, where edge functions are zero, and along axes, where products cancel each other.
-TEST(LoneRays, CornersEdgesAndAxes) {
+TEST(SingleRays, EqualPacketsAtCornersEdgesAndAxes) {
     const Scene& scene = *rubble();
     std::mt19937 random(13);
     std::uniform_real_distribution<float> at(-1.2f, 1.2f);
@@ -107,7 +107,7 @@ TEST(LoneRays, CornersEdgesAndAxes) {
 }
 
 // Every kind of primitive that a leaf may hold beside triangles.
-TEST(LoneRays, EveryKindOfPrimitive) {
+TEST(SingleRays, EqualPacketsForEveryKindOfPrimitive) {
     const ScenePtr scene = geometry_of(load_scene(source_file("scenes/primitives.scene")));
     const Bounds box = scene->bounds();
     std::mt19937 random(14);
@@ -125,7 +125,7 @@ TEST(LoneRays, EveryKindOfPrimitive) {
 }
 
 // Coordinates so large that products overflow, and intervals that contain nothing or everything.
-TEST(LoneRays, OverflowAndLimits) {
+TEST(SingleRays, EqualPacketsForOverflowsAndIntervals) {
     std::mt19937 random(15);
     std::uniform_real_distribution<float> at(-1.2f, 1.2f);
     std::vector<rt_ray> rays;

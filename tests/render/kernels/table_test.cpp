@@ -7,7 +7,7 @@
 namespace clarity {
 namespace {
 
-TEST(KernelTable, EveryRowNamesFilesThatAreThere) {
+TEST(KernelTable, EveryRowNamesExistingFiles) {
     for (const KernelRow& row : kernel_table()) {
         const std::string text = kernel_text(row.file);
         EXPECT_NE(text.find(std::string(row.entry) + "("), std::string::npos) << row.file << " has no " << row.entry;

@@ -61,7 +61,7 @@ class FailingDevice : public ::testing::Test {
     SharedBytes display_;
 };
 
-TEST_F(FailingDevice, BeforeAPicture) {
+TEST_F(FailingDevice, OthersTakeOverBeforeAPicture) {
     Team team("0:0/2");
     const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
     Warnings warnings;
@@ -72,7 +72,7 @@ TEST_F(FailingDevice, BeforeAPicture) {
     expect_whole(team, warnings);
 }
 
-TEST_F(FailingDevice, BetweenSamples) {
+TEST_F(FailingDevice, OthersTakeOverBetweenSamples) {
     Team team("0:0/2");
     const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
     Warnings warnings;
@@ -82,7 +82,7 @@ TEST_F(FailingDevice, BetweenSamples) {
     expect_whole(team, warnings);
 }
 
-TEST_F(FailingDevice, BeforeItIsReadBack) {
+TEST_F(FailingDevice, OthersTakeOverBeforeItsFilmIsReadBack) {
     Team team("0:0/2");
     const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
     Warnings warnings;
@@ -96,7 +96,7 @@ TEST_F(FailingDevice, BeforeItIsReadBack) {
     expect_whole(team, warnings);
 }
 
-TEST_F(FailingDevice, BeforeItBringsWhatIsShown) {
+TEST_F(FailingDevice, OthersTakeOverBeforeItsDisplayPixelsAreReadBack) {
     Team team("0:0/2");
     const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
     Warnings warnings;
@@ -110,7 +110,7 @@ TEST_F(FailingDevice, BeforeItBringsWhatIsShown) {
     expect_whole(team, warnings);
 }
 
-TEST_F(FailingDevice, WhileItIsPrepared) {
+TEST_F(FailingDevice, OthersTakeOverDuringPreparation) {
     Team team("0:0/2");
     Warnings warnings;
     lose(team, 1);
@@ -121,7 +121,7 @@ TEST_F(FailingDevice, WhileItIsPrepared) {
     EXPECT_EQ(differing(truth_, team.frames.read_values().pixels), 0u);
 }
 
-TEST_F(FailingDevice, AllOfThemIsAnError) {
+TEST_F(FailingDevice, ThrowsIfAllDevicesFail) {
     Team team("0:0/2");
     const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
     lose(team, 0);
@@ -136,7 +136,7 @@ TEST_F(FailingDevice, AllOfThemIsAnError) {
     EXPECT_THROW(team.frames.trace(prepared, settings_, view_, 0, false, team.progress), Error);
 }
 
-TEST_F(FailingDevice, DevicesOpenedAnewGoOn) {
+TEST_F(FailingDevice, DevicesOpenedAgainWork) {
     Team team("0:0/2");
     team.trace(scene_, settings_, view_);
     team.frames.~MultiFrameRenderer();

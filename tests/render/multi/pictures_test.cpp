@@ -63,7 +63,7 @@ class SharedPictures : public ::testing::Test {
 };
 Team *SharedPictures::one_ = nullptr, *SharedPictures::two_ = nullptr;
 
-TEST_F(SharedPictures, OfEveryPacketAndLanes) {
+TEST_F(SharedPictures, EqualOneDevicesForAllPacketsAndLanes) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const auto& [lanes, packet] : std::vector<std::pair<const char*, const char*>>{
              {"auto", "auto"}, {"1", "1x1"}, {"4", "3x5"}, {"8", "8x8"}, {"16", "16x16"}}) {
@@ -74,14 +74,14 @@ TEST_F(SharedPictures, OfEveryPacketAndLanes) {
     expect_same(scene, settings_of({{"lanes", "1"}, {"portable", "true"}, {"size", "160x120"}}), "groups of 64");
 }
 
-TEST_F(SharedPictures, OfOddSizes) {
+TEST_F(SharedPictures, EqualOneDevicesForOddSizes) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const char* size : {"1x1", "3x17", "17x3", "33x31", "40x33", "1x300"})
         expect_same(scene, settings_of({{"size", size}}), size);
 }
 
 // Tone mapping works on four pixels at a time. Here the pixels of a work-group row are no multiple of 4.
-TEST_F(SharedPictures, OfRowsThatFoursDoNotFill) {
+TEST_F(SharedPictures, EqualOneDevicesForRowsThatAreNoMultipleOfFour) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const char* packet : {"5x5", "3x3", "7x1", "1x5"})
         for (const char* size : {"102x96", "101x77", "255x64", "1022x48", "3x200"}) {
@@ -95,7 +95,7 @@ TEST_F(SharedPictures, OfRowsThatFoursDoNotFill) {
         }
 }
 
-TEST_F(SharedPictures, OfManySamplesAtOnceOrOneByOne) {
+TEST_F(SharedPictures, EqualOneDevicesForManySamplesAtOnceOrOneByOne) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const Settings settings = settings_of({{"size", "160x120"}});
     expect_same(scene, settings, "5 at once", 5);
@@ -107,19 +107,19 @@ TEST_F(SharedPictures, OfManySamplesAtOnceOrOneByOne) {
     compare_films(settings, "2 and 3");
 }
 
-TEST_F(SharedPictures, OfEveryQuantity) {
+TEST_F(SharedPictures, EqualOneDevicesForAovs) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const char* aov : {"t", "prim", "normal", "steps", "generations"})  // one of each form of film
         expect_same(scene, settings_of({{"aov", aov}, {"size", "120x90"}}), aov);
 }
 
-TEST_F(SharedPictures, OfEveryTracer) {
+TEST_F(SharedPictures, EqualOneDevicesForEveryTracer) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     for (const std::string& tracer : find_setting("tracer")->choices)
         expect_same(scene, settings_of({{"tracer", tracer}, {"size", "160x120"}}), tracer, 3);
 }
 
-TEST_F(SharedPictures, OfOneStructureBuiltOnce) {
+TEST_F(SharedPictures, TheStructureIsBuiltOnce) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const Settings settings = settings_of({});
     const auto prepared = two_->preparer.prepare(scene, settings, two_->progress);
@@ -136,7 +136,7 @@ TEST_F(SharedPictures, OfOneStructureBuiltOnce) {
 }
 
 // A whole CPU and a part of it are of different kinds, so at first their speeds are not known.
-TEST_F(SharedPictures, OfUnlikeDevices) {
+TEST_F(SharedPictures, DevicesMayBeOfDifferentKinds) {
     Team unlike("cpu,cpu/2.0");
     ASSERT_EQ(unlike.devices.size(), 2u);
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
@@ -150,7 +150,7 @@ TEST_F(SharedPictures, OfUnlikeDevices) {
 }
 
 // As GPUs do it: a launch traces several samples, as soon as these are known to be short.
-TEST_F(SharedPictures, OfManySamplesALaunch) {
+TEST_F(SharedPictures, ALaunchMayTraceSeveralSamples) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene")),
                    plain = load_scene(source_file("scenes/spheres21.scene"));
     for (const ScenePtr& of : {scene, plain})
@@ -182,7 +182,7 @@ TEST_F(SharedPictures, OfManySamplesALaunch) {
 }
 
 // After a picture was displayed, the next one is copied to the host during trace().
-TEST_F(SharedPictures, ThatAreShownOneAfterTheOther) {
+TEST_F(SharedPictures, ConsecutiveDisplaysAreRight) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     Settings settings = settings_of({{"size", "160x121"}});
     for (int picture = 0; picture < 4; ++picture) {
@@ -210,7 +210,7 @@ class StopAfter : public Progress {
     const float fraction_;
 };
 
-TEST_F(SharedPictures, ThatAreCancelledKeepWhatIsComplete) {
+TEST_F(SharedPictures, ACancelledPictureKeepsItsCompleteSamples) {
     const ScenePtr scene = load_scene(source_file("scenes/primitives.scene"));
     const Settings settings = settings_of({{"size", "160x120"}});
     const View view = make_view(*scene, 160.0f / 120.0f);

@@ -39,7 +39,7 @@ Played play(TileScheduler& scheduler, unsigned count, const std::vector<double>&
 
 }  // namespace
 
-TEST(TileScheduler, DealsEachStripOnce) {
+TEST(TileScheduler, AssignsEachTileOnce) {
     for (const unsigned count : {1u, 2u, 3u, 7u, 68u, 135u, 2048u})
         for (const auto& ms : std::vector<std::vector<double>>{{1}, {1, 1}, {1, 3, 9}, {1, 1, 1, 1, 1, 1, 1, 1}, {100, 1}})
             for (const bool alike : {true, false}) {
@@ -48,7 +48,7 @@ TEST(TileScheduler, DealsEachStripOnce) {
             }
 }
 
-TEST(TileScheduler, DevicesOfOneKindEndTogether) {
+TEST(TileScheduler, DevicesOfOneKindGetEqualShares) {
     TileScheduler scheduler(2);
     for (int picture = 0; picture < 3; ++picture) {
         const Played played = play(scheduler, 135, {1, 1}, true);
@@ -56,7 +56,7 @@ TEST(TileScheduler, DevicesOfOneKindEndTogether) {
     }
 }
 
-TEST(TileScheduler, SpeedsAreLearnt) {
+TEST(TileScheduler, SharesFollowMeasuredSpeeds) {
     TileScheduler scheduler(2);
     const std::vector<double> ms = {1, 4};
     Played played;
@@ -69,14 +69,14 @@ TEST(TileScheduler, SpeedsAreLearnt) {
     EXPECT_NEAR(scheduler.share(0), 0.8, 0.02);
 }
 
-TEST(TileScheduler, ASlowDeviceDoesNotHoldUpThePicture) {
+TEST(TileScheduler, ASlowDeviceDoesNotDelayThePicture) {
     TileScheduler scheduler(2);
     for (int picture = 0; picture < 4; ++picture) EXPECT_LE(play(scheduler, 64, {1, 200}, false).last(), 200 + 1e-9) << picture;
     // Once its speed is known, it gets no tile at all.
     EXPECT_LE(play(scheduler, 64, {1, 200}, false).last(), 200);
 }
 
-TEST(TileScheduler, WhoTakesNoPartGetsNothing) {
+TEST(TileScheduler, AnExcludedDeviceGetsNoTile) {
     TileScheduler scheduler(3);
     scheduler.begin(10, {true, false, true}, true);
     EXPECT_TRUE(scheduler.next(1).empty());
@@ -88,7 +88,7 @@ TEST(TileScheduler, WhoTakesNoPartGetsNothing) {
 }
 
 // Neighbouring tiles cost about the same, so each device needs tiles from all parts of the picture.
-TEST(TileScheduler, SharesAreSpreadOverThePicture) {
+TEST(TileScheduler, TilesOfADeviceAreSpreadOverThePicture) {
     TileScheduler scheduler(2);
     scheduler.begin(100, {true, true}, true);
     for (const size_t device : {0, 1}) {

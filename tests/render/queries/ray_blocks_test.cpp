@@ -49,7 +49,7 @@ std::vector<rt_hit> traced(unsigned lanes, const std::vector<rt_ray>& rays, RayQ
 
 }  // namespace
 
-TEST(RayBlocks, AreFieldByField) {
+TEST(RayBlocks, StoreRaysFieldByField) {
     for (const unsigned lanes : kLanes)
         for (const size_t count : kCounts) {
             const RayBlocks blocks(numbered_rays(count), lanes);
@@ -69,7 +69,7 @@ TEST(RayBlocks, AreFieldByField) {
 }
 
 // With one lane, rays and answers have the layout of the structs.
-TEST(RayBlocks, OfOneLaneAreTheStructs) {
+TEST(RayBlocks, WithOneLaneHaveTheLayoutOfTheStructs) {
     const std::vector<rt_ray> rays = numbered_rays(5);
     const RayBlocks blocks(rays, 1);
     EXPECT_EQ(std::memcmp(blocks.floats().data(), rays.data(), sizeof(rt_ray) * rays.size()), 0);
@@ -82,7 +82,7 @@ TEST(RayBlocks, OfOneLaneAreTheStructs) {
     EXPECT_EQ(std::memcmp(back.data(), hits.data(), sizeof(rt_hit) * hits.size()), 0);
 }
 
-TEST(RayBlocks, AnswersComeBackInOrder) {
+TEST(RayBlocks, HitsAreInTheOrderOfTheRays) {
     for (const unsigned lanes : kLanes)
         for (const size_t count : kCounts) {
             const size_t slots = (count + lanes - 1) / lanes * lanes;
@@ -119,7 +119,7 @@ TEST(RayBlocks, AnswersComeBackInOrder) {
 }
 
 // On the device: answers do not depend on the lane count, on blocks being full, or on counting.
-TEST(RayBlocks, AnswersDoNotDependOnLanes) {
+TEST(RayBlocks, HitsDoNotDependOnLanes) {
     const std::vector<rt_ray> all = rays_at_ball(333);
     const std::vector<rt_hit> nearest = traced(1, all, {false, false}), any = traced(1, all, {true, false});
     for (const unsigned lanes : kLanes) {
@@ -160,7 +160,7 @@ TEST(RayBlocks, AnswersDoNotDependOnLanes) {
             }
 }
 
-TEST(RayBlocks, OfOtherLanesAreRefused) {
+TEST(RayBlocks, PackedForOtherLanesAreRefused) {
     Workbench& bench = Workbench::get();
     const auto prepared = bench.prepare(ball(), make_settings({{"accel", "bvh2"}, {"lanes", "4"}}));
     std::vector<rt_hit> hits(2);

@@ -79,15 +79,15 @@ void expect_same_each_time(const ScenePtr& scene) {
 
 }  // namespace
 
-TEST(RequeuedRays, AreThoseOfOneLaunch) {
+TEST(RequeuedRays, GiveTheHitsOfOneLaunch) {
     expect_same_each_time(rubble());
 }
 
-TEST(RequeuedRays, AreThoseOfOneLaunchWithInstances) {
+TEST(RequeuedRays, GiveTheHitsOfOneLaunchWithInstances) {
     expect_same_each_time(heap());
 }
 
-TEST(Autotuner, TakesTheLeastTimeOfEachButTheFirst) {
+TEST(Autotuner, UsesTheMinimumTimeWithoutTheWarmUp) {
     for (const unsigned variants : {1u, 2u, 3u, 5u})
         for (unsigned best = 0; best < variants; ++best) {
             Autotuner autotuner(variants);
@@ -103,7 +103,7 @@ TEST(Autotuner, TakesTheLeastTimeOfEachButTheFirst) {
         }
 }
 
-TEST(Autotuner, TriesWhatIsFarBehindTwice) {
+TEST(Autotuner, TriesSlowVariantsOnlyTwice) {
     Autotuner autotuner(3);
     std::vector<unsigned> tried;
     for (int i = 0; i < 10; ++i) {
@@ -113,7 +113,7 @@ TEST(Autotuner, TriesWhatIsFarBehindTwice) {
     EXPECT_EQ(tried, (std::vector<unsigned>{0, 1, 2, 0, 1, 2, 0, 2, 2, 2}));
 }
 
-TEST(Autotuner, StaysWithTheFirstForLittle) {
+TEST(Autotuner, KeepsItsChoiceIfTheGainIsSmall) {
     Autotuner autotuner(2);
     for (int i = 0; i < 6; ++i) autotuner.took(i % 2 == 0 ? 100 : 98);
     EXPECT_EQ(autotuner.variant(), 0u);
@@ -143,7 +143,7 @@ TEST(Autotuner, IsSettledOnceARunConfirmsTheChoice) {
     EXPECT_FALSE(Autotuner(1).trying());
 }
 
-TEST(Autotuner, LooksAgainWhenRunsTakeAnotherTime) {
+TEST(Autotuner, ReviewsTheChoiceWhenTimesChange) {
     Autotuner autotuner(2);
     use(autotuner, {10, 12}, 8, 6);
     EXPECT_EQ(autotuner.variant(), 0u);
@@ -157,7 +157,7 @@ TEST(Autotuner, LooksAgainWhenRunsTakeAnotherTime) {
     EXPECT_FALSE(autotuner.trying());
 }
 
-TEST(Autotuner, LooksAgainLessAndLess) {
+TEST(Autotuner, ReviewsTheChoiceLessAndLessOften) {
     Autotuner autotuner(2);
     const std::vector<double> ms = {10, 9};
     EXPECT_EQ(use(autotuner, ms, 1, 6), 6u);

@@ -34,7 +34,7 @@ bool same_lights(const std::vector<rt_light>& a, const std::vector<rt_light>& b)
     return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(rt_light)) == 0;
 }
 
-TEST(Edit, EveryChangeComesBackBitByBit) {
+TEST(Edit, EveryChangeIsRestoredBitByBit) {
     const Scene scene = two_boxes();
     EditedView edited = first_view(scene);
     View& view = edited.view;
@@ -69,7 +69,7 @@ TEST(Edit, EveryChangeComesBackBitByBit) {
     }
 }
 
-TEST(Edit, WhatIsAsItWasHasNoWord) {
+TEST(Edit, UnchangedValuesAreNotWritten) {
     const Scene scene = two_boxes();
     const EditedView edited = first_view(scene);
     const std::vector<Word> words = edits_between(scene, edited.view, edited);
@@ -77,7 +77,7 @@ TEST(Edit, WhatIsAsItWasHasNoWord) {
     EXPECT_EQ(words[0].key, "camera");
 }
 
-TEST(Edit, LightsThatAreGoneAreOff) {
+TEST(Edit, RemovedLightsAreOff) {
     const Scene scene = two_boxes();
     EditedView edited = first_view(scene);
     ASSERT_EQ(edited.view.lights.size(), 2u);
@@ -86,7 +86,7 @@ TEST(Edit, LightsThatAreGoneAreOff) {
     EXPECT_TRUE(same_lights(visible_view(again).lights, edited.view.lights));
 }
 
-TEST(Edit, HiddenInstancesKeepTheNumbersOfTheOthers) {
+TEST(Edit, HidingInstancesKeepsTheNumbersOfTheOthers) {
     const Scene scene = two_boxes();
     Progress progress;
     const BuildScene all = make_build_scene(scene, progress);
@@ -105,7 +105,7 @@ TEST(Edit, HidingEverythingLeavesTheSky) {
     for (const float value : t.pixels) EXPECT_TRUE(std::isinf(value));
 }
 
-TEST(Edit, RefusesWithWhatIsAllowed) {
+TEST(Edit, RefusalsNameTheAllowedValues) {
     const Scene scene = two_boxes();
     const std::vector<std::array<std::string, 3>> wrong = {
         {"camera", "1,2,3", "ex,ey,ez"},
@@ -143,7 +143,7 @@ TEST(Edit, RefusesWithWhatIsAllowed) {
     }
 }
 
-TEST(PlaceOfPrim, CountsAsThePicturesDo) {
+TEST(PlaceOfPrim, NumbersPrimitivesAsTheAovsDo) {
     Scene scene = two_boxes();
     scene.instances[1].material = 1;
     scene.spheres.push_back({{0, 5, 0}, 1, 1});

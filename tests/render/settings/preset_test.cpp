@@ -38,18 +38,18 @@ void expect_same(const Preset& a, const Preset& b) {
     }
 }
 
-TEST(Preset, ComesBackFromJson) {
+TEST(Preset, IsReadBackFromJson) {
     expect_same(parse_preset(plugins(), preset_json(plugins(), unusual()), "round trip"), unusual());
 }
 
-TEST(Preset, WhatIsMissingIsTheDefault) {
+TEST(Preset, MissingKeysHaveDefaults) {
     const Preset preset = parse_preset(plugins(), R"({"clarity_preset": 1})", "short");
     EXPECT_EQ(preset.settings.accel, "bvh8");
     EXPECT_EQ(preset.settings.depth, Settings().depth);
     EXPECT_TRUE(preset.edits.empty());
 }
 
-TEST(Preset, RefusesWhatItDoesNotKnow) {
+TEST(Preset, RefusesUnknownKeysAndValues) {
     const std::vector<std::pair<std::string, std::string>> wrong = {
         {"", "no preset"},
         {"[]", "no preset"},
@@ -79,7 +79,7 @@ TEST(Preset, RefusesWhatItDoesNotKnow) {
 }
 
 // The window also passes settings as text. With 1/512 rounded to six digits, more rays were followed.
-TEST(Settings, NumbersInWordsComeBackBitByBit) {
+TEST(Settings, NumbersWrittenAsTextAreReadBackBitByBit) {
     for (const Setting& row : settings_table()) {
         if (row.kind != Setting::Kind::real) continue;
         for (const double value : {1.0 / 512, 1.0 / 3, 0.1, 1e-300, 0.123456789012345678, row.max}) {
@@ -94,7 +94,7 @@ TEST(Settings, NumbersInWordsComeBackBitByBit) {
     }
 }
 
-TEST(RenderCommand, SaysWhatIsNotTheDefault) {
+TEST(RenderCommand, ListsSettingsThatAreNotTheDefault) {
     Preset plain;
     plain.settings.accel_params = default_parameters(*plugins().accel("bvh8"));
     EXPECT_EQ(render_command(plugins(), plain, {"a.scene"}, "out.png"), "clarity render a.scene -o out.png");

@@ -1,4 +1,4 @@
-#include "bench/run/moving.hpp"
+#include "bench/cases/moving.hpp"
 
 #include <chrono>
 #include <cmath>
@@ -35,7 +35,7 @@ void add_bytes(uint64_t& digest, const SharedBytes& bytes) {
 
 Sample show_moving(FrameRenderer& frames, const Prepared& prepared, const Settings& settings, const View& view, bool overlapped,
                    Progress& progress, std::vector<KernelTime>* parts, uint64_t* digest) {
-    Sample take;
+    Sample sample;
     AsyncReadback pending;
     FrameStats pending_stats;
     const auto show = [&](const ByteImage& picture, const FrameStats& stats) {
@@ -49,7 +49,7 @@ Sample show_moving(FrameRenderer& frames, const Prepared& prepared, const Settin
     for (unsigned i = 0; i < kPictures; ++i) {
         if (progress.cancelled()) throw Cancelled();
         FrameStats stats = frames.trace(prepared, settings, turned(view, i), 0, false, progress, nullptr, show_pending);
-        take.time_ms += stats.device_ms / kPictures;
+        sample.time_ms += stats.device_ms / kPictures;
         if (overlapped) {
             pending = frames.begin_display(settings);
             pending_stats = std::move(stats);
@@ -58,8 +58,8 @@ Sample show_moving(FrameRenderer& frames, const Prepared& prepared, const Settin
         }
     }
     show_pending();
-    take.wall_ms = ms_since(begin) / kPictures;
-    return take;
+    sample.wall_ms = ms_since(begin) / kPictures;
+    return sample;
 }
 
 }  // namespace clarity::bench

@@ -1,4 +1,4 @@
-#include "bench/run/analysis.hpp"
+#include "bench/cases/analysis.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "bench/run/breakdown.hpp"
+#include "bench/cases/breakdown.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -78,12 +78,12 @@ void measure_breakdown(BenchRecord& row, Fixture& fixture, size_t device, const 
         contenders.push_back({kNames[i], [=, &view, &progress, &shown] {
                                   const auto begin = std::chrono::steady_clock::now();
                                   FrameStats stats = frames->trace(*prepared, reduced, view, 0, false, progress);
-                                  Sample take{stats.device_ms, 0};
-                                  if (probe != Probe::whole) return take;
+                                  Sample sample{stats.device_ms, 0};
+                                  if (probe != Probe::whole) return sample;
                                   frames->read_display(reduced, &stats);
-                                  take.wall_ms = ms_since(begin);
+                                  sample.wall_ms = ms_since(begin);
                                   shown.insert(shown.end(), stats.kernels.begin(), stats.kernels.end());
-                                  return take;
+                                  return sample;
                               }});
     }
     const std::vector<Measured> measured = measure_interleaved(contenders, rules, progress);

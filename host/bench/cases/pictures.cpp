@@ -1,13 +1,15 @@
-#include "bench/run/pictures.hpp"
+#include "bench/cases/pictures.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <map>
 
+#include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/baselines/whitted.hpp"
+#include "bench/cases/entry.hpp"
 #include "bench/output/row.hpp"
 #include "bench/run/bench.hpp"
 #include "bench/run/failure.hpp"
@@ -16,8 +18,6 @@
 
 namespace clarity::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr float kMayDiffer = 0.02f;        // tolerance of a pixel if the devices are of different kinds
 constexpr double kPixelsMayDiffer = 0.01;  // share of pixels which may exceed it
@@ -39,8 +39,10 @@ std::vector<size_t> team_sizes(size_t all) {
     return sizes;
 }
 
-std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size) {
+// row: describes case, scene and settings; the team's row is a copy of it that also describes devices and structure.
+std::unique_ptr<Team> make_team(const MultiPrepared& all, size_t size, const BenchRecord& row) {
     auto team = std::make_unique<Team>();
+    team->row = row;
     auto prepared = std::make_shared<MultiPrepared>();
     prepared->parts.assign(all.parts.begin(), all.parts.begin() + static_cast<std::ptrdiff_t>(size));
     Devices devices;
@@ -99,11 +101,7 @@ std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry
     for (const Variant& variant : c.variants) {
         Settings settings = variant_settings(plugins, request, variant);
         if (variant.accel.empty()) choose_accel(plugins, default_accel(plugins, device_list_text(infos)), settings);
-        BenchRecord row;
-        row.suite = c.suite;
-        row.case_name = c.name;
-        row.scene = c.name.substr(0, c.name.rfind('/'));
-        row.measure = c.measure;
+        BenchRecord row = make_row(c);
         row.accel = settings.accel;
         describe(row, *fixture.scene());
         describe(row, settings);
@@ -113,47 +111,30 @@ std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry
         try {
             const auto all = fixture.prepare_all(settings, progress);
             for (const size_t size : team_sizes(all->parts.size())) {
-                teams.push_back(make_team(*all, size));
+                teams.push_back(make_team(*all, size, row));
                 Team& team = *teams.back();
-                BenchRecord of = row;
-                of.device = team.row.device;
-                of.device_id = team.row.device_id;
-                of.driver = team.row.driver;
-                of.device_clock_mhz = team.row.device_clock_mhz;
-                of.threads = team.row.threads;
-                of.variant = (variant.label.empty() ? "" : variant.label + ", ") + std::to_string(size) +
-                             (size == 1 ? " device" : " devices");
-                describe(of, *team.prepared->first());
-                team.row = std::move(of);
-                contenders.push_back(
-                    {team.row.variant, [&team, &fixture, &progress, settings, samples] {
-                         const auto begin = Clock::now();
-                         FrameStats stats =
-                             team.frames->trace(team.prepared, settings, fixture.view(), 0, false, progress, samples);
-                         team.frames->read_display(settings, &stats);
-                         const auto took = Clock::now() - begin;
-                         note_times(team, stats);
-                         return Sample{stats.device_ms, std::chrono::duration<double, std::milli>(took).count()};
-                     }});
+                team.row.variant = (variant.label.empty() ? "" : variant.label + ", ") + std::to_string(size) +
+                                   (size == 1 ? " device" : " devices");
+                describe(team.row, *team.prepared->first());
+                contenders.push_back({team.row.variant, [&team, &fixture, &progress, settings, samples] {
+                                          const auto begin = std::chrono::steady_clock::now();
+                                          FrameStats stats = team.frames->trace(team.prepared, settings, fixture.view(), 0,
+                                                                                false, progress, samples);
+                                          team.frames->read_display(settings, &stats);
+                                          const double wall_ms = ms_since(begin);
+                                          note_times(team, stats);
+                                          return Sample{stats.device_ms, wall_ms};
+                                      }});
             }
             const std::vector<Measured> measured = measure_interleaved(contenders, rules, progress);
             FloatImage truth;
             for (size_t i = 0; i < teams.size(); ++i) {
                 Team& team = *teams[i];
-                team.row.status = measured[i].status;
-                team.row.why = measured[i].why;
-                team.row.time_ms = measured[i].time_ms;
-                team.row.wall_ms = measured[i].wall_ms;
+                set_result(team.row, measured[i]);
                 if (team.row.status != RowStatus::ok) continue;
-                const FrameStats counted =
-                    team.frames->trace(team.prepared, settings, fixture.view(), 0, true, progress, samples);
-                team.row.rays_primary = counted.primary;
-                team.row.rays_shadow = counted.shadow;
-                team.row.rays_secondary = counted.secondary;
-                team.row.rays_dropped = counted.dropped;
-                team.row.fps = team.row.wall_ms.median > 0 ? 1000 / team.row.wall_ms.median : 0;
-                team.row.mrays_per_s =
-                    team.row.time_ms.median > 0 ? double(team.row.rays()) / team.row.time_ms.median / 1000 : 0;
+                set_ray_counts(team.row,
+                               team.frames->trace(team.prepared, settings, fixture.view(), 0, true, progress, samples));
+                set_rates(team.row);
                 for (const auto& [name, values] : team.times) team.row.kernels_ms.emplace_back(name, median(values));
                 FloatImage picture = team.frames->read_values();
                 if (truth.pixels.empty())

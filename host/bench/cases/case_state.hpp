@@ -1,0 +1,39 @@
+// case_state.hpp -- what the rows of one case share while they are measured.
+#pragma once
+#include <map>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bench/cases/agreement.hpp"
+#include "bench/cases/entry.hpp"
+#include "bench/output/row.hpp"
+#include "bench/run/fixture.hpp"
+#include "render/queries/ray_blocks.hpp"
+
+namespace clarity::bench {
+
+struct CaseState {
+    CaseState(Fixture& fixture, const BenchCase& definition, Progress& progress)
+        : fixture(fixture), definition(definition), progress(progress) {}
+    CaseState(const CaseState&) = delete;  // the entries' functions refer to it
+    CaseState& operator=(const CaseState&) = delete;
+
+    // Appends an entry whose row describes case and scene. The reference is valid until the next call.
+    Entry& add_entry() {
+        entries.push_back({make_row(definition), {}, {}});
+        describe(entries.back().row, *fixture.scene());
+        return entries.back();
+    }
+
+    Fixture& fixture;
+    const BenchCase& definition;
+    Progress& progress;
+    std::vector<Entry> entries;
+    Agreement agreement;
+    const RaySet* rays = nullptr;         // of this case; null until one of our rows can trace them
+    std::optional<WhittedScene> whitted;  // the frame that baselines render too; empty until one of our rows can render it
+    std::map<unsigned, std::shared_ptr<const RayBlocks>> packed;  // `rays` packed for each number of lanes
+};
+
+}  // namespace clarity::bench
