@@ -18,7 +18,7 @@ class FrameThread::StopProgress : public Progress {};
 Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
     Settings settings = prepared;
     for (const Setting& row : settings_table())
-        if (row.effect == Effect::frame) row.set(settings, row.get(desired_now));
+        if (row.effect == Effect::frame) row.copy(settings, desired_now);
     return settings;
 }
 
