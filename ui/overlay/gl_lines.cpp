@@ -185,11 +185,11 @@ void LineLayer::draw(const std::vector<const LineList*>& lists, const Projection
         glUseProgram(program_);
         glUniform2f(size_place_, static_cast<float>(width), static_cast<float>(height));
         glUniform2f(half_size_place_, projection.half_size().x, projection.half_size().y);
-        const bool tested = behind.distance && behind.distance->name() != 0;
+        const bool tested = behind.distance != 0;
         glUniform1i(tested_place_, tested);
         glUniform1f(behind_place_, behind.opacity);
         glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, tested ? behind.distance->name() : 0);
+        glBindTexture(GL_TEXTURE_2D, behind.distance);
         glBindVertexArray(vertex_array_);
         fill_indices(quads);
         glBindBuffer(GL_ARRAY_BUFFER, vertices_);

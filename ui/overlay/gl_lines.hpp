@@ -5,15 +5,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/film/image_io.hpp"
 #include "ui/overlay/line_quads.hpp"
-#include "ui/viewport/viewport.hpp"
 
 namespace clarity::ui {
 
 // The picture's surfaces, which hide lines: distances of the camera rays, +inf for a miss, as a texture and as numbers. Without
 // them every line is in front.
 struct LinesBehind {
-    const PictureTexture* distance = nullptr;
+    unsigned distance = 0;  // name of a texture; 0: there is none
     const FloatImage* values = nullptr;
     float opacity = 1;  // of parts behind a surface
 };

@@ -6,8 +6,8 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "ui/app/thread_priority.hpp"
 #include "ui/session/picture_difference.hpp"
+#include "ui/session/thread_priority.hpp"
 
 namespace clarity::ui {
 

@@ -13,7 +13,6 @@
 
 #include "device/kernel_watch.hpp"
 #include "render/settings/preset.hpp"
-#include "ui/app/window_main.hpp"
 #include "ui/session/desired_state.hpp"
 #include "ui/session/frame_thread.hpp"
 #include "ui/session/history.hpp"
@@ -21,6 +20,7 @@
 #include "ui/session/log_buffer.hpp"
 #include "ui/session/prepare_worker.hpp"
 #include "ui/session/sequence.hpp"
+#include "ui/session/view_options.hpp"
 
 namespace clarity::ui {
 
