@@ -133,7 +133,7 @@ TEST(Viewport, LetterBoxKeepsTheAspectInside) {
     }
 }
 
-TEST(FrameSettings, TakesFromTheWishOnlyWhatNeedsNoPreparation) {
+TEST(FrameSettings, TakesOnlyDesiredSettingsThatNeedNoPreparation) {
     Settings prepared, desired_now;
     prepared.lanes = 16;
     prepared.aov = "color";
