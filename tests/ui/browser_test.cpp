@@ -11,9 +11,9 @@
 
 #include "base/error.hpp"
 #include "ui/app/preferences_json.hpp"
-#include "ui/app/preset_folder.hpp"
 #include "ui/browser/file_listing.hpp"
 #include "ui/hud/keys_hud.hpp"
+#include "ui/panel/preset_folder.hpp"
 #include "ui/widgets/frame_graph.hpp"
 #include "ui/widgets/log_rows.hpp"
 #include "ui/widgets/scene_rows.hpp"

@@ -9,6 +9,7 @@ namespace {
 TEST(History, UndoesAndRedoes) {
     History history;
     DesiredState desired;
+    desired.main.settings.accel = "bvh8";
     history.observe(desired, false);
     EXPECT_FALSE(history.can_undo());
     desired.main.settings.depth = 3;

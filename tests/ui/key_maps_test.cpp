@@ -7,8 +7,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "ui/app/key_map.hpp"
 #include "ui/driver/window_fixture.hpp"
+#include "ui/widgets/key_map.hpp"
 
 namespace clarity::ui {
 namespace {

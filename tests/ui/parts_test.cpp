@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <fstream>
 
-#include "ui/app/key_map.hpp"
 #include "ui/app/preferences_json.hpp"
+#include "ui/session/camera_control.hpp"
 #include "ui/session/frame_thread.hpp"
-#include "ui/viewport/camera_control.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/key_map.hpp"
+#include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
 namespace {

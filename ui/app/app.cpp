@@ -15,7 +15,7 @@
 #include "ui/automation/script.hpp"
 #include "ui/hud/hud.hpp"
 #include "ui/panel/panel.hpp"
-#include "ui/viewport/camera_control.hpp"
+#include "ui/session/camera_control.hpp"
 #include "ui/widgets/theme.hpp"
 
 namespace clarity::ui {
@@ -52,7 +52,7 @@ App::App(const ViewOptions& options) {
     };
     session_ = std::make_unique<Session>(options, wake);
     if (!damage.empty()) session_->report(damage);
-    memory_.begin(folder_, preferences, state_, session_->desired);
+    preferences_sync_.begin(folder_, preferences, state_, session_->desired);
     overlay_ = std::make_unique<VolumeOverlay>(wake);
     script_ = Script::from_environment();
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
@@ -66,7 +66,7 @@ App::~App() {
     preferences.light_speed = state_.light_speed;
     preferences.key_map = state_.key_map->id;
     preferences.panel_visible = state_.panel_visible;
-    memory_.note(preferences, state_, session_->desired);
+    preferences_sync_.note(preferences, state_, session_->desired);
     save_preferences(folder_, preferences);
     // A running compiler cannot be stopped, and the session waits for it. So the window closes first.
     window_->hide();
@@ -117,14 +117,14 @@ void App::turn() {
     last_turn_s_ = begin;
     take_keys();
     if (auto files = window_->take_dropped_files(); !files.empty()) session_->open(std::move(files));
-    if (script_) script_->step(*this);
+    if (script_) run_script();
     move_held(seconds);
     try {
         session_->update(ImGui::IsAnyItemActive() || held_.any_held(*state_.key_map));
     } catch (const Error& error) {
         session_->report(error.what(), error.details());
     }
-    memory_.follow(*session_, state_);
+    preferences_sync_.follow(*session_, state_);
     const auto ready = session_->ready();
     overlay_->update(ready ? ready->main.accel : nullptr, ready && ready->other ? ready->other->accel : nullptr);
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
@@ -138,6 +138,18 @@ void App::turn() {
     times_.slowest_frame_ms = std::max(times_.slowest_frame_ms, (end - begin) * 1e3);
     if (oldest_key_s_ > 0) times_.slowest_answer_ms = std::max(times_.slowest_answer_ms, (end - oldest_key_s_) * 1e3);
     oldest_key_s_ = 0;
+}
+
+void App::run_script() {
+    ScriptedWindow window{*session_,
+                          state_,
+                          *overlay_,
+                          *pane_,
+                          times_,
+                          [this](const std::vector<std::string>& files) { window_->drop(files); },
+                          [this](const std::string& path) { capture_path_ = path; },
+                          [this] { window_->close(); }};
+    script_->step(window);
 }
 
 void App::finish_frame() {

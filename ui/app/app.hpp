@@ -7,21 +7,15 @@
 #include "ui/app/gl_window.hpp"
 #include "ui/app/preferences.hpp"
 #include "ui/app/preferences_sync.hpp"
-#include "ui/app/ui_state.hpp"
+#include "ui/automation/scripted_window.hpp"
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
 #include "ui/viewport/picture_pane.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 
 class Script;
-
-// Counters of the window itself. Tests read them.
-struct UiTimes {
-    unsigned long frames = 0;
-    double slowest_frame_ms = 0;   // longest turn of the loop, without its waiting
-    double slowest_answer_ms = 0;  // longest time from a key event to the end of the frame that handled it
-};
 
 // The window and everything in it. All members are called on the main thread, which owns the GL context.
 class App {
@@ -31,24 +25,13 @@ class App {
     // Runs the window's loop until the window is closed. Returns the program's exit code.
     int run();
 
-    // Access for a test's script.
-    Session& session() { return *session_; }
-    UiState& state() { return state_; }
-    VolumeOverlay& overlay() { return *overlay_; }
-    UiTimes& times() { return times_; }
-    const PicturePane& pane() const { return *pane_; }
-    const Rect& picture_area() const { return pane_->area(); }
-    bool typing() const;
-    void close() { window_->close(); }
-    void drop(const std::vector<std::string>& files) { window_->drop(files); }
-    // Writes the next frame to `path` as PNG.
-    void capture(const std::string& path) { capture_path_ = path; }
-
  private:
     void turn();
     bool due() const;  // whether a frame is to be drawn now
     double wait_seconds() const;
     double longest_wait() const;  // seconds until the next turn if nothing happens
+    bool typing() const;
+    void run_script();
     void take_keys();
     void act(const KeyBinding& binding);
     void press(const KeyBinding& binding);
@@ -69,7 +52,7 @@ class App {
     std::unique_ptr<Script> script_;
     UiState state_;
     UiTimes times_;
-    PreferencesSync memory_;
+    PreferencesSync preferences_sync_;
     HeldKeys held_;
     std::shared_ptr<const Picture> uploaded_;
     std::string capture_path_;

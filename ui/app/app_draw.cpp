@@ -24,8 +24,8 @@ void App::draw() {
     if (state_.panel_visible)
         draw_panel({size.x - panel, 0, panel, viewport.height}, *session_, *overlay_, state_, window_->gl_text());
     draw_status_line({0, viewport.height, size.x, status}, *session_, *overlay_, state_);
-    draw_progress_card(viewport, *session_);
-    draw_message_card(viewport, *session_, state_);
+    draw_progress_hud(viewport, *session_);
+    draw_message_hud(viewport, *session_, state_);
     draw_file_browser(viewport, *session_, state_);
     draw_keys_hud(viewport, state_);
 }

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "ui/app/ui_state.hpp"
+#include "ui/session/desired_state.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 
@@ -15,7 +16,7 @@ struct Preferences {
     bool panel_visible = true;
     float panel_width = 400;  // in pixels at text scale 1
     CompareMode compare_mode = CompareMode::wipe;
-    float moving_fps = 30;
+    float moving_fps = kMovingFps;
     bool show_rays = true;
     std::string browser_folder, pictures_folder = ".";
     std::vector<std::string> recent_files;                   // newest first

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "ui/app/preferences.hpp"
-#include "ui/app/ui_state.hpp"
 #include "ui/session/session.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 

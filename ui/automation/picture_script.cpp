@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
-#include "ui/app/app.hpp"
+#include "ui/automation/scripted_window.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -21,14 +21,14 @@ nlohmann::json json_of(const Rect& rect) {
     return {rect.x, rect.y, rect.width, rect.height};
 }
 
-std::string layout_text(App& app) {
-    const PicturePane& pane = app.pane();
+std::string layout_text(ScriptedWindow& window) {
+    const PicturePane& pane = window.pane;
     nlohmann::json json = {{"places", nlohmann::json::array()},
                            {"handles", nlohmann::json::array()},
                            {"lines", {pane.lines_drawn(0), pane.lines_drawn(1)}},
                            {"lines_ms", pane.lines_ms()},
                            {"rays", pane.rays_shown()},
-                           {"light", app.session().selected_light}};
+                           {"light", window.session.selected_light}};
     for (const PicturePlace& place : pane.places())
         json["places"].push_back({{"area", json_of(place.area)}, {"shown", json_of(place.shown)}, {"side", place.side()}});
     for (const LightHandle& handle : pane.handles())
@@ -38,8 +38,8 @@ std::string layout_text(App& app) {
 
 }  // namespace
 
-bool run_picture_command(App& app, const std::string& command, const std::string& text) {
-    UiState& state = app.state();
+bool run_picture_command(ScriptedWindow& window, const std::string& command, const std::string& text) {
+    UiState& state = window.state;
     if (command == "mode")
         state.compare_mode = mode_of(text);
     else if (command == "wipe")
@@ -51,9 +51,9 @@ bool run_picture_command(App& app, const std::string& command, const std::string
     else if (command == "lights")
         state.show_lights = text == "1";
     else if (command == "behind")
-        app.overlay().hide_behind(text == "0");
+        window.overlay.hide_behind(text == "0");
     else if (command == "layout")
-        std::printf("%s\n", layout_text(app).c_str());
+        std::printf("%s\n", layout_text(window).c_str());
     else
         return false;
     return true;

@@ -8,9 +8,9 @@
 
 namespace clarity::ui {
 
-class App;
+struct ScriptedWindow;
 
 // Runs one command. Returns false if it is none of the commands above. Throws Error(usage).
-bool run_picture_command(App& app, const std::string& command, const std::string& text);
+bool run_picture_command(ScriptedWindow& window, const std::string& command, const std::string& text);
 
 }  // namespace clarity::ui

@@ -16,8 +16,8 @@
 #include "base/error.hpp"
 #include "plugin/parameters.hpp"
 #include "render/film/image_io.hpp"
-#include "ui/app/app.hpp"
 #include "ui/automation/picture_script.hpp"
+#include "ui/automation/scripted_window.hpp"
 #include "ui/widgets/widgets.hpp"
 
 namespace clarity::ui {
@@ -124,13 +124,13 @@ bool Script::has_lines() {
     return !lines_.empty();
 }
 
-void Script::step(App& app) {
+void Script::step(ScriptedWindow& window) {
     read_lines();
     while (!lines_.empty()) {
         const std::string line = lines_.front();
         std::string answer = "ok " + line;
         try {
-            if (!run(app, line)) return;
+            if (!run(window, line)) return;
         } catch (const Error& error) {
             answer = "error " + line + ": " + error.what();
         }
@@ -142,7 +142,7 @@ void Script::step(App& app) {
     }
 }
 
-bool Script::wait(App& app, const std::string& text) {
+bool Script::wait(ScriptedWindow& window, const std::string& text) {
     std::istringstream in(text);
     std::string what;
     double limit = 60;
@@ -153,25 +153,25 @@ bool Script::wait(App& app, const std::string& text) {
         waiting_since_ = now;
         frames_left_ = 2;
     }
-    const Session& session = app.session();
+    const Session& session = window.session;
     const bool busy = session.activity().busy;
     const bool met = what == "busy"    ? busy
                      : what == "ready" ? !busy && !session.behind()
-                                       : session.idle() && app.overlay().ready();
+                                       : session.idle() && window.overlay.ready();
     if (met && (what == "busy" || --frames_left_ < 0)) return true;
     if (!met) frames_left_ = 2;
     if (now - waiting_since_ > limit) throw Error(Exit::failed, "still waiting after " + std::to_string(limit) + " s");
     return false;
 }
 
-bool Script::run(App& app, const std::string& line) {
+bool Script::run(ScriptedWindow& window, const std::string& line) {
     std::istringstream in(line);
     std::string command;
     in >> command;
-    Session& session = app.session();
+    Session& session = window.session;
     const std::string text = rest_of(in);
     if (command.empty() || command[0] == '#') return true;
-    if (command == "wait") return wait(app, text);
+    if (command == "wait") return wait(window, text);
     if (command == "set") {
         const size_t space = text.find(' ');
         const std::string key = text.substr(0, space);
@@ -183,7 +183,7 @@ bool Script::run(App& app, const std::string& line) {
     } else if (command == "open") {
         session.open({text});
     } else if (command == "drop") {
-        app.drop(dropped_files(text));
+        window.drop(dropped_files(text));
     } else if (command == "moving_fps") {
         session.desired.moving_fps = std::strtof(text.c_str(), nullptr);
     } else if (command == "cancel") {
@@ -219,30 +219,30 @@ bool Script::run(App& app, const std::string& line) {
     } else if (command == "continuous") {
         session.desired.continuous = text == "1";
     } else if (command == "tab") {
-        choose_tab(app.state(), text);
+        choose_tab(window.state, text);
     } else if (command == "map") {
-        choose_map(app.state(), text);
+        choose_map(window.state, text);
     } else if (command == "level") {
         if (text == "off")
-            app.overlay().show(std::nullopt);
+            window.overlay.show(std::nullopt);
         else
-            app.overlay().show(text == "bottom" ? RT_LEVEL_BOTTOM
-                                                : static_cast<rt_u32>(std::strtoul(text.c_str(), nullptr, 10)));
+            window.overlay.show(text == "bottom" ? RT_LEVEL_BOTTOM
+                                                 : static_cast<rt_u32>(std::strtoul(text.c_str(), nullptr, 10)));
     } else if (command == "focus") {
-        app.state().show_tab(Tab::scene);
-        app.state().focus_path_asked = true;
+        window.state.show_tab(Tab::scene);
+        window.state.focus_path_asked = true;
     } else if (command == "scale") {
-        app.state().text_scale = std::strtof(text.c_str(), nullptr);
+        window.state.text_scale = std::strtof(text.c_str(), nullptr);
     } else if (command == "screenshot") {
-        app.capture(text);
+        window.capture(text);
     } else if (command == "picture") {
         if (!session.picture()) throw Error(Exit::failed, "no picture yet");
         write_image(text, {}, session.picture()->main.image);
     } else if (command == "state") {
-        if (text == "reset") app.times() = {};
-        std::printf("%s\n", state_text(app).c_str());
+        if (text == "reset") window.times = {};
+        std::printf("%s\n", state_text(window).c_str());
     } else if (command == "find") {
-        const Rect* place = drawn_place(text);
+        const Rect* place = drawn_rect(text);
         // A rectangle that is scrolled out of sight is scrolled into view within the next frames.
         if (!place && waiting_since_ == 0) {
             waiting_since_ = ImGui::GetTime();
@@ -253,16 +253,16 @@ bool Script::run(App& app, const std::string& line) {
         std::printf("%s\n",
                     nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());
     } else if (command == "quit") {
-        app.close();
-    } else if (!run_picture_command(app, command, text)) {
+        window.close();
+    } else if (!run_picture_command(window, command, text)) {
         throw Error(Exit::usage, "no such command");
     }
     return true;
 }
 
-std::string Script::state_text(App& app) const {
-    Session& session = app.session();
-    const Rect& area = app.picture_area();
+std::string Script::state_text(ScriptedWindow& window) const {
+    Session& session = window.session;
+    const Rect& area = window.pane.area();
     nlohmann::json json = {{"eye", session.desired.camera.eye},
                            {"target", session.desired.camera.target},
                            {"busy", session.activity().busy},
@@ -270,17 +270,17 @@ std::string Script::state_text(App& app) const {
                            {"behind", session.behind()},
                            {"message", session.message().text},
                            {"messages", session.message_count()},
-                           {"path", app.state().path},
-                           {"map", app.state().key_map->id},
-                           {"typing", app.typing()},
-                           {"volumes", app.overlay().count()},
+                           {"path", window.state.path},
+                           {"map", window.state.key_map->id},
+                           {"typing", ImGui::GetIO().WantTextInput},
+                           {"volumes", window.overlay.count()},
                            {"fps", session.frames_per_second()},
-                           {"ui_frames", app.times().frames},
-                           {"slowest_frame_ms", app.times().slowest_frame_ms},
-                           {"slowest_answer_ms", app.times().slowest_answer_ms},
+                           {"ui_frames", window.times.frames},
+                           {"slowest_frame_ms", window.times.slowest_frame_ms},
+                           {"slowest_answer_ms", window.times.slowest_answer_ms},
                            {"area", {area.x, area.y, area.width, area.height}},
                            {"files", session.files()}};
-    json["level"] = app.overlay().level() ? static_cast<long>(*app.overlay().level()) : -1L;
+    json["level"] = window.overlay.level() ? static_cast<long>(*window.overlay.level()) : -1L;
     if (session.selected_light < session.desired.lights.size())
         json["light"] = session.desired.lights[session.selected_light].values.position;
     json["selected"] = {
@@ -290,14 +290,14 @@ std::string Script::state_text(App& app) const {
     json["redo"] = session.history().redo_name();
     json["kernel_revision"] = session.kernels().revision();
     json["comparing"] = session.desired.other.has_value();
-    json["bookmarks"] = app.state().bookmarks.size();
-    json["keys_open"] = app.state().keys_open;
-    json["browser_open"] = app.state().browser_open;
-    json["panel_visible"] = app.state().panel_visible;
-    json["inspect_hover"] = app.state().inspect_hover;
-    json["show_lights"] = app.state().show_lights;
-    json["compare_mode"] = kCompareNames[static_cast<int>(app.state().compare_mode)];
-    json["wipe"] = app.state().wipe;
+    json["bookmarks"] = window.state.bookmarks.size();
+    json["keys_open"] = window.state.keys_open;
+    json["browser_open"] = window.state.browser_open;
+    json["panel_visible"] = window.state.panel_visible;
+    json["inspect_hover"] = window.state.inspect_hover;
+    json["show_lights"] = window.state.show_lights;
+    json["compare_mode"] = kCompareNames[static_cast<int>(window.state.compare_mode)];
+    json["wipe"] = window.state.wipe;
     json["resident_kb"] = resident_kilobytes();
     if (const auto picture = session.picture(); picture && picture->other) {
         json["other"] = {{"accel", picture->other->settings.accel},

@@ -39,7 +39,7 @@
 
 namespace clarity::ui {
 
-class App;
+struct ScriptedWindow;
 
 // Reads the commands and runs them. Used on the window's thread.
 class Script {
@@ -55,14 +55,14 @@ class Script {
     // Reads new lines. Returns whether there are lines to run.
     bool has_lines();
     // Runs the next line. A line that waits stays the next one.
-    void step(App& app);
+    void step(ScriptedWindow& window);
 
  private:
     void read_lines();
     // Runs one line. Returns false if it has to wait; it is then tried again in the next frame.
-    bool run(App& app, const std::string& line);
-    bool wait(App& app, const std::string& what);
-    std::string state_text(App& app) const;
+    bool run(ScriptedWindow& window, const std::string& line);
+    bool wait(ScriptedWindow& window, const std::string& what);
+    std::string state_text(ScriptedWindow& window) const;
 
     int file_;
     std::string partial_;

@@ -109,7 +109,7 @@ std::string date_text(int64_t seconds) {
 void head_row(Session& session, UiState& state) {
     if (button("\u2191##up", "the folder above (Backspace)"))
         go_to(state, parent_folder(split_typed(browser().text, state.browser_folder).folder));
-    note_place("parent folder");
+    note_rect("parent folder");
     ImGui::SameLine();
     if (button("Home", home_folder())) go_to(state, home_folder());
     ImGui::SameLine();
@@ -149,7 +149,7 @@ void field_row(Session& session, UiState& state) {
         "##typed", "type to search, or a path; Tab completes, arrows choose, Enter opens", &b.text,
         ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackHistory,
         on_field);
-    note_place("file name");
+    note_rect("file name");
     if (ImGui::IsItemEdited()) {
         b.highlighted = 0;
         b.failure.clear();
@@ -191,7 +191,7 @@ void entry_row(Session& session, UiState& state, int row) {
     const bool clicked = ImGui::Selectable((shown + "##entry").c_str(), chosen,
                                            ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick);
     if (entry.folder) ImGui::PopStyleColor();
-    note_place(entry.name);
+    note_rect(entry.name);
     if (shown != name) tooltip(entry.name);
     if (clicked) {
         b.highlighted = row;
@@ -254,7 +254,7 @@ void foot_row(Session& session, UiState& state) {
                                                    : std::string("Open");
     if (!folder) {
         ImGui::Checkbox("All files", &b.all_files);
-        note_place("All files");
+        note_rect("All files");
         tooltip("also those that no importer claims");
         ImGui::SameLine();
     }
@@ -270,7 +270,7 @@ void foot_row(Session& session, UiState& state) {
             accept(session, state);
         }
     }
-    note_place("accept");
+    note_rect("accept");
     ImGui::SameLine();
     if (button("Cancel##browser", {}, cancel)) state.browser_open = false;
 }
@@ -307,7 +307,7 @@ void draw_file_browser(const Rect& area, Session& session, UiState& state) {
                 height = std::min(560 * scale, area.height - 24 * scale);
     ImGui::SetNextWindowPos({area.x + area.width / 2, area.y + area.height / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({width, height});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kCard);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kHudGround);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * scale);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
     ImGui::Begin(

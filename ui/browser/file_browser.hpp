@@ -1,8 +1,8 @@
 // file_browser.hpp -- the file browser in the window: choose with the mouse, or type with completion.
 #pragma once
-#include "ui/app/ui_state.hpp"
 #include "ui/session/session.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 

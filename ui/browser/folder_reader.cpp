@@ -1,9 +1,10 @@
 #include "ui/browser/folder_reader.hpp"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
 #include <mutex>
 #include <thread>
-
-#include "ui/app/gl_window.hpp"
 
 namespace clarity::ui {
 
@@ -30,7 +31,7 @@ std::shared_ptr<const Listing> FolderReader::get(const DesiredListing& desired) 
                 shared->latest = std::move(listing);
                 shared->done = number;
             }
-            GlWindow::wake();
+            glfwPostEmptyEvent();  // wakes the window
         }).detach();
     }
     return shared_->latest;

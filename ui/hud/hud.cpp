@@ -18,16 +18,16 @@ constexpr ImGuiWindowFlags kCardFlags = ImGuiWindowFlags_NoDecoration | ImGuiWin
                                         ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_NoNav |
                                         ImGuiWindowFlags_NoFocusOnAppearing;
 
-void begin_card(const char* name, const ImVec2& position, const ImVec2& pivot, float width) {
+void begin_hud(const char* name, const ImVec2& position, const ImVec2& pivot, float width) {
     ImGui::SetNextWindowPos(position, ImGuiCond_Always, pivot);
     ImGui::SetNextWindowSize({width, 0});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kCard);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kHudGround);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * ui_scale());
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
     ImGui::Begin(name, nullptr, kCardFlags | ImGuiWindowFlags_AlwaysAutoResize);
 }
 
-void end_card() {
+void end_hud() {
     ImGui::End();
     ImGui::PopStyleVar(2);
     ImGui::PopStyleColor();
@@ -64,8 +64,8 @@ std::string current_notice(Session& session, const UiState& state) {
 
 }  // namespace
 
-void draw_progress_card(const Rect& viewport, Session& session) {
-    // Short work shows no card, which would only flash.
+void draw_progress_hud(const Rect& viewport, Session& session) {
+    // Short work shows no box, which would only flash.
     static double busy_since = -1;
     const Activity activity = session.activity();
     if (!activity.busy) {
@@ -75,7 +75,7 @@ void draw_progress_card(const Rect& viewport, Session& session) {
     if (busy_since < 0) busy_since = ImGui::GetTime();
     if (ImGui::GetTime() - busy_since < 0.15) return;
     const float scale = ui_scale(), width = std::min(420 * scale, viewport.width - 32 * scale);
-    begin_card("Progress", {viewport.x + viewport.width / 2, viewport.y + viewport.height - 18 * scale}, {0.5f, 1}, width);
+    begin_hud("Progress", {viewport.x + viewport.width / 2, viewport.y + viewport.height - 18 * scale}, {0.5f, 1}, width);
     const float cancel = 72 * scale;
     const float inner = ImGui::GetContentRegionAvail().x;
     ImGui::AlignTextToFramePadding();
@@ -94,7 +94,7 @@ void draw_progress_card(const Rect& viewport, Session& session) {
         ImGui::GetWindowDrawList()->AddRectFilled({from.x + at, from.y}, {from.x + at + piece, from.y + bar.y},
                                                   ImGui::GetColorU32(ImGuiCol_PlotHistogram), 3 * scale);
     }
-    end_card();
+    end_hud();
 }
 
 // Opens the Log tab at the first failure of a compiler or builder, since the log shows it with its place in the source.
@@ -109,11 +109,11 @@ void open_log_at_failure(const Session& session, UiState& state) {
     failing = !message.text.empty() && source;
 }
 
-void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
+void draw_message_hud(const Rect& viewport, Session& session, UiState& state) {
     open_log_at_failure(session, state);
     if (session.message().text.empty()) return;
     const float scale = ui_scale(), width = std::min(620 * scale, viewport.width - 32 * scale);
-    begin_card("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
+    begin_hud("Message", {viewport.x + viewport.width / 2, viewport.y + 18 * scale}, {0.5f, 0}, width);
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.PushClipRectFullScreen();  // otherwise the padding would be clipped
@@ -139,7 +139,7 @@ void draw_message_card(const Rect& viewport, Session& session, UiState& state) {
         dim_text("The last good picture goes on.");
     }
     ImGui::Unindent(6 * scale);
-    end_card();
+    end_hud();
     if (dismissed) session.dismiss_message();
 }
 

@@ -1,8 +1,8 @@
-// hud_stack.hpp -- places HUD cards in the corners of a picture so that none covers another. Pure arithmetic.
+// hud_stack.hpp -- places HUD boxes in the corners of a picture so that none covers another. Pure arithmetic.
 #pragma once
 #include <optional>
 
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
 
@@ -14,9 +14,9 @@ class HudStack {
  public:
     HudStack() = default;
     HudStack(const Rect& area, float margin, float least = 0);
-    // The largest width of a card.
+    // The largest width of a box.
     float max_width() const { return max_width_; }
-    // Takes room for a card. Returns nullopt if there is not enough left in this corner.
+    // Takes room for a box. Returns nullopt if there is not enough left in this corner.
     std::optional<Rect> take(Corner corner, float width, float height);
 
  private:

@@ -109,7 +109,7 @@ void draw_keys_hud(const Rect& area, UiState& state) {
                 height = std::min(740 * scale, area.height - 24 * scale);
     ImGui::SetNextWindowPos({area.x + area.width / 2, area.y + area.height / 2}, ImGuiCond_Always, {0.5f, 0.5f});
     ImGui::SetNextWindowSize({width, height});
-    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kCard);
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, colors::kHudGround);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, 8 * scale);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 1);
     ImGui::Begin("Keys", nullptr,

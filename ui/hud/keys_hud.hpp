@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "ui/app/ui_state.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 
@@ -17,7 +17,7 @@ std::vector<KeyLine> key_lines();
 
 // Draws the list while UiState::keys_open. A click beside it closes it.
 void draw_keys_hud(const Rect& area, UiState& state);
-// Draws the list as a table, for a tab or a card. The current key map is highlighted.
+// Draws the list as a table, for a tab or a box. The current key map is highlighted.
 void draw_key_table(const UiState& state);
 
 }  // namespace clarity::ui

@@ -20,7 +20,7 @@ struct Piece {
     ImVec2 at, size;
 };
 
-// Lays out the lines from the card's inner corner. Returns the pieces; `total` receives the size of all.
+// Lays out the lines from the box's inner corner. Returns the pieces; `total` receives the size of all.
 std::vector<Piece> flow(const std::vector<HudText>& lines, float room, ImVec2& total) {
     std::vector<Piece> pieces;
     const float gap = std::round(8 * ui_scale()), leading = std::round(3 * ui_scale());
@@ -48,28 +48,28 @@ std::vector<Piece> flow(const std::vector<HudText>& lines, float room, ImVec2& t
 
 }  // namespace
 
-float card_padding() {
+float hud_padding() {
     return std::round(7 * ui_scale());
 }
 
 ImVec2 card_size(const std::vector<HudText>& lines, float max_width) {
     ImVec2 total;
-    flow(lines, max_width - 2 * card_padding(), total);
-    return {std::ceil(total.x + 2 * card_padding()), std::ceil(total.y + 2 * card_padding())};
+    flow(lines, max_width - 2 * hud_padding(), total);
+    return {std::ceil(total.x + 2 * hud_padding()), std::ceil(total.y + 2 * hud_padding())};
 }
 
-void draw_card_ground(ImDrawList& list, const Rect& card) {
-    list.AddRectFilled({card.x, card.y}, {card.x + card.width, card.y + card.height}, ground_color(), 5 * ui_scale());
+void draw_hud_ground(ImDrawList& list, const Rect& box) {
+    list.AddRectFilled({box.x, box.y}, {box.x + box.width, box.y + box.height}, ground_color(), 5 * ui_scale());
 }
 
-void draw_hud_card(ImDrawList& list, const Rect& card, const std::vector<HudText>& lines) {
-    draw_card_ground(list, card);
+void draw_hud_box(ImDrawList& list, const Rect& box, const std::vector<HudText>& lines) {
+    draw_hud_ground(list, box);
     ImVec2 total;
-    const float room = card.width - 2 * card_padding() + 0.5f;
+    const float room = box.width - 2 * hud_padding() + 0.5f;
     const std::vector<Piece> pieces = flow(lines, room, total);
     for (size_t i = 0; i < lines.size(); ++i) {
         ImFont* font = lines[i].bold ? fonts().bold : fonts().text;
-        const ImVec2 at(card.x + card_padding() + pieces[i].at.x, card.y + card_padding() + pieces[i].at.y);
+        const ImVec2 at(box.x + hud_padding() + pieces[i].at.x, box.y + hud_padding() + pieces[i].at.y);
         list.AddText(font, font->FontSize, at, ImGui::GetColorU32(lines[i].color), lines[i].text.c_str(), nullptr,
                      std::max(room, 1.0f));
     }
@@ -84,16 +84,16 @@ std::string scale_number(const FalseColorScale& scale, float value) {
 
 ImVec2 color_bar_size(const FalseColorScale& scale, float max_width) {
     const std::string title = scale.label + (scale.unit.empty() ? "" : ", " + scale.unit);
-    const float line = fonts().text->FontSize, inner = max_width - 2 * card_padding();
+    const float line = fonts().text->FontSize, inner = max_width - 2 * hud_padding();
     const float text = fonts().text->CalcTextSizeA(line, FLT_MAX, 0, title.c_str()).x;
     const float width = std::min(inner, std::max(text, 190 * ui_scale()));
     const float title_height = fonts().text->CalcTextSizeA(line, FLT_MAX, std::max(width, 1.0f), title.c_str()).y;
-    return {std::ceil(width + 2 * card_padding()),
-            std::ceil(2 * card_padding() + title_height + 10 * ui_scale() + line + 9 * ui_scale())};
+    return {std::ceil(width + 2 * hud_padding()),
+            std::ceil(2 * hud_padding() + title_height + 10 * ui_scale() + line + 9 * ui_scale())};
 }
 
-void draw_color_bar(ImDrawList& list, const Rect& card, const FalseColorScale& scale, std::optional<float> value) {
-    const float unit = ui_scale(), pad = card_padding(), left = card.x + pad, width = card.width - 2 * pad;
+void draw_color_bar(ImDrawList& list, const Rect& box, const FalseColorScale& scale, std::optional<float> value) {
+    const float unit = ui_scale(), pad = hud_padding(), left = box.x + pad, width = box.width - 2 * pad;
     ImFont* font = fonts().text;
     const auto text_width = [&](const std::string& text) {
         return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0, text.c_str()).x;
@@ -102,9 +102,9 @@ void draw_color_bar(ImDrawList& list, const Rect& card, const FalseColorScale& s
         list.AddText(font, font->FontSize, {std::floor(x), std::floor(y)}, ImGui::GetColorU32(color), text.c_str(), nullptr,
                      width + 0.5f);
     };
-    draw_card_ground(list, card);
-    write(left, card.y + pad, colors::kText, scale.label + (scale.unit.empty() ? "" : ", " + scale.unit));
-    const float numbers = card.y + card.height - pad - font->FontSize, bottom = numbers - 4 * unit, top = bottom - 10 * unit;
+    draw_hud_ground(list, box);
+    write(left, box.y + pad, colors::kText, scale.label + (scale.unit.empty() ? "" : ", " + scale.unit));
+    const float numbers = box.y + box.height - pad - font->FontSize, bottom = numbers - 4 * unit, top = bottom - 10 * unit;
     for (int i = 0; i < kBarSteps; ++i) {
         const float from = static_cast<float>(i) / kBarSteps, to = static_cast<float>(i + 1) / kBarSteps;
         const auto rgb = color_at(scale, (from + to) / 2);

@@ -1,4 +1,4 @@
-// picture_hud.hpp -- small HUD cards over a picture: lines of text, colour bars.
+// picture_hud.hpp -- small HUD boxes over a picture: lines of text, colour bars.
 #pragma once
 #include <imgui.h>
 
@@ -8,7 +8,7 @@
 
 #include "render/film/false_colors.hpp"
 #include "ui/hud/hud_stack.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
 
@@ -19,16 +19,16 @@ struct HudText {
     bool same_line = false;  // on the line of the text before it, if there is room
 };
 
-// The size of a card with these lines. Lines which are longer than max_width are wrapped.
+// The size of a box with these lines. Lines which are longer than max_width are wrapped.
 ImVec2 card_size(const std::vector<HudText>& lines, float max_width);
-void draw_hud_card(ImDrawList& list, const Rect& card, const std::vector<HudText>& lines);
-// Draws only the background of a card.
-void draw_card_ground(ImDrawList& list, const Rect& card);
-float card_padding();
+void draw_hud_box(ImDrawList& list, const Rect& box, const std::vector<HudText>& lines);
+// Draws only the background of a box.
+void draw_hud_ground(ImDrawList& list, const Rect& box);
+float hud_padding();
 
 // A colour bar with numbers and unit, and a mark at `value` if there is one.
 ImVec2 color_bar_size(const FalseColorScale& scale, float max_width);
-void draw_color_bar(ImDrawList& list, const Rect& card, const FalseColorScale& scale, std::optional<float> value);
+void draw_color_bar(ImDrawList& list, const Rect& box, const FalseColorScale& scale, std::optional<float> value);
 // A number as the bar shows it: "12", "0.42", "1.2 k".
 std::string scale_number(const FalseColorScale& scale, float value);
 

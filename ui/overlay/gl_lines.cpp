@@ -97,10 +97,10 @@ bool LineLayer::make_program() {
         log(LogLevel::warning, "lines over the picture: this OpenGL does not take their shader: " + failure_);
         return false;
     }
-    size_place_ = glGetUniformLocation(program_, "size");
-    half_size_place_ = glGetUniformLocation(program_, "half_size");
-    tested_place_ = glGetUniformLocation(program_, "tested");
-    behind_place_ = glGetUniformLocation(program_, "behind");
+    size_location_ = glGetUniformLocation(program_, "size");
+    half_size_location_ = glGetUniformLocation(program_, "half_size");
+    tested_location_ = glGetUniformLocation(program_, "tested");
+    behind_location_ = glGetUniformLocation(program_, "behind");
     glUseProgram(program_);
     glUniform1i(glGetUniformLocation(program_, "distances"), 0);
     glUniform1f(glGetUniformLocation(program_, "play"), kDistancePlay);
@@ -183,13 +183,13 @@ void LineLayer::draw(const std::vector<const LineList*>& lists, const Projection
         glBlendEquation(GL_FUNC_ADD);
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
         glUseProgram(program_);
-        glUniform2f(size_place_, static_cast<float>(width), static_cast<float>(height));
-        glUniform2f(half_size_place_, projection.half_size().x, projection.half_size().y);
-        const bool tested = behind.distance && behind.distance->name() != 0;
-        glUniform1i(tested_place_, tested);
-        glUniform1f(behind_place_, behind.opacity);
+        glUniform2f(size_location_, static_cast<float>(width), static_cast<float>(height));
+        glUniform2f(half_size_location_, projection.half_size().x, projection.half_size().y);
+        const bool tested = behind.distance != 0;
+        glUniform1i(tested_location_, tested);
+        glUniform1f(behind_location_, behind.opacity);
         glActiveTexture(GL_TEXTURE0);
-        glBindTexture(GL_TEXTURE_2D, tested ? behind.distance->name() : 0);
+        glBindTexture(GL_TEXTURE_2D, behind.distance);
         glBindVertexArray(vertex_array_);
         fill_indices(quads);
         glBindBuffer(GL_ARRAY_BUFFER, vertices_);

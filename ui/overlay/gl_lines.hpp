@@ -5,15 +5,15 @@
 #include <cstdint>
 #include <vector>
 
+#include "render/film/image_io.hpp"
 #include "ui/overlay/line_quads.hpp"
-#include "ui/viewport/viewport.hpp"
 
 namespace clarity::ui {
 
 // The picture's surfaces, which hide lines: distances of the camera rays, +inf for a miss, as a texture and as numbers. Without
 // them every line is in front.
 struct LinesBehind {
-    const PictureTexture* distance = nullptr;
+    unsigned distance = 0;  // name of a texture; 0: there is none
     const FloatImage* values = nullptr;
     float opacity = 1;  // of parts behind a surface
 };
@@ -44,7 +44,7 @@ class LineLayer {
     std::string failure_;
     unsigned program_ = 0, vertex_array_ = 0, vertices_ = 0, indices_ = 0, frame_buffer_ = 0, texture_ = 0;
     int width_ = 0, height_ = 0;
-    int size_place_ = -1, half_size_place_ = -1, tested_place_ = -1, behind_place_ = -1;
+    int size_location_ = -1, half_size_location_ = -1, tested_location_ = -1, behind_location_ = -1;
     size_t indexed_ = 0, drawn_ = 0;
     std::vector<LineVertex> scratch_;
 };

@@ -7,8 +7,8 @@
 #pragma once
 #include <vector>
 
+#include "ui/overlay/projection.hpp"
 #include "ui/session/desired_state.hpp"
-#include "ui/viewport/projection.hpp"
 
 namespace clarity::ui {
 

@@ -6,7 +6,7 @@
 
 #include "render/film/image_io.hpp"
 #include "ui/overlay/line_list.hpp"
-#include "ui/viewport/projection.hpp"
+#include "ui/overlay/projection.hpp"
 
 namespace clarity::ui {
 

@@ -9,7 +9,7 @@
 
 #include "render/accel/accel_volumes.hpp"
 #include "ui/overlay/line_list.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
 

@@ -5,7 +5,7 @@
 
 #include "render/frame/inspect.hpp"
 #include "ui/overlay/line_list.hpp"
-#include "ui/viewport/projection.hpp"
+#include "ui/overlay/projection.hpp"
 
 namespace clarity::ui {
 

@@ -48,7 +48,7 @@ void draw_tabs(UiState& state) {
             const Tab tab = static_cast<Tab>(i);
             ImGui::SetCursorScreenPos(at);
             if (ImGui::InvisibleButton(kTabNames[i], {width, height})) state.tab = tab;
-            note_place(std::string("tab ") + kTabNames[i]);
+            note_rect(std::string("tab ") + kTabNames[i]);
             const bool chosen = state.tab == tab, hovered = ImGui::IsItemHovered();
             if (chosen || hovered)
                 list.AddRectFilled(at, {at.x + width, at.y + height},

@@ -1,9 +1,9 @@
 // panel.hpp -- the tabs beside the picture. Each draws its rows from tables and statistics, and changes the session's desired
 // state.
 #pragma once
-#include "ui/app/ui_state.hpp"
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 

@@ -58,7 +58,7 @@ void draw_ray(const Session& session, const Inspection& inspection, const RayChi
     const std::vector<std::string> light_names = names_of_lights(session);
     const bool open = ImGui::TreeNodeEx("##ray", flags);
     if (ImGui::IsItemClicked()) state.selected_ray = state.selected_ray == index ? -1 : index;
-    note_place("ray " + std::to_string(index));
+    note_rect("ray " + std::to_string(index));
     if (ImGui::IsItemHovered()) tooltip(joined(ray_lines_of(ray, scene, light_names)));
     const float indent = ImGui::GetTreeNodeToLabelSpacing(), height = ImGui::GetTextLineHeight();
     ImDrawList& list = *ImGui::GetWindowDrawList();

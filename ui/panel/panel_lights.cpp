@@ -52,7 +52,7 @@ void light_list(Session& session) {
             DesiredLight& light = lights[static_cast<size_t>(i)];
             ImGui::PushID(i);
             ImGui::Checkbox("##on", &light.on);
-            note_place("on " + light.name);
+            note_rect("on " + light.name);
             tooltip("switch this light on or off");
             ImGui::SameLine();
             const float swatch = ImGui::GetFrameHeight();
@@ -60,7 +60,7 @@ void light_list(Session& session) {
             const ImVec2 size(std::max(10.0f, ImGui::GetContentRegionAvail().x - swatch - 10 * ui_scale()), 0);
             const bool chosen = session.selected_light == static_cast<unsigned>(i);
             if (ImGui::Selectable(cut_to(light.name, size.x).c_str(), chosen, 0, size)) session.selected_light = unsigned(i);
-            note_place(light.name);
+            note_rect(light.name);
             tooltip("select this light: the keys move the selected light");
             ImGui::SameLine();
             const float* c = light.values.color;
@@ -117,14 +117,14 @@ void draw_bookmark_rows(Session& session, UiState& state) {
         const float go = ImGui::CalcTextSize("Go").x + 2 * style.FramePadding.x, cross = ImGui::GetFrameHeight();
         ImGui::SetNextItemWidth(-go - cross - 2 * style.ItemSpacing.x);
         ImGui::InputText("##name", &bookmark.name);
-        note_place("name of bookmark " + std::to_string(i + 1));
+        note_rect("name of bookmark " + std::to_string(i + 1));
         tooltip("click to rename");
         ImGui::SameLine();
         if (button("Go", "to this view", go)) session.desired.camera = bookmark.camera;
-        note_place("go to " + bookmark.name);
+        note_rect("go to " + bookmark.name);
         ImGui::SameLine();
         if (button("\u00d7", "delete this bookmark", cross)) gone = i;
-        note_place("forget " + bookmark.name);
+        note_rect("forget " + bookmark.name);
         ImGui::PopID();
     }
     if (gone < state.bookmarks.size()) state.bookmarks.erase(state.bookmarks.begin() + static_cast<std::ptrdiff_t>(gone));

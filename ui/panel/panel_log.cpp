@@ -73,7 +73,7 @@ void place_row(const LogRow& row, const ImVec2& at, UiState& state) {
         ImGui::SetClipboardText(row.text.c_str());
         state.notify("copied " + row.text);
     }
-    note_place(row.text);
+    note_rect(row.text);
     const ImU32 color = ImGui::GetColorU32(ImGui::IsItemHovered() ? colors::kText : colors::kAccent);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddText(at, color, shown.c_str());
@@ -131,7 +131,7 @@ void head(Session& session, UiState& state) {
             if (option(text, level == view.filter.least)) view.filter.least = level;
         ImGui::EndCombo();
     }
-    note_place("log level");
+    note_rect("log level");
     ImGui::SameLine();
     if (button("Copy", "the lines that are shown, to the clipboard", third)) {
         ImGui::SetClipboardText(shown_text().c_str());
@@ -141,7 +141,7 @@ void head(Session& session, UiState& state) {
     if (button("Clear", {}, third)) session.log_lines().clear();
     ImGui::SetNextItemWidth(-FLT_MIN);
     ImGui::InputTextWithHint("##words", "find", &view.filter.words);
-    note_place("find in the log");
+    note_rect("find in the log");
 }
 
 }  // namespace

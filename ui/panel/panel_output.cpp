@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "ui/app/preset_folder.hpp"
 #include "ui/browser/file_listing.hpp"
 #include "ui/panel/panel.hpp"
+#include "ui/panel/preset_folder.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
 
@@ -47,7 +47,7 @@ void preset_rows(Session& session, UiState& state) {
     ImGui::SameLine();
     ImGui::BeginDisabled(name.empty());
     const bool pressed = button("Save##preset", "save the current settings under this name", width);
-    note_place("Save preset");
+    note_rect("Save preset");
     ImGui::EndDisabled();
     if ((entered || pressed) && !name.empty())
         attempt(session, [&] {
@@ -62,18 +62,18 @@ void preset_rows(Session& session, UiState& state) {
         if (ImGui::Selectable(cut_to(preset, ImGui::GetContentRegionAvail().x - cross * 1.5f).c_str(), false, 0,
                               {ImGui::GetContentRegionAvail().x - cross * 1.2f, 0}))
             attempt(session, [&] { session.load_preset(preset_path(state.presets_folder, preset)); });
-        note_place("preset " + preset);
+        note_rect("preset " + preset);
         tooltip("load " + preset_path(state.presets_folder, preset));
         ImGui::SameLine(ImGui::GetCursorPosX() + ImGui::GetContentRegionAvail().x - cross);
         if (ImGui::SmallButton("\u00d7")) ImGui::OpenPopup("delete");
-        note_place("delete preset " + preset);
+        note_rect("delete preset " + preset);
         if (ImGui::BeginPopup("delete")) {
             if (ImGui::Selectable(("delete the preset " + preset).c_str())) {
                 std::error_code error;
                 fs::remove(preset_path(state.presets_folder, preset), error);
                 names.asked_s = -1e9;
             }
-            note_place("delete the preset " + preset);
+            note_rect("delete the preset " + preset);
             ImGui::EndPopup();
         }
         ImGui::PopID();
@@ -113,7 +113,7 @@ void picture_rows(Session& session, UiState& state) {
                    .c_str(),
                absolute_folder(state.pictures_folder) + "\nclick to choose another", -FLT_MIN))
         state.browse(BrowseFor::folder_of_pictures);
-    note_place("Folder");
+    note_rect("Folder");
     row_label("File", "path of the picture; empty: the next free number in the folder");
     ImGui::InputTextWithHint("##picture", file_name(free_name).c_str(), &path);
     const float half = share_of_line(2);

@@ -37,7 +37,7 @@ void compare_rows(Session& session, UiState& state) {
         if (toggle_button((shown + "##side" + std::to_string(side)).c_str(), session.editing_other == (side == 1), names[side],
                           half))
             session.editing_other = side == 1;
-        note_place(side == 0 ? "side A" : "side B");
+        note_rect(side == 0 ? "side A" : "side B");
     }
     row_label("Shown as", "wipe: drag the line between the pictures; difference: eight times as bright as it is");
     if (ImGui::BeginCombo("##mode", kCompareNames[static_cast<int>(state.compare_mode)])) {

@@ -21,14 +21,14 @@ void open_rows(Session& session, UiState& state) {
         for (const std::string& file : state.recent_files) {
             ImGui::PushID(file.c_str());
             if (ImGui::Selectable(file_name(file).c_str())) session.open({file});
-            note_place("recent " + file_name(file));
+            note_rect("recent " + file_name(file));
             tooltip(file);
             ImGui::PopID();
         }
         if (state.recent_files.empty()) ImGui::TextUnformatted("none yet");
         ImGui::EndCombo();
     }
-    note_place("Recent files");
+    note_rect("Recent files");
     ImGui::SetNextItemWidth(-FLT_MIN);
     if (std::exchange(state.focus_path_asked, false)) ImGui::SetKeyboardFocusHere();
     const bool entered = ImGui::InputTextWithHint("##path", "or a path, and Enter; or drop files onto the window", &state.path,
@@ -71,7 +71,7 @@ void camera_rows(Session& session, UiState& state) {
                 const std::string name = other.name.empty() ? "camera " + std::to_string(i + 1) : other.name;
                 ImGui::PushID(static_cast<int>(i));
                 if (ImGui::Selectable(name.c_str())) camera = other;
-                note_place(name);
+                note_rect(name);
                 ImGui::PopID();
             }
             ImGui::EndCombo();

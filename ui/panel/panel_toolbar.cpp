@@ -68,10 +68,10 @@ void draw_toolbar(Session& session, VolumeOverlay& overlay, UiState& state) {
         return name.empty() ? std::string("nothing to ") + what : std::string(what) + ": " + name + " (" + key + ")";
     };
     step_button("\u21b6##undo", history.can_undo(), help("undo", history.undo_name(), "Ctrl+Z"), step, [&] { session.undo(); });
-    note_place("undo");
+    note_rect("undo");
     ImGui::SameLine();
     step_button("\u21b7##redo", history.can_redo(), help("redo", history.redo_name(), "Ctrl+Y"), step, [&] { session.redo(); });
-    note_place("redo");
+    note_rect("redo");
     if (!one_line && history.can_undo()) {
         ImGui::SameLine();
         ImGui::AlignTextToFramePadding();

@@ -30,7 +30,7 @@ void title_row(const SceneRow& row, size_t total) {
     ImGui::PushStyleColor(ImGuiCol_Text, colors::kDim);
     if (ImGui::Selectable(text.c_str())) tree.open[kind] = !tree.open[kind];
     ImGui::PopStyleColor();
-    note_place(kind_title(row.kind));
+    note_rect(kind_title(row.kind));
 }
 
 rt_u32 material_of(const Scene& scene, const SceneRow& row) {
@@ -140,7 +140,7 @@ void item_row(Session& session, const Scene& scene, const SceneRow& row) {
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + 12 * ui_scale());
     if (row.kind == RowKind::instance) {
         eye_button(session, static_cast<rt_u32>(row.index), scene.instances[static_cast<size_t>(row.index)].visible);
-        note_place("eye " + name);
+        note_rect("eye " + name);
     }
     const float room = ImGui::GetContentRegionAvail().x, width = right.empty() ? 0 : ImGui::CalcTextSize(right.c_str()).x;
     const ImVec2 from = ImGui::GetCursorScreenPos();
@@ -150,7 +150,7 @@ void item_row(Session& session, const Scene& scene, const SceneRow& row) {
         if (ImGui::IsMouseDoubleClicked(0) && row.kind == RowKind::instance)
             session.focus_on_instance(static_cast<rt_u32>(row.index));
     }
-    note_place("row " + name);
+    note_rect("row " + name);
     tooltip(help_text(scene, row, name));
     if (!right.empty())
         ImGui::GetWindowDrawList()->AddText({from.x + room - width - 2 * ui_scale(), from.y}, ImGui::GetColorU32(colors::kDim),
@@ -187,7 +187,7 @@ void draw_scene_tree(Session& session, UiState&) {
     const float all = ImGui::CalcTextSize("Show all objects").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(some_hidden ? -all - ImGui::GetStyle().ItemSpacing.x : -FLT_MIN);
     ImGui::InputTextWithHint("##filter", "find by name", &tree.filter);
-    note_place("find by name");
+    note_rect("find by name");
     if (some_hidden) {
         ImGui::SameLine();
         if (button("Show all objects", plural(session.desired.hidden.size(), "object") + " hidden here", all))

@@ -16,6 +16,8 @@ struct DesiredLight {
     bool on = true;
 };
 
+inline constexpr float kMovingFps = 30;  // the default of DesiredState::moving_fps
+
 // The device and the settings that one picture is traced with.
 struct Side {
     std::string device;
@@ -33,8 +35,8 @@ struct DesiredState {
     std::vector<rt_u32> hidden;          // indices of instances, ascending
     bool continuous = false;             // trace again and again, to measure
     float resolution_scale = 1;          // factor for the picture's width and height
-    float moving_fps =
-        30;  // target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels
+    // Target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels.
+    float moving_fps = kMovingFps;
 };
 
 // The view of the desired state, with the lights and instances that are switched off in it.

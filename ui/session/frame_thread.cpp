@@ -6,42 +6,14 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "ui/app/thread_priority.hpp"
 #include "ui/session/picture_difference.hpp"
+#include "ui/session/thread_priority.hpp"
 
 namespace clarity::ui {
 
 using Clock = std::chrono::steady_clock;
 
 class FrameThread::StopProgress : public Progress {};
-
-Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
-    Settings settings = prepared;
-    for (const Setting& row : settings_table())
-        if (row.effect == Effect::frame) row.set(settings, row.get(desired_now));
-    return settings;
-}
-
-namespace {
-
-// Removes the times of the display kernels, because read_display() adds them again.
-FrameStats traced_part(FrameStats stats) {
-    const auto shown = std::find_if(stats.kernels.begin(), stats.kernels.end(),
-                                    [](const KernelTime& time) { return time.name != "trace" && time.name != "counters"; });
-    stats.kernels.erase(shown, stats.kernels.end());
-    return stats;
-}
-
-// Two heat maps can only be compared if a colour means the same in both. So both get the larger of the two scales.
-void share_scale(PictureSide& a, PictureSide& b) {
-    const bool amounts = a.scale.map == FalseColorScale::Map::heat && b.scale.map == a.scale.map && a.values && b.values;
-    if (!amounts || a.settings.aov != b.settings.aov || a.scale.max == b.scale.max) return;
-    PictureSide& shorter = a.scale.max < b.scale.max ? a : b;
-    shorter.scale = scale_of(*shorter.values, shorter.settings.aov, std::max(a.scale.max, b.scale.max));
-    shorter.image = false_colors(*shorter.values, shorter.settings.aov, shorter.scale);
-}
-
-}  // namespace
 
 FrameThread::FrameThread(std::function<void()> wake) : wake_(std::move(wake)), thread_([this] { run(); }) {}
 
@@ -86,7 +58,7 @@ std::string FrameThread::take_failure() {
 
 std::vector<float> FrameThread::times(unsigned side) const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return times_[side].ms;
+    return times_[side].ms();
 }
 
 void FrameThread::want_distance(bool wanted) {
@@ -142,7 +114,7 @@ bool FrameThread::wants_work(unsigned& sample, bool& retrace) const {
     // A comparison gets a few more frames, because the first frames of a program are slower.
     constexpr size_t kFairFrames = 5;
     const bool comparing = job_.other_settings && job_.ready->other && !traced_reduced_;
-    const bool unfair = comparing && std::min(times_[0].ms.size(), times_[1].ms.size()) < kFairFrames;
+    const bool unfair = comparing && std::min(times_[0].ms().size(), times_[1].ms().size()) < kFairFrames;
     if (!retrace && (job_.continuous || unfair)) {
         sample = 0;
         retrace = true;
@@ -297,21 +269,12 @@ bool FrameThread::finish(bool held_up) {
     const std::lock_guard<std::mutex> lock(mutex_);
     latest_ = traced.picture;
     if (!traced.fresh) return true;
-    note_time(times_[0], picture.job.ready, picture.main.frame_ms);
+    times_[0].add(picture.job.ready, picture.main.frame_ms);
     if (picture.other)
-        note_time(times_[1], picture.job.ready, picture.other->frame_ms);
+        times_[1].add(picture.job.ready, picture.other->frame_ms);
     else
         times_[1] = {};
     return true;
-}
-
-// Replaces the image of a side by that of the finished picture. The picture is being traced again for its times, and its first
-// samples are jagged: to show them between finished pictures would flicker.
-void FrameThread::keep_image(PictureSide& side, const PictureSide& finished) {
-    side.image = finished.image;
-    side.scale = finished.scale;
-    side.values = finished.values;
-    side.stats.samples = finished.stats.samples;
 }
 
 // Creates the tracer's renderer if the devices or the kernels changed, since the film has kernels of its own. If edited kernels
@@ -404,20 +367,6 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         paced_ = job.ready;
     }
     if (!pending) finish(false);
-}
-
-// Adds a frame time. Times of another program are dropped, and so is the first frame of this one: drivers finish compiling in
-// it.
-void FrameThread::note_time(Times& times, const std::shared_ptr<const Ready>& of, double ms) {
-    constexpr size_t kTimes = 240;
-    if (times.of != of) {
-        times = {{}, of, true};
-    } else if (times.cold) {
-        times.ms.clear();
-        times.cold = false;
-    }
-    times.ms.push_back(static_cast<float>(ms));
-    if (times.ms.size() > kTimes) times.ms.erase(times.ms.begin());
 }
 
 }  // namespace clarity::ui

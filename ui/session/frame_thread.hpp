@@ -13,54 +13,11 @@
 #include <thread>
 #include <vector>
 
-#include "render/film/false_colors.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
-#include "ui/session/prepare_worker.hpp"
+#include "ui/session/frame_times.hpp"
+#include "ui/session/picture.hpp"
 
 namespace clarity::ui {
-
-// Everything that the frame thread needs to trace and display a picture.
-struct FrameJob {
-    std::shared_ptr<const Ready> ready;
-    Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
-    std::optional<Settings> other_settings;  // of the second side, which is traced if `ready` has it
-    View view;
-    uint64_t revision = 0;          // the films start anew when it changes
-    uint64_t display_revision = 0;  // the films are displayed anew when it changes
-    bool continuous = false;        // trace again and again, to measure
-    float resolution_scale = 1;     // factor for the settings' width and height
-    float moving_fps = 0;           // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
-};
-
-// One side of a picture.
-struct PictureSide {
-    ByteImage image;
-    FalseColorScale scale;  // the scale of an AOV; without a map for colours
-    Settings settings;      // as traced
-    FrameStats stats;
-    // Milliseconds that this thread spent on the frame: tracing, and the readback if the thread had to wait for it.
-    double frame_ms = 0;
-    // Distances of the camera rays of sample 0, +inf for a miss. nullptr if not asked for; an empty image if they are not
-    // known.
-    std::shared_ptr<const FloatImage> distance;
-    std::shared_ptr<const FloatImage> values;  // the values behind a false-color picture; otherwise nullptr
-};
-
-// How much two images differ.
-struct PictureDifference {
-    ByteImage image;               // |a - b| in each channel, times eight
-    double mean = 0, largest = 0;  // of 255
-    double share = 0;              // share of the pixels which differ by more than 1 of 255
-};
-
-// A traced picture. It does not change after latest() has returned it.
-struct Picture {
-    FrameJob job;
-    PictureSide main;
-    std::optional<PictureSide> other;
-    std::optional<PictureDifference> difference;
-    bool reduced = false;  // has fewer pixels than asked for, because something moves
-};
 
 // The thread that traces pictures. All public members may be called from any thread; only release() waits.
 class FrameThread {
@@ -104,11 +61,6 @@ class FrameThread {
         std::unique_ptr<MultiFrameRenderer> frames;
         uint64_t kernel_revision = 0;  // revision of the film's kernels
     };
-    struct Times {
-        std::vector<float> ms;
-        std::shared_ptr<const Ready> of;
-        bool cold = false;  // holds only the time of the program's first frame
-    };
     // A traced picture, the images of which may still be in flight to the host.
     struct Traced {
         std::shared_ptr<Picture> picture;
@@ -133,8 +85,6 @@ class FrameThread {
     bool has_saving() const;
     void save_waiting();
     float moving_scale(const FrameJob& job) const;
-    static void keep_image(PictureSide& side, const PictureSide& finished);
-    static void note_time(Times& times, const std::shared_ptr<const Ready>& of, double ms);
 
     const std::function<void()> wake_;
     Tracer tracers_[2];
@@ -152,13 +102,10 @@ class FrameThread {
     std::optional<Traced> traced_;  // newer than latest_, and replaces it when its images have arrived
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
-    Times times_[2];
+    FrameTimes times_[2];
     std::vector<Saved> to_save_, saved_;  // saves that wait; finished saves which take_saved() has not returned yet
     uint64_t last_save_ = 0;              // number of the last save
     std::thread thread_;                  // last member: the thread starts when all others exist
 };
-
-// The settings to trace with: those of `desired_now` that apply to the next frame at once, and all others as prepared.
-Settings frame_settings(const Settings& prepared, const Settings& desired_now);
 
 }  // namespace clarity::ui

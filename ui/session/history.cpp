@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cstring>
 
+#include "ui/session/comparisons.hpp"
+
 namespace clarity::ui {
 namespace {
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
 
 void compare_sides(const Side& a, const Side& b, const char* which, std::vector<std::string>& names) {
     if (a.device != b.device) names.push_back(std::string(which) + "Device");
@@ -18,7 +15,7 @@ void compare_sides(const Side& a, const Side& b, const char* which, std::vector<
     else if (a.settings.accel_params != b.settings.accel_params)
         names.push_back(std::string(which) + "Parameter of " + a.settings.accel);
     for (const Setting& row : settings_table())
-        if (row.get(a.settings) != row.get(b.settings)) names.push_back(which + row.label);
+        if (!row.equal(a.settings, b.settings)) names.push_back(which + row.label);
 }
 
 std::vector<std::string> differences(const DesiredState& a, const DesiredState& b) {

@@ -1,6 +1,6 @@
 #include "ui/session/inspect_thread.hpp"
 
-#include "ui/app/thread_priority.hpp"
+#include "ui/session/thread_priority.hpp"
 
 namespace clarity::ui {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render/frame/inspect.hpp"
-#include "ui/session/frame_thread.hpp"
+#include "ui/session/picture.hpp"
 
 namespace clarity::ui {
 

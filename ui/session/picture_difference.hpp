@@ -1,6 +1,6 @@
 // picture_difference.hpp -- compares two pictures of the same view pixel by pixel.
 #pragma once
-#include "ui/session/frame_thread.hpp"
+#include "ui/session/picture.hpp"
 
 namespace clarity::ui {
 

@@ -6,7 +6,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "ui/app/thread_priority.hpp"
+#include "ui/session/thread_priority.hpp"
 
 namespace clarity::ui {
 

@@ -6,8 +6,8 @@
 
 #include "base/error.hpp"
 #include "render/film/image_io.hpp"
+#include "ui/session/camera_control.hpp"
 #include "ui/session/session.hpp"
-#include "ui/viewport/camera_control.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -76,7 +76,7 @@ void Sequence::start(Session& session, const std::string& pattern, std::vector<C
 void Sequence::drop_frame(Session& session) {
     if (save_ != 0) session.cancel_save(save_);
     save_ = 0;
-    wished_ = false;
+    camera_set_ = false;
 }
 
 void Sequence::stop(Session& session) {
@@ -87,20 +87,20 @@ void Sequence::stop(Session& session) {
 }
 
 void Sequence::update(Session& session) {
-    if (!running() || wished_) return;
+    if (!running() || camera_set_) return;
     if (next_ == count()) return stop(session);
     session.desired.camera = cameras_[static_cast<size_t>(next_)];
-    wished_ = true;
+    camera_set_ = true;
 }
 
 void Sequence::posted(Session& session) {
-    if (wished_ && save_ == 0) save_ = session.save_picture(frame_path(pattern_, next_ + 1));
+    if (camera_set_ && save_ == 0) save_ = session.save_picture(frame_path(pattern_, next_ + 1));
 }
 
 void Sequence::saved(Session& session, uint64_t number, bool worked) {
     if (save_ == 0 || number != save_) return;
     save_ = 0;
-    wished_ = false;
+    camera_set_ = false;
     ++next_;
     if (!worked) stop(session);
 }

@@ -34,8 +34,8 @@ class Sequence {
     std::vector<Camera> cameras_;
     Camera before_;  // the camera to return to, while a sequence runs
     std::string pattern_;
-    bool wished_ = false;  // the session's desired state has the camera of frame next_
-    uint64_t save_ = 0;    // number of that frame's save; 0: not requested yet
+    bool camera_set_ = false;  // the session's desired state has the camera of frame next_
+    uint64_t save_ = 0;        // number of that frame's save; 0: not requested yet
     int next_ = 0;
 };
 

@@ -4,71 +4,29 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <utility>
 
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
 #include "render/accel/accel_choice.hpp"
-#include "ui/viewport/camera_control.hpp"
+#include "ui/session/comparisons.hpp"
 
 namespace clarity::ui {
 namespace {
-
-template <class T>
-bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
-    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
-}
-
-bool same_view(const View& a, const View& b) {
-    const bool cameras = a.camera.eye == b.camera.eye && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
-                         a.camera.fov_y_rad == b.camera.fov_y_rad;
-    return cameras && a.background == b.background && a.ambient == b.ambient && same_bytes(a.lights, b.lights) &&
-           same_bytes(a.materials, b.materials);
-}
 
 double now_s() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+// Whether both jobs trace the same frames of the same sides.
+bool same_frames(const FrameJob& a, const FrameJob& b) {
+    return traces_same(a.settings, b.settings) && a.other_settings.has_value() == b.other_settings.has_value() &&
+           (!a.other_settings || traces_same(*a.other_settings, *b.other_settings));
+}
+
 constexpr double kMovingSeconds = 0.25;  // pictures are sharp again this long after the last change of the view
-
-// Exposure, tone map and colour scale apply to a film that is already traced. Every other setting of a frame needs a new trace,
-// except for the number of samples.
-bool only_displays(const std::string& key) {
-    return key == "exposure" || key == "tone" || key == "scale_max";
-}
-
-// Settings which both sides of a comparison share; otherwise the pictures could not be compared.
-bool is_shared(const std::string& key) {
-    return key == "size" || key == "spp" || key == "aov" || only_displays(key);
-}
-
-std::string frame_key(const Settings& settings, bool displaying) {
-    std::string key;
-    for (const Setting& row : settings_table())
-        if (row.effect == Effect::frame && row.key != "spp" && only_displays(row.key) == displaying)
-            key += row.key + "=" + row.get(settings) + ";";
-    return key;
-}
-
-std::string prepare_key(const Side& side) {
-    std::string key = side.device + ";" + side.settings.accel;
-    for (const double value : side.settings.accel_params) key += "," + exact_text(value);
-    for (const Setting& row : settings_table())
-        if (row.effect != Effect::frame) key += ";" + row.key + "=" + row.get(side.settings);
-    return key;
-}
-
-std::string prepare_key(const PrepareRequest& request) {
-    std::string key = std::to_string(request.files_revision) + "|" + std::to_string(request.kernel_revision) + "|" +
-                      prepare_key(request.main) + "|" + (request.other ? prepare_key(*request.other) : std::string()) + "|";
-    for (const rt_u32 i : request.hidden) key += std::to_string(i) + ",";
-    return key;
-}
 
 }  // namespace
 
@@ -145,7 +103,8 @@ void Session::cancel() {
     files_ = was.files;
     files_revision_ = was.files_revision;
     // The prepared scene already has these settings, so there is nothing to request, unless its devices were closed meanwhile.
-    posted_key_ = was_withdrawn ? std::string() : prepare_key(desired_request());
+    posted_request_.reset();
+    if (!was_withdrawn) posted_request_ = desired_request();
 }
 
 Settings& Session::settings_for(const std::string& key) {
@@ -159,7 +118,7 @@ void Session::follow_main() {
     }
     Settings& other = desired.other->settings;
     for (const Setting& row : settings_table())
-        if (is_shared(row.key)) row.set(other, row.get(desired.main.settings));
+        if (is_shared(row.key)) row.copy(other, desired.main.settings);
 }
 
 PrepareRequest Session::desired_request() const {
@@ -170,11 +129,14 @@ PrepareRequest Session::desired_request() const {
     return request;
 }
 
+bool Session::is_posted(const PrepareRequest& request) const {
+    return posted_request_ && prepares_same(*posted_request_, request);
+}
+
 void Session::post_request() {
     PrepareRequest request = desired_request();
-    const std::string key = prepare_key(request);
-    if (key == posted_key_) return;
-    posted_key_ = key;
+    if (is_posted(request)) return;
+    posted_request_ = request;
     worker_.request(std::move(request));
 }
 
@@ -195,13 +157,9 @@ void Session::post_frame() {
     if (moved) moved_at_s_ = now;
     moving_ = now - moved_at_s_ < kMovingSeconds && !sequence_.running();
     job.moving_fps = moving_ ? desired.moving_fps : 0;
-    const auto key = [](const FrameJob& j, bool displaying) {
-        return frame_key(j.settings, displaying) +
-               (j.other_settings && !displaying ? "|" + frame_key(*j.other_settings, false) : std::string());
-    };
-    const bool anew = first || moved || job.ready != posted_job_.ready || key(job, false) != key(posted_job_, false) ||
+    const bool anew = first || moved || job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
                       job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
-    const bool shown = first || key(job, true) != key(posted_job_, true);
+    const bool shown = first || !displays_same(job.settings, posted_job_.settings);
     const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous ||
                        job.moving_fps != posted_job_.moving_fps;
     if (anew || shown || other) {
@@ -241,10 +199,10 @@ void Session::take_outcomes() {
                 report(outcome.message, outcome.details);
                 if (outcome.files_failed && ready_) {
                     // The worker keeps the old files by itself. A new request would remove the message.
-                    const bool asked = posted_key_ == prepare_key(desired_request());
+                    const bool asked = is_posted(desired_request());
                     files_ = ready_->loaded->files;
                     files_revision_ = ready_->loaded->files_revision;
-                    if (asked) posted_key_ = prepare_key(desired_request());
+                    if (asked) posted_request_ = desired_request();
                 }
                 break;
             case Outcome::Kind::cancelled:
@@ -256,7 +214,6 @@ void Session::take_outcomes() {
 
 void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     ready_ = ready;
-    ready_key_ = prepare_key(ready->request);
     if (viewed_files_revision_ == ready->loaded->files_revision) return;
     viewed_files_revision_ = ready->loaded->files_revision;
     selection = {};
@@ -283,12 +240,12 @@ void Session::report(const std::string& text, const std::string& details) {
 }
 
 bool Session::behind() const {
-    return ready_ && ready_key_ != prepare_key(desired_request());
+    return ready_ && !prepares_same(ready_->request, desired_request());
 }
 
 bool Session::idle() const {
-    return !worker_.activity().busy && posted_key_ == prepare_key(desired_request()) && !moving_ && frames_.idle() &&
-           !inspector_.busy() && pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();
+    return !worker_.activity().busy && is_posted(desired_request()) && !moving_ && frames_.idle() && !inspector_.busy() &&
+           pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();
 }
 
 float Session::scene_size() const {

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "device/kernel_watch.hpp"
 #include "render/settings/preset.hpp"
-#include "ui/app/window_main.hpp"
 #include "ui/session/desired_state.hpp"
 #include "ui/session/frame_thread.hpp"
 #include "ui/session/history.hpp"
@@ -20,6 +20,7 @@
 #include "ui/session/log_buffer.hpp"
 #include "ui/session/prepare_worker.hpp"
 #include "ui/session/sequence.hpp"
+#include "ui/session/view_options.hpp"
 
 namespace clarity::ui {
 
@@ -133,6 +134,7 @@ class Session {
     void take_saved();
     void take_pick();
     PrepareRequest desired_request() const;
+    bool is_posted(const PrepareRequest& request) const;
     Preset desired_preset(const View& base) const;
 
     const PluginRegistry& plugins_;
@@ -140,9 +142,8 @@ class Session {
     std::vector<Word> first_edits_;
     std::vector<std::string> files_;  // of the scene that was asked for
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
-    std::string posted_key_;
-    std::string ready_key_;
-    uint64_t viewed_files_revision_ = 0;  // the scene whose camera and lights are in `desired`
+    std::optional<PrepareRequest> posted_request_;  // none: the next request is posted in any case
+    uint64_t viewed_files_revision_ = 0;            // the scene whose camera and lights are in `desired`
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;

@@ -1,8 +1,8 @@
 // The parts of Session which work on the scene: inspecting and picking pixels, selecting, focusing, editing and hiding objects.
 #include <algorithm>
 
+#include "ui/session/camera_control.hpp"
 #include "ui/session/session.hpp"
-#include "ui/viewport/camera_control.hpp"
 
 namespace clarity::ui {
 

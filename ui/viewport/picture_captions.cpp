@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "base/numbers.hpp"
+#include "base/statistics.hpp"
 #include "ui/viewport/speed_verdict.hpp"
 #include "ui/widgets/theme.hpp"
 #include "ui/widgets/widgets.hpp"
@@ -74,7 +75,7 @@ Caption caption_of(const Session& session, const Picture& picture, unsigned side
         return times;
     };
     const std::vector<float> mine = recent(side), others = recent(1 - side);
-    if (const double ms = median_of(mine); ms > 0) {
+    if (const double ms = median({mine.begin(), mine.end()}); ms > 0) {
         char text[64];
         std::snprintf(text, sizeof text, "%s, %.1f Mrays/s", ms_text(ms).c_str(), session.mrays_per_second(side));
         caption.speed = text;

@@ -4,8 +4,8 @@
 #include <glm/vec2.hpp>
 #include <vector>
 
-#include "ui/app/ui_state.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 

@@ -1,4 +1,4 @@
-// The parts of PicturePane which draw over the pictures, except for lines of the world: HUD cards, handles, marks at pixels.
+// The parts of PicturePane which draw over the pictures, except for lines of the world: HUD boxes, handles, marks at pixels.
 #include <imgui.h>
 
 #include <algorithm>
@@ -6,11 +6,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "ui/automation/widget_rects.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/viewport/picture_pane.hpp"
 #include "ui/widgets/theme.hpp"
+#include "ui/widgets/widget_rects.hpp"
 #include "ui/widgets/widgets.hpp"
 
 namespace clarity::ui {
@@ -46,7 +46,7 @@ void PicturePane::draw_hud(ImDrawList& list, const Session& session, VolumeOverl
             const std::vector<HudText> lines = {{"Difference", colors::kText, true},
                                                 {difference_text(*picture_->difference), colors::kText}};
             const ImVec2 size = card_size(lines, stacks_[0].max_width());
-            if (const auto card = take_card(0, Corner::bottom_left, size)) draw_hud_card(list, *card, lines);
+            if (const auto box = take_hud_box(0, Corner::bottom_left, size)) draw_hud_box(list, *box, lines);
         }
     } else {
         for (size_t i = 0; i < places_.size(); ++i) {
@@ -55,7 +55,7 @@ void PicturePane::draw_hud(ImDrawList& list, const Session& session, VolumeOverl
         }
     }
     if (overlay.level())
-        for (size_t i = 0; i < places_.size(); ++i) draw_volume_card(list, i, overlay);
+        for (size_t i = 0; i < places_.size(); ++i) draw_volume_hud(list, i, overlay);
     if (rays_shown_) draw_ray_legend(list);
 }
 
@@ -64,27 +64,27 @@ void PicturePane::draw_caption(ImDrawList& list, const Session& session, size_t 
     if (side_by_side()) {  // the caption is above the picture
         const Rect& area = places_[side].area;
         const ImVec2 size = card_size(lines, area.width);
-        draw_hud_card(list, {area.x, area.y - size.y - 6, size.x, size.y}, lines);
+        draw_hud_box(list, {area.x, area.y - size.y - 6, size.x, size.y}, lines);
         return;
     }
     const ImVec2 size = card_size(lines, stacks_[0].max_width());
-    if (const auto card = take_card(0, side == 0 ? Corner::top_left : Corner::top_right, size))
-        draw_hud_card(list, *card, lines);
+    if (const auto box = take_hud_box(0, side == 0 ? Corner::top_left : Corner::top_right, size))
+        draw_hud_box(list, *box, lines);
 }
 
 void PicturePane::draw_scale(ImDrawList& list, size_t place) {
     const PictureSide& side = side_of(places_[place]);
     if (side.scale.map == FalseColorScale::Map::none) return;
     const ImVec2 size = color_bar_size(side.scale, std::min(card_width(place), 300 * ui_scale()));
-    const auto card = take_card(place, place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
-    if (!card) return;
+    const auto box = take_hud_box(place, place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
+    if (!box) return;
     std::optional<float> value;
     if (const auto hover = mouse_.hover(); hover && side.values && !side.values->pixels.empty())
         value = side.values->pixels[(size_t{hover->y} * side.values->width + hover->x) * side.values->channels];
-    draw_color_bar(list, *card, side.scale, value);
+    draw_color_bar(list, *box, side.scale, value);
 }
 
-void PicturePane::draw_volume_card(ImDrawList& list, size_t place, VolumeOverlay& overlay) {
+void PicturePane::draw_volume_hud(ImDrawList& list, size_t place, VolumeOverlay& overlay) {
     const unsigned side = places_[place].side();
     std::string level = level_name(*overlay.level());
     level[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(level[0])));
@@ -95,18 +95,18 @@ void PicturePane::draw_volume_card(ImDrawList& list, size_t place, VolumeOverlay
     if (overlay.more(side)) lines.push_back({"the first of more: no more are drawn", colors::kAmber});
     const char* label = overlay.hides_behind() ? "Show those behind" : "Hide those behind";
     const ImVec2 inner = ImGui::CalcTextSize("Show those behind");
-    const float pad = card_padding(), row = place == 0 ? std::round(inner.y + 6 * ui_scale()) : 0;
+    const float pad = hud_padding(), row = place == 0 ? std::round(inner.y + 6 * ui_scale()) : 0;
     ImVec2 size = card_size(lines, card_width(place));
     if (place == 0) size.x = std::max(size.x, inner.x + 2 * pad + 12 * ui_scale());
     size.y += row;
-    const auto card = take_card(place, place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
-    if (!card) return;
-    draw_hud_card(list, *card, lines);
+    const auto box = take_hud_box(place, place == 1 && !side_by_side() ? Corner::bottom_right : Corner::bottom_left, size);
+    if (!box) return;
+    draw_hud_box(list, *box, lines);
     if (place != 0) return;
-    ImGui::SetCursorScreenPos({card->x + pad, card->y + card->height - pad - inner.y - 2 * ui_scale()});
+    ImGui::SetCursorScreenPos({box->x + pad, box->y + box->height - pad - inner.y - 2 * ui_scale()});
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(5 * ui_scale(), 1 * ui_scale()));
     if (ImGui::Button(label)) overlay.hide_behind(!overlay.hides_behind());
-    note_place(label);
+    note_rect(label);
     ImGui::PopStyleVar();
     tooltip("What lies behind a surface of the picture is drawn faint, or not at all.");
 }
@@ -115,7 +115,7 @@ void PicturePane::draw_ray_legend(ImDrawList& list) {
     std::vector<HudText> lines;
     for (const RayKind& kind : ray_kinds()) lines.push_back({kind.name, color_of(kind.color), false, !lines.empty()});
     const ImVec2 size = card_size(lines, std::min(card_width(0), 240 * ui_scale()));
-    if (const auto card = take_card(0, Corner::bottom_right, size)) draw_hud_card(list, *card, lines);
+    if (const auto box = take_hud_box(0, Corner::bottom_right, size)) draw_hud_box(list, *box, lines);
 }
 
 void PicturePane::draw_wipe(ImDrawList& list) const {
@@ -157,9 +157,9 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
             const ImVec2 tip(p.x + way.x * 30 * scale, p.y + way.y * 30 * scale);
             list.AddLine(p, tip, halo, 4 * scale);
             list.AddLine(p, tip, color, 2 * scale);
-            cards_.push_back({std::min(p.x, tip.x) - 4 * scale, std::min(p.y, tip.y) - 4 * scale,
-                              std::abs(tip.x - p.x) + 8 * scale,
-                              std::abs(tip.y - p.y) + 8 * scale});  // keeps the label away from the arrow
+            hud_boxes_.push_back({std::min(p.x, tip.x) - 4 * scale, std::min(p.y, tip.y) - 4 * scale,
+                                  std::abs(tip.x - p.x) + 8 * scale,
+                                  std::abs(tip.y - p.y) + 8 * scale});  // keeps the label away from the arrow
             const glm::vec2 side(-way.y, way.x);
             list.AddTriangleFilled({tip.x + way.x * 7 * scale, tip.y + way.y * 7 * scale},
                                    {tip.x + side.x * 5 * scale, tip.y + side.y * 5 * scale},
@@ -191,7 +191,7 @@ void PicturePane::draw_handles(ImDrawList& list, const Session& session) {
             list.AddRectFilled({label.x, label.y}, {label.x + label.width, label.y + label.height}, halo, 3 * scale);
             list.AddText({std::floor(label.x + 3 * scale), std::floor(label.y)},
                          with_opacity(ImGui::GetColorU32(colors::kText), opacity), name.c_str());
-            cards_.push_back(label);
+            hud_boxes_.push_back(label);
             break;
         }
     }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "ui/viewport/camera_control.hpp"
+#include "ui/session/camera_control.hpp"
 #include "ui/widgets/theme.hpp"
 
 namespace clarity::ui {

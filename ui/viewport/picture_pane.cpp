@@ -10,7 +10,7 @@
 #include "base/elapsed.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/overlay/selection_box.hpp"
-#include "ui/viewport/camera_control.hpp"
+#include "ui/session/camera_control.hpp"
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/widgets/theme.hpp"
 
@@ -68,7 +68,7 @@ void PicturePane::lay_out(const Rect& room, const Session& session, const UiStat
     area_ = places_.front().area;
     const float margin = std::round(10 * ui_scale()), least = 190 * ui_scale();
     below_ = {};
-    cards_.clear();
+    hud_boxes_.clear();
     foot_ = 0;
     for (size_t i = 0; i < places_.size(); ++i) {
         const Rect& area = places_[i].area;
@@ -80,25 +80,24 @@ void PicturePane::lay_out(const Rect& room, const Session& session, const UiStat
     }
 }
 
-std::optional<Rect> PicturePane::take_card(size_t place, Corner corner, const ImVec2& size) {
-    std::optional<Rect> card;
+std::optional<Rect> PicturePane::take_hud_box(size_t place, Corner corner, const ImVec2& size) {
+    std::optional<Rect> box;
     const bool low = corner == Corner::bottom_left || corner == Corner::bottom_right;
     if (side_by_side() && low) {
-        card = below_[place].take(corner == Corner::bottom_right ? Corner::top_right : Corner::top_left, size.x, size.y);
-        const float wanted =
-            card ? card->y + card->height - places_[place].area.y - places_[place].area.height : foot_ + size.y;
+        box = below_[place].take(corner == Corner::bottom_right ? Corner::top_right : Corner::top_left, size.x, size.y);
+        const float wanted = box ? box->y + box->height - places_[place].area.y - places_[place].area.height : foot_ + size.y;
         foot_ = std::max(foot_, wanted + 10 * ui_scale());
     }
-    if (!card) card = stacks_[side_by_side() ? place : 0].take(corner, size.x, size.y);
-    if (card) cards_.push_back(*card);
-    return card;
+    if (!box) box = stacks_[side_by_side() ? place : 0].take(corner, size.x, size.y);
+    if (box) hud_boxes_.push_back(*box);
+    return box;
 }
 
-// Whether a card over a picture, or another label, covers this label.
+// Whether a box over a picture, or another label, covers this label.
 bool PicturePane::covered(const Rect& label) const {
-    return std::any_of(cards_.begin(), cards_.end(), [&](const Rect& card) {
-        return label.x < card.x + card.width && card.x < label.x + label.width && label.y < card.y + card.height &&
-               card.y < label.y + label.height;
+    return std::any_of(hud_boxes_.begin(), hud_boxes_.end(), [&](const Rect& box) {
+        return label.x < box.x + box.width && box.x < label.x + label.width && label.y < box.y + box.height &&
+               box.y < label.y + label.height;
     });
 }
 
@@ -185,7 +184,7 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     const bool known = distance && !distance->pixels.empty();
     if (known && distances_of_[side] != distance && distances_[side].upload(*distance).empty()) distances_of_[side] = distance;
     LinesBehind behind;
-    if (known) behind = {&distances_[side], distance.get(), overlay.hides_behind() ? 0.0f : kBehind};
+    if (known) behind = {distances_[side].name(), distance.get(), overlay.hides_behind() ? 0.0f : kBehind};
     lines.layer.draw({&lines.volumes, &marks_}, projection, pixels, behind);
     lines_ms_ = ms_since(begin);
 }
@@ -233,7 +232,7 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe}, session, state);
         if (wipe) draw_wipe(list);
         draw_pixel_marks(list, session, state);
-        list.ChannelsSplit(2);  // cards are drawn over handles; the handles' labels avoid the cards
+        list.ChannelsSplit(2);  // boxes are drawn over handles; the handles' labels avoid the boxes
         list.ChannelsSetCurrent(1);
         draw_hud(list, session, overlay);
         list.ChannelsSetCurrent(0);

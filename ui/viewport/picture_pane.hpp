@@ -7,13 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "ui/app/ui_state.hpp"
 #include "ui/hud/picture_hud.hpp"
 #include "ui/overlay/gl_lines.hpp"
 #include "ui/overlay/overlay.hpp"
 #include "ui/session/session.hpp"
 #include "ui/viewport/picture_mouse.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/viewport/picture_texture.hpp"
+#include "ui/widgets/rect.hpp"
+#include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {
 
@@ -63,16 +64,16 @@ class PicturePane {
     void draw_hud(ImDrawList& list, const Session& session, VolumeOverlay& overlay);
     void draw_caption(ImDrawList& list, const Session& session, size_t place);
     void draw_scale(ImDrawList& list, size_t place);
-    void draw_volume_card(ImDrawList& list, size_t place, VolumeOverlay& overlay);
+    void draw_volume_hud(ImDrawList& list, size_t place, VolumeOverlay& overlay);
     void draw_ray_legend(ImDrawList& list);
     void draw_handles(ImDrawList& list, const Session& session);
     void draw_pixel_marks(ImDrawList& list, const Session& session, const UiState& state);
     void draw_wipe(ImDrawList& list) const;
     const PictureSide& side_of(const PicturePlace& place) const;
     bool side_by_side() const { return places_.size() == 2 && places_[0].area.x != places_[1].area.x; }
-    // Takes room for a card at a picture: in its corner, or below the picture if pictures lie side by side and there is enough
+    // Takes room for a box at a picture: in its corner, or below the picture if pictures lie side by side and there is enough
     // room.
-    std::optional<Rect> take_card(size_t place, Corner corner, const ImVec2& size);
+    std::optional<Rect> take_hud_box(size_t place, Corner corner, const ImVec2& size);
     bool covered(const Rect& label) const;
     float card_width(size_t place) const { return stacks_[side_by_side() ? place : 0].max_width(); }
 
@@ -91,8 +92,8 @@ class PicturePane {
     std::vector<PicturePlace> places_;
     std::vector<LightHandle> handles_;
     std::array<HudStack, 2> stacks_, below_;  // over the pictures; under pictures which lie side by side
-    std::vector<Rect> cards_;                 // rectangles taken in this frame
-    float foot_ = 0;                          // height that cards wanted below the pictures in the last frame
+    std::vector<Rect> hud_boxes_;             // rectangles taken in this frame
+    float foot_ = 0;                          // height that boxes wanted below the pictures in the last frame
     PictureMouse mouse_;
 };
 

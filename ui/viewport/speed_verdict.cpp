@@ -4,16 +4,10 @@
 #include <cstddef>
 #include <cstdio>
 
+#include "base/statistics.hpp"
 #include "ui/widgets/frame_graph.hpp"
 
 namespace clarity::ui {
-
-double median_of(std::vector<float> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::string speed_verdict(const std::vector<float>& mine, const std::vector<float>& others) {
     constexpr size_t kFewest = 5;
@@ -24,7 +18,7 @@ std::string speed_verdict(const std::vector<float>& mine, const std::vector<floa
         return percentile(a, 0.9) < percentile(b, 0.1);
     };
     if (beats(others, mine)) return {};
-    const double ratio = median_of(others) / std::max(median_of(mine), 1e-9);
+    const double ratio = median({others.begin(), others.end()}) / std::max(median({mine.begin(), mine.end()}), 1e-9);
     if (!beats(mine, others) || ratio < 1.005) return kAboutTheSame;
     char text[64];
     std::snprintf(text, sizeof text, ratio < 10 ? "%.2f\u00d7 faster" : "%.0f\u00d7 faster", ratio);

@@ -12,7 +12,4 @@ inline constexpr const char* kAboutTheSame = "about the same";
 // that the two sides trace alternately.
 std::string speed_verdict(const std::vector<float>& mine, const std::vector<float>& others);
 
-// The median of the values; 0 if there are none.
-double median_of(std::vector<float> values);
-
 }  // namespace clarity::ui

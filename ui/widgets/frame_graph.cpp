@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "ui/automation/widget_rects.hpp"
 #include "ui/widgets/formats.hpp"
 #include "ui/widgets/theme.hpp"
+#include "ui/widgets/widget_rects.hpp"
 
 namespace clarity::ui {
 namespace {
@@ -69,7 +69,7 @@ void draw_frame_graph(const std::vector<FrameSeries>& series, float target_ms, f
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
     ImGui::InvisibleButton("frame times", {width, height});
-    note_place("frame times");
+    note_rect("frame times");
     // The axis covers 98 % of the times, so that one slow frame does not flatten the rest. It covers all of them if the largest
     // is not much higher.
     float most = 0, largest = 0;

@@ -7,7 +7,7 @@ namespace clarity::ui {
 namespace colors {
 inline const ImVec4 kGround{0.078f, 0.086f, 0.102f, 1.0f};  // behind the picture
 inline const ImVec4 kPanel{0.106f, 0.118f, 0.141f, 1.0f};
-inline const ImVec4 kCard{0.129f, 0.145f, 0.173f, 0.97f};  // over the picture
+inline const ImVec4 kHudGround{0.129f, 0.145f, 0.173f, 0.97f};  // over the picture
 inline const ImVec4 kText{0.878f, 0.898f, 0.925f, 1.0f};
 inline const ImVec4 kDim{0.553f, 0.592f, 0.655f, 1.0f};
 inline const ImVec4 kAccent{0.329f, 0.647f, 0.949f, 1.0f};

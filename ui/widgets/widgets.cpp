@@ -67,7 +67,7 @@ bool folding_section(const char* title, bool open) {
     const ImVec2 from = ImGui::GetCursorScreenPos();
     const ImVec2 size(ImGui::GetContentRegionAvail().x, ImGui::GetTextLineHeight());
     if (ImGui::InvisibleButton(title, size)) storage.SetBool(id, unfolded = !unfolded);
-    note_place(title);
+    note_rect(title);
     const bool hovered = ImGui::IsItemHovered();
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImU32 color = ImGui::GetColorU32(hovered ? colors::kText : colors::kDim);
@@ -91,7 +91,7 @@ void tooltip(const std::string& text) {
 
 bool option(const std::string& label, bool chosen) {
     const bool clicked = ImGui::Selectable(label.c_str(), chosen);
-    note_place(label);
+    note_rect(label);
     return clicked && !chosen;
 }
 
@@ -114,7 +114,7 @@ void row_label(const char* label, const std::string& help) {
     tooltip(text == label ? help : std::string(label) + "\n" + help);
     ImGui::SameLine(start + width);
     const ImVec2 from = ImGui::GetCursorScreenPos();
-    note_place(label, {from.x, from.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()});
+    note_rect(label, {from.x, from.y, ImGui::GetContentRegionAvail().x, ImGui::GetFrameHeight()});
     ImGui::SetNextItemWidth(-FLT_MIN);
 }
 
@@ -144,7 +144,7 @@ void dim_text(const std::string& text) {
 bool button(const char* label, const std::string& help, float width) {
     const bool pressed = ImGui::Button(label, {width, 0});
     const std::string name = label;
-    note_place(name.substr(0, name.find("##")));
+    note_rect(name.substr(0, name.find("##")));
     tooltip(help);
     return pressed;
 }

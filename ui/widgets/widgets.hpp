@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "ui/automation/widget_rects.hpp"
 #include "ui/widgets/formats.hpp"
 #include "ui/widgets/setting_rows.hpp"
 #include "ui/widgets/theme.hpp"
+#include "ui/widgets/widget_rects.hpp"
 
 namespace clarity::ui {
 

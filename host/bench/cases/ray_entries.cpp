@@ -16,7 +16,7 @@ void add_rays(CaseState& state, Entry& entry, const Fixture::Held& held) {
         const RayTuning tuning = held.frames->ray_tuning();
         sample.trial = tuning.trial;
         sample.settled = tuning.settled;
-        sample.variant = tuning.way;
+        sample.variant = tuning.variant;
         return sample;
     };
     entry.finish = [=, &set, &state](BenchRecord& row) {

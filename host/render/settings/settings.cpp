@@ -11,9 +11,17 @@ namespace {
     throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
 }
 
+// Lets a setting compare and copy its values, which these members hold.
+template <class... Member>
+void hold_in(Setting& s, Member Settings::*... members) {
+    s.equal = [=](const Settings& a, const Settings& b) { return (... && (a.*members == b.*members)); };
+    s.copy = [=](Settings& to, const Settings& from) { (..., (to.*members = from.*members)); };
+}
+
 Setting integer(std::string key, std::string label, std::string help, double min, double max, Effect effect,
                 int Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}};
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::integer, min, max, {}, effect, {}, {}, {}, {}};
+    hold_in(s, member);
     s.get = [member](const Settings& settings) { return std::to_string(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         int value = 0;
@@ -26,7 +34,8 @@ Setting integer(std::string key, std::string label, std::string help, double min
 
 Setting real(std::string key, std::string label, std::string help, double min, double max, Effect effect,
              double Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}};
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::real, min, max, {}, effect, {}, {}, {}, {}};
+    hold_in(s, member);
     s.get = [member](const Settings& settings) { return exact_text(settings.*member); };
     s.set = [=](Settings& settings, const std::string& text) {
         double value = 0;
@@ -38,7 +47,8 @@ Setting real(std::string key, std::string label, std::string help, double min, d
 }
 
 Setting boolean(std::string key, std::string label, std::string help, Effect effect, bool Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::boolean, 0, 1, {}, effect, {}, {}};
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::boolean, 0, 1, {}, effect, {}, {}, {}, {}};
+    hold_in(s, member);
     s.get = [member](const Settings& settings) { return std::string(settings.*member ? "true" : "false"); };
     s.set = [=](Settings& settings, const std::string& text) {
         if (text == "1" || text == "true" || text == "on" || text == "yes")
@@ -53,7 +63,8 @@ Setting boolean(std::string key, std::string label, std::string help, Effect eff
 
 Setting choice(std::string key, std::string label, std::string help, std::vector<std::string> choices, Effect effect,
                std::string Settings::*member) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::choice, 0, 0, choices, effect, {}, {}};
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::choice, 0, 0, choices, effect, {}, {}, {}, {}};
+    hold_in(s, member);
     s.get = [member](const Settings& settings) { return settings.*member; };
     s.set = [=](Settings& settings, const std::string& text) {
         std::string known;
@@ -71,7 +82,9 @@ Setting choice(std::string key, std::string label, std::string help, std::vector
 
 Setting size(std::string key, std::string label, std::string help, int min, int max, bool automatic, Effect effect,
              int Settings::*width, int Settings::*height) {
-    Setting s{key, std::move(label), std::move(help), Setting::Kind::size, double(min), double(max), {}, effect, {}, {}};
+    Setting s{key, std::move(label), std::move(help), Setting::Kind::size, double(min), double(max), {}, effect, {}, {}, {},
+              {}};
+    hold_in(s, width, height);
     s.get = [=](const Settings& settings) {
         if (automatic && settings.*width == 0) return std::string("auto");
         return std::to_string(settings.*width) + "x" + std::to_string(settings.*height);
@@ -96,6 +109,7 @@ Setting lanes_setting() {
     Setting s =
         choice("lanes", "Lanes", "rays that one work-item traces side by side; auto: 1 on a GPU, the float width of a CPU",
                {"auto", "1", "4", "8", "16"}, Effect::recompile, &Settings::tracer);
+    hold_in(s, &Settings::lanes);
     const auto choices = s.choices;
     s.get = [](const Settings& settings) { return settings.lanes == 0 ? std::string("auto") : std::to_string(settings.lanes); };
     s.set = [choices](Settings& settings, const std::string& text) {

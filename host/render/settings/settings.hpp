@@ -47,6 +47,8 @@ struct Setting {
     std::function<std::string(const Settings&)> get;
     std::function<void(Settings&, const std::string&)>
         set;  // throws Error(usage), which says what was read and what is allowed
+    std::function<bool(const Settings&, const Settings&)> equal;  // whether both have the same value
+    std::function<void(Settings& to, const Settings& from)> copy;
 };
 
 // All settings but accel and its parameters, which come from the plugins (see parameters.hpp).

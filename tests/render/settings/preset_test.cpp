@@ -78,6 +78,30 @@ TEST(Preset, RefusesUnknownKeysAndValues) {
     }
 }
 
+// The text of a value other than the default.
+std::string another_value(const Setting& row) {
+    const std::string now = row.get(Settings());
+    if (row.kind == Setting::Kind::choice) return now == row.choices.front() ? row.choices.back() : row.choices.front();
+    if (row.kind == Setting::Kind::boolean) return now == "true" ? "false" : "true";
+    return row.kind == Setting::Kind::size ? "7x5" : exact_text(row.max);
+}
+
+// The window compares and copies values without their texts.
+TEST(Settings, EqualAndCopyConcernTheirOwnValueOnly) {
+    for (const Setting& changed : settings_table()) {
+        Settings settings;
+        changed.set(settings, another_value(changed));
+        for (const Setting& row : settings_table()) {
+            EXPECT_EQ(row.equal(settings, Settings()), row.get(settings) == row.get(Settings()))
+                << changed.key << " " << row.key;
+            Settings copy;
+            row.copy(copy, settings);
+            EXPECT_EQ(row.get(copy), row.get(settings)) << changed.key << " " << row.key;
+            EXPECT_EQ(changed.equal(copy, settings), row.key == changed.key) << changed.key << " " << row.key;
+        }
+    }
+}
+
 // The window also passes settings as text. With 1/512 rounded to six digits, more rays were followed.
 TEST(Settings, NumbersWrittenAsTextAreReadBackBitByBit) {
     for (const Setting& row : settings_table()) {

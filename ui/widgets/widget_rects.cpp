@@ -1,4 +1,4 @@
-#include "ui/automation/widget_rects.hpp"
+#include "ui/widgets/widget_rects.hpp"
 
 #include <imgui.h>
 
@@ -20,7 +20,7 @@ std::string wanted;  // label of the rectangle that is to be scrolled into view
 
 }  // namespace
 
-void note_place(const std::string& label, const Rect& rect) {
+void note_rect(const std::string& label, const Rect& rect) {
     if (label.empty()) return;
     const ImVec2 low = ImGui::GetWindowDrawList()->GetClipRectMin(), high = ImGui::GetWindowDrawList()->GetClipRectMax();
     const float middle = rect.y + rect.height / 2;
@@ -33,12 +33,12 @@ void note_place(const std::string& label, const Rect& rect) {
     if (!inside) ImGui::SetScrollHereY(0.5f);
 }
 
-void note_place(const std::string& label) {
+void note_rect(const std::string& label) {
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-    note_place(label, {from.x, from.y, to.x - from.x, to.y - from.y});
+    note_rect(label, {from.x, from.y, to.x - from.x, to.y - from.y});
 }
 
-const Rect* drawn_place(const std::string& label) {
+const Rect* drawn_rect(const std::string& label) {
     const auto found = widget_rects().find(label);
     // A script asks between two frames, before ImGui counts the next one.
     if (found == widget_rects().end() || found->second.frame < ImGui::GetFrameCount() - 1) return nullptr;

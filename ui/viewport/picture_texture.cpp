@@ -1,4 +1,4 @@
-#include "ui/viewport/viewport.hpp"
+#include "ui/viewport/picture_texture.hpp"
 
 #include <epoxy/gl.h>
 
@@ -69,15 +69,6 @@ void PictureTexture::set_magnified(bool magnified) {
     magnified_ = magnified;
     glBindTexture(GL_TEXTURE_2D, texture_);
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, magnified ? GL_NEAREST : GL_LINEAR);
-}
-
-Rect letter_box(const Rect& area, float aspect) {
-    float width = area.width, height = area.width / aspect;
-    if (height > area.height) {
-        height = area.height;
-        width = area.height * aspect;
-    }
-    return {std::floor(area.x + (area.width - width) / 2), std::floor(area.y + (area.height - height) / 2), width, height};
 }
 
 }  // namespace clarity::ui

@@ -1,4 +1,4 @@
-#include "ui/app/preset_folder.hpp"
+#include "ui/panel/preset_folder.hpp"
 
 #include <algorithm>
 #include <filesystem>

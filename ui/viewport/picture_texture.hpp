@@ -1,4 +1,4 @@
-// viewport.hpp -- pictures as textures, uploaded through a pixel buffer object, and rectangles of the window.
+// picture_texture.hpp -- pictures as textures, uploaded through a pixel buffer object.
 #pragma once
 #include <string>
 
@@ -29,13 +29,5 @@ class PictureTexture {
     unsigned texture_ = 0, buffer_ = 0, width_ = 0, height_ = 0;
     bool magnified_ = false;
 };
-
-// A rectangle in window coordinates.
-struct Rect {
-    float x = 0, y = 0, width = 0, height = 0;
-    bool holds(float px, float py) const { return px >= x && py >= y && px < x + width && py < y + height; }
-};
-// Returns the largest rectangle of this aspect inside the area, centred.
-Rect letter_box(const Rect& area, float aspect);
 
 }  // namespace clarity::ui

@@ -1,10 +1,10 @@
-#include "ui/viewport/projection.hpp"
+#include "ui/overlay/projection.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "ui/viewport/camera_control.hpp"
+#include "ui/session/camera_control.hpp"
 
 namespace clarity::ui {
 namespace {

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/scene.hpp"
-#include "ui/app/key_map.hpp"
+#include "ui/widgets/key_map.hpp"
 
 namespace clarity::ui {
 

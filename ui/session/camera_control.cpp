@@ -1,4 +1,4 @@
-#include "ui/viewport/camera_control.hpp"
+#include "ui/session/camera_control.hpp"
 
 #include <cmath>
 #include <glm/geometric.hpp>

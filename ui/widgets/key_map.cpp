@@ -1,4 +1,4 @@
-#include "ui/app/key_map.hpp"
+#include "ui/widgets/key_map.hpp"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

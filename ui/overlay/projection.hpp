@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "scene/scene.hpp"
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
 

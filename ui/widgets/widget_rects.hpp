@@ -2,15 +2,15 @@
 #pragma once
 #include <string>
 
-#include "ui/viewport/viewport.hpp"
+#include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
 
 // Notes the rectangle of the last item, or the given one. It counts as visible inside the clip rectangle of the current window.
-void note_place(const std::string& label);
-void note_place(const std::string& label, const Rect& place);
+void note_rect(const std::string& label);
+void note_rect(const std::string& label, const Rect& place);
 // Returns nullptr if nothing with this label is visible. If it is scrolled out of sight, the next frame scrolls it into view:
 // ask again then.
-const Rect* drawn_place(const std::string& label);
+const Rect* drawn_rect(const std::string& label);
 
 }  // namespace clarity::ui

@@ -1,0 +1,54 @@
+#include "ui/session/comparisons.hpp"
+
+#include <algorithm>
+
+namespace clarity::ui {
+namespace {
+
+// Exposure, tone map and colour scale apply to a film that is already traced. Every other setting of a frame needs a new trace,
+// except for the number of samples.
+bool only_displays(const std::string& key) {
+    return key == "exposure" || key == "tone" || key == "scale_max";
+}
+
+// Whether all settings that `counts` selects are equal.
+template <class Counts>
+bool same_where(const Settings& a, const Settings& b, const Counts& counts) {
+    const auto& table = settings_table();
+    return std::all_of(table.begin(), table.end(), [&](const Setting& row) { return !counts(row) || row.equal(a, b); });
+}
+
+bool prepares_same(const Side& a, const Side& b) {
+    return a.device == b.device && a.settings.accel == b.settings.accel && a.settings.accel_params == b.settings.accel_params &&
+           same_where(a.settings, b.settings, [](const Setting& row) { return row.effect != Effect::frame; });
+}
+
+}  // namespace
+
+bool same_view(const View& a, const View& b) {
+    const bool cameras = a.camera.eye == b.camera.eye && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
+                         a.camera.fov_y_rad == b.camera.fov_y_rad;
+    return cameras && a.background == b.background && a.ambient == b.ambient && same_bytes(a.lights, b.lights) &&
+           same_bytes(a.materials, b.materials);
+}
+
+bool prepares_same(const PrepareRequest& a, const PrepareRequest& b) {
+    return a.files_revision == b.files_revision && a.kernel_revision == b.kernel_revision && prepares_same(a.main, b.main) &&
+           a.other.has_value() == b.other.has_value() && (!a.other || prepares_same(*a.other, *b.other)) &&
+           a.hidden == b.hidden;
+}
+
+bool traces_same(const Settings& a, const Settings& b) {
+    return same_where(
+        a, b, [](const Setting& row) { return row.effect == Effect::frame && row.key != "spp" && !only_displays(row.key); });
+}
+
+bool displays_same(const Settings& a, const Settings& b) {
+    return same_where(a, b, [](const Setting& row) { return row.effect == Effect::frame && only_displays(row.key); });
+}
+
+bool is_shared(const std::string& key) {
+    return key == "size" || key == "spp" || key == "aov" || only_displays(key);
+}
+
+}  // namespace clarity::ui

@@ -1,0 +1,30 @@
+// comparisons.hpp -- decides what a change of the desired state concerns: preparation, tracing or only the display.
+#pragma once
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "ui/session/prepared_scene.hpp"
+
+namespace clarity::ui {
+
+// For plain structs without operator==. Their padding must be zero.
+template <class T>
+bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
+    return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+bool same_view(const View& a, const View& b);
+
+// Whether two requests prepare the same: equal files, kernels, devices and hidden instances, and equal settings except for
+// those that apply to the next frame at once.
+bool prepares_same(const PrepareRequest& a, const PrepareRequest& b);
+
+// Whether two settings trace the same frames, however many samples; and whether they display a traced film in the same way.
+bool traces_same(const Settings& a, const Settings& b);
+bool displays_same(const Settings& a, const Settings& b);
+
+// Whether both sides of a comparison share the setting with this key; otherwise the pictures could not be compared.
+bool is_shared(const std::string& key);
+
+}  // namespace clarity::ui

@@ -1,0 +1,36 @@
+#include "ui/session/picture.hpp"
+
+#include <algorithm>
+
+namespace clarity::ui {
+
+Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
+    Settings settings = prepared;
+    for (const Setting& row : settings_table())
+        if (row.effect == Effect::frame) row.copy(settings, desired_now);
+    return settings;
+}
+
+FrameStats traced_part(FrameStats stats) {
+    const auto shown = std::find_if(stats.kernels.begin(), stats.kernels.end(),
+                                    [](const KernelTime& time) { return time.name != "trace" && time.name != "counters"; });
+    stats.kernels.erase(shown, stats.kernels.end());
+    return stats;
+}
+
+void share_scale(PictureSide& a, PictureSide& b) {
+    const bool amounts = a.scale.map == FalseColorScale::Map::heat && b.scale.map == a.scale.map && a.values && b.values;
+    if (!amounts || a.settings.aov != b.settings.aov || a.scale.max == b.scale.max) return;
+    PictureSide& shorter = a.scale.max < b.scale.max ? a : b;
+    shorter.scale = scale_of(*shorter.values, shorter.settings.aov, std::max(a.scale.max, b.scale.max));
+    shorter.image = false_colors(*shorter.values, shorter.settings.aov, shorter.scale);
+}
+
+void keep_image(PictureSide& side, const PictureSide& finished) {
+    side.image = finished.image;
+    side.scale = finished.scale;
+    side.values = finished.values;
+    side.stats.samples = finished.stats.samples;
+}
+
+}  // namespace clarity::ui

@@ -1,0 +1,67 @@
+// picture.hpp -- what the frame thread takes and makes: jobs and traced pictures.
+#pragma once
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+#include "render/film/false_colors.hpp"
+#include "render/multi/multi_frame_renderer.hpp"
+#include "ui/session/prepared_scene.hpp"
+
+namespace clarity::ui {
+
+// Everything that the frame thread needs to trace and display a picture.
+struct FrameJob {
+    std::shared_ptr<const Ready> ready;
+    Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
+    std::optional<Settings> other_settings;  // of the second side, which is traced if `ready` has it
+    View view;
+    uint64_t revision = 0;          // the films start anew when it changes
+    uint64_t display_revision = 0;  // the films are displayed anew when it changes
+    bool continuous = false;        // trace again and again, to measure
+    float resolution_scale = 1;     // factor for the settings' width and height
+    float moving_fps = 0;           // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels
+};
+
+// One side of a picture.
+struct PictureSide {
+    ByteImage image;
+    FalseColorScale scale;  // the scale of an AOV; without a map for colours
+    Settings settings;      // as traced
+    FrameStats stats;
+    // Milliseconds that this thread spent on the frame: tracing, and the readback if the thread had to wait for it.
+    double frame_ms = 0;
+    // Distances of the camera rays of sample 0, +inf for a miss. nullptr if not asked for; an empty image if they are not
+    // known.
+    std::shared_ptr<const FloatImage> distance;
+    std::shared_ptr<const FloatImage> values;  // the values behind a false-color picture; otherwise nullptr
+};
+
+// How much two images differ.
+struct PictureDifference {
+    ByteImage image;               // |a - b| in each channel, times eight
+    double mean = 0, largest = 0;  // of 255
+    double share = 0;              // share of the pixels which differ by more than 1 of 255
+};
+
+// A traced picture. It does not change after latest() has returned it.
+struct Picture {
+    FrameJob job;
+    PictureSide main;
+    std::optional<PictureSide> other;
+    std::optional<PictureDifference> difference;
+    bool reduced = false;  // has fewer pixels than asked for, because something moves
+};
+
+// The settings to trace with: those of `desired_now` that apply to the next frame at once, and all others as prepared.
+Settings frame_settings(const Settings& prepared, const Settings& desired_now);
+
+// Removes the times of the display kernels, which reading the display adds again.
+FrameStats traced_part(FrameStats stats);
+// Two heat maps can only be compared if a colour means the same in both. So both get the larger of the two scales.
+void share_scale(PictureSide& a, PictureSide& b);
+// Replaces the image of a side by that of the finished picture. The picture is being traced again for its times, and its first
+// samples are jagged: to show them between finished pictures would flicker.
+void keep_image(PictureSide& side, const PictureSide& finished);
+
+}  // namespace clarity::ui
