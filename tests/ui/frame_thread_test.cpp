@@ -1,7 +1,7 @@
 // frame_thread_test.cpp -- tests the thread that traces, without a window. Every picture belongs to the job that it names,
 // pictures arrive in order, the last one arrives, and no picture changes while someone holds it. Each test runs with a device
 // that copies while it traces, as GPUs do (a CPU which claims to), and with one that does not.
-#include "ui/session/frame_thread.hpp"
+#include "ui/threads/frame_thread.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 
 #include "ui/app/preferences_json.hpp"
 #include "ui/session/camera_control.hpp"
-#include "ui/session/frame_thread.hpp"
+#include "ui/threads/frame_thread.hpp"
 #include "ui/widgets/key_map.hpp"
 #include "ui/widgets/rect.hpp"
 

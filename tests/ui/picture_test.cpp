@@ -10,7 +10,7 @@
 #include "ui/overlay/line_quads.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/overlay/selection_box.hpp"
-#include "ui/session/picture_difference.hpp"
+#include "ui/threads/picture_difference.hpp"
 #include "ui/viewport/picture_layout.hpp"
 #include "ui/viewport/speed_verdict.hpp"
 

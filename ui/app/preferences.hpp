@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ui/session/desired_state.hpp"
+#include "ui/threads/desired_state.hpp"
 #include "ui/widgets/ui_state.hpp"
 
 namespace clarity::ui {

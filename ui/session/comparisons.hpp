@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "ui/session/prepared_scene.hpp"
+#include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
 

@@ -2,7 +2,7 @@
 #pragma once
 #include <vector>
 
-#include "ui/session/desired_state.hpp"
+#include "ui/threads/desired_state.hpp"
 
 namespace clarity::ui {
 

@@ -13,14 +13,14 @@
 
 #include "device/kernel_watch.hpp"
 #include "render/settings/preset.hpp"
-#include "ui/session/desired_state.hpp"
-#include "ui/session/frame_thread.hpp"
 #include "ui/session/history.hpp"
-#include "ui/session/inspect_thread.hpp"
 #include "ui/session/log_buffer.hpp"
-#include "ui/session/prepare_worker.hpp"
 #include "ui/session/sequence.hpp"
 #include "ui/session/view_options.hpp"
+#include "ui/threads/desired_state.hpp"
+#include "ui/threads/frame_thread.hpp"
+#include "ui/threads/inspect_thread.hpp"
+#include "ui/threads/prepare_worker.hpp"
 
 namespace clarity::ui {
 

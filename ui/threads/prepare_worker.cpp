@@ -1,4 +1,4 @@
-#include "ui/session/prepare_worker.hpp"
+#include "ui/threads/prepare_worker.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -6,7 +6,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
-#include "ui/session/thread_priority.hpp"
+#include "ui/threads/thread_priority.hpp"
 
 namespace clarity::ui {
 

@@ -1,4 +1,4 @@
-#include "ui/session/frame_times.hpp"
+#include "ui/threads/frame_times.hpp"
 
 namespace clarity::ui {
 

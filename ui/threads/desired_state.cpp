@@ -1,4 +1,4 @@
-#include "ui/session/desired_state.hpp"
+#include "ui/threads/desired_state.hpp"
 
 namespace clarity::ui {
 

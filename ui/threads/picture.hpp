@@ -6,7 +6,7 @@
 
 #include "render/film/false_colors.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
-#include "ui/session/prepared_scene.hpp"
+#include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
 

@@ -11,7 +11,7 @@
 
 #include "base/progress.hpp"
 #include "import/import.hpp"
-#include "ui/session/prepared_scene.hpp"
+#include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "render/frame/inspect.hpp"
-#include "ui/session/picture.hpp"
+#include "ui/threads/picture.hpp"
 
 namespace clarity::ui {
 

@@ -1,6 +1,6 @@
 // picture_difference.hpp -- compares two pictures of the same view pixel by pixel.
 #pragma once
-#include "ui/session/picture.hpp"
+#include "ui/threads/picture.hpp"
 
 namespace clarity::ui {
 

@@ -1,4 +1,4 @@
-#include "ui/session/frame_thread.hpp"
+#include "ui/threads/frame_thread.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -6,8 +6,8 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "ui/session/picture_difference.hpp"
-#include "ui/session/thread_priority.hpp"
+#include "ui/threads/picture_difference.hpp"
+#include "ui/threads/thread_priority.hpp"
 
 namespace clarity::ui {
 

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "render/multi/multi_frame_renderer.hpp"
-#include "ui/session/frame_times.hpp"
-#include "ui/session/picture.hpp"
+#include "ui/threads/frame_times.hpp"
+#include "ui/threads/picture.hpp"
 
 namespace clarity::ui {
 

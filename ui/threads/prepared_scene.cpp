@@ -1,4 +1,4 @@
-#include "ui/session/prepared_scene.hpp"
+#include "ui/threads/prepared_scene.hpp"
 
 #include <algorithm>
 

@@ -1,6 +1,6 @@
-#include "ui/session/inspect_thread.hpp"
+#include "ui/threads/inspect_thread.hpp"
 
-#include "ui/session/thread_priority.hpp"
+#include "ui/threads/thread_priority.hpp"
 
 namespace clarity::ui {
 

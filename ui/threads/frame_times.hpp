@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "ui/session/prepared_scene.hpp"
+#include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
 

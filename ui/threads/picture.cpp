@@ -1,4 +1,4 @@
-#include "ui/session/picture.hpp"
+#include "ui/threads/picture.hpp"
 
 #include <algorithm>
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "render/multi/multi_preparer.hpp"
-#include "ui/session/desired_state.hpp"
+#include "ui/threads/desired_state.hpp"
 
 namespace clarity::ui {
 

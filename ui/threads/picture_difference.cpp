@@ -1,4 +1,4 @@
-#include "ui/session/picture_difference.hpp"
+#include "ui/threads/picture_difference.hpp"
 
 #include <algorithm>
 #include <cstdlib>
