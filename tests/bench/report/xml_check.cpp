@@ -6,7 +6,6 @@
 #include <vector>
 
 namespace clarity::test {
-using namespace bench;
 namespace {
 
 class Checker {
