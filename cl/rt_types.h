@@ -51,7 +51,7 @@ typedef struct rt_polygon {
     rt_u32 first, count;
 } rt_polygon;
 
-/* Unbounded, so outside every tree: dot(normal, x) = offset. normal has unit length. 32 B. */
+/* A plane: dot(normal, x) = offset. It is unbounded, so no tree holds it. normal has unit length. 32 B. */
 typedef struct rt_plane {
     rt_f32 normal[3];
     rt_f32 offset;
@@ -61,22 +61,22 @@ typedef struct rt_plane {
 /* A mesh placed in the world. object_from_world is row-major 3x4. 64 B. */
 typedef struct rt_instance {
     rt_f32 object_from_world[12];
-    rt_u32 root;       /* of the mesh's tree, as the builder reported it */
-    rt_u32 first_prim; /* number of its first triangle */
-    rt_u32 material;   /* used for the whole instance; RT_NONE: each triangle's own */
+    rt_u32 root;       /* root of the mesh's tree, as the builder reported it */
+    rt_u32 first_prim; /* number of the instance's first triangle */
+    rt_u32 material;   /* of the whole instance; RT_NONE: each triangle has its own */
     rt_u32 pad;
 } rt_instance;
 
-/* Whitted material. Colours are linear RGB. What is neither reflected nor refracted is diffuse (times color). 64 B. */
+/* Whitted material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. 64 B. */
 typedef struct rt_material {
-    rt_f32 color[3];    /* diffuse reflectance; also tints what is refracted */
+    rt_f32 color[3];    /* diffuse reflectance; also tints refracted light */
     rt_f32 reflect;     /* 0..1, mirror share */
-    rt_f32 emission[3]; /* added as it is */
-    rt_f32 refract;     /* 0..1, share handed to Fresnel reflection and refraction */
+    rt_f32 emission[3]; /* light added at each hit */
+    rt_f32 refract;     /* 0..1, share that Fresnel's equations split into reflected and refracted light */
     rt_f32 specular[3]; /* colour of the Blinn-Phong highlight */
-    rt_f32 shininess;   /* its exponent */
+    rt_f32 shininess;   /* exponent of the highlight */
     rt_f32 ior;         /* index of refraction of the inside, 1.5 for glass */
-    rt_u32 texture;     /* multiplies color; RT_NONE: none */
+    rt_u32 texture;     /* index of the texture that multiplies color; RT_NONE: none */
     rt_u32 flags;       /* RT_MATERIAL_* */
     rt_u32 pad;
 } rt_material;
@@ -84,9 +84,9 @@ typedef struct rt_material {
 
 #define RT_LIGHT_POINT 0u
 #define RT_LIGHT_DIRECTIONAL 1u
-/* Light without falloff, as the thesis has it. 32 B. */
+/* A light without falloff, as in the thesis. 32 B. */
 typedef struct rt_light {
-    rt_f32 position[3]; /* point: where it is, world. directional: unit vector towards the light */
+    rt_f32 position[3]; /* point: position, world. directional: unit vector towards the light */
     rt_u32 kind;
     rt_f32 color[3]; /* linear RGB, intensity included */
     rt_u32 pad;
@@ -97,13 +97,13 @@ typedef struct rt_texture {
     rt_u32 first, width, height, pad;
 } rt_texture;
 
-/* All that may change from frame to frame without touching program or scene. 176 B. */
+/* Values that may change from frame to frame while program and scene stay the same. 176 B. */
 typedef struct rt_frame {
     rt_f32 eye[3];
-    rt_f32 pixel_x; /* (2 (x + .5) pixel_x - 1): 1 / width */
-    rt_f32 right[3]; /* u * tan(fov / 2) * width / height */
+    rt_f32 pixel_x; /* 1 / width. A ray's direction has 2 (x + within_x) pixel_x - 1 of `right` */
+    rt_f32 right[3]; /* unit vector to the right * tan(fov / 2) * width / height */
     rt_f32 pixel_y;  /* 1 / height */
-    rt_f32 up[3];    /* v * tan(fov / 2) */
+    rt_f32 up[3];    /* unit vector upwards * tan(fov / 2) */
     rt_u32 width;
     rt_f32 forward[3]; /* unit */
     rt_u32 height;
@@ -112,50 +112,50 @@ typedef struct rt_frame {
     rt_f32 ambient[3];
     rt_u32 light_count;
     rt_u32 plane_count;
-    rt_u32 sample; /* its number */
-    rt_u32 adds;   /* 0: it takes the place of what is in the film */
-    rt_u32 layers; /* samples of a launch, from this one on, each into a film of its own; so many frames stand in a row */
+    rt_u32 sample; /* number of this sample */
+    rt_u32 adds;   /* 0: the sample replaces what is in the film; else it is added */
+    rt_u32 layers; /* samples of the launch, this one first, each into a film of its own; so many rt_frame follow each other */
     rt_u32 packet_w, packet_h; /* pixels of one work-item */
-    rt_f32 min_weight; /* rays that would add less than this are not spawned */
-    rt_u32 shadows;    /* 0: none */
-    rt_u32 root; /* of group 0 */
-    rt_u32 block_w, block_w_log2; /* pixels traced side by side: block_w wide, RT_LANES in all */
+    rt_f32 min_weight; /* rays of a smaller weight are not spawned */
+    rt_u32 shadows;    /* 0: no shadow rays */
+    rt_u32 root; /* root of group 0's tree */
+    rt_u32 block_w, block_w_log2; /* width of a block in pixels; a block has RT_LANES pixels, traced together */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
-    rt_f32 within_x, within_y;    /* where in each pixel this sample's rays go through, 0..1 */
-    rt_u32 row_count; /* 0: rows of work-groups are those of the picture. Else so many uints follow the last frame, each row's number */
-    rt_f32 bounds[6]; /* of all but planes, lower x, y, z, then upper; of nothing: inf, -inf */
+    rt_f32 within_x, within_y;    /* the point of each pixel through which this sample's rays go, 0..1 */
+    rt_u32 row_count; /* 0: all rows of work-groups. Else this many rows, and their numbers follow the last rt_frame as uints */
+    rt_f32 bounds[6]; /* of all primitives but planes: lower x, y, z, upper x, y, z. If there are none: inf, -inf */
 } rt_frame;
 
-/* A ray and its answer, for tests and benches that bring their own rays. 32 B each; kernels see blocks of RT_LANES of them,
- * field by field: cl/queries/ray_blocks.h. */
+/* A ray and its answer, for tests and benches that trace rays of their own. 32 B each. Kernels read and write blocks of RT_LANES
+ * of them, field by field: cl/queries/ray_blocks.h. */
 typedef struct rt_ray {
     rt_f32 origin[3], t_min, direction[3], t_max;
 } rt_ray;
 typedef struct rt_hit {
-    rt_f32 t, u, v;     /* t = INFINITY: nothing. any-hit: t = 0 where occluded */
-    rt_i32 prim;        /* -1: none */
+    rt_f32 t, u, v;     /* t = INFINITY: no hit. Any-hit queries: t = 0 where occluded */
+    rt_i32 prim;        /* -1: no hit */
     rt_i32 instance;    /* -1: not instanced */
-    /* Counted on request, for the RT_LANES rays that were traced side by side: each has the sum of all. */
+    /* Counted on request. Each ray of a block of RT_LANES has the sums over the block. */
     rt_u32 steps;      /* nodes visited */
-    rt_u32 leaf_tests; /* primitives tested, planes aside */
-    rt_u32 lane_steps; /* over the nodes visited, the rays that were in the node */
+    rt_u32 leaf_tests; /* primitives tested, without planes */
+    rt_u32 lane_steps; /* sum over the nodes visited: rays that enter the node */
 } rt_hit;
 #define RT_RAY_FIELDS 8u
-/* Fields of an answer, see ray_blocks.h. */
+/* Numbers of fields of an answer: see ray_blocks.h. */
 #define RT_ANSWER_OCCLUSION 1u
 #define RT_ANSWER_NEAREST 2u
 #define RT_ANSWER_HIT 4u
 #define RT_ANSWER_ALL 8u
 
-/* One ray of the tree behind a pixel. 96 B. */
+/* One ray of the tree of rays that give a pixel its colour. 96 B. */
 typedef struct rt_ray_record {
-    rt_f32 origin[3], t; /* +inf: nothing hit; shadow rays: distance of the light */
+    rt_f32 origin[3], t; /* +inf: no hit; shadow rays: distance of the light */
     rt_f32 direction[3];
     rt_u32 kind;         /* RT_RAY_* */
     rt_f32 weight[3];
     rt_u32 fate;         /* RT_FATE_* */
-    rt_f32 light[3];     /* that it adds to the pixel */
-    rt_u32 generation;   /* 1: the camera's */
+    rt_f32 light[3];     /* light that the ray adds to the pixel */
+    rt_u32 generation;   /* 1: camera rays */
     rt_i32 parent, prim, instance, material, light_index; /* -1: none */
     rt_u32 occluded, steps, leaf_tests;
 } rt_ray_record;
@@ -169,7 +169,7 @@ typedef struct rt_ray_record {
 #define RT_FATE_TOO_DEEP 3u  /* beyond the last generation */
 #define RT_FATE_UNASKED 4u   /* shadows are off */
 
-/* A mix of the sizes of all structs above: host and plugin must have been compiled from the same page. */
+/* A hash of the sizes of these structs. Host and plugin must have been compiled with the same version of this file. */
 #define RT_TYPES_DIGEST                                                                                                          \
     ((rt_u32)(sizeof(rt_packed_prim) + 131u * sizeof(rt_triangle) + 17161u * sizeof(rt_polygon) + 2248091u * sizeof(rt_plane) +         \
               294499921u * sizeof(rt_instance) + 31u * sizeof(rt_material) + 961u * sizeof(rt_light) +                           \

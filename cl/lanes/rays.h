@@ -101,7 +101,7 @@ RT_INLINE void rt_prepare_for_boxes(rt_rays *r)
     r->far_z = fma(fabs(nz), slack, nz);
 }
 
-/* The rest. `bits`: the active lanes, by whose signs and axes the packet is judged. */
+/* The rest. bits: the active lanes; their signs and axes decide whether the packet is coherent. */
 RT_INLINE void rt_prepare_for_triangles(rt_rays *r, uint bits)
 {
     r->incoherent = 0;
@@ -206,7 +206,7 @@ RT_INLINE vmask rt_enter_bounds(vfloat lo_x, vfloat lo_y, vfloat lo_z, vfloat hi
                            rt_select(neg_x, lo_x, hi_x), rt_select(neg_y, lo_y, hi_y), rt_select(neg_z, lo_z, hi_z), r, h, entry);
 }
 
-/* The same for a box {lo.xyz, hi.xyz} in memory. A packet whose lanes agree in sign selects near and far planes by address. */
+/* The same for a box {lo.xyz, hi.xyz} in memory. If a packet's lanes agree in sign, near and far planes are selected by address. */
 RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt_hits *h, vfloat *entry)
 {
 #if RT_LANES > 1
@@ -218,7 +218,7 @@ RT_INLINE vmask rt_enter_box(const global float *box, const rt_rays *r, const rt
                            rt_vfloat(box[5]), r, h, entry);
 }
 
-/* The lanes whose rays enter the bounds of all primitives but planes before t_max. */
+/* Returns the lanes with rays that enter the bounds of all primitives but planes before t_max. */
 RT_INLINE vmask rt_enter_scene(const constant rt_frame *frame, const rt_rays *r, vfloat t_max)
 {
     vfloat entry;

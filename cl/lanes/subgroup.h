@@ -10,7 +10,7 @@
 #define RT_HAS_SUBGROUPS
 #define RT_SUBGROUP_SIZE 32u
 RT_INLINE uint rt_subgroup_local_id(void) { return (uint)get_local_id(0) & 31u; }
-/* The bits of the work-items whose value is not 0. */
+/* Returns the bits of the work-items that have a value other than 0. */
 RT_INLINE uint rt_subgroup_ballot(uint value)
 {
     uint bits;

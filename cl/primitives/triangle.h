@@ -98,7 +98,7 @@ RT_INLINE void RT_FN(rt_hit_triangle)(const global rt_packed_prim *leaf, uint at
 }
 #endif
 
-/* RT_LOADED_PRIM: tests a triangle of the group that is traversed, whose record the traversal has loaded. */
+/* RT_LOADED_PRIM: tests a triangle of the group that is traversed. The traversal has loaded the triangle's record. */
 #if RT_LANES == 1
 RT_INLINE void RT_FN(rt_loaded_prim)(const rt_ctx *ctx, const rt_loaded_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
 {

@@ -1,5 +1,5 @@
-/* dynamic_fetch.cl -- nearest hits of the host's rays, for single rays on a GPU: a work-item whose ray is done fetches another
- * one while its warp goes on.
+/* dynamic_fetch.cl -- nearest hits of the host's rays, for single rays on a GPU: a work-item that is done with its ray fetches
+ * another one while its warp goes on.
  *
  * Aila, Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs". Incoherent rays need very different numbers of
  * steps. A warp steps through nodes until a third of its rays are at leaves, and then through leaves too. Where its rays are at

@@ -1,7 +1,8 @@
-/* material.h -- materials and textures of all lanes. */
+/* material.h -- loads the materials and texture samples of all lanes. */
 #ifndef RT_MATERIAL_H
 #define RT_MATERIAL_H
 
+/* The material of each lane; the members are those of rt_material. */
 typedef struct rt_shade {
     rt_vec color; /* diffuse, texture included */
     rt_vec emission, specular;
@@ -9,14 +10,15 @@ typedef struct rt_shade {
 } rt_shade;
 
 #if RT_HAS_TEXTURES
-/* A cubic within 0.4 % of full scale of the sRGB curve, an order cheaper than pow. `byte`: 0..255. */
+/* sRGB to linear, 0..1, of the lowest 8 bits of `byte`. The cubic polynomial differs from the sRGB curve by at most 0.4 % of full
+ * scale, and is an order of magnitude cheaper than pow. */
 RT_INLINE vfloat rt_linear(vint byte)
 {
     const vfloat c = rt_to_float(byte & rt_vint(255)) * rt_vfloat(1.0f / 255.0f);
     return c * (c * (c * rt_vfloat(0.305306f) + rt_vfloat(0.682171f)) + rt_vfloat(0.012523f));
 }
 
-/* Texel left of or above x of `size` repeating ones, and the one after it: in range whatever x is. */
+/* The texel at or before x and the one after it, of `size` texels that repeat. Both are in range whatever x is. */
 RT_INLINE void rt_texels(vfloat x, vint size, vint *here, vint *next)
 {
     const vint at = min(max(rt_to_int(x), rt_vint(-1)), size - rt_vint(1)), after = at + rt_vint(1);
@@ -24,7 +26,7 @@ RT_INLINE void rt_texels(vfloat x, vint size, vint *here, vint *next)
     *next = rt_select(RT_MASK(after == size), rt_vint(0), after);
 }
 
-/* One texture at a place of each lane: bilinear, repeating. RGBA8 sRGB to linear; four reads and weights. */
+/* Samples texture `index` at (u, v) in each of `lanes`: bilinear, repeating. Converts its RGBA8 texels from sRGB to linear RGB. */
 RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, vfloat u, vfloat v)
 {
     const rt_texture texture = ctx->textures[index];
@@ -51,7 +53,8 @@ RT_INLINE rt_vec rt_sample_texture(const rt_ctx *ctx, uint index, vmask lanes, v
 }
 #endif
 
-/* Fills in the material of each lane; lanes that share one are served together. at: the hit points. */
+/* Returns the materials of the lanes in `bits`. Lanes that have the same material are handled together. at: the hit points,
+ * world; the checkerboard needs them. */
 RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uint bits, rt_vec at)
 {
     rt_shade out;
@@ -86,7 +89,7 @@ RT_INLINE rt_shade rt_load_materials(const rt_ctx *ctx, const rt_surface *s, uin
     return out;
 }
 
-/* What a surface sends back of the light that it gets: diffuse, cosines included, and the light of its highlights. */
+/* The light that a surface sends back. diffuse: incoming light, cosines included. shine: incoming light times highlight. */
 RT_INLINE rt_vec rt_reflected_light(const rt_shade *m, rt_vec diffuse, rt_vec shine)
 {
     const vfloat share = rt_max(rt_vfloat(1.0f) - m->reflect - m->refract, rt_vfloat(0.0f));
@@ -94,7 +97,7 @@ RT_INLINE rt_vec rt_reflected_light(const rt_shade *m, rt_vec diffuse, rt_vec sh
 }
 
 /* x^y for x in [0,1], y >= 1, as exp2(y log2 x) by polynomials: 1e-3 relative at y = 100. Plain arithmetic, so that all lane
- * counts and devices agree, where a library's pow would differ. */
+ * counts and devices agree; a library's pow would differ between them. */
 RT_INLINE vfloat rt_power(vfloat x, vfloat y)
 {
     const vint xi = rt_as_vint(rt_max(x, rt_vfloat(1e-20f)));

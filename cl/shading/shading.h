@@ -1,8 +1,11 @@
-/* shading.h -- Whitted's model at the points that a packet hit: direct light with shadows, and where rays go on.
+/* shading.h -- Whitted's model at the hit points of a packet: direct light with shadows, and the directions and shares of
+ * mirrored and refracted rays.
+ *
  * Whitted 1980, An Improved Illumination Model for Shaded Display; highlight by Blinn 1977. */
 #ifndef RT_SHADING_H
 #define RT_SHADING_H
 
+/* Numbers of a work-item's rays: shadow rays, secondary rays, rays dropped for lack of room, and full traversal stacks. */
 typedef struct rt_tally {
     uint shadow, secondary, dropped, overflow;
 #ifdef RT_INSPECT
@@ -10,15 +13,15 @@ typedef struct rt_tally {
 #endif
 } rt_tally;
 
-/* Where a ray met a surface, seen from its side. */
+/* Where the ray of each lane meets a surface. Normals are on the side that the ray comes from. */
 typedef struct rt_point {
     vmask hits;
-    vmask leaving;    /* the ray comes from inside: the normals were turned */
-    rt_vec at;
+    vmask leaving;    /* the ray comes from inside, so the normals were reversed */
+    rt_vec at;        /* the hit point, world */
     rt_vec incoming;  /* unit direction of the ray */
-    rt_vec geometric; /* unit normals, towards where the ray comes from */
-    rt_vec normal;
-    vfloat cos_in;    /* of incoming and normal, positive */
+    rt_vec geometric; /* unit geometric normal */
+    rt_vec normal;    /* unit shading normal */
+    vfloat cos_in;    /* cosine of the angle between normal and reversed ray, positive */
 #ifdef RT_SPLITS_INCOHERENT
     vfloat area;      /* rt_surface.area */
 #endif
@@ -40,7 +43,7 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
     const vfloat side = rt_select(p.leaving, -one, one);
     p.geometric = rt_scale(side, s->geometric);
     p.normal = rt_scale(side, s->normal);
-    /* An interpolated normal may point away from the viewer at silhouettes: there the geometric one serves. */
+    /* At silhouettes an interpolated normal may point away from the viewer. Then the geometric normal replaces it. */
     p.normal = rt_choose(RT_MASK(rt_dot(p.normal, p.incoming) >= zero), p.geometric, p.normal);
     p.cos_in = rt_min(-rt_dot(p.normal, p.incoming), one);
     const vfloat height = side * s->height;
@@ -49,8 +52,8 @@ RT_INLINE rt_point rt_point_of(const rt_rays *ray, const rt_surface *s, vmask hi
     return p;
 }
 
-/* Emission, ambient light, and every light that is not in shadow: what the points of `count` blocks send back along the rays. rays
- * and hits: room for the shadow rays. sent: written where something was hit. */
+/* Computes the light that the points of `count` blocks send back along their rays: emission, ambient light, and every light that
+ * is not in shadow. rays, hits: room for the shadow rays. sent: written for blocks in which something was hit. */
 RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame, const rt_point *points, const rt_shade *materials,
                                uint count, rt_rays *rays, rt_hits *hits, rt_vec *sent, rt_tally *tally)
 {
@@ -143,13 +146,13 @@ RT_INLINE void rt_direct_light(const rt_ctx *ctx, const constant rt_frame *frame
         if (rt_any(points[b].hits)) sent[b] = rt_add(materials[b].emission, rt_reflected_light(materials + b, diffuse[b], shine[b]));
 }
 
-/* Shares of light that go on as mirrored and as refracted rays. */
+/* The shares of the light that come by the mirrored and by the refracted ray. */
 typedef struct rt_split {
     vfloat mirrored, refracted;
-    vfloat eta, cos_out; /* Snell: sin out = eta sin in */
+    vfloat eta, cos_out; /* of the refracted ray, by Snell's law: sin out = eta sin in */
 } rt_split;
 
-/* Fresnel's equations for unpolarised light; a refracted sine above 1 is total internal reflection. */
+/* Computes the shares by Fresnel's equations for unpolarised light. A refracted sine above 1 means total internal reflection. */
 RT_INLINE rt_split rt_fresnel(const rt_point *p, const rt_shade *m)
 {
     const vfloat zero = rt_vfloat(0.0f), one = rt_vfloat(1.0f);
@@ -166,7 +169,7 @@ RT_INLINE rt_split rt_fresnel(const rt_point *p, const rt_shade *m)
     return s;
 }
 
-/* The same, and in which lanes rays go on that weigh enough to be followed. */
+/* The same. *mirrored, *refracted: the lanes in which that ray has a weight above min_weight. weight: of the ray that arrived. */
 RT_INLINE rt_split rt_follow(const constant rt_frame *frame, const rt_point *p, const rt_shade *m, rt_vec weight, vmask *mirrored,
                              vmask *refracted)
 {
@@ -180,7 +183,7 @@ RT_INLINE rt_split rt_follow(const constant rt_frame *frame, const rt_point *p, 
 RT_INLINE rt_vec rt_mirror_direction(const rt_point *p)
 {
     const rt_vec d = rt_along(p->cos_in * 2.0f, p->normal, p->incoming);
-    /* An interpolated normal may send it into the surface: then it is mirrored out again. */
+    /* With an interpolated normal the ray may point into the surface. Then the surface's plane mirrors it out again. */
     const vfloat below = rt_min(rt_dot(d, p->geometric), rt_vfloat(0.0f));
     return rt_normalize(rt_along(below * -2.0f, p->geometric, d));
 }

@@ -1,4 +1,4 @@
-/* surface.h -- from a hit to what shading needs: the point, normals, texture coordinates, material, primitive number.
+/* surface.h -- computes what shading needs of a hit: the point, normals, texture coordinates, material, primitive number.
  *
  * The point is the ray's origin + t times its direction, so rounding puts it beside the surface. Both the distance from the surface
  * and a bound on all errors of rays that start there are computed from numbers near the point: they do not grow with the length of
@@ -6,7 +6,7 @@
 #ifndef RT_SURFACE_H
 #define RT_SURFACE_H
 
-/* Scatter: lane l of value goes to buffer[index lane l], for the lanes in bits. */
+/* Scatter: stores lane l of `value` at buffer[lane l of `index`], for the lanes in `bits`. */
 #define RT_FOR_LANES_STORE(buffer, index, value, bits)                                                                           \
     {                                                                                                                            \
         float store_values[RT_LANES];                                                                                            \
@@ -17,21 +17,22 @@
             if ((bits) >> store_l & 1u) buffer[store_index[store_l]] = store_values[store_l];                                    \
     }
 
-/* Arcs of spheres that nobody looks at were a twelfth of a frame. */
+/* Whether hits of material `number` need the texture coordinates of a sphere. Computing them for all spheres took a twelfth of a
+ * frame, because they need arc functions. */
 #ifdef RT_AOV
 #define RT_USES_UV(ctx, number) 1
 #else
 #define RT_USES_UV(ctx, number) ((ctx)->materials[number].texture != RT_NONE)
 #endif
 
-/* The relative error of a sum of products after n roundings is at most RT_GAMMA(n) of the sum of the absolute terms. */
+/* The error of a sum of products after n roundings is at most RT_GAMMA(n) times the sum of the absolute values of its terms. */
 #define RT_GAMMA(n) ((n)*RT_EPS / (1.0f - (n)*RT_EPS))
 /* Roundings in the height of a point above a plane or sphere: one in each difference to the anchor, three in the dot product, one
- * more in a sphere's radius. The height is computed here, and again by the primitive's own test of a ray that starts here. */
+ * more in a sphere's radius. The height is computed twice: here, and by the primitive's own test of a ray that starts here. */
 #define RT_HEIGHT_ERROR RT_GAMMA(10.0f)
 /* Each coordinate of a ray's origin is rounded once: half an ulp, times the square root of 3 along a slanted normal. */
 #define RT_ORIGIN_ERROR RT_GAMMA(2.0f)
-/* A point in an instance's object space is a sum of four terms: three roundings, here and in the test again. */
+/* A coordinate in an instance's object space is a sum of four terms: three roundings here, and three in the primitive's test. */
 #define RT_PLACED_ERROR RT_GAMMA(7.0f)
 
 typedef struct rt_surface {
@@ -39,24 +40,24 @@ typedef struct rt_surface {
     rt_vec at;           /* the point, world */
     vfloat height;       /* of `at` above the surface, along `geometric` */
     vfloat error;        /* a ray that starts farther than this from the surface does not meet it again by rounding */
-    rt_vec geometric;    /* unit normal, world, on the side that the primitive has it */
-    rt_vec normal;       /* for shading: interpolated where there are vertex normals; unit, on the geometric one's side */
+    rt_vec geometric;    /* unit normal, world, on the primitive's own side */
+    rt_vec normal;       /* unit shading normal, on the side of `geometric`; interpolated where there are vertex normals */
     vfloat tex_u, tex_v; /* (0,0) at the bottom left of a texture */
 #ifdef RT_SPLITS_INCOHERENT
-    vfloat area;         /* twice the triangle's; infinite for other kinds */
+    vfloat area;         /* twice the triangle's area; infinite for other kinds of primitives */
 #endif
     vint prim;           /* -1: nothing hit */
     vint material;
 } rt_surface;
 
 #if RT_HAS_INSTANCES
-/* Normals go with the transpose of the inverse. */
+/* Transforms a normal to the world by the transpose of m = object_from_world. The result is not of unit length. */
 RT_INLINE rt_vec rt_world_normal(const global float *m, rt_vec n)
 {
     return rt_vec_of(m[0] * n.x + m[4] * n.y + m[8] * n.z, m[1] * n.x + m[5] * n.y + m[9] * n.z, m[2] * n.x + m[6] * n.y + m[10] * n.z);
 }
 
-/* A row of object_from_world at the point p; *magnitude: the sum of the absolute terms. */
+/* A row of object_from_world times the point p. *magnitude: the sum of the absolute values of the terms. */
 RT_INLINE vfloat rt_place_row(const global float *row, rt_vec p, vfloat *magnitude)
 {
     *magnitude = fma(rt_vfloat(fabs(row[0])), fabs(p.x), fma(rt_vfloat(fabs(row[1])), fabs(p.y),
@@ -68,7 +69,8 @@ RT_INLINE vfloat rt_place_row(const global float *row, rt_vec p, vfloat *magnitu
 /* sum |a_k| |b_k| */
 RT_INLINE vfloat rt_absolute_dot(rt_vec a, rt_vec b) { return fma(fabs(a.x), fabs(b.x), fma(fabs(a.y), fabs(b.y), fabs(a.z * b.z))); }
 
-/* Lanes that share a leaf are served together: neighbours mostly do where triangles are large. */
+/* Returns the surfaces at the hits of the lanes in `bits`. Lanes that hit the same primitive are handled together: neighbours
+ * mostly do where triangles are large. */
 RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_hits *hit, uint bits)
 {
     const vfloat zero = rt_vfloat(0.0f);
@@ -78,8 +80,8 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.material = rt_vint(0);
     s.tex_u = s.tex_v = zero;
     s.geometric = rt_vec_of(hit->nx, hit->ny, hit->nz);
-    /* Nearer than the hit by the errors of t and of each coordinate, but not beyond the ray's origin: then the point is in front of
-     * other surfaces, too, that meet this one here. Beside a wall, rays from the floor would else start behind it. */
+    /* The point is nearer than the hit by the errors of t and of each coordinate, but not beyond the ray's origin. So it is also in
+     * front of other surfaces that meet this one here. Otherwise rays from the floor beside a wall could start behind the wall. */
     const vfloat reach = rt_select(s.hit, hit->t, zero) * (1.0f - RT_GAMMA(4.0f));
     s.at = rt_along(reach, rt_vec_of(ray->dx, ray->dy, ray->dz), rt_vec_of(ray->ox, ray->oy, ray->oz));
     const vfloat rounding = RT_ORIGIN_ERROR * rt_largest(rt_vec_of(fabs(s.at.x), fabs(s.at.y), fabs(s.at.z)));
@@ -147,7 +149,9 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #if RT_HAS_ATTRIBUTES
         if (kind == RT_REF_TRIANGLE) {
             const global rt_triangle *tri = ctx->triangles + RT_REF_INDEX(leaf->ref);
-            __attribute__((opencl_unroll_hint(3))) /* in registers: cleared in halves and read whole, arrays were waited for */
+            /* Unrolled, the arrays stay in registers. In memory they were cleared in halves and then read whole, and processors
+             * wait for such reads. */
+            __attribute__((opencl_unroll_hint(3)))
             for (uint i = 0; i < 3u; ++i) {
 #if RT_HAS_NORMALS
                 normal[i] = rt_choose(mine, rt_spread(ctx->normals + 3u * tri->v[i]), normal[i]);
@@ -167,14 +171,16 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #if RT_HAS_NORMALS
     const rt_vec smooth = rt_along(u, normal[0], rt_along(v, normal[1], rt_scale(w, normal[2])));
-    s.normal = rt_choose(RT_MASK(rt_dot(smooth, smooth) > rt_vfloat(1e-12f)), smooth, s.normal); /* a mesh without has zeros */
+    s.normal = rt_choose(RT_MASK(rt_dot(smooth, smooth) > rt_vfloat(1e-12f)), smooth, s.normal); /* zeros: no normals */
 #endif
 #if RT_HAS_UVS
     s.tex_u = fma(u, corner_u[0], fma(v, corner_u[1], w * corner_u[2]));
     s.tex_v = fma(u, corner_v[0], fma(v, corner_v[1], w * corner_v[2]));
 #endif
 #if RT_HAS_SPHERES && RT_HAS_TEXTURES
-    if (round != 0u) { /* longitude and latitude, poles on Y; one by one, so that a library's vectors need not agree with its scalars */
+    /* Longitude and latitude, poles on Y. Lanes are computed one by one, because a library's vector functions need not agree with
+     * its scalar ones. */
+    if (round != 0u) {
         float nx[RT_LANES], ny[RT_LANES], nz[RT_LANES], tex_u[RT_LANES], tex_v[RT_LANES];
         rt_store(s.geometric.x, nx);
         rt_store(s.geometric.y, ny);
@@ -192,7 +198,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     }
 #endif
 #if RT_HAS_TEXTURES
-    if (rt_any(planar)) { /* one texture a unit, over the two axes that the plane faces least */
+    if (rt_any(planar)) { /* the texture repeats every unit of length, along the two axes other than the normal's main axis */
         const vfloat x = fabs(s.geometric.x), y = fabs(s.geometric.y), z = fabs(s.geometric.z);
         s.tex_u = rt_select(planar, rt_select(RT_MASK(x > y) & RT_MASK(x > z), s.at.z, s.at.x), s.tex_u);
         s.tex_v = rt_select(planar, rt_select(RT_MASK(y >= x) & RT_MASK(y >= z), -s.at.z, s.at.y), s.tex_v);
@@ -215,7 +221,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
         left &= ~rt_bits(mine);
         const global rt_instance *instance = ctx->instances + at;
         if (instance->material != RT_NONE) s.material = rt_select(mine, rt_vint((int)instance->material), s.material);
-        /* In object space, where the ray is traced: there `anchor` and the hit's normal are exact. */
+        /* In object space, in which the ray was traced, `anchor` and the hit's normal are exact. */
         rt_vec placed, magnitude;
         placed.x = rt_place_row(instance->object_from_world, s.at, &magnitude.x);
         placed.y = rt_place_row(instance->object_from_world + 4, s.at, &magnitude.y);
@@ -230,7 +236,8 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     }
 #endif
 
-    /* The normal's length is the scale of height and error: world_from_object's, too. */
+    /* Height and error are multiples of the normal's length. Dividing by it makes them lengths in the world, also for instances:
+     * there the length includes the scale of the placement. */
     const vfloat scale = rt_inverse_length(s.geometric);
     s.geometric = rt_scale(scale, s.geometric);
     s.height *= scale;
@@ -240,7 +247,7 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     s.error = fma(scale, s.error, rounding);
 #if RT_HAS_ATTRIBUTES
     s.normal = rt_normalize(s.normal);
-    /* Files disagree on which side corners turn; the geometric normal decides. */
+    /* In some files vertex normals and the order of corners disagree on the side. The geometric normal decides. */
     const vmask against = RT_MASK(rt_dot(s.normal, s.geometric) < zero);
     s.normal = rt_scale(rt_select(against, rt_vfloat(-1.0f), rt_vfloat(1.0f)), s.normal);
 #else

@@ -10,7 +10,7 @@
 #ifndef RT_CAMERA_H
 #define RT_CAMERA_H
 
-#if RT_MAX_PIXELS == 1 /* on GPUs the compiler shall see that there is one pixel */
+#if RT_MAX_PIXELS == 1 /* on GPUs, constants tell the compiler that a packet is one pixel */
 #define RT_PACKET_W(frame) 1u
 #define RT_PACKET_H(frame) 1u
 #define RT_BLOCKS(frame) 1u
@@ -61,7 +61,7 @@ RT_INLINE uint rt_layer_of(const constant rt_frame *frame, uint *group)
 #endif
 }
 
-/* Each lane's pixel in the packet; returns the lanes whose pixel is in the packet and in the picture. */
+/* Computes each lane's pixel, counted from the packet's first. Returns the lanes that have a pixel inside packet and picture. */
 RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, uint block, vint *in_x, vint *in_y)
 {
 #if RT_MAX_PIXELS == 1 && RT_LANES == 1
@@ -81,8 +81,8 @@ RT_INLINE vmask rt_block_pixels(const constant rt_frame *frame, uint2 origin, ui
 #endif
 }
 
-/* The camera rays through pixels (x, y) of the picture. The frame tells the point within a pixel. It is the same for all
- * pixels: so pictures do not depend on which device renders which pixel when, and packets stay coherent. */
+/* Computes the camera rays through pixels (x, y) of the picture. A sample's rays go through the same point of every pixel, which
+ * the frame holds. So a picture does not depend on which device renders which pixel when, and packets stay coherent. */
 RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt_rays *r)
 {
     const vfloat px = rt_to_float(x) + rt_vfloat(frame->within_x), py = rt_to_float(y) + rt_vfloat(frame->within_y);
@@ -102,7 +102,7 @@ RT_INLINE void rt_camera_rays(const constant rt_frame *frame, vint x, vint y, rt
 }
 
 #if RT_STREAM > 1 && !RT_HAS_PLANES
-/* Whether no camera ray of a packet enters the bounds of all primitives but planes. It bounds the directions before
+/* Returns true if no camera ray of a packet enters the bounds of all primitives but planes. The test bounds the directions before
  * normalisation: they are affine in the pixels, so they lie between those of the packet's corners. */
 RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
 {
@@ -113,11 +113,11 @@ RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
     float enter = 0.0f, leave = MAXFLOAT;
     for (uint k = 0; k < 3u; ++k) {
         const float4 d = sx * frame->right[k] + sy * frame->up[k] + frame->forward[k];
-        /* A millionth of the sum of magnitudes covers the rounding, there and here. `forward` has unit length. */
+        /* A millionth of the sum of magnitudes covers the rounding, in rt_camera_rays() and here. `forward` has unit length. */
         const float slack = 1e-6f * (1.0f + fabs(frame->right[k]) + fabs(frame->up[k]));
         const float hi = rt_max(rt_max(d.x, d.y), rt_max(d.z, d.w)) + slack, lo = rt_min(rt_min(d.x, d.y), rt_min(d.z, d.w)) - slack;
         const float to_lower = frame->bounds[k] - frame->eye[k], to_upper = frame->bounds[3u + k] - frame->eye[k];
-        /* No ray reaches the side ahead of the eye earlier than the fastest ray, and none passes both later than the
+        /* Along this axis, no ray reaches the nearer side earlier than the fastest ray, and none leaves the bounds later than the
          * slowest. */
         if (to_lower > 0.0f) {
             if (hi <= 0.0f) return true;
@@ -136,7 +136,7 @@ RT_INLINE bool rt_packet_misses(const constant rt_frame *frame, uint2 origin)
 }
 #endif
 
-/* Adds the sums of a packet's pixels, row by row, to the film. */
+/* Adds the sums of a packet's pixels to the film, row by row, or stores them there if frame->adds is 0. */
 RT_INLINE void rt_put_pixels(const constant rt_frame *frame, uint2 origin, const float4 *sums, global float4 *film)
 {
     const uint packet_w = RT_PACKET_W(frame);
@@ -152,12 +152,13 @@ RT_INLINE void rt_put_pixels(const constant rt_frame *frame, uint2 origin, const
     }
 }
 
+/* Prepares hits for a query: active lanes look up to any distance, inactive lanes have t = -1. */
 RT_INLINE void rt_clear_hits(rt_hits *h, vmask active)
 {
     h->t = rt_select(active, RT_INFINITY, rt_vfloat(-1.0f));
     h->u = h->v = h->nx = h->ny = h->nz = rt_vfloat(0.0f);
     h->leaf = h->instance = rt_vint(-1);
-    h->prim = rt_vint(-1); /* below all numbers, so that a primitive at t_max itself is no hit */
+    h->prim = rt_vint(-1); /* less than all numbers of primitives, so that a primitive exactly at t_max is no hit */
 #ifdef RT_COUNT_STEPS
     h->steps = h->leaf_tests = h->lane_steps = 0;
 #endif
@@ -172,8 +173,8 @@ RT_INLINE void rt_fill_with_background(const constant rt_frame *frame, float4 *s
     for (uint i = 0; i < RT_PACKET_W(frame) * RT_PACKET_H(frame); ++i) sums[i] = background;
 }
 
-/* If a packet sees nothing but background: fills its pixels and the distances of its camera rays, block by block, and returns
- * true. */
+/* Returns true if a packet sees only background. Then it has filled the packet's pixels and the distances of its camera rays,
+ * block by block. */
 RT_INLINE bool rt_only_background(const constant rt_frame *frame, uint2 origin, float4 *sums, global float *distance)
 {
 #if RT_STREAM > 1 && !RT_HAS_PLANES

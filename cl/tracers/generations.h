@@ -94,7 +94,7 @@ RT_INLINE void rt_add_to_pixels(rt_vec light, vint pixel, uint bits, float4 *sum
             if (bits >> l & 1u) sums[at[l]] += lanes[l];
 }
 
-/* Traces all rays of the packet whose first pixel is `origin`. sums: each pixel's light and the weight 1, row by row. distance:
+/* Traces all rays of the packet with the first pixel `origin`. sums: each pixel's light and the weight 1, row by row. distance:
  * those of the camera rays, in the order in which they are traced; written with sample 0. */
 RT_INLINE void rt_trace_generations(const rt_ctx *ctx, const constant rt_frame *frame, uint2 origin, rt_queue *queues, float4 *sums,
                                     global float *distance, rt_tally *tally)

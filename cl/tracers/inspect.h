@@ -118,7 +118,7 @@ RT_INLINE void rt_record_shadow(rt_recorder *rec, uint light_index, int asked, u
 }
 
 /* Records mirrored or refracted rays, before they are appended to the queue. bits: the lanes that have such a ray. followed:
- * those whose weight is large enough. They take the next elements of the queue as far as there is room. */
+ * those with a large enough weight. They take the next elements of the queue as far as there is room. */
 RT_INLINE void rt_record_spawn(rt_recorder *rec, rt_queue *next, uint capacity, uint count, uint kind, uint bits, uint followed,
                                rt_vec origin, rt_vec direction, rt_vec weight)
 {

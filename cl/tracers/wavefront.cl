@@ -10,8 +10,8 @@
  * registers. With glass 2^n work-items trace a pixel of 2^n rays, where iterative.cl has one work-item that holds up its warp.
  *
  * A pixel's first path, the one that level 0 follows, has a sum of its own, in the order of generations. Other paths add their
- * light as fixed-point numbers, whose order does not matter. So a picture does not depend on the order of work, and without
- * splits it is bit for bit the iterative tracer's.
+ * light as fixed-point numbers, so that the order of additions does not matter. Therefore a picture does not depend on the order
+ * of work, and without splits it is bit for bit the iterative tracer's.
  *
  * A deferred ray costs 48 B written and read and 6 atomics. There are no private arrays. */
 
@@ -167,7 +167,7 @@ trace_wavefront(const constant rt_frame *frame, const uint first_group, const ui
     }
 }
 
-/* Adds a sample of a scene whose rays split to the film, or stores it if it is the first one. */
+/* For scenes with rays that split: adds a sample to the film, or stores it if it is the first one. */
 RT_PICTURE_KERNEL
 add_sample(const constant rt_frame *frame, const uint first_group, global float4 *film, const global float4 *sums,
            const global uint *shares)

@@ -5,11 +5,11 @@
 
 namespace clarity {
 
-// A new file. Nobody sees it until commit() gives it its name or replaces an older file of that name. A file that is not
-// committed leaves nothing behind, even if the process is killed. Exception: where the file system has no files without a name
-// (NFS, FAT), a killed process leaves `.clarity-PID-N.tmp`; the next process that writes into the folder removes it. `path` may
-// also be a device or a pipe (/dev/stdout), which is written directly. Every failure throws Error(failed), which names the file
-// and the reason. For one thread at a time.
+// A new file. It is invisible to others until commit() gives it its name or replaces an older file of that name. A file that is
+// not committed leaves nothing behind, even if the process is killed. Exception: where the file system has no files without a
+// name (NFS, FAT), a killed process leaves `.clarity-PID-N.tmp`; the next process that writes into the folder removes it.
+// `path` may also be a device or a pipe (/dev/stdout), which is written directly. Every failure throws Error(failed), which
+// names the file and the reason. For one thread at a time.
 class OutputFile {
  public:
     explicit OutputFile(std::string path);

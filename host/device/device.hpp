@@ -25,7 +25,7 @@ struct DeviceInfo {
 };
 
 // Returns all devices of all platforms, best first: GPUs, then CPUs, then others, each ordered by compute units x clock. A
-// platform that has no devices or whose driver fails is skipped; `warnings` gets a line about it.
+// platform is skipped if it has no devices or if its driver fails; `warnings` gets a line about it.
 std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings = nullptr);
 
 // Returns the devices that `choice` names, each once. "": CLARITY_DEVICE, or else the best device. Otherwise words with commas

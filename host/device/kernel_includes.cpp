@@ -5,9 +5,9 @@
 namespace clarity {
 namespace {
 
-constexpr int kMaxDepth = 16;  // of files that include files
+constexpr int kMaxDepth = 16;  // levels of files that include files
 
-// The name in a line `#include "NAME"`, or "".
+// Returns NAME of a line `#include "NAME"`, or "" for any other line.
 std::string included_name(const std::string& line) {
     static const std::string kBegin = "#include \"";
     if (line.compare(0, kBegin.size(), kBegin) != 0) return {};
@@ -23,7 +23,7 @@ bool is_part(const std::string& name) {
     return !name.empty() && name[0] != '.' && name.find('/') == std::string::npos;
 }
 
-// Calls use(line, number, included name or "") for each line of a text; a line has its newline, if there is one.
+// Calls use(line, number, included name or "") for each line of a text. `line` contains its newline, if it has one.
 template <class Use>
 void for_each_line(const std::string& text, const Use& use) {
     unsigned number = 1;

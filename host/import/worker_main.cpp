@@ -208,8 +208,8 @@ int import_worker_main(int argc, char** argv) {
         std::fprintf(stderr, "import-worker is started by clarity itself; to import a file, run `clarity info FILE`\n");
         return static_cast<int>(Exit::usage);
     }
-    // The worker ends when its parent dies, because nobody wants the result then. The check after the call covers a parent that
-    // died before it.
+    // The kernel ends the worker when its parent dies, because the result is of no use then. The check after the call covers a
+    // parent that died before it.
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     if (arguments.parent != 0 && getppid() != arguments.parent) _exit(1);
 #ifdef SYS_close_range

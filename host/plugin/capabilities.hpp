@@ -1,4 +1,4 @@
-// capabilities.hpp -- names of what a structure can do: rt_accel::capabilities as text, for people, JSON and kernels.
+// capabilities.hpp -- names of the bits of rt_accel::capabilities, for messages, JSON and kernels.
 #pragma once
 #include <string>
 #include <vector>
@@ -11,11 +11,11 @@ namespace clarity {
 struct Capability {
     rt_u32 bit;
     const char* name;    // in `clarity plugins`
-    const char* define;  // in the kernels of structures that have it
+    const char* define;  // macro in the kernels of structures that have the capability
 };
 const std::vector<Capability>& capabilities();
 
-// Names of those that a structure has, in the order of their bits. Bits that this host does not know have none.
+// Returns the names of a structure's capabilities in the order of their bits. Bits that this host does not know are left out.
 std::vector<std::string> capability_names(const rt_accel& accel);
 
 }  // namespace clarity

@@ -14,7 +14,7 @@ namespace clarity {
 // Exists for one call of a plugin.
 class HostServices {
  public:
-    // who: name of the plugin in log lines, "accel bvh2".
+    // who: the plugin's name in log lines and error messages, "accel bvh2".
     HostServices(std::string who, Progress& progress);
     HostServices(const HostServices&) = delete;
     HostServices& operator=(const HostServices&) = delete;

@@ -1,12 +1,12 @@
-/* rt_plugin.h -- the plugin ABI: all that a plugin may include, with rt_types.h. C99 and C++17.
+/* rt_plugin.h -- the plugin ABI. A plugin may include this file and rt_types.h. C99 and C++17.
  *
  * A plugin is one shared library that exports one symbol, the *data* `rt_plugin_v1`. The host checks abi_version, sizes and
  * types_digest there before it runs any code of the plugin. Strings are UTF-8 and live as long as the library, which is never
- * unloaded. Plugins keep no state: all that they produce is written into memory of the host, and nothing that the host hands
- * them outlives the call. No C++ type, exception or allocator crosses this seam (rt_plugin.hpp wraps calls for C++).
+ * unloaded. Plugins keep no state: they write all results into memory of the host, and pointers that the host passes to them are
+ * valid during the call only. No C++ type, exception or allocator crosses this interface (rt_plugin.hpp wraps calls for C++).
  *
- * Growth: structs grow at the end only and carry their size; a reader tests struct_bytes before it reads a later field.
- * Any other change bumps RT_ABI_VERSION.
+ * Growth: structs grow at the end only and hold their size. A reader tests struct_bytes before it reads a field that was added.
+ * Any other change increases RT_ABI_VERSION.
  * Version history:
  *   1  First release.
  *   2  Draft: it may still change without a new number, until a release freezes it. What a structure can do is data in rt_accel
@@ -27,22 +27,22 @@ extern "C" {
 enum { RT_OK = 0, RT_FAILED = 1, RT_CANCELLED = 2 };
 enum { RT_LOG_DEBUG, RT_LOG_INFO, RT_LOG_WARNING };
 
-/* Services of the host; valid during the call that received them. All may be called from any thread of parallel_for. Builders
- * run with floating point as a program starts with it, on all threads: nothing is flushed to zero. */
+/* Services of the host; valid during the call that received them. All may be called from any thread of parallel_for. On all these
+ * threads builders run with the default floating-point mode: denormal numbers are not flushed to zero. */
 typedef struct rt_host {
     rt_u32 struct_bytes;
     void *ctx;
-    int32_t (*fail)(void *ctx, const char *why); /* records why (the first wins) and returns RT_FAILED: `return host->fail(..)` */
+    int32_t (*fail)(void *ctx, const char *why); /* keeps the first reason and returns RT_FAILED: `return host->fail(..)` */
     void (*log)(void *ctx, int32_t level, const char *text);
-    int32_t (*progress)(void *ctx, float fraction); /* 0..1; returns 0 when the user cancelled: return RT_CANCELLED soon */
-    void (*parallel_for)(void *ctx, rt_u32 count, void (*body)(void *user, rt_u32 i), void *user); /* on all cores; nests */
+    int32_t (*progress)(void *ctx, float fraction); /* 0..1; returns 0 if the user cancelled: then return RT_CANCELLED soon */
+    void (*parallel_for)(void *ctx, rt_u32 count, void (*body)(void *user, rt_u32 i), void *user); /* on all cores; may be nested */
 } rt_host;
 
 enum { RT_PARAM_INT, RT_PARAM_FLOAT, RT_PARAM_BOOL, RT_PARAM_ENUM };
-enum { RT_EFFECT_REBUILD, RT_EFFECT_RECOMPILE }; /* what the host must redo after a change */
-/* A parameter is data: the host draws its widget, parses `--accel bvh2,max_leaf=4`, stores it in presets and range-checks it. */
+enum { RT_EFFECT_REBUILD, RT_EFFECT_RECOMPILE }; /* what the host must do when a parameter changes */
+/* A parameter is data: the host draws its widget, parses `--accel bvh2,max_leaf=4`, stores it in presets and checks its range. */
 typedef struct rt_param {
-    const char *key, *label, *help; /* "max_leaf", "Max leaf size", "primitives in a leaf, at most" (say the unit) */
+    const char *key, *label, *help; /* "max_leaf", "Max leaf size", "primitives in a leaf, at most" (with the unit) */
     int32_t kind, effect;
     double min, max, def;
     const char *const *choices; /* RT_PARAM_ENUM only, NULL-terminated; the value is the index */
@@ -50,19 +50,19 @@ typedef struct rt_param {
 
 /* ---- acceleration structures -------------------------------------------------------------------------------------------- */
 
-/* One primitive to the builder: a box and an opaque ref. 32 B. */
+/* A primitive as builders see it: its bounds and an opaque ref. 32 B. */
 typedef struct rt_prim {
     float lo[3];
     rt_u32 ref;
     float hi[3];
-    rt_u32 mesh; /* number of the mesh (as placed) it came from; prims of one mesh are contiguous within a group */
+    rt_u32 mesh; /* number of the placed mesh that it belongs to; primitives of one mesh are contiguous within a group */
 } rt_prim;
 typedef struct rt_group {
     rt_u32 first, count; /* range of prims; may be empty */
 } rt_group;
 
-/* Raw geometry, for builders that split or pack: corners a, b, c of triangle ref i are those of triangles[i], in the space of its
- * group. */
+/* Geometry, for builders that split or pack primitives. triangles[i] holds the corners a, b, c of the triangle with ref i, in the
+ * space of its group. */
 typedef struct rt_geometry {
     rt_u32 struct_bytes;
     const rt_packed_prim *triangles;
@@ -72,22 +72,23 @@ typedef struct rt_geometry {
 typedef struct rt_build_input {
     rt_u32 struct_bytes, group_count;
     const rt_prim *prims;
-    const rt_group *groups; /* [0] world space, refs of any kind; [1..] one instanced mesh each, its own space, no instances */
+    const rt_group *groups; /* [0]: the world, refs of any kind. [1..]: one instanced mesh each, in its own space, no instances */
     const rt_geometry *geometry;
-    const double *params; /* in the order declared */
+    const double *params; /* in the order of rt_plugin::params */
 } rt_build_input;
 
 typedef struct rt_build_output {
     rt_u32 struct_bytes;
     void *ctx;
-    /* Host-owned, zeroed, 128-byte aligned memory for `count` elements of a slot; once per slot. NULL: stop, return RT_FAILED. */
+    /* Returns zeroed, 128-byte aligned memory of the host for `count` elements of a slot. Call it once for each slot. After NULL,
+     * stop and return RT_FAILED. */
     void *(*alloc)(void *ctx, rt_u32 slot, uint64_t count);
-    /* The refs in leaf order, once. The host packs the primitives in this order; RT_LEAF takes a position in it. A ref may
-     * stand in several places (spatial splits). NULL: stop. */
+    /* Returns memory of the host for `count` refs in leaf order. Call it once. The host packs the primitives in this order, and
+     * RT_LEAF takes a position in it. A ref may occur several times (spatial splits). After NULL, stop and return RT_FAILED. */
     rt_u32 *(*leaves)(void *ctx, uint64_t count);
-    void (*root)(void *ctx, rt_u32 group, rt_u32 node); /* an element of slot 0; call for every group, also empty ones */
-    void (*define)(void *ctx, const char *name, rt_u32 value); /* for the kernel, e.g. BVH2_STACK; round up: a new value recompiles */
-    void (*stat)(void *ctx, const char *label, double value); /* "nodes", "depth", "sah_cost": panel, --stats, bench */
+    void (*root)(void *ctx, rt_u32 group, rt_u32 node); /* node: an element of slot 0. Call it for every group, also empty ones */
+    void (*define)(void *ctx, const char *name, rt_u32 value); /* a kernel's macro, BVH2_STACK; round up: a new value recompiles */
+    void (*stat)(void *ctx, const char *label, double value); /* "nodes", "depth", "sah_cost": for panel, --stats and bench */
 } rt_build_output;
 
 /* A slot becomes a kernel argument and the member `name` of rt_ctx: `const global <cl_type> *<name>`. */
@@ -96,10 +97,10 @@ typedef struct rt_slot {
     rt_u32 elem_bytes; /* compared with sizeof(cl_type) on the device */
 } rt_slot;
 typedef struct rt_cl_file {
-    const char *name, *text; /* "bvh2.cl": looked up on disk in development, else the embedded text */
+    const char *name, *text; /* "bvh2.cl"; in development the host reads the file from disk, else it takes the embedded text */
 } rt_cl_file;
 
-/* A finished build, read-only, for `levels`. */
+/* A finished structure, read-only, for `levels`. */
 typedef struct rt_built {
     rt_u32 struct_bytes, group_count;
     const void *const *slots;    /* slot_count pointers */
@@ -117,13 +118,13 @@ typedef struct rt_volume_sink {
 /* What a traversal offers besides RT_TRAVERSE, as bits of rt_accel::capabilities; cl/CONTRACT.md describes each. The host defines
  * the names of those that are set in the structure's kernels. It ignores bits that it does not know. */
 enum {
-    RT_TRAVERSES_STREAMS = 1,  /* RT_TRAVERSE_STREAM: neighbouring packets together, on CPUs */
-    RT_TRAVERSES_STEPS = 2,    /* RT_TRAVERSE_step: node by node, so that a work-item may fetch another ray, on GPUs */
-    RT_TRAVERSES_WARPS = 4,    /* RT_TRAVERSE_WARP: all rays of a warp one way, on GPUs */
+    RT_TRAVERSES_STREAMS = 1,  /* RT_TRAVERSE_STREAM: traces neighbouring packets together, on CPUs */
+    RT_TRAVERSES_STEPS = 2,    /* RT_TRAVERSE_step: traces step by step, so that a work-item may fetch another ray, on GPUs */
+    RT_TRAVERSES_WARPS = 4,    /* RT_TRAVERSE_WARP: all rays of a warp visit the same nodes, on GPUs */
     RT_REQUEUES_LONG_RAYS = 8, /* RT_TRAVERSE_REQUEUED: many work-items trace one long ray, on GPUs */
-    RT_SPLITS_INCOHERENT = 16  /* wants ray->incoherent: it traces packets whose rays part ray by ray, on CPUs */
+    RT_SPLITS_INCOHERENT = 16  /* reads ray->incoherent: traces incoherent packets ray by ray, on CPUs */
 };
-/* How the time of a ray grows with the number n of primitives: as log n, the case of trees, or as n. Tests and benches leave out
+/* How the time of a ray grows with the number n of primitives: like log n, as with trees, or like n. Tests and benches leave out
  * structures of linear cost where a scene is large. */
 enum { RT_RAY_COST_LOGARITHMIC, RT_RAY_COST_LINEAR };
 
@@ -138,17 +139,17 @@ typedef struct rt_accel {
     int32_t (*refit)(const rt_host *, const rt_build_input *, void *const *slot_data);                       /* or NULL */
     /* Since version 2. */
     rt_u32 capabilities;        /* RT_TRAVERSES_STREAMS, ...: bits */
-    float merit_cpu, merit_gpu; /* rays a second, primary and diffuse ones over usual scenes, as a multiple of what Clarity's binary
-                                 * BVH traces on a device of that kind; 0: not measured. Where the user names no structure, the
-                                 * host takes the one of the highest merit, of equal ones the first by id. */
+    float merit_cpu, merit_gpu; /* primary and diffuse rays a second over usual scenes, divided by those of Clarity's binary BVH
+                                 * on a device of that kind; 0: not measured. If the user names no structure, the host takes the
+                                 * one of the highest merit. Among equal ones it takes the first by id. */
     rt_u32 ray_cost;            /* RT_RAY_COST_LOGARITHMIC or RT_RAY_COST_LINEAR */
 } rt_accel;
 
 /* ---- importers ------------------------------------------------------------------------------------------------------------ */
 
-/* Strides are in bytes. The host copies all of it before it returns. Faces may have any number of corners: the host triangulates
- * them (flat convex ones as a fan from the first corner, bent or concave ones as scene/triangulate.hpp says), drops those of
- * fewer than three, and keeps order. */
+/* Strides are in bytes. The host copies all data before the call returns. Faces may have any number of corners. The host
+ * triangulates them in order: flat convex ones as a fan from the first corner, bent or concave ones as scene/triangulate.hpp says.
+ * It drops faces of fewer than three corners. */
 typedef struct rt_mesh {
     rt_u32 struct_bytes;
     const char *name; /* or NULL */
@@ -162,14 +163,14 @@ typedef struct rt_mesh {
     uint64_t index_count;
     const rt_u32 *face_sizes; /* corners of each face; NULL: all triangles */
     uint64_t face_count;
-    const rt_u32 *face_materials; /* per face, ids that `material` gave; or NULL: `material` for all */
+    const rt_u32 *face_materials; /* per face, ids that the sink's `material` returned; NULL: all have `material` */
     rt_u32 material;              /* RT_NONE: the default material */
 } rt_mesh;
 
 typedef struct rt_instance_desc {
     rt_u32 struct_bytes;
     const char *name; /* or NULL */
-    rt_u32 mesh;      /* id that `mesh` gave */
+    rt_u32 mesh;      /* id that the sink's `mesh` returned */
     rt_u32 material;  /* for the whole instance; RT_NONE: the mesh's own */
     float world_from_object[12]; /* row-major 3x4 */
 } rt_instance_desc;
@@ -177,12 +178,12 @@ typedef struct rt_instance_desc {
 typedef struct rt_material_desc {
     rt_u32 struct_bytes;
     const char *name; /* or NULL */
-    rt_material values; /* .texture: an id that `texture` gave, or RT_NONE */
+    rt_material values; /* .texture: an id that the sink's `texture` returned, or RT_NONE */
 } rt_material_desc;
 
 typedef struct rt_texture_desc {
     rt_u32 struct_bytes;
-    const char *path;           /* relative to the file being imported; or NULL and an image in memory: */
+    const char *path;           /* relative to the file being imported; NULL: the image is in `bytes` */
     const uint8_t *bytes;       /* encoded (PNG, JPEG, ...) if height is 0, else width x height RGBA8 */
     uint64_t byte_count;
     rt_u32 width, height;
@@ -207,22 +208,22 @@ typedef struct rt_load {
     const char *name;            /* or NULL */
     float world_from_object[12]; /* applied after the file's own transforms */
     rt_u32 material;             /* for all of it, or RT_NONE */
-    const char *where;           /* place that asks for it, "main.scene:3:9", named by the error; or NULL */
+    const char *where;           /* place that names the file, for error messages: "main.scene:3:9"; or NULL */
 } rt_load;
 
 typedef struct rt_scene_info {
     rt_u32 struct_bytes;
-    rt_u32 up_axis;    /* 0 X, 1 Y, 2 Z: what the file says; geometry is handed over in the file's own axes */
-    double unit_scale; /* metres per file unit as the file says it; 0: it does not say */
-    const float *background; /* linear RGB, or NULL: not said */
+    rt_u32 up_axis;    /* 0 X, 1 Y, 2 Z, as the file says; geometry is passed in the file's own axes */
+    double unit_scale; /* metres per unit of the file, as the file says; 0: it does not say */
+    const float *background; /* linear RGB, or NULL: the file does not say */
     const float *ambient;    /* linear RGB, or NULL */
 } rt_scene_info;
 
-/* Each id-returning call copies what it is given and returns an id, or RT_NONE after recording the error: then return RT_FAILED. */
+/* Calls that return an id copy their arguments. RT_NONE means that they failed and recorded the error: then return RT_FAILED. */
 typedef struct rt_scene_sink {
     rt_u32 struct_bytes;
     void *ctx;
-    rt_u32 (*texture)(void *ctx, const rt_texture_desc *); /* a missing or broken image is a warning; RT_NONE then is no error */
+    rt_u32 (*texture)(void *ctx, const rt_texture_desc *); /* a missing or broken image is a warning: RT_NONE is no error here */
     rt_u32 (*material)(void *ctx, const rt_material_desc *);
     rt_u32 (*mesh)(void *ctx, const rt_mesh *);
     rt_u32 (*instance)(void *ctx, const rt_instance_desc *);
@@ -233,7 +234,7 @@ typedef struct rt_scene_sink {
     rt_u32 (*camera)(void *ctx, const rt_camera *);
     void (*info)(void *ctx, const rt_scene_info *);
     void (*warn)(void *ctx, const char *text);         /* shown to the user, in `info` as warnings[] */
-    int32_t (*load)(void *ctx, const rt_load *);       /* another file through its importer; RT_OK or after recording the error RT_FAILED */
+    int32_t (*load)(void *ctx, const rt_load *);       /* imports another file; RT_OK, or RT_FAILED with the error recorded */
 } rt_scene_sink;
 
 typedef struct rt_importer {
@@ -244,7 +245,7 @@ typedef struct rt_importer {
 } rt_importer;
 
 typedef struct rt_plugin {
-    rt_u32 abi_version, struct_bytes, types_digest, param_count; /* first, for ever */
+    rt_u32 abi_version, struct_bytes, types_digest, param_count; /* first in every version */
     const char *id, *name, *version, *reference; /* id: [a-z][a-z0-9_]*, also the prefix of its CL names; reference: paper, or NULL */
     const rt_param *params;
     const rt_accel *accel; /* exactly one of the two is not NULL */

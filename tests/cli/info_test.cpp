@@ -1,4 +1,4 @@
-// info_test.cpp -- `clarity info` on scenes whose numbers are computed by hand.
+// info_test.cpp -- `clarity info` on scenes with numbers computed by hand.
 #include <gtest/gtest.h>
 
 #include <cmath>

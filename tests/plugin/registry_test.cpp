@@ -146,7 +146,7 @@ TEST_F(Registry, ABrokenSymlinkIsRefusedAndNotFatal) {
     EXPECT_NE(records[0].why.find("No such file"), std::string::npos) << records[0].why;
 }
 
-// As in PATH, an empty element could mean the working directory. Nobody expects code to be run from there.
+// As in PATH, an empty element could mean the working directory. Users do not expect that code is loaded from there.
 TEST_F(Registry, NeverSearchesTheWorkingDirectory) {
     copy(kSound, "here/sound.so");
     const fs::path before = fs::current_path();

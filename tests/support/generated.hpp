@@ -9,7 +9,7 @@ namespace clarity::test {
 
 using Point = std::array<float, 3>;
 
-// A mesh whose triangles share corners, as in a file.
+// A mesh of triangles that share corners, as in a file.
 struct TriangleMesh {
     std::vector<float> positions;
     std::vector<rt_u32> triangles;

@@ -40,7 +40,7 @@ std::string parent_folder(const std::string& folder);
 std::string home_folder();
 std::string absolute_folder(const std::string& folder);  // without a slash at its end
 
-// Returns the indices of the entries whose names contain `word`; names that begin with it come first.
+// Returns the indices of the entries with `word` in their names; names that begin with it come first.
 std::vector<size_t> matching(const Listing& listing, const std::string& word);
 // Completes the text: appends what all entries that begin with it have in common, and "/" for a single folder.
 std::string complete(const Listing& listing, const std::string& text);

@@ -24,7 +24,7 @@ class LineList {
 
     bool operator==(const LineList& other) const;
     void line(const glm::vec3& a, const glm::vec3& b, uint32_t color, float width) { lines_.push_back({a, b, color, width}); }
-    // Corners whose indices differ in one bit share an edge.
+    // Two corners share an edge if their indices differ in one bit.
     void box(const std::array<std::array<float, 3>, 8>& corners, uint32_t color, float width);
     // The points center + a cos(t) + b sin(t).
     void circle(const glm::vec3& center, const glm::vec3& a, const glm::vec3& b, int segments, uint32_t color, float width);

@@ -9,7 +9,7 @@
 
 namespace clarity::ui {
 
-// The view of a camera whose picture fills a rectangle of the window.
+// The view of a camera. Its picture fills a rectangle of the window.
 class Projection {
  public:
     Projection(const Rect& area, const Camera& camera);

@@ -143,7 +143,7 @@ class Session {
     std::vector<std::string> files_;  // of the scene that was asked for
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
     std::optional<PrepareRequest> posted_request_;  // none: the next request is posted in any case
-    uint64_t viewed_files_revision_ = 0;            // the scene whose camera and lights are in `desired`
+    uint64_t viewed_files_revision_ = 0;            // the scene that gave `desired` its camera and lights
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;

@@ -16,8 +16,8 @@ struct FrameJob {
     Settings settings;                       // as desired; settings which need another preparation than `ready` are ignored
     std::optional<Settings> other_settings;  // of the second side, which is traced if `ready` has it
     View view;
-    uint64_t revision = 0;          // the films start anew when it changes
-    uint64_t display_revision = 0;  // the films are displayed anew when it changes
+    uint64_t revision = 0;          // when it changes, the films start again from sample 0
+    uint64_t display_revision = 0;  // when it changes, the films are displayed again
     bool continuous = false;        // trace again and again, to measure
     float resolution_scale = 1;     // factor for the settings' width and height
     float moving_fps = 0;           // target frame rate while something moves, which may reduce the pixels; 0: trace all pixels

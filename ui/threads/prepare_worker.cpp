@@ -252,7 +252,7 @@ void PrepareWorker::renew_devices() {
 }
 
 // Makes visible_, the scene without its hidden instances. It is kept while scene and hidden instances stay the same, because
-// the structures are built anew for every new Scene object.
+// every new Scene object needs new structures.
 void PrepareWorker::hide(const PrepareRequest& request) {
     const bool same_files = request.files_revision == loaded_->files_revision;
     const std::vector<rt_u32>& hidden = same_files ? request.hidden : hidden_;

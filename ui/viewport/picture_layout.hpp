@@ -15,7 +15,7 @@ struct PicturePlace {
     What what = What::main;
     Rect area;   // the whole picture
     Rect shown;  // the visible part of it
-    // The side whose distances belong to this picture.
+    // The side that has the distances of this picture.
     unsigned side() const { return what == What::other ? 1 : 0; }
 };
 

@@ -30,7 +30,7 @@ std::vector<uint64_t> first_prims(const Scene& scene);
 // A list of rows which is only made again when its inputs change.
 class SceneRows {
  public:
-    // open: the kinds whose rows are listed. With a filter, all kinds are listed.
+    // open: the kinds of which rows are listed. With a filter, all kinds are listed.
     const std::vector<SceneRow>& update(const std::shared_ptr<const Scene>& scene, const std::string& filter,
                                         const std::array<bool, kRowKinds>& open);
 

@@ -127,7 +127,7 @@ bool size_field(const Setting& row, const Settings& settings, std::string& chose
     return (typed || picked) && chosen != now;
 }
 
-// The last error of each row whose value was refused. The next valid value removes it.
+// For each row with a refused value: the last error. The next valid value removes it.
 std::map<std::string, std::string>& refusals() {
     static std::map<std::string, std::string> texts;
     return texts;

@@ -41,7 +41,7 @@ float share_of_line(int count);
 // Puts the next button on this line if it fits, otherwise on the next line.
 void same_line_if_fits(const char* next_label);
 
-// Cut a text to the width: keeps its beginning, or its end (for a path, whose end is the file's name).
+// Cut a text to the width: keeps its beginning, or its end (for a path, which ends in the file's name).
 std::string cut_to(const std::string& text, float width);
 std::string cut_front_to(const std::string& text, float width);
 

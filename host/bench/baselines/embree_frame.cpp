@@ -74,8 +74,8 @@ INLINED void put(RayQueue& queue, unsigned field, const Lanes& value, const unsi
     EACH_LANE to[i] = value.at[from[i]];
 }
 
-// Lists the lanes whose `keep` is not 0, in order; the remaining entries of `from` are valid but arbitrary lanes. Returns how
-// many were listed.
+// Lists the lanes with a `keep` other than 0, in order; the remaining entries of `from` are valid but arbitrary lanes. Returns
+// how many were listed.
 INLINED unsigned list_lanes(const unsigned* keep, unsigned* from) {
     unsigned count = 0;
     EACH_LANE from[i] = 0;

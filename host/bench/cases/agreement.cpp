@@ -6,7 +6,7 @@
 namespace clarity::bench {
 namespace {
 
-// Share of rays whose hit may differ from the first row's: rays at silhouettes, where rounding decides.
+// Share of rays that may hit something else than in the first row: rays at silhouettes, where rounding decides.
 constexpr double kMayDiffer = 1e-3;
 // Share of pixels of the baselines' frame which may differ, and from which difference on a pixel counts. The limit is larger
 // than for rays, because five generations of mirrors magnify every difference.

@@ -1,4 +1,4 @@
-// agreement.hpp -- checks that all rows of a case compute the same. A row whose results differ does not trace the same scene,
+// agreement.hpp -- checks that all rows of a case compute the same. A row with other results does not trace the same scene,
 // so that comparing times would mean nothing: it is refused.
 #pragma once
 #include <map>

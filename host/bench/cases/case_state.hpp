@@ -19,7 +19,7 @@ struct CaseState {
     CaseState(const CaseState&) = delete;  // the entries' functions refer to it
     CaseState& operator=(const CaseState&) = delete;
 
-    // Appends an entry whose row describes case and scene. The reference is valid until the next call.
+    // Appends an entry; its row describes case and scene. The reference is valid until the next call.
     Entry& add_entry() {
         entries.push_back({make_row(definition), {}, {}});
         describe(entries.back().row, *fixture.scene());

@@ -6,7 +6,7 @@
 namespace clarity::bench {
 
 // Returns a row for each variant and number of devices: 1, 2, 4, ... and all. Wall times are from the call to tone-mapped
-// pixels in host memory. A row whose picture differs from that of one device is refused: devices of one kind must agree
+// pixels in host memory. A row is refused if its picture differs from that of one device: devices of one kind must agree
 // exactly. Throws Cancelled.
 std::vector<BenchRecord> measure_pictures(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
                                           const BenchCase& c, const MeasureRules& rules, Progress& progress);

@@ -55,7 +55,7 @@ Field<Owner> plain(const char* key, Value Owner::*member, Look look = {}) {
     return field;
 }
 
-// A field whose member is written as null if it is empty (0, ""): there is nothing to say.
+// A field that is written as null if the member is empty (0, "").
 template <class Owner, class Value>
 Field<Owner> unless_empty(const char* key, Value Owner::*member, Look look = {}) {
     Field<Owner> field = plain(key, member, look);

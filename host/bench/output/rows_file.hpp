@@ -8,9 +8,9 @@
 
 namespace clarity::bench {
 
-// add() appends each row at once to a temporary file beside `path`. finish() then replaces it with the whole report, whose rows
-// also hold the end of the run and the means over all scenes. Without finish(), the destructor closes the list and moves the
-// file to `path`. After a kill, the temporary file holds all rows, and read_bench_json() can read it. Functions throw
+// add() appends each row at once to a temporary file beside `path`. finish() then replaces it with the whole report, in which
+// rows also hold the end of the run and the means over all scenes. Without finish(), the destructor closes the list and moves
+// the file to `path`. After a kill, the temporary file holds all rows, and read_bench_json() can read it. Functions throw
 // Error(failed) if the file cannot be written.
 class RowsFile {
  public:

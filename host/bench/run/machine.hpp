@@ -6,7 +6,7 @@
 namespace clarity::bench {
 
 std::string host_cpu_name();
-// Mean over the cores whose frequency can be read, MHz; 0 if there are none.
+// Mean frequency over the cores that tell theirs, MHz; 0 if there are none.
 double host_clock_mhz();
 // Frequency governor of the first core; empty if the machine has none (a virtual machine).
 std::string clock_governor();

@@ -22,7 +22,7 @@ struct Runner {
     bool running() const { return result.status == RowStatus::ok; }
 };
 
-// A contender whose tuning never settles is measured as it is after so many trials.
+// If a contender's tuning does not settle, the contender is measured as it is after so many trials.
 constexpr unsigned kMostTrials = 100;
 
 // Runs one repetition. Returns false if the contender failed; it is then dropped.

@@ -18,8 +18,9 @@ class TemporaryFile {
     std::string path_;
 };
 
-// Unpacks a .gz file into the folder for temporary files. "dir/bunny.ply.gz" becomes a file whose name ends in "bunny.ply",
-// because importers choose the format by the extension. Throws Error(import_failed) if the file cannot be read or unpacked.
+// Unpacks a .gz file into the folder for temporary files. "dir/bunny.ply.gz" becomes a file with a name that ends in
+// "bunny.ply", because importers choose the format by the extension. Throws Error(import_failed) if the file cannot be read or
+// unpacked.
 TemporaryFile gunzip(const std::string& path);
 
 }  // namespace clarity::bench

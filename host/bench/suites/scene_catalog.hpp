@@ -28,7 +28,7 @@ struct BenchView {
 // Finds the scenes of the project and larger shared scenes.
 //   project  $CLARITY_SCENES; if it is not set, ../share/clarity/scenes relative to the executable (a build folder has a link
 //            there)
-//   shared   $CLARITY_SHARED, whose bench/cameras.json names models and cameras
+//   shared   $CLARITY_SHARED; its bench/cameras.json names models and cameras
 class SceneCatalog {
  public:
     SceneCatalog();
@@ -39,7 +39,7 @@ class SceneCatalog {
     BenchScene project(const std::string& name) const;
     // The six test scenes of scenes/thesis in order.
     std::vector<BenchScene> thesis() const;
-    // The scenes of cameras.json, small files first. If there is no such file, one entry whose `missing` says so.
+    // The scenes of cameras.json, small files first. If there is no such file, one entry with a `missing` that says so.
     std::vector<BenchScene> shared() const;
     // Models of the project and of the shared folder from near (one triangle covers many pixels) and from far (one pixel covers
     // several triangles). The `missing` of an entry says that its file was not found.

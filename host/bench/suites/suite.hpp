@@ -15,7 +15,7 @@ struct BenchRequest {
     std::vector<std::string> files;                             // scenes which replace a suite's own; without a suite: accel
     std::vector<std::string> accels;                            // ID[,key=value...]; empty: all structures found
     std::vector<std::pair<std::string, std::string>> settings;  // key, value; for all variants which do not set the key
-    std::vector<std::string> only;                              // keeps the cases whose name contains one of these; empty: all
+    std::vector<std::string> only;                              // keeps cases with one of these in their name; empty: all
     uint64_t max_triangles = 10'000'000;                        // largest model of the suites scale and large
     double time_limit_s = 0;                                    // of the whole run; 0: the sum of the suites' own limits
     bool baselines = true;                                      // measure the baselines too

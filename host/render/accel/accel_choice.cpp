@@ -53,7 +53,7 @@ std::string default_accel(const PluginRegistry& plugins, const std::string& devi
     try {
         kind = kind_of(choose_devices(device));
     } catch (const Error&) {
-        // Opening the device says what is wrong with it.
+        // Opening the device will report the error.
     }
     return best_accel(plugins, kind).id;
 }

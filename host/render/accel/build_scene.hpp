@@ -20,7 +20,7 @@ struct BuildScene {
     std::vector<uint32_t> group_of_instance;
     std::vector<Affine> world_from_object;             // for each instance
     UninitializedVector<uint32_t> attribute_triangle;  // from a triangle's ref to its number in the Scene
-    std::vector<uint32_t> flattened;  // instances of the Scene whose triangles were transformed into the world's group
+    std::vector<uint32_t> flattened;  // instances of the Scene; their triangles were transformed into the world's group
     std::vector<rt_packed_prim> instance_leaves, spheres, polygons;  // by ref index
     std::vector<rt_polygon> polygon_table;
     std::vector<float> polygon_corners;  // 3 floats a corner

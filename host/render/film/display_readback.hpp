@@ -29,7 +29,7 @@ class DisplayReadback {
     // Starts this work behind the commands that are queued. A later take() of the same film with the same settings returns the
     // picture begun here. Returns the last event in the device's own queue.
     cl::Event begin(const ColorFilm& film, const Settings& settings, bool overlapped);
-    // Call this when the film is about to change: take() then starts anew.
+    // Call this when the film is about to change: take() then ignores the picture that was begun.
     void forget_begun() { begun_ = {}; }
 
  private:

@@ -53,7 +53,7 @@ class FilmKernels {
     RayCounts end_sum(KernelTime& time);
     // Enqueues tone mapping of a film (room(pixels) float4, sums of samples) into a display of room(pixels) * 4 bytes.
     cl::Event map_tones(const cl::Buffer& film, const cl::Buffer& display, size_t pixels, const Settings& settings);
-    // Enqueues adding `count` layers (rt_types.h) to these rows of the film. adds: false starts the film anew.
+    // Enqueues adding `count` layers (rt_types.h) to these rows of the film. adds: false replaces what is in the film.
     cl::Event add_layers(const cl::Buffer& film, const cl::Buffer& layers, unsigned count, bool adds, const GroupRows& rows);
     // Enqueues tone mapping of these rows and their copy into the whole picture: rgba, 4 * pixels bytes. Returns the last
     // event.

@@ -1,4 +1,4 @@
-// overflow_counter.hpp -- counts full traversal stacks in debug programs whose kernels have no ray counters.
+// overflow_counter.hpp -- counts full traversal stacks in debug programs that have no ray counters.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -28,7 +28,7 @@ struct SharedRows {
     uint8_t* display = nullptr;
 };
 
-// Consecutive samples of a picture. Sample 0 starts the film anew; sample n is added to those before it.
+// Consecutive samples of a picture. Sample 0 replaces what is in the film; sample n is added to those before it.
 struct Samples {
     Samples(unsigned first_sample, unsigned how_many = 1, std::function<bool(unsigned)> told = {})
         : first(first_sample), count(how_many), complete(std::move(told)) {}
@@ -58,7 +58,7 @@ class FrameRenderer {
     // no hit.
     FloatImage read_values();
     // Returns the distance along the camera ray of sample 0 of the last picture: 1 channel, +inf where nothing was hit. Empty
-    // for AOVs of camera rays other than `t`, whose programs do not store it.
+    // for AOVs of camera rays other than `t`, because their programs do not store it.
     FloatImage read_distance();
     // These two write the traced rows into an image of the whole picture, which other devices fill too. read_distance() returns
     // false if the distance is not known.

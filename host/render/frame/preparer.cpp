@@ -22,8 +22,9 @@
 namespace clarity {
 namespace {
 
-// Without refraction no ray splits. `wavefront` is then a single launch whose warps fetch new pixels as soon as they are free,
-// which is 1.03 to 1.10 times as fast on a GPU. With refraction it depends on the scene which tracer wins: docs/experiments.md.
+// Without refraction no ray splits. `wavefront` is then a single launch, and its warps fetch new pixels as soon as they are
+// free. That is 1.03 to 1.10 times as fast on a GPU. With refraction the faster tracer depends on the scene: see
+// docs/experiments.md.
 std::string tracer_for(const Device& device, const Scene& scene) {
     return device.info().cpu || refracts(scene, {}) ? "iterative" : "wavefront";
 }

@@ -12,7 +12,7 @@
 namespace clarity {
 namespace {
 
-// RT_AOV_T and the like: the number of each quantity, for aov.cl to compare; and RT_AOV, the one that the program is for.
+// Defines a number for each AOV (RT_AOV_T, ...), and RT_AOV, the AOV that the program computes. aov.cl compares them.
 void write_aovs(SourceWriter& out, const Aov& wanted) {
     for (const Aov& aov : aov_table()) out.define_int(kernel_macro(aov), static_cast<unsigned>(&aov - aov_table().data()));
     out.line("#define RT_AOV " + kernel_macro(wanted));
@@ -38,7 +38,7 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     out.define_int("RT_HAS_TEXTURES", features.textures);
 }
 
-// What every kernel begins with: types, lanes, the structure's types and buffers.
+// Writes the beginning of every kernel: types, lanes, the structure's types, and the buffers.
 void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel) {
     for (const char* name : {"rt_types.h", "lanes/lanes.h"}) out.include(name);
     if (!layout.cpu) out.include("lanes/subgroup.h");
@@ -77,7 +77,7 @@ KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart par
     KernelSource source;
     source.row = &row;
     source.what = std::string(row.what) + " with accel " + accel.id;
-    // With instances or polygons more values would have to be put aside, which costs more than it gains.
+    // Exception: with instances or polygons more registers would be spilled, which costs more than the limit gains.
     source.limit_registers = row.has(kLimitRegisters) && !layout.cpu && !features.instances && !features.polygons;
 
     SourceWriter out;

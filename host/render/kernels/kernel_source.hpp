@@ -1,5 +1,5 @@
-// kernel_source.hpp -- one source string for one specialisation of a kernel: shared types, lanes, primitives, the generated
-// context, the plugin's traversal as a template, and the kernel. kernel_table.hpp says what each kernel consists of.
+// kernel_source.hpp -- makes the source of one specialisation of a kernel: shared types, lanes, primitives, the generated
+// context, the plugin's traversal as a template, and the kernel. kernel_table.hpp lists the parts of each kernel.
 #pragma once
 #include <string>
 
@@ -13,10 +13,10 @@ struct KernelSource {
     const KernelRow* row = nullptr;
     std::string text, options;
     std::string what;              // for messages: "tracer iterative with accel bvh2"
-    bool limit_registers = false;  // a GPU gains by fewer registers than the kernel would take
+    bool limit_registers = false;  // limit the kernel's registers on GPUs: it is faster with fewer than it would take
 };
-// The kernel that answers `kind` for a scene, structure and settings that were prepared: Prepared's scene, accel, settings and
-// layout must be set, its program need not. Throws Error(kernel_build_failed) if a file of it cannot be read.
+// Returns the source of a kernel of this kind. Prepared's scene, accel, settings and layout must be set; its program need not.
+// Throws Error(kernel_build_failed) if a file of the kernel cannot be read.
 KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart part = FramePart::whole);
 
 }  // namespace clarity

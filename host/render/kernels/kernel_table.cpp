@@ -12,25 +12,26 @@ bool is_part(const KernelChoice& choice) {
 bool is_wavefront(const KernelChoice& choice) {
     return choice.settings.tracer == "wavefront";
 }
-// One work-item a pixel, which only GPUs have.
+// Whether each work-item computes one pixel. Only GPUs have such layouts.
 bool is_one_pixel(const KernelChoice& choice) {
     return choice.layout.max_pixels == 1 && choice.layout.lanes == 1;
 }
 
 using Headers = std::vector<const char*>;
 
-// A packet's rays in arrays of private memory, one generation after the other.
+// Trace a packet's rays one generation after the other, in arrays of private memory.
 const Headers kByGenerations = {"shading/material.h", "tracers/ray_queue.h", "tracers/inspect.h", "shading/shading.h",
                                 "tracers/generations.h"};
-// The same for one pixel a work-item, where a ray that does not part needs no array.
+// The same for one pixel a work-item: there rays that do not split need no array.
 const Headers kOnePixel = {"shading/material.h", "tracers/ray_queue.h", "tracers/inspect.h",
                            "shading/shading.h",  "tracers/ray_step.h",  "tracers/iterative_single.h"};
-// All rays of a frame in queues of global memory.
+// Trace all rays of a frame, in queues of global memory.
 const Headers kByQueues = {"shading/material.h", "shading/shading.h", "tracers/ray_step.h", "lanes/work_distribution.h",
                            "tracers/wavefront_rays.h"};
 const Headers kRayBlocks = {"queries/ray_blocks.h"};
 
-// Node visits of a traversal after which a ray is long. On an H200 32 to 64 serve nearly as well (docs/experiments.md).
+// Rays that need more steps than this are long, and are traced again by many work-items. On an H200, 32 to 64 are nearly as
+// good (docs/experiments.md).
 constexpr unsigned kStepBudget = 48;
 const std::vector<std::string> kRequeue = {"RT_STEP_BUDGET " + std::to_string(kStepBudget),
                                            "RT_REQUEUE_ITEMS " + std::to_string(kRequeueItems) + "u"};
@@ -42,8 +43,8 @@ const std::vector<KernelRow>& kernel_table() {
     constexpr unsigned kFrame = kRaySlots | kLimitRegisters;
     // clang-format off
     static const std::vector<KernelRow> table = {
-        // kind, where it applies, in messages
-        //     file, entry, headers, defines, traits, needed capabilities, rays per work-item
+        // kind, applies, what
+        //     file, entry, headers, defines, traits, needs, rays_per_item
         {K::color, is_part, "a part of a frame",
             "tracers/frame_parts.cl", "trace_parts", kByGenerations, {}, kFrame, 0, 0},
         {K::color, is_wavefront, "tracer wavefront",

@@ -17,7 +17,8 @@ Layout make_layout(const Settings& settings, bool cpu) {
     layout.lanes = static_cast<unsigned>(settings.lanes);
     layout.packet_w = static_cast<unsigned>(settings.packet_w);
     layout.packet_h = static_cast<unsigned>(settings.packet_h);
-    // As square as can be, but no wider or higher than twice the packet while the other side still has use for the lanes.
+    // Blocks are as square as possible. Exception: a side of twice the packet's or more is halved, and the other side doubled,
+    // while the other side is smaller than the packet's.
     layout.block_w = layout.lanes >= 8 ? 4 : layout.lanes == 4 ? 2 : 1;
     layout.block_h = layout.lanes / layout.block_w;
     while (layout.block_w >= 2 * layout.packet_w && layout.block_h < layout.packet_h) layout.block_w /= 2, layout.block_h *= 2;
@@ -31,13 +32,13 @@ Layout make_layout(const Settings& settings, bool cpu) {
                                      " at most: take a smaller packet or fewer ray slots");
     layout.max_pixels = 1;
     while (layout.max_pixels < pixels) layout.max_pixels *= 2;
-    layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // so that tests without a GPU see what GPUs run
-    if (!layout.cpu) return layout;                                 // a group is 64 neighbours, of which a warp has 8x4
-    // A CPU touches only the part of its stack that it uses, so there is room for large packets at once.
+    layout.cpu = cpu && !(settings.portable && layout.lanes == 1);  // `portable` lets tests without a GPU run the code for GPUs
+    if (!layout.cpu) return layout;                                 // a group is 64 neighbours; a warp has 8x4 of them
+    // Room for large packets from the start, so that a larger packet compiles nothing. It costs nothing: a CPU touches only the
+    // part of its stack that it uses.
     layout.group_side = 4;
-    const auto in_group = [&](unsigned packet_side) {
-        return std::clamp(16 / packet_side, 1u, layout.group_side);
-    };  // camera.h
+    // As RT_IN_GROUP of cl/tracers/camera.h.
+    const auto in_group = [&](unsigned packet_side) { return std::clamp(16 / packet_side, 1u, layout.group_side); };
     layout.group_w = in_group(layout.packet_w);
     layout.group_h = in_group(layout.packet_h);
     layout.max_pixels = std::max(layout.max_pixels, std::min(1024u, kDefaultRays / slots));

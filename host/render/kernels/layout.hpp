@@ -1,5 +1,5 @@
-// layout.hpp -- how a picture is cut into work-groups, packets and blocks of rays. It follows from settings and device, is made
-// once for each Prepared, and is kept there: whoever sizes a buffer or finds a pixel in one asks it.
+// layout.hpp -- how a picture is divided into work-groups, packets and blocks of rays. It follows from settings and device, is
+// made once for each Prepared, and is kept there. All code that sizes a buffer or finds a pixel in one uses it.
 #pragma once
 #include <cstddef>
 
@@ -11,34 +11,34 @@ namespace clarity {
 struct PixelPlace {
     unsigned group;   // number of its work-group, row by row over the picture
     unsigned packet;  // number of its packet within the group
-    unsigned pixel;   // its number within the packet, row by row
+    unsigned pixel;   // number of the pixel within the packet, row by row
 };
 
-// How a picture is cut. The first four are compiled in, the rest are numbers of the frame or follow from them.
+// The first four members are compiled into kernels. The others are in rt_frame, or follow from what is there.
 struct Layout {
     unsigned lanes = 1;
-    bool cpu = false;                     // a work-group is one work-item that does its packets in turn
-    unsigned group_side = 8;              // packets of a work-group side by side, at most
-    unsigned max_pixels = 1;              // room for a packet's pixels
+    bool cpu = false;                     // a work-group is one work-item, which traces its packets in turn
+    unsigned group_side = 8;              // packets of a work-group in each direction, at most
+    unsigned max_pixels = 1;              // a packet has at most so many pixels
     unsigned packet_w = 1, packet_h = 1;  // pixels of a work-item
     unsigned group_w = 8, group_h = 8;    // packets of a work-group
-    unsigned block_w = 1, block_h = 1;    // pixels traced side by side, block_w * block_h = lanes
+    unsigned block_w = 1, block_h = 1;    // pixels of a block, traced together; block_w * block_h = lanes
     unsigned groups_x(unsigned width) const { return (width + packet_w * group_w - 1) / (packet_w * group_w); }
     unsigned groups_y(unsigned height) const { return (height + packet_h * group_h - 1) / (packet_h * group_h); }
     unsigned blocks_x() const { return (packet_w + block_w - 1) / block_w; }
     unsigned blocks() const { return blocks_x() * ((packet_h + block_h - 1) / block_h); }
-    unsigned rays() const { return blocks() * lanes; }  // camera rays of a packet, those outside it included
+    unsigned rays() const { return blocks() * lanes; }  // camera rays of a packet, its blocks' pixels outside it included
     unsigned group_packets() const { return group_w * group_h; }
     unsigned local_size() const { return cpu ? 1 : group_packets(); }
-    // Of a picture of so many pixels, what hangs over its edges included.
+    // The packets of a picture of this size in pixels, including those that reach beyond its edges.
     size_t packets(unsigned width, unsigned height) const {
         return size_t(groups_x(width)) * groups_y(height) * group_packets();
     }
-    unsigned row_height() const { return group_h * packet_h; }  // of a row of work-groups, pixels
+    unsigned row_height() const { return group_h * packet_h; }  // pixels; of a row of work-groups
     PixelPlace place_of(unsigned x, unsigned y, unsigned width) const;
 };
-// cpu: whether the device is one. settings: packet and lanes resolved. Throws Error(usage) if packet x ray_slots asks for more
-// private memory than devices have.
+// cpu: whether the device is a CPU. In `settings`, packet and lanes must be resolved. Throws Error(usage) if packet x ray_slots
+// needs more private memory than devices have.
 Layout make_layout(const Settings& settings, bool cpu);
 
 }  // namespace clarity

@@ -6,8 +6,9 @@
 namespace clarity {
 namespace {
 
-// A picture's kernel holds two traversals and shading, and would take 145 to 160 registers of a work-item, so that 12 warps
-// share one of an H200's multiprocessors. With 128 there are 16, and 1.02 to 1.16 times the frames; 112 and 144 are worse.
+// A picture's kernel contains two traversals and shading. Without a limit it takes 145 to 160 registers a work-item, so that 12
+// warps run on a multiprocessor of an H200. With 128 registers 16 warps run, and frames are 1.02 to 1.16 times as fast. Limits
+// of 112 and 144 are worse (docs/experiments.md).
 std::string options_for(const DeviceInfo& info, const KernelSource& source) {
     return source.options + (source.limit_registers && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "");
 }
@@ -16,7 +17,7 @@ std::string options_for(const DeviceInfo& info, const KernelSource& source) {
 
 std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool* fresh) {
     if (fresh) *fresh = false;
-    // Programs of texts that were edited since would only take room: a megabyte each on PoCL.
+    // After an edit of kernel files the old programs will not be asked for again. Each takes a megabyte on PoCL.
     if (const uint64_t revision = kernel_text_revision(); revision != text_revision_) {
         entries_.clear();
         text_revision_ = revision;

@@ -1,4 +1,4 @@
-// program_cache.hpp -- compiled kernels, kept by what they were compiled from.
+// program_cache.hpp -- keeps compiled kernels by their source and options.
 #pragma once
 #include <CL/opencl.hpp>
 #include <atomic>
@@ -14,24 +14,24 @@ namespace clarity {
 class TraceProgram {
  public:
     TraceProgram(const KernelRow& table_row, cl::Program compiled) : row(table_row), program(std::move(compiled)) {}
-    const KernelRow& row;  // of the kernel that traces; a program may have others besides
+    const KernelRow& row;  // of the kernel that traces; the program may have other kernels too
     cl::Program program;
     double compile_ms = 0;
-    // Whether it traces more than camera rays, and so takes buffers for counters and distances.
+    // Whether the kernel traces more than camera rays, and therefore takes buffers for counters and distances.
     bool has_generations() const { return row.kind == KernelKind::color || row.kind == KernelKind::generations; }
     bool is_wavefront() const { return row.has(kFrameQueues); }
-    // Kernel objects hold arguments, so each user makes its own.
+    // Returns a new kernel object: it holds arguments, so that users must not share one.
     cl::Kernel kernel() const { return cl::Kernel(program, row.entry); }
 };
 
-// Programs by source and options, the most recently used ones; toggling a setting back is free.
+// The programs most recently used on one device. Switching a setting back compiles nothing.
 class ProgramCache {
  public:
     explicit ProgramCache(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // fresh, if given: whether it was compiled now. Throws Error(kernel_build_failed).
+    // Compiles the program if it is not kept. *fresh: whether it was compiled now. Throws Error(kernel_build_failed).
     std::shared_ptr<TraceProgram> get(const KernelSource& source, bool* fresh = nullptr);
     std::shared_ptr<Device> device() const { return device_; }
-    unsigned compiled() const { return compiled_; }
+    unsigned compiled() const { return compiled_; }  // programs compiled so far
 
  private:
     static constexpr size_t kKept = 32;

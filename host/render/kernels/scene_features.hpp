@@ -1,4 +1,4 @@
-// scene_features.hpp -- which kinds of things a scene has. Kernels are compiled without the code for the others.
+// scene_features.hpp -- which kinds of primitives and attributes a scene has. Kernels contain no code for the others.
 #pragma once
 #include "render/accel/build_scene.hpp"
 

@@ -1,4 +1,4 @@
-// source_writer.hpp -- OpenCL C put together from defines and files.
+// source_writer.hpp -- composes OpenCL C from defines and files.
 #pragma once
 #include <sstream>
 #include <string>
@@ -10,15 +10,15 @@ namespace clarity {
 class SourceWriter {
  public:
     void line(const std::string& text) { out_ << text << '\n'; }
-    // A number that kernels compare and compute with as an int, or as a uint.
+    // Define a number as an int, or as a uint.
     void define_int(const std::string& name, unsigned value) { out_ << "#define " << name << ' ' << value << '\n'; }
     void define_uint(const std::string& name, unsigned value) { out_ << "#define " << name << ' ' << value << "u\n"; }
     void undef(const std::string& name) { out_ << "#undef " << name << '\n'; }
-    // #line keeps the compiler's messages at the author's file.
+    // Appends a text. #line lets compiler messages name the author's file and line.
     void part(const std::string& name, const std::string& text) { out_ << "#line 1 \"" << name << "\"\n" << text << '\n'; }
-    // A file of cl/, from disk in development, else the embedded text.
+    // Appends a file of cl/: in development from disk, else the embedded text.
     void include(const std::string& name) { part("cl/" + name, kernel_text(name)); }
-    // A plugin's file likewise.
+    // Appends a plugin's file likewise.
     void include(const rt_plugin& accel, const rt_cl_file& file) {
         part(plugin_kernel_name(accel, file), plugin_kernel_text(accel, file));
     }

@@ -14,7 +14,7 @@ constexpr Member kMembers[] = {
     {"rt_texture", "textures"},   {"uint", "texels"},           {"rt_light", "lights"},
 };
 
-// Macros by which a traversal calls leaf tests. Their functions are called rt_leaf_mesh or rt_leaf_scene and this suffix.
+// Macros by which a traversal calls leaf tests. The names of the functions are rt_leaf_mesh or rt_leaf_scene plus the suffix.
 struct LeafStep {
     const char *macro, *suffix;
     bool cpu_only;
@@ -25,7 +25,7 @@ constexpr LeafStep kLeafSteps[] = {{"RT_LEAF", "", false},
                                    {"RT_SINGLE_RAY_CANDIDATES", "_candidates", true},
                                    {"RT_SINGLE_RAY_TEST", "_single_ray", true}};
 
-// Prototypes make the functions inline whatever their author wrote.
+// These prototypes make a plugin's functions inline, whether or not the author declared them so.
 constexpr const char* kPrototypes =
     "RT_INLINE void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit);\n"
     "#if RT_STREAM > 1\n"
@@ -39,8 +39,8 @@ constexpr const char* kPrototypes =
     "RT_INLINE void RT_TRAVERSE_WARP(const rt_ctx *ctx, uint root, uint octant, const rt_rays *rays, rt_hits *hits);\n"
     "#endif";
 
-// One instance of the template. name: of its function before the query's suffix. leaf: of its leaf tests. mixed: whether
-// there is more than triangles among them. instances: whether a leaf may be an instance.
+// One instance of the template. name: name of the traversal's function, leaf: of the leaf tests' functions, both without the
+// query's suffix. mixed: whether leaves may hold other primitives than triangles. instances: whether they may hold instances.
 struct Instance {
     std::string name, leaf;
     bool mixed, instances;
@@ -98,7 +98,7 @@ void write_context(SourceWriter& out, const rt_accel& accel) {
     for (const Member& member : kMembers) add(member.type, member.name);
     for (rt_u32 s = 0; s < accel.slot_count; ++s) add(accel.slots[s].cl_type, accel.slots[s].name);
     out.line("} rt_ctx;");
-    // Layouts that differ between host and device stop the compiler with a name that says which.
+    // If the size of a struct differs between host and device, compiling fails, and the message names the struct.
     const auto check = [&](const std::string& type, const std::string& name, size_t bytes) {
         out.line("typedef char " + name + "_has_" + std::to_string(bytes) + "_bytes_on_the_host[sizeof(" + type +
                  ") == " + std::to_string(bytes) + " ? 1 : -1];");

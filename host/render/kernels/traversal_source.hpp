@@ -1,23 +1,23 @@
-// traversal_source.hpp -- a plugin's traversal as kernels get it: the buffers it reads, and one instance of its template for
-// each of {scene, mesh} x {nearest hit, any hit}. What a traversal may use: cl/CONTRACT.md.
+// traversal_source.hpp -- writes a plugin's traversal into a kernel: the buffers that it reads, and one instance of its
+// template for each of {scene, mesh} x {nearest hit, any hit}. cl/CONTRACT.md says what a traversal may use.
 #pragma once
 #include "render/kernels/scene_features.hpp"
 #include "render/kernels/source_writer.hpp"
 
 namespace clarity {
 
-// rt_ctx: the scene's buffers and the slots of the structure, as a struct, kernel arguments and initialisation.
+// Writes rt_ctx: the scene's buffers and the structure's slots, as a struct, as kernel arguments, and as initialisation.
 void write_context(SourceWriter& out, const rt_accel& accel);
 
-// A plugin's traversal, read once, and what its instances are to have.
+// A plugin's traversal as a template. The text is read once; the flags apply to all instances.
 struct TraversalTemplate {
     std::string file, text;
-    bool cpu = false;          // leaf tests in two steps, and tests of a single ray against several primitives
-    bool requeues = false;     // RT_TRAVERSE_REQUEUED too
-    bool by_warps = false;     // RT_TRAVERSE_WARP too
-    bool double_leaf = false;  // every leaf test is done twice, to measure what they take
+    bool cpu = false;          // with leaf tests in two steps, and tests of a single ray against several primitives
+    bool requeues = false;     // with RT_TRAVERSE_REQUEUED
+    bool by_warps = false;     // with RT_TRAVERSE_WARP
+    bool double_leaf = false;  // every leaf test is done twice, to measure the time of leaf tests
 };
-// Primitive tests, traversals and the query over both, for nearest hits or for any hit.
+// Writes the primitive tests, the traversals, and the query that calls both, for nearest hits or for any hit.
 void write_query(SourceWriter& out, const TraversalTemplate& traversal, const SceneFeatures& features, bool any_hit);
 
 }  // namespace clarity

@@ -239,7 +239,7 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
     return gathered(ms_since(begin));
 }
 
-// Distributes the tiles whose owner failed. All lists are empty if there are none.
+// Distributes the tiles of devices that failed. All lists are empty if there are none.
 std::vector<std::vector<unsigned>> MultiDeviceFilm::orphans() const {
     std::vector<bool> owned(tile_count_);
     for (const Member& member : members_)

@@ -21,7 +21,7 @@ class MultiFrameRenderer {
     explicit MultiFrameRenderer(const Devices& devices);
     ~MultiFrameRenderer();
 
-    // Traces samples [sample, sample + samples) of the picture; sample 0 starts it anew. See FrameRenderer::trace(). The
+    // Traces samples [sample, sample + samples) of the picture; sample 0 starts a new picture. See FrameRenderer::trace(). The
     // returned figures are sums over these samples. Many samples in one call, from sample 0 on, are faster than one by one:
     // devices wait for each other once, at the end, and GPUs trace many samples in one launch.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,

@@ -1,4 +1,4 @@
-/* bvh2.cl -- traversal of a binary BVH whose nodes hold the boxes of both children, for any number of lanes.
+/* bvh2.cl -- traversal of a binary BVH with the boxes of both children in each node, for any number of lanes.
  *
  * Aila, Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs": 64 bytes a node, so that one fetch decides on both
  * children. The nearer child is visited next, the other is deferred. The stack has the deferred node and the lanes' entry

@@ -1,4 +1,4 @@
-/* bvh2_types.h -- a binary BVH whose nodes hold the boxes of both children, so that one fetch decides on both. Shared by
+/* bvh2_types.h -- a binary BVH with the boxes of both children in each node, so that one fetch decides on both. Shared by
  * builder and traversal.
  *
  * Aila, Laine 2009, "Understanding the Efficiency of Ray Traversal on GPUs". */

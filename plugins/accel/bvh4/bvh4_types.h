@@ -1,5 +1,5 @@
-/* bvh4_types.h -- a tree whose nodes hold the boxes of up to four children, plane by plane, so that a ray fetches its near and
- * far planes as whole rows. Shared by builder and traversal.
+/* bvh4_types.h -- a tree with up to four children a node. A node holds their boxes plane by plane, so that a ray fetches its
+ * near and far planes as whole rows. Shared by builder and traversal.
  *
  * Wald, Benthin, Boulos 2008, "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs". */
 #ifndef BVH4_TYPES_H

@@ -1,12 +1,12 @@
 /* bvh8.cl -- chooses the traversal of a tree of eight children a node by what the rays have in common.
  *
  *   bvh8_single_ray.cl       programs of one lane
- *   bvh8_interval_packet.cl  a packet whose directions are of one octant: the interval of its rays against eight children at once
+ *   bvh8_interval_packet.cl  a packet with directions of one octant: the interval of its rays against eight children at once
  *   bvh8_interval_stream.cl  several such packets: their intervals, one in each lane, against one child after the other
- *   bvh8_incoherent.cl       a packet whose rays have little in common
+ *   bvh8_incoherent.cl       an incoherent packet: its rays have little in common
  *
- * A packet whose rays are of two octants is traced twice, each time with the rays of one. 224 bytes a node. Made for CPUs. Good
- * at coherent rays, where a node is fetched for many at once; incoherent rays gain from it in trees that outgrow the caches. */
+ * A packet with rays of two octants is traced twice, each time with the rays of one. 224 bytes a node. Made for CPUs. Good for
+ * coherent rays, because a node is fetched for many at once; incoherent rays gain from it in trees that outgrow the caches. */
 #if RT_LANES == 1
 
 #include "bvh8_single_ray.cl"

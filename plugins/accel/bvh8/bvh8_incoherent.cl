@@ -1,9 +1,9 @@
-/* bvh8_incoherent.cl -- one packet whose rays have little in common.
+/* bvh8_incoherent.cl -- one incoherent packet: its rays have little in common.
  *
- * Where BVH8_SINGLE is set, because the tree is larger than the caches, the rays go separate ways (bvh8_interleaved.cl):
- * together, rays that share few nodes would only fetch more of them. Otherwise they are tested together against one box after
- * the other (cl/lanes/packet_traversal.h). The world of a scene with instances is always traced in the second way: a single ray
- * would hold up the others while it is in a mesh. */
+ * If BVH8_SINGLE is set, because the tree is larger than the caches, each ray is traced by itself (bvh8_interleaved.cl): rays
+ * that share few nodes would fetch more nodes if they were traced together. Otherwise all rays are tested together against one
+ * box after the other (cl/lanes/packet_traversal.h). The world of a scene with instances is always traced in the second way: a
+ * single ray would hold up the others while it is in a mesh. */
 #if BVH8_SINGLE && !(RT_SINGLE_RAY_MIXED && RT_HAS_INSTANCES)
 
 #include "bvh8_interleaved.cl"

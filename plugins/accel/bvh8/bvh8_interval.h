@@ -40,7 +40,7 @@ RT_INLINE bvh8_rows bvh8_octant_rows(uint octant)
 /* One number of one child. box: the address of the child's number in the first row. */
 #define BVH8_PLANE(box, bytes) rt_vfloat(*(const global float *)((box) + (bytes)))
 
-/* The bits of the lanes whose rays enter one child before their nearest hits. */
+/* Returns the bits of the lanes with rays that enter one child before their nearest hits. */
 RT_INLINE uint bvh8_enter_child(const global char *box, const bvh8_rows *rows, const rt_rays *ray, const rt_hits *hit)
 {
     vfloat entry;

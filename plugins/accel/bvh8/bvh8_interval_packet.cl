@@ -1,5 +1,5 @@
-/* bvh8_interval_packet.cl -- one packet whose directions are of one octant: the interval of its rays against all eight children
- * of a node at once.
+/* bvh8_interval_packet.cl -- one packet with directions of one octant: the interval of its rays against all eight children of a
+ * node at once.
  *
  * Reshetov, Soupikov, Hurley 2005, "Multi-Level Ray Tracing Algorithm". Before a leaf the rays themselves are tested against
  * its box, and before a node too where the interval is wide. */

@@ -1,5 +1,5 @@
-/* bvh8_interval_stream.cl -- two or more packets of a stream whose active directions are all of one octant: the interval of one
- * packet in each lane, against one child after the other.
+/* bvh8_interval_stream.cl -- two or more packets of a stream with active rays all of one octant: the interval of one packet in
+ * each lane, against one child after the other.
  *
  * bvh8_interval_packet.cl tests eight children at once, this file as many packets. A node is fetched and decided on once for
  * all packets that come to it, a fifth to a tenth as often. `members` are the packets' bits. */

@@ -1,4 +1,4 @@
-/* bvh8_mixed_rays.h -- what the slab tests of bvh8_incoherent.cl need of rays whose directions differ in sign. */
+/* bvh8_mixed_rays.h -- values that the slab tests of bvh8_incoherent.cl need of rays with directions of different signs. */
 #ifndef BVH8_MIXED_RAYS_H
 #define BVH8_MIXED_RAYS_H
 

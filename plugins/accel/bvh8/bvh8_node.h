@@ -4,8 +4,8 @@
 #ifndef BVH8_NODE_H
 #define BVH8_NODE_H
 
-/* A row of a node by its distance from the node's begin in bytes. A traversal keeps these distances in registers: the compiler
- * would multiply an index anew for each node. Far planes lie 96 bytes away from near ones. */
+/* A row of a node by its distance from the node's begin in bytes. A traversal keeps these distances in registers: with an index
+ * the compiler would multiply for each node. Far planes lie 96 bytes away from near ones. */
 #define BVH8_ROW(node, bytes) (*(const global float8 *)((node) + (bytes)))
 #define BVH8_CHILDREN(node) ((const global uint *)((node) + 192))
 

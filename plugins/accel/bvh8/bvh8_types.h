@@ -1,5 +1,5 @@
-/* bvh8_types.h -- a tree whose nodes hold the boxes of up to eight children, plane by plane, so that one ray is tested against
- * all of them at once. Shared by builder and traversal.
+/* bvh8_types.h -- a tree with up to eight children a node. A node holds their boxes plane by plane, so that one ray is tested
+ * against all of them at once. Shared by builder and traversal.
  *
  * Wald, Benthin, Boulos 2008, "Getting Rid of Packets: Efficient SIMD Single-Ray Traversal using Multi-branching BVHs";
  * Dammertz, Hanika, Keller 2008, "Shallow Bounding Volume Hierarchies for Fast SIMD Ray Tracing of Incoherent Rays". */
@@ -39,8 +39,8 @@ typedef struct bvh8_node {
 #ifdef __OPENCL_VERSION__
 #include "bvh8_node.h"
 #if RT_LANES > 1
-/* Whether a packet whose rays start far apart is traced as an incoherent one. That gains nothing where its rays stay
- * together. */
+/* Whether a packet is traced as an incoherent one because its rays start far apart. That gains nothing in trees in which
+ * packets stay together. */
 #if BVH8_SINGLE
 #define BVH8_INCOHERENT(ray, octants) ((octants) != 0u && (ray)->incoherent)
 #else

@@ -10,15 +10,16 @@
  *
  * Stack: 8 bytes a level of the tree. 80 registers on an H200, so 24 warps a multiprocessor. There it has 0.74 to 0.86 of
  * bvh4's speed with 871 k triangles and 0.82 to 0.93 with 102 M, for half the bytes fetched and 12 bytes a triangle less
- * (docs/performance.md): a node takes twice as long as one of four children. */
+ * (docs/how_it_works.md): a node takes twice as long as one of four children. */
 #if RT_LANES == 1
 
 void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
 {
     ulong stack[CWBVH_DEPTH]; /* CWBVH_LEFT */
     uint top = 0, at = root;
-    uint first = 0, row = 0, untested = 0; /* primitives to test: bits of `row`, whose primitives stand from `first` on */
-    float entry_t = 0.0f;                  /* the entry distance of `at` */
+    /* A row of primitives begins at `first`, in the order of the set bits of `row`. untested: the bits of those still to test. */
+    uint first = 0, row = 0, untested = 0;
+    float entry_t = 0.0f; /* the entry distance of `at` */
 #if RT_ANY_HIT
 #define CWBVH_FIRST(bits) ((bits) & -(bits)) /* order does not matter */
 #else

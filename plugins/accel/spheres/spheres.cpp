@@ -31,7 +31,7 @@ constexpr float kEverywhere = 1e30f;
 struct Run {
     uint32_t first, count;
     Box box;
-    bool lone;
+    bool lone;  // of spheres that rays test one by one, without a tree
 };
 
 // The tree of a mesh, the index of its first node, and the level of its root.
@@ -117,7 +117,7 @@ class Plan {
     const bool top_level_;
 };
 
-// Copies the primitives of a group to `items`, and returns its meshes. `lone`: rays test spheres one by one, without a tree.
+// Copies the primitives of a group to `items`, and returns its meshes. lone: rays test spheres one by one, without a tree.
 std::vector<Run> gather(const rt_build_input& input, const rt_group& group, bool lone, std::vector<Item>& items) {
     std::vector<Run> runs;
     for (rt_u32 i = group.first; i < group.first + group.count; ++i) {

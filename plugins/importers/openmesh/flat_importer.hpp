@@ -43,8 +43,8 @@ class FlatImporter : public OpenMesh::IO::BaseImporter {
 
     // Marks a vertex with coordinates that could not be read. Faces must not use it.
     void mark_unusable(size_t vertex);
-    // Sets uvs per corner, in the order of the faces; PLY stores them in lists. A list whose size differs from the face's is
-    // ignored.
+    // Sets uvs per corner, in the order of the faces; PLY stores them in lists. A list is ignored if its size differs from
+    // the face's.
     void set_corner_uvs(const std::function<const std::vector<float>*(size_t face)>& uvs_of_face);
     // Call it after reading: it makes faces of half-edges (OM), and removes faces without corners.
     void finish_faces();

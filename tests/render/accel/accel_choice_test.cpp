@@ -1,4 +1,4 @@
-// Which structure holds a scene where nobody names one.
+// accel_choice_test.cpp -- which structure holds a scene if the user names none.
 #include <gtest/gtest.h>
 
 #include "base/error.hpp"

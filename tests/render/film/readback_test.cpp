@@ -1,5 +1,5 @@
 // readback_test.cpp -- consecutive pictures, each copied while the next one is traced. No picture is lost, doubled or torn, and
-// none changes while somebody holds it. A GPU copies with a queue of its own. The parameter "gpu" lets a CPU pretend to be one,
+// none changes while a reader holds it. A GPU copies with a queue of its own. The parameter "gpu" lets a CPU pretend to be one,
 // so that it does the same.
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// counters_test.cpp -- the counts of counting programs, against trees whose visits are known. Counting must not change hits.
+// counters_test.cpp -- the counts of counting programs, against trees with known visits. Counting must not change hits.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -101,7 +101,7 @@ TEST(Counters, CountActiveLanesPerNode) {
             EXPECT_EQ(hit.leaf_tests, alone.leaf_tests) << accel;
             EXPECT_EQ(hit.lane_steps, 16 * alone.lane_steps) << accel;
         }
-        // One active ray, and fifteen whose interval is empty.
+        // One active ray, and fifteen with an empty interval.
         std::vector<rt_ray> lonely(16, ray_of({0.1f, 0.2f, 5}, {0, 0, -1}, -1));
         lonely[5] = straight;
         for (const rt_hit& hit : counted(ball(), accel, 16, lonely)) {

@@ -118,7 +118,7 @@ TEST(PacketStreams, InstancedScene) {
     expect_as_alone(instanced_rubble(), all_beams(), 10000, {16});
 }
 
-// Lanes and whole packets without rays, and rays whose intervals begin late and end early.
+// Lanes and whole packets without rays, and rays with intervals that begin late and end early.
 TEST(PacketStreams, InactiveRaysAndIntervals) {
     std::vector<rt_ray> rays = all_beams();
     std::mt19937 random(22);

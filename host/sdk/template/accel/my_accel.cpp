@@ -47,8 +47,8 @@ constexpr rt_cl_file kFiles[] = {
 };
 constexpr rt_slot kSlots[] = {rt::slot<my_accel_run>("my_accel_runs", "my_accel_run"),
                               rt::slot<my_accel_block>("my_accel_blocks", "my_accel_block")};
-// Once it is worth it: rt::Traits().merit(cpu, gpu) with what `clarity bench accel` measured; rt_plugin.h has the unit. Until
-// then nobody gets this structure who does not name it.
+// When the structure is fast enough to be a default, add rt::Traits().merit(cpu, gpu) with the result of `clarity bench accel`;
+// rt_plugin.h has the unit. Until then the host takes this structure only if the user names it.
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "my_accel_types.h"), rt::file(kFiles, "my_accel.cl"),
                                       rt::guarded<build>, nullptr, rt::Traits().tests_everything());
 
