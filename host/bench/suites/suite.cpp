@@ -63,7 +63,7 @@ class Planner {
         if (name == "quick") return quick();
         std::string known;
         for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
-        throw Error(Exit::usage, "bench " + name + ": neither a suite nor a file; the suites are " + known);
+        throw Error(Exit::usage, "bench " + name + ": no such suite, and no such file; the suites are " + known);
     }
 
     // Adds the scenes named by the user, or else those of the suite's own scenes which were found. Notes the missing ones.
