@@ -19,7 +19,10 @@ RowsFile::RowsFile(std::string path) : path_(std::move(path)), part_(path_ + ".p
 
 RowsFile::~RowsFile() {
     if (!file_) return;
-    if (!any_) return remove();
+    if (!any_) {
+        remove_part();
+        return;
+    }
     if (torn_) {
         std::fclose(file_);  // the file keeps the rows before the torn one
         return;
@@ -39,10 +42,10 @@ void RowsFile::add(const BenchReport& report) {
 
 void RowsFile::finish(const BenchReport& report) {
     write_text_file(path_, bench_json(report));
-    if (file_) remove();
+    if (file_) remove_part();
 }
 
-void RowsFile::remove() {
+void RowsFile::remove_part() {
     std::fclose(file_);
     file_ = nullptr;
     std::remove(part_.c_str());

@@ -24,7 +24,7 @@ class RowsFile {
 
  private:
     [[noreturn]] void fail(const char* what) const;
-    void remove();
+    void remove_part();
 
     const std::string path_, part_;
     std::FILE* file_ = nullptr;  // null if finished, or if `path` is a pipe or device, which cannot be replaced
