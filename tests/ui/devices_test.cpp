@@ -85,7 +85,7 @@ TEST_F(Devices, SeveralShareAPicture) {
         window->settle();
         EXPECT_EQ(window->state()["message"], "") << words;
     }
-    for (const char* words : {"set spp 1", "set lanes auto", "set depth 5"}) ASSERT_EQ(window->command(words), "");
+    for (const char* words : {"set spp 16", "set lanes auto", "set depth 5"}) ASSERT_EQ(window->command(words), "");
     ASSERT_EQ(window->command("device " + first), "");
     window->settle();
     EXPECT_EQ(window->state()["device"], first);
