@@ -97,7 +97,7 @@ AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
         if (p && zero) std::memset(p, 0, bytes);
         if (!p) p = map_large(mapped);
         if (!p) throw std::bad_alloc();
-        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{mapped});
+        data_ = std::unique_ptr<void, FreeMemory>(p, FreeMemory{mapped, false});
         return;
     }
     void* p = std::aligned_alloc(128, (bytes + 127) / 128 * 128);
@@ -107,6 +107,7 @@ AlignedBytes::AlignedBytes(size_t bytes, bool zero) : bytes_(bytes) {
 }
 
 void FreeMemory::operator()(void* p) const {
+    if (borrowed) return;
     if (mapped)
         spare_blocks().give(p, mapped);
     else
@@ -114,7 +115,7 @@ void FreeMemory::operator()(void* p) const {
 }
 
 void AlignedBytes::free(void* data, size_t bytes) {
-    FreeMemory{bytes >= kMapped ? mapped_bytes(bytes) : 0}(data);
+    FreeMemory{bytes >= kMapped ? mapped_bytes(bytes) : 0, false}(data);
 }
 
 size_t AlignedBytes::kept() {

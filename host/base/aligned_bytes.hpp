@@ -11,7 +11,8 @@ namespace clarity {
 
 // Deleter of the memory of AlignedBytes.
 struct FreeMemory {
-    size_t mapped = 0;  // size of the mapping in bytes; 0: the memory is from the heap
+    size_t mapped = 0;      // size of the mapping in bytes; 0: the memory is from the heap
+    bool borrowed = false;  // the memory belongs to someone else
     void operator()(void* p) const;
 };
 
@@ -22,6 +23,13 @@ class AlignedBytes {
     AlignedBytes() = default;
     // `zero`: the memory is cleared. Throws std::bad_alloc.
     explicit AlignedBytes(size_t bytes, bool zero);
+    // Refers to memory of another owner, which must be aligned as stated and outlive the result.
+    static AlignedBytes borrow(void* data, size_t bytes) {
+        AlignedBytes result;
+        result.data_ = std::unique_ptr<void, FreeMemory>(data, FreeMemory{0, true});
+        result.bytes_ = bytes;
+        return result;
+    }
     void* data() { return data_.get(); }
     const void* data() const { return data_.get(); }
     size_t bytes() const { return bytes_; }

@@ -20,6 +20,8 @@ struct Parsed {
     TraceOptions trace;
     RenderOptions render;
     BenchCommand bench;
+    TraceCommand rays;
+    CheckCommand check;
     std::string key_map;
     bool json = false;
 };
@@ -91,7 +93,7 @@ void add_settings(CLI::App& app, std::vector<std::pair<std::string, std::string>
         ->group("Settings");
 }
 
-void add_trace(CLI::App& app, TraceOptions& trace) {
+void add_device(CLI::App& app, TraceOptions& trace) {
     single(app.add_option("--device", trace.device,
                           "Numbers as `clarity devices` lists them, P:D, cpu, gpu, part of a name; several share the picture: "
                           "0,1 or gpus or all; cpu/2 is a CPU in two parts"))
@@ -99,6 +101,10 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
     single(app.add_option("--accel", trace.accel, "Acceleration structure with its parameters (`clarity plugins` lists them)"))
         ->type_name("ID[,key=value...]")
         ->default_str("the one of highest merit for the device");
+}
+
+void add_trace(CLI::App& app, TraceOptions& trace) {
+    add_device(app, trace);
     single(app.add_option("--camera", trace.camera, "A camera of the scene by name, or its position and target"))
         ->type_name("NAME|ex,ey,ez,tx,ty,tz[,fov_deg]");
     single(app.add_option("--light", trace.light, "Move the first light here"))->type_name("x,y,z");
@@ -128,6 +134,32 @@ void add_render(CLI::App& app, RenderOptions& render) {
     app.add_flag("--watch", render.watch,
                  "Render again whenever a kernel or a scene file named here is saved; Ctrl-C ends, with the exit code of the "
                  "last attempt");
+}
+
+void add_rays(CLI::App& app, TraceCommand& command) {
+    single(app.add_option("--rays", command.rays_file,
+                          "Rays, one a line: origin x y z, t_min, direction x y z, t_max; # begins a comment; - is stdin"))
+        ->type_name("FILE")
+        ->required();
+    single(app.add_option("-o,--output", command.output, "Where to write t, prim, instance, u, v of each hit; - is stdout"))
+        ->type_name("HITS")
+        ->required();
+    app.add_flag("--any", command.any_hit, "Ask only whether something is hit between t_min and t_max: 1 or 0 a ray");
+}
+
+void add_check(CLI::App& app, CheckCommand& command) {
+    app.add_option("plugin", command.what, "Ids as `clarity plugins` lists them, or libraries")->type_name("PLUGIN")->required();
+    app.add_option("--only", command.options.only, "Only checks whose name begins so, such as hits or builds.refs; may be repeated")
+        ->type_name("NAME")
+        ->allow_extra_args(false);
+    app.add_option("--lanes", command.options.lanes, "Only kernels of this many lanes; may be repeated; default: 1, 4, 8 and 16")
+        ->type_name("N")
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember({1, 4, 8, 16}));
+    app.add_flag("--quick", command.options.quick, "Fewer rays, repetitions and compiled variants: seconds instead of a minute");
+    app.add_flag("--json", command.json, "As JSON");
+    single(app.add_option("--report", command.options.report_folder, "Write the rays with wrong answers into this folder"))->type_name("DIR");
+    single(app.add_option("--device", command.options.device, "The device that traces, as `clarity devices` lists them"))->type_name("D");
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {
@@ -213,6 +245,8 @@ CommandLine parse_command_line(int argc, char** argv) {
 
     CLI::App* view = app.add_subcommand("view", "Open the window on a scene");
     CLI::App* render = app.add_subcommand("render", "Render a scene to a picture file");
+    CLI::App* trace = app.add_subcommand("trace", "Trace rays that are given by their numbers");
+    CLI::App* check = app.add_subcommand("check", "Say whether a plugin is right, in a process that it may crash");
     CLI::App* bench = app.add_subcommand("bench", "Measure: structures, settings, devices and peers on suites or scenes");
     CLI::App* info = app.add_subcommand("info", "Show what the importer read from a file");
     CLI::App* devices = app.add_subcommand("devices", "List OpenCL devices, best first");
@@ -239,6 +273,27 @@ CommandLine parse_command_line(int argc, char** argv) {
             options.trace = parsed->trace;
             options.quiet = parsed->common.quiet;
             return run_render(registry, options);
+        };
+    });
+
+    add_scene(*trace, p.scene)->required();
+    add_rays(*trace, p.rays);
+    add_device(*trace, p.trace);
+    add_settings(*trace, p.trace.settings, p.trace.sets);
+    trace->callback([&] {
+        line.command = [parsed](const PluginRegistry& registry) {
+            TraceCommand command = parsed->rays;
+            command.scene = parsed->scene;
+            command.trace = parsed->trace;
+            command.quiet = parsed->common.quiet;
+            return run_trace(registry, command);
+        };
+    });
+
+    add_check(*check, p.check);
+    check->callback([&] {
+        line.command = [parsed](const PluginRegistry& registry) {
+            return run_check(registry, parsed->check);
         };
     });
 
@@ -271,7 +326,7 @@ CommandLine parse_command_line(int argc, char** argv) {
         line.refused_plugin_is_fatal = false;
         line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
     });
-    for (CLI::App* sub : {view, render, bench, info, devices, plugins}) {
+    for (CLI::App* sub : {view, render, trace, check, bench, info, devices, plugins}) {
         add_common(*sub, p.common);
         sub->get_formatter()->column_width(34);
         sub->footer(kExitCodes);

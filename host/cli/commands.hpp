@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "check/check.hpp"
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
 #include "render/settings/edit.hpp"
@@ -54,6 +55,24 @@ struct ViewCommand {
     std::string key_map;
 };
 int run_view(const PluginRegistry& plugins, const ViewCommand& options);
+
+// Rays by their numbers.
+struct TraceCommand {
+    SceneOptions scene;
+    TraceOptions trace;
+    std::string rays_file;  // "-": stdin
+    std::string output;     // "-": stdout
+    bool any_hit = false;   // only whether something is hit between t_min and t_max
+    bool quiet = false;
+};
+int run_trace(const PluginRegistry& plugins, const TraceCommand& command);
+
+struct CheckCommand {
+    std::vector<std::string> what;  // ids and libraries
+    check::CheckOptions options;
+    bool json = false;
+};
+int run_check(const PluginRegistry& plugins, const CheckCommand& command);
 
 struct BenchCommand {
     std::vector<std::string> what;    // suites and scene files

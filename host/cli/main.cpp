@@ -7,9 +7,11 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "check/check.hpp"
 #include "cli/command_line.hpp"
 #include "cli/interrupt.hpp"
 #include "import/import.hpp"
+#include "render/accel/build_in_worker.hpp"
 
 namespace clarity {
 namespace {
@@ -65,8 +67,10 @@ int run_and_report(int argc, char** argv) {
 }  // namespace clarity
 
 int main(int argc, char** argv) {
-    // The import worker must set its resource limits before anything else runs.
+    // Workers must set their resource limits before anything else runs.
     if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import::import_worker_main(argc, argv);
+    if (argc > 1 && std::strcmp(argv[1], "check-worker") == 0) return clarity::check::check_worker_main(argc, argv);
+    if (argc > 1 && std::strcmp(argv[1], "build-worker") == 0) return clarity::build_worker_main(argc, argv);
     const int code = clarity::run_and_report(argc, argv);
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {

@@ -139,14 +139,19 @@ void search_user_data(Search& search) {
     search.add_folder(fs::path(data) / "clarity" / "plugins", true);
 }
 
-void search_own_folders(Search& search) {
-    const fs::path program = executable_folder();
-    if (program.empty()) return;
+// The plugin folders of a program, which need not exist.
+std::vector<fs::path> folders_of(const fs::path& program_folder) {
+    std::vector<fs::path> folders;
+    if (program_folder.empty()) return folders;
 #ifdef CLARITY_LIBRARIES_FROM_PROGRAM
-    search.add_folder((program / CLARITY_LIBRARIES_FROM_PROGRAM / "clarity" / "plugins").lexically_normal(), true);
+    folders.push_back((program_folder / CLARITY_LIBRARIES_FROM_PROGRAM / "clarity" / "plugins").lexically_normal());
 #endif
-    // The layout of the build folder.
-    search.add_folder((program / "../lib/clarity/plugins").lexically_normal(), true);
+    folders.push_back((program_folder / "../lib/clarity/plugins").lexically_normal());  // the layout of the build folder
+    return folders;
+}
+
+void search_own_folders(Search& search) {
+    for (const fs::path& folder : folders_of(executable_folder())) search.add_folder(folder, true);
 }
 
 std::string key_of(const rt_plugin& plugin) {
@@ -204,6 +209,19 @@ PluginRecord load_plugin(const std::string& path) {
         record.why = std::string("could not be examined: ") + e.what();
         return record;
     }
+}
+
+bool is_own_library(const std::string& path) {
+    std::error_code error;
+    const fs::path library = fs::canonical(path, error);
+    if (error) return false;
+    std::vector<fs::path> folders = folders_of(executable_folder());
+    if (const std::string worker = environment("CLARITY_WORKER"); !worker.empty())
+        for (fs::path& folder : folders_of(fs::canonical(worker, error).parent_path())) folders.push_back(std::move(folder));
+    for (const fs::path& folder : folders)
+        for (const char* kind : {"", "importers", "accel"})
+            if (library.parent_path() == fs::canonical(folder / kind, error) && !error) return true;
+    return false;
 }
 
 PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files) {

@@ -43,4 +43,7 @@ class PluginRegistry {
 // tells the reason.
 PluginRecord load_plugin(const std::string& path);
 
+// Whether a library is in a plugin folder of the program itself or of the program that CLARITY_WORKER names.
+bool is_own_library(const std::string& path);
+
 }  // namespace clarity

@@ -171,7 +171,8 @@ double AccelData::stat(const std::string& label, double otherwise) const {
     return otherwise;
 }
 
-AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress) {
+AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
+                      BuildPlace place) {
     AccelData data;
     data.plugin = &plugin;
     data.params = params;
@@ -207,7 +208,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     start = std::chrono::steady_clock::now();
     services.check(static_cast<int>(Exit::failed), [&] {
         const ScopedFpMode floats;
-        return plugin.accel->build(services.host(), &input, &output_table);
+        return call_builder(plugin, place, services.host(), &input, &output_table, progress);
     });
     data.build_ms = ms_since(start);
     data.scene.prims = {};  // frees what is no longer needed at once: large scenes fill the memory with it

@@ -9,6 +9,7 @@
 #include "base/aligned_bytes.hpp"
 #include "base/progress.hpp"
 #include "plugin/parameters.hpp"
+#include "render/accel/build_in_worker.hpp"
 #include "render/accel/build_scene.hpp"
 #include "rt_plugin.h"
 #include "scene/scene.hpp"
@@ -43,7 +44,8 @@ struct AccelData {
 
 // Runs a plugin's builder on a scene, on the calling thread and those that it starts. Throws Error(failed) "accel bvh2: why",
 // and Cancelled. It also throws if the builder breaks its contract, for example by a missing root, a root or a ref out of
-// range, a slot allocated twice, or an exception.
-AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress);
+// range, a slot allocated twice, or an exception. A stranger's builder runs in a worker process: see `place`.
+AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
+                      BuildPlace place = BuildPlace::automatic);
 
 }  // namespace clarity

@@ -30,6 +30,8 @@ class RayQueries {
     double trace(const Prepared& prepared, const RayBlocks& rays, RayQuery query, std::vector<rt_hit>* hits);
     // How the last trace() ran.
     RayTuning tuning() const { return tuning_; }
+    // How many traversal stacks were full in the last trace(). 0 for programs that are not for debugging.
+    uint64_t overflows() const { return overflowed_; }
 
  private:
     LaunchTimes trace_at_once(const Prepared& prepared, const TraceProgram& program, const Layout& layout, size_t blocks,
@@ -58,6 +60,7 @@ class RayQueries {
     std::vector<KernelKind> kinds_;
     Autotuner autotuner_;
     RayTuning tuning_;
+    uint64_t overflowed_ = 0;
     OverflowCounter overflows_;  // used for debug programs
     GrowingBuffer in_{CL_MEM_READ_ONLY}, out_{CL_MEM_READ_WRITE};
 };

@@ -1,4 +1,4 @@
-// worker_process.hpp -- starts and ends a worker process, and owns its descriptors.
+// process.hpp -- starts and ends a worker process, and owns its descriptors.
 #pragma once
 #include <sys/types.h>
 #include <cstdint>
@@ -7,7 +7,9 @@
 #include <utility>
 #include <vector>
 
-namespace clarity::import {
+#include "base/error.hpp"
+
+namespace clarity::worker {
 
 // Owns a file descriptor and closes it.
 class FileDescriptor {
@@ -26,17 +28,22 @@ class FileDescriptor {
     int fd_;
 };
 
+// The program that runs as worker: the one that CLARITY_WORKER names, or this program.
+std::string worker_program();
+
 // A worker process. The destructor kills it if it still runs, and waits for its end.
 class WorkerProcess {
  public:
-    // Starts `program import-worker ARGUMENTS...`. Throws Error(import_failed) if that fails.
-    WorkerProcess(const std::string& program, const std::vector<std::string>& arguments);
+    // Starts `program COMMAND ARGUMENTS...`. Throws Error(code) if that fails.
+    WorkerProcess(const std::string& program, const std::string& command, const std::vector<std::string>& arguments, Exit code);
     ~WorkerProcess();
     WorkerProcess(const WorkerProcess&) = delete;
     WorkerProcess& operator=(const WorkerProcess&) = delete;
 
     int channel() const { return channel_.get(); }
+    // Shared memory for the worker's result; empty at the start. The caller may put the input there.
     int result() const { return result_.get(); }
+    pid_t pid() const { return pid_; }
     // Pipe with everything that the worker and its libraries print; non-blocking.
     int output() const { return output_.get(); }
     void kill_now();
@@ -53,4 +60,4 @@ class WorkerProcess {
     FileDescriptor channel_, result_, output_;
 };
 
-}  // namespace clarity::import
+}  // namespace clarity::worker

@@ -4,10 +4,17 @@
 #include <string>
 #include <vector>
 
-namespace clarity::import {
+namespace clarity::worker {
+
+// What a worker does, which decides what it may do.
+enum class WorkerKind {
+    parser,   // importers: reads the named files, no more; little of the system is needed
+    builder,  // builders of structures: reads no files at all
+    driver    // kernels: OpenCL drivers start compilers, write caches, talk to devices and reserve terabytes of addresses
+};
 
 struct WorkerLimits {
-    uint64_t memory_bytes = 0;       // address space that it may map in addition to the present one; 0: no limit
+    uint64_t memory_bytes = 0;       // memory that it may map in addition to the present one; 0: no limit
     uint64_t most_memory_bytes = 0;  // the parent may raise memory_bytes up to this while the worker runs
     uint64_t cpu_s = 0;              // processor time in seconds
     uint64_t stack_bytes = 64u << 20;
@@ -17,16 +24,18 @@ struct WorkerLimits {
 // processes, cannot write or change files, and reads only files in `folders` and the named `files` (canonical paths). Memory,
 // processor time and stack are limited, and a crash writes no core file. Returns one line for each restriction that this kernel
 // cannot enforce.
-std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, const std::vector<std::string>& files,
-                                       const WorkerLimits& limits);
+// A worker of kind `driver` is less restricted: it has no network and no tracing of other processes, and only its processor time
+// and stack are limited here. Its parent watches its resident memory.
+std::vector<std::string> enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders,
+                                       const std::vector<std::string>& files, const WorkerLimits& limits);
 
 // Lifts the limit on file sizes, which would also hold for the file in memory that takes the result.
 void allow_writing_result();
 
 namespace detail {
 // Both return an empty text on success, otherwise why the kernel refused.
-std::string restrict_system_calls();
+std::string restrict_system_calls(WorkerKind kind);
 std::string restrict_files(const std::vector<std::string>& folders, const std::vector<std::string>& files);
 }  // namespace detail
 
-}  // namespace clarity::import
+}  // namespace clarity::worker

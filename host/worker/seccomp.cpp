@@ -1,5 +1,6 @@
-// seccomp.cpp -- allows the system calls that a file parser needs; all others fail with EPERM. Calls newer than this list fail
-// with ENOSYS, after which the C library uses older ones instead.
+// seccomp.cpp -- allows the system calls that a file parser or a builder needs; all others fail with EPERM. Calls newer than this
+// list fail with ENOSYS, after which the C library uses older ones instead. Workers that load OpenCL drivers may do everything but
+// what no driver needs.
 #include <fcntl.h>
 #include <sched.h>
 #include <seccomp.h>
@@ -14,9 +15,9 @@
 #include <cstring>
 #include <memory>
 
-#include "import/sandbox.hpp"
+#include "worker/sandbox.hpp"
 
-namespace clarity::import {
+namespace clarity::worker {
 namespace {
 
 // libseccomp skips the calls that this architecture does not have.
@@ -45,6 +46,13 @@ const int kAllowed[] = {
     SCMP_SYS(uname), SCMP_SYS(sysinfo), SCMP_SYS(getrlimit), SCMP_SYS(getuid), SCMP_SYS(geteuid), SCMP_SYS(getgid),
     SCMP_SYS(getegid), SCMP_SYS(getrandom)};
 
+// What a worker with a driver must not do: the network, other processes' memory, and the system as a whole.
+const int kRefused[] = {SCMP_SYS(connect), SCMP_SYS(bind),      SCMP_SYS(listen),   SCMP_SYS(accept),       SCMP_SYS(accept4),
+                        SCMP_SYS(ptrace),  SCMP_SYS(mount),     SCMP_SYS(umount2),  SCMP_SYS(pivot_root),   SCMP_SYS(chroot),
+                        SCMP_SYS(reboot),  SCMP_SYS(swapon),    SCMP_SYS(swapoff),  SCMP_SYS(init_module),  SCMP_SYS(finit_module),
+                        SCMP_SYS(bpf),     SCMP_SYS(setuid),    SCMP_SYS(setgid),   SCMP_SYS(process_vm_readv),
+                        SCMP_SYS(process_vm_writev), SCMP_SYS(settimeofday), SCMP_SYS(sethostname)};
+
 // From this number on all architectures use the same numbers. All calls above are older, except statx, getrandom, membarrier
 // and rseq. The last call today is about 470. Each number costs one rule: 600 of them took 7 ms at every import, these take 1
 // ms.
@@ -53,7 +61,7 @@ constexpr int kFirstUnified = 424, kEndUnified = 512;
 // Collects rules; remembers the first error.
 class Filter {
  public:
-    Filter() : context_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), seccomp_release) {
+    explicit Filter(uint32_t otherwise) : context_(seccomp_init(otherwise), seccomp_release) {
         if (!context_) {
             error_ = ENOMEM;
             return;
@@ -89,11 +97,20 @@ class Filter {
 
 }  // namespace
 
-std::string detail::restrict_system_calls() {
+std::string detail::restrict_system_calls(WorkerKind kind) {
+    const auto note = [](int error) {
+        return error == 0 ? std::string() : std::string("seccomp is not available: ") + std::strerror(error);
+    };
+    if (kind == WorkerKind::driver) {
+        if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return "no_new_privs is not available";
+        Filter filter(SCMP_ACT_ALLOW);
+        for (const int call : kRefused) filter.add(SCMP_ACT_ERRNO(EPERM), call);
+        return note(filter.load());
+    }
     constexpr uint32_t kAll = 0xFFFFFFFFu;
     constexpr uint32_t kWriting = O_WRONLY | O_RDWR | O_CREAT | O_TRUNC;
     const auto self = static_cast<uint32_t>(getpid());
-    Filter filter;
+    Filter filter(SCMP_ACT_ERRNO(EPERM));
     for (const int call : kAllowed) filter.allow(call);
     filter.allow_if(SCMP_SYS(openat), 2, kWriting, 0);
     filter.allow_if(SCMP_SYS(open), 1, kWriting, 0);
@@ -111,8 +128,7 @@ std::string detail::restrict_system_calls() {
     filter.allow_if(SCMP_SYS(prlimit64), scmp_arg_cmp{2, SCMP_CMP_EQ, 0, 0});
     filter.allow_if(SCMP_SYS(setrlimit), 0, kAll, RLIMIT_FSIZE);
     for (int call = kFirstUnified; call < kEndUnified; ++call) filter.add(SCMP_ACT_ERRNO(ENOSYS), call);
-    const int error = filter.load();
-    return error == 0 ? std::string() : std::string("seccomp is not available: ") + std::strerror(error);
+    return note(filter.load());
 }
 
-}  // namespace clarity::import
+}  // namespace clarity::worker

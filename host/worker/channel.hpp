@@ -1,25 +1,25 @@
-// worker_channel.hpp -- messages between the worker process and its parent, through a sequenced-packet socket pair.
+// channel.hpp -- messages between the worker process and its parent, through a sequenced-packet socket pair.
 #pragma once
 #include <cstdint>
 #include <string>
 
-namespace clarity::import {
+namespace clarity::worker {
 
 // File descriptors which are open when the worker starts.
 inline constexpr int kChannelFd = 3, kResultFd = 4;
 // Set in the worker's environment. A process that has it must not start workers of its own.
 inline constexpr const char* kWorkerVariable = "CLARITY_IMPORT_WORKER";
-// First message of a worker. Any other program says something else, or nothing.
-inline constexpr const char* kWorkerGreeting = "clarity import worker 1";
 
 enum class MessageKind : uint32_t {
-    greeting = 1,  // text: kWorkerGreeting
-    running,       // text: file, line break, importer; the worker waits for `proceed`
+    greeting = 1,  // text: the kind of the worker, see child.hpp. Any other program says something else, or nothing
+    running,       // text: what it runs now; importers: file, line break, importer, and the worker waits for `proceed`
     stage,         // text as for Progress::stage
     progress,      // fraction
     log,           // level, text
     death,         // text: the cause of death as the worker sees it, "stack overflow"
-    failed,        // text: error message, naming the file
+    failed,        // text: error message, naming the file or the plugin
+    cancelled,     // the work stopped because it was told to
+    report,        // text: one result of a check, as JSON
     done,          // the result is complete and sealed
     cancel,        // to the worker: stop
     proceed,       // to the worker: its limits now allow for the file that it named
@@ -41,4 +41,4 @@ enum class Received { message, nothing, closed };
 // Receives a message without waiting. A malformed packet counts as `closed`.
 Received receive_message(int fd, Message& message);
 
-}  // namespace clarity::import
+}  // namespace clarity::worker

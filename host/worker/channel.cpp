@@ -1,6 +1,6 @@
 // A packet is a PacketHead followed by the text. It is sent with plain read and write, because the worker's sandbox forbids
 // socket calls.
-#include "import/worker_channel.hpp"
+#include "worker/channel.hpp"
 
 #include <poll.h>
 #include <unistd.h>
@@ -10,7 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
-namespace clarity::import {
+namespace clarity::worker {
 namespace {
 
 constexpr size_t kMaxText = 8000;
@@ -74,4 +74,4 @@ Received receive_message(int fd, Message& message) {
     return Received::message;
 }
 
-}  // namespace clarity::import
+}  // namespace clarity::worker

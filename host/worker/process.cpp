@@ -1,4 +1,4 @@
-#include "import/worker_process.hpp"
+#include "worker/process.hpp"
 
 #include <fcntl.h>
 #include <spawn.h>
@@ -12,19 +12,23 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 
 #include "base/error.hpp"
-#include "import/worker_channel.hpp"
+#include "worker/channel.hpp"
 
 extern char** environ;
 
-namespace clarity::import {
+namespace clarity::worker {
 namespace {
 
+struct StartFailure {
+    std::string what;
+    int error;
+};
 [[noreturn]] void fail(const std::string& what, int error) {
-    throw Error(Exit::import_failed, "cannot start the import worker: " + what + ": " + std::strerror(error) +
-                                         " (importing without one is possible, but a damaged file may then end this program)");
+    throw StartFailure{what, error};
 }
 
 int checked(int fd, const char* what) {
@@ -59,7 +63,13 @@ void FileDescriptor::reset() {
     fd_ = -1;
 }
 
-WorkerProcess::WorkerProcess(const std::string& program, const std::vector<std::string>& arguments) {
+std::string worker_program() {
+    const char* named = std::getenv("CLARITY_WORKER");
+    return named && *named ? named : "/proc/self/exe";
+}
+
+WorkerProcess::WorkerProcess(const std::string& program, const std::string& command, const std::vector<std::string>& arguments,
+                             Exit code) try {
     int pair[2], pipe_ends[2];
     checked(socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair), "socket pair");
     channel_ = moved_up(pair[0]);
@@ -68,7 +78,7 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::vector<std::
     output_ = moved_up(pipe_ends[0]);
     const FileDescriptor their_output = moved_up(pipe_ends[1]);
     fcntl(output_.get(), F_SETFL, O_NONBLOCK);
-    result_ = moved_up(checked(memfd_create("clarity-scene", MFD_CLOEXEC | MFD_ALLOW_SEALING), "shared memory"));
+    result_ = moved_up(checked(memfd_create("clarity-worker", MFD_CLOEXEC | MFD_ALLOW_SEALING), "shared memory"));
 
     FileActions files;
     posix_spawn_file_actions_addopen(&files.actions, 0, "/dev/null", O_RDONLY, 0);
@@ -87,7 +97,7 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::vector<std::
     posix_spawnattr_setpgroup(&spawn.attributes, 0);
     posix_spawnattr_setflags(&spawn.attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETPGROUP);
 
-    std::vector<std::string> words = {program, "import-worker"};
+    std::vector<std::string> words = {program, command};
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<char*> argv;
     for (std::string& word : words) argv.push_back(word.data());
@@ -102,6 +112,9 @@ WorkerProcess::WorkerProcess(const std::string& program, const std::vector<std::
         pid_ = -1;
         fail(program, error);
     }
+} catch (const StartFailure& failure) {
+    throw Error(code, "cannot start the worker process: " + failure.what + ": " + std::strerror(failure.error) +
+                          "; name the program `clarity` in CLARITY_WORKER or unset it");
 }
 
 WorkerProcess::~WorkerProcess() {
@@ -137,4 +150,4 @@ uint64_t WorkerProcess::resident_bytes() const {
     return read ? resident * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) : 0;
 }
 
-}  // namespace clarity::import
+}  // namespace clarity::worker

@@ -1,4 +1,4 @@
-#include "import/sandbox.hpp"
+#include "worker/sandbox.hpp"
 
 #include <fcntl.h>
 #include <malloc.h>
@@ -19,7 +19,7 @@
 #define CLARITY_LANDLOCK
 #endif
 
-namespace clarity::import {
+namespace clarity::worker {
 namespace {
 
 // Sanitizers reserve terabytes of address space. In such builds only the parent's check of resident memory limits the worker.
@@ -49,8 +49,8 @@ void limit(int resource, uint64_t soft, uint64_t hard, const char* what, std::ve
 
 }  // namespace
 
-std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, const std::vector<std::string>& files,
-                                       const WorkerLimits& limits) {
+std::vector<std::string> enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders,
+                                       const std::vector<std::string>& files, const WorkerLimits& limits) {
     std::vector<std::string> notes;
     // Small thread stacks and few malloc arenas: on a machine with many cores they would otherwise use up the address space.
     pthread_attr_t attributes;
@@ -62,10 +62,15 @@ std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, 
 
     limit(RLIMIT_STACK, limits.stack_bytes, limits.stack_bytes, "the stack", notes);
     limit(RLIMIT_CORE, 0, 0, "the core file", notes);
-    limit(RLIMIT_NOFILE, 64, 64, "the number of open files", notes);
     // At the soft limit the process gets SIGXCPU, which tells the parent the reason; SIGKILL follows one second later.
     if (limits.cpu_s > 0) limit(RLIMIT_CPU, limits.cpu_s, limits.cpu_s + 1, "processor time", notes);
     signal(SIGXFSZ, SIG_IGN);
+    if (kind == WorkerKind::driver) {
+        const std::string call_note = detail::restrict_system_calls(kind);
+        if (!call_note.empty()) notes.push_back("system calls are not restricted: " + call_note);
+        return notes;
+    }
+    limit(RLIMIT_NOFILE, 64, 64, "the number of open files", notes);
     const uint64_t most = std::max(limits.memory_bytes, limits.most_memory_bytes);
     limit(RLIMIT_FSIZE, 0, most > 0 ? most : RLIM_INFINITY, "writing", notes);
     if (limits.memory_bytes > 0) {
@@ -79,7 +84,7 @@ std::vector<std::string> enter_sandbox(const std::vector<std::string>& folders, 
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) notes.push_back("no_new_privs is not available");
     const std::string file_note = detail::restrict_files(folders, files);
     if (!file_note.empty()) notes.push_back("reading is not restricted to the scene's folders: " + file_note);
-    const std::string call_note = detail::restrict_system_calls();
+    const std::string call_note = detail::restrict_system_calls(kind);
     if (!call_note.empty()) notes.push_back("system calls are not restricted: " + call_note);
     return notes;
 }
@@ -125,4 +130,4 @@ std::string detail::restrict_files(const std::vector<std::string>&, const std::v
 }
 #endif
 
-}  // namespace clarity::import
+}  // namespace clarity::worker

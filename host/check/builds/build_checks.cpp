@@ -1,0 +1,279 @@
+#include "check/builds/build_checks.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <thread>
+
+#include "base/numbers.hpp"
+#include "check/builds/build_run.hpp"
+#include "check/builds/process_size.hpp"
+#include "check/builds/result_checks.hpp"
+#include "check/scenes.hpp"
+
+namespace clarity::check {
+namespace {
+
+constexpr double kBuildLimit_s = 10;      // a build of a small scene that lasts longer counts as endless
+constexpr double kManyLimit_s = 30;       // the same for the many triangles
+constexpr unsigned kManyTriangles = 40000;
+constexpr double kPatience_ms = 500;      // a build that lasts longer must ask whether it is cancelled
+
+// The inputs, made on first use and shared by all checks of a structure.
+class Inputs {
+ public:
+    explicit Inputs(const rt_plugin& p) : plugin(p), params(default_parameters(p)) {}
+    const rt_plugin& plugin;
+    const ParameterValues params;
+
+    const std::vector<BuildCase>& small() {
+        if (small_.empty())
+            for (NamedScene& scene : small_scenes()) small_.emplace_back(scene.name, scene.scene);
+        return small_;
+    }
+    const BuildCase& mixed() { return small().back(); }
+    const BuildCase& sparse() { return lazy(sparse_, "sparse", [] { return sparse_scene(700); }); }
+    const BuildCase& many() { return lazy(many_, "many", [] { return soup_scene(kManyTriangles); }); }
+    BuildRun run(const BuildCase& input, Schedule schedule = Schedule::program) const { return input.run(plugin, params, schedule); }
+
+ private:
+    template <class Make>
+    static const BuildCase& lazy(std::unique_ptr<BuildCase>& input, const char* name, Make make) {
+        if (!input) input = std::make_unique<BuildCase>(name, make());
+        return *input;
+    }
+    std::vector<BuildCase> small_;
+    std::unique_ptr<BuildCase> sparse_, many_;
+};
+
+std::string on(const BuildCase& input) {
+    return "scene `" + input.name() + "` (" + std::to_string(input.scene().prims.size()) + " primitives)";
+}
+
+// How a run failed that nobody cancelled; empty: it did not.
+std::string failure_of(const BuildRun& run) {
+    return run.cancelled ? "said that it was cancelled, but nobody had cancelled it" : run.why;
+}
+
+// "bvh2,max_leaf=1": as --accel takes it.
+std::string choice_text(const rt_plugin& plugin, const ParameterValues& params) {
+    std::string text = plugin.id;
+    for (rt_u32 p = 0; p < plugin.param_count; ++p) {
+        const rt_param& param = plugin.params[p];
+        if (params[p] == param.def) continue;
+        text += std::string(",") + param.key + "=" +
+                (param.kind == RT_PARAM_ENUM ? param.choices[static_cast<size_t>(params[p])] : exact_text(params[p]));
+    }
+    return text;
+}
+
+Outcome sound(Inputs& inputs, const Step& step) {
+    for (const BuildCase& input : inputs.small()) {
+        step("building " + on(input), kBuildLimit_s);
+        const BuildRun run = inputs.run(input);
+        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(input) + ": " + why);
+        for (const auto& [label, value] : run.result.stats)
+            if (!std::isfinite(value)) return Outcome::failed(on(input) + ": the statistic `" + label + "` is no number");
+    }
+    return Outcome::passed(std::to_string(inputs.small().size()) + " scenes built");
+}
+
+Outcome refs(Inputs& inputs, const Step& step) {
+    uint64_t count = 0;
+    for (const BuildCase& input : inputs.small()) {
+        step("building " + on(input), kBuildLimit_s);
+        const BuildRun run = inputs.run(input);
+        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(input) + ": " + why);
+        if (const std::string why = missing_refs(input.scene(), run.result); !why.empty())
+            return Outcome::failed(on(input) + ": " + why);
+        count += input.scene().prims.size();
+    }
+    return Outcome::passed("all of " + std::to_string(count) + " are there");
+}
+
+Outcome bounds(Inputs& inputs, const Step& step) {
+    if (!inputs.plugin.accel->levels) return Outcome::skipped("the plugin has no `levels`");
+    for (const BuildCase* input : {&inputs.sparse(), &inputs.mixed()}) {
+        step("building " + on(*input), kBuildLimit_s);
+        BuildRun run = inputs.run(*input);
+        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(*input) + ": " + why);
+        step("asking for the levels of " + on(*input), kBuildLimit_s);
+        if (const std::string why = loose_bounds(inputs.plugin, input->scene(), run.result); !why.empty())
+            return Outcome::failed(on(*input) + ": " + why);
+    }
+    return Outcome::passed("every corner of every triangle is in a volume of each level");
+}
+
+Outcome threads(Inputs& inputs, const Step& step, bool quick) {
+    std::vector<Schedule> schedules = {Schedule::backward, Schedule::shuffled2, Schedule::shuffled7, Schedule::program};
+    const int rounds = quick ? 2 : 8;
+    for (const BuildCase* input : {&inputs.mixed(), &inputs.many()}) {
+        step("building " + on(*input) + " with one thread", kManyLimit_s);
+        const BuildRun first = inputs.run(*input, Schedule::forward);
+        if (const std::string why = failure_of(first); !why.empty()) return Outcome::failed(on(*input) + ": " + why);
+        for (int round = 0; round < rounds; ++round)
+            for (const Schedule schedule : schedules) {
+                step("building " + on(*input) + " " + schedule_text(schedule), kManyLimit_s);
+                const BuildRun run = inputs.run(*input, schedule);
+                if (const std::string why = failure_of(run); !why.empty())
+                    return Outcome::failed(on(*input) + " " + schedule_text(schedule) + ": " + why);
+                const std::string why = difference(first.result, run.result, *inputs.plugin.accel);
+                if (!why.empty())
+                    return Outcome::failed(on(*input) + ": the result " + schedule_text(schedule) + " is another than with one thread: " + why +
+                                           ". Bodies of parallel_for depend on their order, or write to the same memory (a race)");
+            }
+    }
+    return Outcome::passed("the same bytes with 1, 2 and 7 threads, in " + std::to_string(rounds) + " rounds");
+}
+
+// Two builds at a time, and one after another scene: a plugin keeps no state.
+Outcome state(Inputs& inputs, const Step& step) {
+    const BuildCase &a = inputs.mixed(), &b = inputs.sparse();
+    step("building two scenes one after the other", kBuildLimit_s);
+    const BuildRun first = inputs.run(a, Schedule::forward), other = inputs.run(b, Schedule::forward),
+                   again = inputs.run(a, Schedule::forward);
+    for (const BuildRun* run : {&first, &other, &again})
+        if (const std::string why = failure_of(*run); !why.empty()) return Outcome::failed(why);
+    if (const std::string why = difference(first.result, again.result, *inputs.plugin.accel); !why.empty())
+        return Outcome::failed("the same scene gives another result after a build of another scene: " + why + ". The plugin keeps state");
+    step("building two scenes at a time", kBuildLimit_s);
+    BuildRun together[2];
+    std::thread thread([&] { together[1] = inputs.run(b, Schedule::forward); });
+    together[0] = inputs.run(a, Schedule::forward);
+    thread.join();
+    for (const BuildRun& run : together)
+        if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed("two builds at a time: " + why);
+    for (const auto& [x, y] : {std::pair(&first, &together[0]), std::pair(&other, &together[1])})
+        if (const std::string why = difference(x->result, y->result, *inputs.plugin.accel); !why.empty())
+            return Outcome::failed("two builds at a time disturb each other: " + why + ". The plugin keeps state");
+    return Outcome::passed("builds do not depend on what was built before or is built beside");
+}
+
+Outcome cancel(Inputs& inputs, const Step& step) {
+    const BuildCase& input = inputs.many();
+    step("building " + on(input), kManyLimit_s);
+    const BuildRun whole = inputs.run(input);
+    if (const std::string why = failure_of(whole); !why.empty()) return Outcome::failed(on(input) + ": " + why);
+    if (whole.reports == 0) {
+        if (whole.ms < kPatience_ms) return Outcome::skipped("it never calls host->progress; a build of " + std::to_string(kManyTriangles) + " triangles is short enough");
+        return Outcome::failed("a build of " + std::to_string(static_cast<int>(whole.ms)) + " ms never calls host->progress: nobody can cancel it");
+    }
+    for (const unsigned at : {1u, (whole.reports + 1) / 2}) {
+        step("cancelling at report " + std::to_string(at) + " of " + on(input), kManyLimit_s);
+        const BuildRun run = input.run(inputs.plugin, inputs.params, Schedule::program, at);
+        if (run.cancelled) continue;
+        if (!run.why.empty()) return Outcome::failed("when it is cancelled, it fails instead of returning RT_CANCELLED: " + run.why);
+        // The last report may come after all work.
+        if (at < whole.reports)
+            return Outcome::failed("host->progress returned 0 at report " + std::to_string(at) + " of " + std::to_string(whole.reports) +
+                                   ", and it went on to the end: it must return RT_CANCELLED soon");
+    }
+    step("building " + on(input) + " after a cancel", kManyLimit_s);
+    const BuildRun again = inputs.run(input);
+    if (const std::string why = failure_of(again); !why.empty()) return Outcome::failed("a build after a cancelled one: " + why);
+    return Outcome::passed("stops when it is told to, and the next build is sound");
+}
+
+Outcome parameters(Inputs& inputs, const Step& step, bool quick) {
+    const rt_plugin& plugin = inputs.plugin;
+    if (plugin.param_count == 0) return Outcome::skipped("the plugin has no parameters");
+    std::vector<ParameterValues> tries;
+    ParameterValues least = inputs.params, most = inputs.params;
+    for (rt_u32 p = 0; p < plugin.param_count; ++p) {
+        for (const double value : {plugin.params[p].min, plugin.params[p].max}) {
+            if (value == plugin.params[p].def) continue;
+            tries.push_back(inputs.params);
+            tries.back()[p] = value;
+        }
+        least[p] = plugin.params[p].min;
+        most[p] = plugin.params[p].max;
+    }
+    tries.push_back(least);
+    tries.push_back(most);
+    std::vector<const BuildCase*> cases;
+    if (!quick)
+        for (const BuildCase& input : inputs.small()) cases.push_back(&input);
+    else
+        cases = {&inputs.small()[0], &inputs.small()[1], &inputs.mixed()};
+    for (const ParameterValues& params : tries)
+        for (const BuildCase* input : cases) {
+            const std::string what = choice_text(plugin, params) + " on " + on(*input);
+            step("building " + what, kManyLimit_s);
+            BuildRun run = input->run(plugin, params, Schedule::program);
+            if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(what + ": " + why);
+            if (const std::string why = missing_refs(input->scene(), run.result); !why.empty()) return Outcome::failed(what + ": " + why);
+        }
+    return Outcome::passed(std::to_string(tries.size()) + " sets of values at the ends of their ranges");
+}
+
+Outcome memory(Inputs& inputs, const Step& step) {
+    const BuildCase& input = inputs.many();
+    step("building " + on(input), kManyLimit_s);
+    const BuildRun run = inputs.run(input);
+    if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(input) + ": " + why);
+    const std::string why = wasted_memory(*inputs.plugin.accel, input, run.result);
+    if (!why.empty()) return Outcome::failed(on(input) + ": " + why);
+    return Outcome::passed("slots are as large as what is in them");
+}
+
+Outcome leaks(Inputs& inputs, const Step& step, bool quick) {
+    const BuildCase& input = inputs.mixed();
+    const int builds = quick ? 40 : 100;
+    const auto repeat = [&](int count) {
+        for (int i = 0; i < count; ++i) {
+            if (i % 10 == 0) step("building " + on(input) + " again and again", kManyLimit_s);
+            inputs.run(input, i % 2 ? Schedule::program : Schedule::forward);
+        }
+        return process_size();
+    };
+    repeat(20);  // caches fill
+    const ProcessSize begin = repeat(builds / 2), middle = repeat(builds / 2), end = repeat(builds / 2);
+    // Memory that grows in both halves is leaked; a cache grows once.
+    const auto grows = [&](uint64_t ProcessSize::*member, uint64_t each) {
+        const uint64_t a = begin.*member, b = middle.*member, c = end.*member, least = each * uint64_t(builds / 2);
+        return b > a && c > b && b - a >= least && c - b >= least;
+    };
+    const auto per_build = [&](uint64_t ProcessSize::*member) { return std::to_string((end.*member - begin.*member) / uint64_t(builds)); };
+    if (grows(&ProcessSize::heap_bytes, 8))
+        return Outcome::failed("each build leaves " + per_build(&ProcessSize::heap_bytes) + " bytes on the heap: it leaks memory");
+    if (grows(&ProcessSize::mapped_bytes, 4096)) return Outcome::failed("each build leaves " + per_build(&ProcessSize::mapped_bytes) + " bytes mapped: it leaks memory");
+    if (end.files > begin.files) return Outcome::failed(std::to_string(end.files - begin.files) + " files or pipes stay open after " + std::to_string(builds) + " builds");
+    if (end.threads > begin.threads + 4) return Outcome::failed(std::to_string(end.threads - begin.threads) + " threads go on after " + std::to_string(builds) + " builds");
+    return Outcome::passed("nothing grows over " + std::to_string(builds) + " builds");
+}
+
+// Memory of a finished build is read-only: a thread that still writes is found.
+Outcome afterwards(Inputs& inputs, const Step& step) {
+    step("waiting after a build for threads that still write", kBuildLimit_s);
+    BuildRun run = inputs.run(inputs.mixed());
+    if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(why);
+    for (BuilderResult::Slot& slot : run.result.slots) slot.memory.make_read_only();
+    run.result.refs.make_read_only();
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    return Outcome::passed("nothing is written after the build");
+}
+
+}  // namespace
+
+std::vector<Check> build_checks(const rt_plugin& plugin, bool quick) {
+    const auto inputs = std::make_shared<Inputs>(plugin);
+    return {
+        {"builds.sound", "builds scenes from nothing to 3000 primitives, in memory whose overrun is seen",
+         [=](const Step& step) { return sound(*inputs, step); }},
+        {"builds.refs", "every primitive of the input is in a leaf", [=](const Step& step) { return refs(*inputs, step); }},
+        {"builds.bounds", "the volumes that `levels` shows hold the triangles below them",
+         [=](const Step& step) { return bounds(*inputs, step); }},
+        {"builds.threads", "the same result whatever the number and the order of threads",
+         [=](const Step& step) { return threads(*inputs, step, quick); }},
+        {"builds.state", "no state is kept from build to build", [=](const Step& step) { return state(*inputs, step); }},
+        {"builds.cancel", "a build stops when the user cancels it", [=](const Step& step) { return cancel(*inputs, step); }},
+        {"builds.parameters", "builds with all parameters at the ends of their ranges",
+         [=](const Step& step) { return parameters(*inputs, step, quick); }},
+        {"builds.memory", "slots are not larger than what is in them", [=](const Step& step) { return memory(*inputs, step); }},
+        {"builds.leaks", "no memory, file or thread is left behind by build after build",
+         [=](const Step& step) { return leaks(*inputs, step, quick); }},
+        {"builds.afterwards", "nothing is written after `build` has returned", [=](const Step& step) { return afterwards(*inputs, step); }},
+    };
+}
+
+}  // namespace clarity::check

@@ -1,0 +1,52 @@
+// build_run.hpp -- runs a builder on guarded memory, with a schedule of its parallel loops that the check chooses.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "plugin/parameters.hpp"
+#include "render/accel/build_scene.hpp"
+#include "render/accel/guarded_build.hpp"
+#include "rt_plugin.h"
+
+namespace clarity::check {
+
+// How the host's parallel_for runs its bodies.
+enum class Schedule {
+    program,   // as in the program
+    forward,   // one thread, in order
+    backward,  // one thread, the last first
+    shuffled2, // two threads, in an order of chance
+    shuffled7  // seven threads, which often wait for each other
+};
+const char* schedule_text(Schedule schedule);
+
+struct BuildRun {
+    int32_t status = RT_FAILED;
+    std::string why;  // how it failed or broke its contract, in its terms; empty: the result is sound as far as the ABI goes
+    bool cancelled = false;  // it returned RT_CANCELLED after progress had said so
+    double ms = 0;
+    unsigned reports = 0;  // calls of host->progress
+    BuilderResult result;
+};
+
+// A scene, and the guarded input of builders that is made of it.
+class BuildCase {
+ public:
+    BuildCase(std::string name, const Scene& scene);
+    const std::string& name() const { return name_; }
+    const BuildScene& scene() const { return build_; }
+    uint64_t input_bytes() const { return build_.prims.size() * sizeof(rt_prim) + build_.triangles.size() * sizeof(rt_packed_prim); }
+    // cancel_after: the number of the progress report that is answered with "cancelled"; 0: none.
+    BuildRun run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule, unsigned cancel_after = 0) const;
+
+ private:
+    std::string name_;
+    BuildScene build_;
+    std::unique_ptr<BuilderInput> input_;
+};
+
+// Whether two results are the same in every byte. Returns the first difference, "slot nodes, element 12, byte 3"; empty: none.
+std::string difference(const BuilderResult& a, const BuilderResult& b, const rt_accel& accel);
+
+}  // namespace clarity::check

@@ -1,0 +1,218 @@
+#include "check/builds/result_checks.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <set>
+#include <unordered_map>
+
+#include "base/memory_text.hpp"
+
+namespace clarity::check {
+namespace {
+
+const char* kind_of(rt_u32 ref) {
+    switch (RT_REF_KIND(ref)) {
+        case RT_REF_TRIANGLE:
+            return "triangle ";
+        case RT_REF_SPHERE:
+            return "sphere ";
+        case RT_REF_POLYGON:
+            return "polygon ";
+        case RT_REF_INSTANCE:
+            return "instance ";
+    }
+    return "primitive of no kind ";
+}
+std::string name_of(rt_u32 ref) {
+    return kind_of(ref) + std::to_string(RT_REF_INDEX(ref));
+}
+
+// A box or a sphere that `levels` showed.
+struct Volume {
+    std::array<float, 6> box{};  // lo, hi; a sphere: centre, radius, 0, 0
+    bool sphere = false;
+    bool operator<(const Volume& o) const { return sphere != o.sphere ? sphere < o.sphere : box < o.box; }
+    bool sound() const {
+        if (sphere) {
+            for (int k = 0; k < 3; ++k)
+                if (!std::isfinite(box[k])) return false;
+            return box[3] >= 0;
+        }
+        for (int k = 0; k < 3; ++k)
+            if (!(box[k] <= box[k + 3])) return false;
+        return true;
+    }
+    bool holds(const float* p) const {
+        if (!sphere) {
+            for (int k = 0; k < 3; ++k)
+                if (!(p[k] >= box[k] && p[k] <= box[k + 3])) return false;
+            return true;
+        }
+        double d2 = 0;
+        for (int k = 0; k < 3; ++k) d2 += (double(p[k]) - box[k]) * (double(p[k]) - box[k]);
+        // A traversal computes with spheres in single precision, so rounding is theirs to plan for: 1e-6 of the radius.
+        return std::sqrt(d2) <= double(box[3]) * (1 + 1e-6);
+    }
+    // How far p is outside, along the axis on which it is most; a sphere: from its surface.
+    double outside(const float* p) const {
+        double most = 0;
+        if (sphere) {
+            double d2 = 0;
+            for (int k = 0; k < 3; ++k) d2 += (double(p[k]) - box[k]) * (double(p[k]) - box[k]);
+            return std::sqrt(d2) - box[3];
+        }
+        for (int k = 0; k < 3; ++k) most = std::max({most, double(box[k]) - p[k], double(p[k]) - box[k + 3]});
+        return most;
+    }
+};
+
+struct Collected {
+    std::vector<Volume> volumes;
+};
+
+std::vector<Volume> volumes_of(const rt_plugin& plugin, const rt_built& built, rt_u32 group, rt_u32 level, std::string& why) {
+    Collected collected;
+    rt_volume_sink sink{};
+    sink.struct_bytes = sizeof sink;
+    sink.ctx = &collected;
+    sink.box = [](void* ctx, const float lo[3], const float hi[3]) {
+        Volume v;
+        std::copy_n(lo, 3, v.box.begin());
+        std::copy_n(hi, 3, v.box.begin() + 3);
+        static_cast<Collected*>(ctx)->volumes.push_back(v);
+    };
+    sink.sphere = [](void* ctx, const float center[3], float radius) {
+        Volume v;
+        v.sphere = true;
+        std::copy_n(center, 3, v.box.begin());
+        v.box[3] = radius;
+        static_cast<Collected*>(ctx)->volumes.push_back(v);
+    };
+    Progress progress;
+    HostServices services("levels", progress);
+    try {
+        services.check(1, [&] { return plugin.accel->levels(services.host(), &built, group, level, &sink); });
+    } catch (const std::exception& e) {
+        why = e.what();
+    }
+    return std::move(collected.volumes);
+}
+
+std::string level_text(rt_u32 level) {
+    return level == RT_LEVEL_BOTTOM ? "the bottom level" : "level " + std::to_string(level);
+}
+
+std::string text(const char* format, double a, double b = 0, double c = 0) {
+    char buffer[160];
+    std::snprintf(buffer, sizeof buffer, format, a, b, c);
+    return buffer;
+}
+
+// Checks one group.
+std::string loose_in_group(const rt_plugin& plugin, const BuildScene& scene, const rt_built& built, rt_u32 group) {
+    constexpr rt_u32 kMostLevels = 64;
+    std::string why;
+    const std::vector<Volume> bottom = volumes_of(plugin, built, group, RT_LEVEL_BOTTOM, why);
+    if (!why.empty()) return why;
+    const std::set<Volume> leaves(bottom.begin(), bottom.end());
+    std::vector<Volume> shallow;  // leaves above the level that is looked at
+    const rt_group& range = scene.groups[group];
+    for (rt_u32 n = 0; n < kMostLevels; ++n) {
+        const rt_u32 level = n == 0 ? RT_LEVEL_BOTTOM : n - 1;
+        std::vector<Volume> volumes = n == 0 ? bottom : volumes_of(plugin, built, group, level, why);
+        if (!why.empty()) return why;
+        if (n > 0 && volumes.empty()) break;
+        for (const Volume& v : volumes)
+            if (!v.sound())
+                return level_text(level) + " of group " + std::to_string(group) +
+                       (v.sphere ? " has a sphere of radius " + text("%g", v.box[3])
+                                 : " has a box from " + text("%g %g %g", v.box[0], v.box[1], v.box[2]) + " to " +
+                                       text("%g %g %g", v.box[3], v.box[4], v.box[5])) +
+                       ", which is no volume: no ray, or every ray, enters it";
+        std::vector<Volume> all = volumes;
+        if (n > 0) all.insert(all.end(), shallow.begin(), shallow.end());
+        for (rt_u32 i = range.first; i < range.first + range.count; ++i) {
+            const rt_u32 ref = scene.prims[i].ref;
+            if (RT_REF_KIND(ref) != RT_REF_TRIANGLE) continue;
+            const rt_packed_prim& t = scene.triangles[RT_REF_INDEX(ref)];
+            for (const float* corner : {t.a, t.b, t.c}) {
+                if (std::any_of(all.begin(), all.end(), [&](const Volume& v) { return v.holds(corner); })) continue;
+                const Volume* nearest = nullptr;
+                double least = INFINITY;
+                for (const Volume& v : all)
+                    if (v.outside(corner) < least) least = v.outside(corner), nearest = &v;
+                if (!nearest) return level_text(level) + " of group " + std::to_string(group) + " shows no volume, but the group has primitives";
+                return "a corner of " + name_of(ref) + " of group " + std::to_string(group) + " at " +
+                       text("%.9g %.9g %.9g", corner[0], corner[1], corner[2]) + " is in no volume of " + level_text(level) +
+                       "; it is " + text("%.3g", least) + " outside of the nearest one" +
+                       (least < 1e-5 * (1 + std::fabs(corner[0]) + std::fabs(corner[1]) + std::fabs(corner[2]))
+                            ? ": a bound that was rounded to the wrong side"
+                            : "");
+            }
+        }
+        if (n > 0)
+            for (const Volume& v : volumes)
+                if (leaves.count(v)) shallow.push_back(v);
+    }
+    return {};
+}
+
+}  // namespace
+
+std::string missing_refs(const BuildScene& scene, const BuilderResult& result) {
+    std::unordered_map<rt_u32, rt_u32> times;
+    times.reserve(scene.prims.size() * 2);
+    for (const rt_prim& prim : scene.prims) times[prim.ref] = 0;
+    const auto* refs = static_cast<const rt_u32*>(result.refs.data());
+    for (uint64_t i = 0; i < result.leaf_count; ++i) {
+        const auto known = times.find(refs[i]);
+        if (known == times.end())
+            return "leaf " + std::to_string(i) + " is " + name_of(refs[i]) + ", which was not in the input";
+        ++known->second;
+    }
+    size_t missing = 0;
+    rt_u32 first = 0;
+    for (const rt_prim& prim : scene.prims)
+        if (times[prim.ref] == 0 && missing++ == 0) first = prim.ref;
+    if (missing == 0) return {};
+    return std::to_string(missing) + " of " + std::to_string(scene.prims.size()) +
+           " primitives are in no leaf, the first is " + name_of(first) + ": rays cannot hit them";
+}
+
+std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result) {
+    std::vector<const void*> slots;
+    std::vector<uint64_t> counts;
+    for (BuilderResult::Slot& slot : result.slots) {
+        slots.push_back(slot.memory.data());
+        counts.push_back(slot.count);
+    }
+    const rt_built built{sizeof(rt_built), static_cast<rt_u32>(result.roots.size()), slots.data(), counts.data(), result.roots.data()};
+    for (rt_u32 g = 0; g < result.roots.size(); ++g) {
+        const std::string why = loose_in_group(plugin, scene, built, g);
+        if (!why.empty()) return why;
+    }
+    return {};
+}
+
+std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result) {
+    constexpr uint64_t kFree = 64u << 10;
+    uint64_t bytes = 0;
+    for (size_t s = 0; s < result.slots.size(); ++s) {
+        const BuilderResult::Slot& slot = result.slots[s];
+        const uint64_t size = slot.memory.bytes();
+        bytes += size;
+        const auto* p = static_cast<const unsigned char*>(slot.memory.data());
+        uint64_t used = size;
+        while (used > 0 && p[used - 1] == 0) --used;
+        if (size - used > kFree && used < size / 2)
+            return std::string("slot ") + accel.slots[s].name + " has " + memory_text(size) + ", of which only the first " +
+                   memory_text(used) + " are written: the device keeps all of it";
+    }
+    if (bytes > 64 * input.input_bytes() + (1u << 20))
+        return "the slots take " + memory_text(bytes) + " for an input of " + memory_text(input.input_bytes());
+    return {};
+}
+
+}  // namespace clarity::check

@@ -1,0 +1,18 @@
+// result_checks.hpp -- whether what a builder wrote is sound. Each function returns what is wrong; empty: nothing.
+#pragma once
+#include <string>
+
+#include "check/builds/build_run.hpp"
+
+namespace clarity::check {
+
+// Every primitive of the input is among the leaves, and nothing else is.
+std::string missing_refs(const BuildScene& scene, const BuilderResult& result);
+
+// The volumes that `levels` shows are numbers, and hold the triangles below them. Returns nothing where the plugin shows none.
+std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result);
+
+// Slots are not far larger than what the builder filled, nor than the input.
+std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result);
+
+}  // namespace clarity::check

@@ -1,0 +1,211 @@
+#include "check/check.hpp"
+
+#include <unistd.h>
+
+#include <condition_variable>
+#include <cstdlib>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include <nlohmann/json.hpp>
+
+#include "base/elapsed.hpp"
+#include "base/log.hpp"
+#include "base/printable.hpp"
+#include "worker/child.hpp"
+#include "worker/supervisor.hpp"
+
+namespace clarity::check {
+namespace {
+
+constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;  // of a worker; the scenes are small
+// After so many deaths of its worker a phase ends: each endless loop costs its time limit.
+constexpr unsigned kMostDeaths = 3;
+
+// The worker died in a check.
+struct Died {
+    std::string how;
+    bool endless;
+};
+
+// Follows one worker through checks of one phase.
+class CheckSupervisor : public worker::Supervisor {
+ public:
+    CheckSupervisor(worker::WorkerProcess& process, const std::string& plugin, Progress& progress,
+                    const std::function<void(CheckResult)>& on_result)
+        : Supervisor(process, {worker::kCheckGreeting, "a check worker", worker::worker_program(), Exit::failed}, progress),
+          plugin_(plugin),
+          on_result_(on_result) {}
+    // The check that runs, as far as it is known.
+    CheckResult current() const {
+        CheckResult result;
+        result.plugin = plugin_;
+        result.name = name_;
+        result.tried = tried_;
+        result.seconds = seconds_since(begin_);
+        return result;
+    }
+
+ private:
+    void handle(const worker::Message& message) override {
+        if (message.kind == worker::MessageKind::running) {
+            const size_t a = message.text.find('\n'), b = message.text.find('\n', a + 1);
+            if (a == std::string::npos || b == std::string::npos) return;
+            if (name_ != message.text.substr(0, a)) begin_ = std::chrono::steady_clock::now();
+            name_ = message.text.substr(0, a);
+            tried_ = message.text.substr(a + 1, b - a - 1);
+            step_ = message.text.substr(b + 1);
+            limit_s_ = message.fraction > 0 && message.fraction < 1000 ? double(message.fraction) : 10;
+            made_progress();
+        } else if (message.kind == worker::MessageKind::report) {
+            const nlohmann::json json = nlohmann::json::parse(message.text, nullptr, false);
+            if (!json.is_object()) return;
+            CheckResult result;
+            result.plugin = plugin_;
+            result.name = json.value("name", "");
+            result.tried = json.value("tried", "");
+            const std::string kind = json.value("kind", "failed");
+            result.outcome.kind = kind == "passed"    ? Outcome::Kind::passed
+                                  : kind == "skipped" ? Outcome::Kind::skipped
+                                                      : Outcome::Kind::failed;
+            result.outcome.found = json.value("found", "");
+            result.outcome.repeat = json.value("repeat", "");
+            result.seconds = json.value("seconds", 0.0);
+            made_progress();
+            on_result_(result);
+        }
+    }
+    double idle_limit_s() const override { return limit_s_; }
+    uint64_t processor_limit_s() const override { return 0; }
+    uint64_t memory_limit_bytes() const override { return kMemoryBytes; }
+    std::string speaker() const override { return plugin_; }
+    void printed(const std::string& line) override { log(LogLevel::info, plugin_ + " printed: " + printable_line(line)); }
+    void ended(const worker::Ending& ending) const override {
+        using End = worker::Ending::Kind;
+        const std::string during = " while " + step_;
+        switch (ending.kind) {
+            case End::crashed:
+                throw Died{"crashed (" + ending.how + ")" + during, false};
+            case End::exited:
+                throw Died{"ended the process (" + ending.how + ")" + during + ": a plugin must return instead", false};
+            case End::no_progress:
+                throw Died{"did not come to an end within " + ending.how + during + ": a loop without end", true};
+            case End::memory:
+                throw Died{"took more than " + ending.how + " of memory" + during, false};
+            default:
+                throw Died{"was killed" + during, false};
+        }
+    }
+
+    const std::string plugin_;
+    const std::function<void(CheckResult)>& on_result_;
+    std::string name_, tried_, step_ = "the library was loaded";
+    double limit_s_ = 60;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+};
+
+// All checks of one library. Phases run side by side, each in workers of its own.
+class Run {
+ public:
+    Run(const PluginRecord& record, const CheckOptions& options, Progress& progress, const std::function<void(const CheckResult&)>& on_result)
+        : record_(record), options_(options), progress_(progress), on_result_(on_result) {}
+
+    bool all() {
+        std::exception_ptr thrown;
+        std::thread builds([&] {
+            try {
+                phase("builds");
+            } catch (...) {
+                thrown = std::current_exception();
+            }
+            tell_sound();
+        });
+        std::exception_ptr thrown_here;
+        try {
+            if (wait_until_sound()) phase("hits");
+        } catch (...) {
+            thrown_here = std::current_exception();
+        }
+        builds.join();
+        if (thrown) std::rethrow_exception(thrown);
+        if (thrown_here) std::rethrow_exception(thrown_here);
+        if (count_ == 0)
+            throw Error(Exit::usage, "--only " + options_.only.front() + ": " + record_.plugin->id +
+                                         " has no check whose name begins like this; `clarity check " + record_.plugin->id + "` lists them");
+        return !failed_;
+    }
+
+ private:
+    // Hits of a builder that fails say nothing: wait for builds.sound.
+    bool wait_until_sound() {
+        std::unique_lock<std::mutex> lock(mutex_);
+        sound_known_.wait(lock, [&] { return sound_is_known_; });
+        return !unsound_;
+    }
+    void tell_sound() {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        sound_is_known_ = true;
+        sound_known_.notify_all();
+    }
+
+    void take(const CheckResult& result, std::vector<std::string>& done) {
+        done.push_back(result.name);
+        const std::lock_guard<std::mutex> lock(mutex_);
+        ++count_;
+        if (result.outcome.kind == Outcome::Kind::failed) failed_ = true;
+        if (result.name == "builds.sound") {
+            unsound_ = result.outcome.kind == Outcome::Kind::failed;
+            sound_is_known_ = true;
+            sound_known_.notify_all();
+        }
+        on_result_(result);
+    }
+
+    void phase(const std::string& name) {
+        std::vector<std::string> done;
+        for (unsigned deaths = 0;;) {
+            std::vector<std::string> arguments = {"--library", record_.path, "--phase", name, "--quick", options_.quick ? "1" : "0",
+                                                  "--parent",  std::to_string(getpid())};
+            if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
+            if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
+            for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
+            for (const std::string& only : options_.only) arguments.insert(arguments.end(), {"--only", only});
+            for (const std::string& other : done) arguments.insert(arguments.end(), {"--done", other});
+            worker::WorkerProcess process(worker::worker_program(), "check-worker", arguments, Exit::failed);
+            const std::function<void(CheckResult)> on_result = [&](const CheckResult& result) { take(result, done); };
+            CheckSupervisor supervisor(process, record_.plugin->id, progress_, on_result);
+            try {
+                supervisor.follow();
+                return;
+            } catch (const Died& died) {
+                CheckResult result = supervisor.current();
+                if (result.name.empty()) result.name = name + ".start";
+                result.outcome = Outcome::failed(died.how);
+                take(result, done);
+                if (died.endless || ++deaths >= kMostDeaths || result.name == "builds.sound" || result.name == name + ".start") return;
+            }
+        }
+    }
+
+    const PluginRecord& record_;
+    const CheckOptions& options_;
+    Progress& progress_;
+    const std::function<void(const CheckResult&)>& on_result_;
+    std::mutex mutex_;
+    std::condition_variable sound_known_;
+    bool sound_is_known_ = false, unsound_ = false, failed_ = false;
+    size_t count_ = 0;
+};
+
+}  // namespace
+
+bool check_plugin_library(const PluginRecord& record, const CheckOptions& options, Progress& progress,
+                          const std::function<void(const CheckResult&)>& on_result) {
+    if (std::getenv(worker::kWorkerVariable))
+        throw Error(Exit::failed, "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
+    if (record.plugin->importer) throw Error(Exit::usage, std::string(record.plugin->id) + " is an importer: only structures can be checked yet");
+    return Run(record, options, progress, on_result).all();
+}
+
+}  // namespace clarity::check

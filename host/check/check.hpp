@@ -1,0 +1,36 @@
+// check.hpp -- is a plugin right? Runs all checks of a library in worker processes, which a faulty plugin may crash.
+#pragma once
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "check/steps.hpp"
+#include "plugin/registry.hpp"
+
+namespace clarity::check {
+
+struct CheckOptions {
+    std::vector<std::string> only;    // names of checks, or their beginnings: "hits", "builds.refs"; empty: all
+    bool quick = false;
+    std::string report_folder;        // "": none
+    std::string device;               // as for --device
+    std::vector<int> lanes;           // with which kernels are compiled; empty: 1, 4, 8 and 16
+};
+
+struct CheckResult {
+    std::string plugin, name, tried;
+    Outcome outcome;
+    double seconds = 0;
+};
+
+// Checks one library, whose plugin the host has accepted. on_result is called from several threads, one at a time, in the order
+// in which checks end. Returns whether all passed. Throws Cancelled, and Error if no worker can be started or `only` names
+// nothing.
+bool check_plugin_library(const PluginRecord& record, const CheckOptions& options, Progress& progress,
+                          const std::function<void(const CheckResult&)>& on_result);
+
+// Main function of the worker (`clarity check-worker ...`, which people do not call).
+int check_worker_main(int argc, char** argv);
+
+}  // namespace clarity::check

@@ -1,0 +1,161 @@
+// check_worker_main.cpp -- main function of the worker: loads one library and runs checks of one phase, one after the other.
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "base/elapsed.hpp"
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "check/builds/build_checks.hpp"
+#include "check/builds/process_size.hpp"
+#include "check/check.hpp"
+#include "check/hits/hits_checks.hpp"
+#include "device/device.hpp"
+#include "worker/child.hpp"
+#include "worker/sandbox.hpp"
+
+namespace clarity::check {
+namespace {
+
+using worker::kChannelFd;
+using worker::MessageKind;
+
+constexpr uint64_t kBuilderBytes = uint64_t(3) << 30;  // for scenes of at most 40000 triangles
+constexpr size_t kMostText = 3000;
+
+struct Arguments {
+    std::string library, phase, device, report;
+    std::vector<std::string> only;
+    std::set<std::string> done;  // checks that an earlier worker ran
+    std::vector<int> lanes;
+    bool quick = false;
+    long parent = 0;
+};
+
+// check-worker --library FILE --phase builds|hits [--quick 1] [--device D] [--report DIR] [--lanes N]... [--only NAME]... [--done NAME]...
+bool parse(int argc, char** argv, Arguments& arguments) {
+    for (int i = 2; i + 1 < argc; i += 2) {
+        const std::string key = argv[i], value = argv[i + 1];
+        if (key == "--library") {
+            arguments.library = value;
+        } else if (key == "--phase") {
+            arguments.phase = value;
+        } else if (key == "--quick") {
+            arguments.quick = value == "1";
+        } else if (key == "--device") {
+            arguments.device = value;
+        } else if (key == "--report") {
+            arguments.report = value;
+        } else if (key == "--only") {
+            arguments.only.push_back(value);
+        } else if (key == "--lanes") {
+            arguments.lanes.push_back(std::atoi(value.c_str()));
+        } else if (key == "--done") {
+            arguments.done.insert(value);
+        } else if (key == "--parent") {
+            arguments.parent = std::strtol(value.c_str(), nullptr, 10);
+        } else {
+            return false;
+        }
+    }
+    return !arguments.library.empty() && !arguments.phase.empty();
+}
+
+bool wanted(const Check& check, const Arguments& arguments) {
+    if (arguments.done.count(check.name)) return false;
+    if (arguments.only.empty()) return true;
+    for (const std::string& only : arguments.only)
+        if (check.name.compare(0, only.size(), only) == 0) return true;
+    return false;
+}
+
+std::string shortened(std::string text) {
+    if (text.size() > kMostText) text = text.substr(0, kMostText) + " ...";
+    return text;
+}
+
+void run(const Check& check) {
+    const auto start = std::chrono::steady_clock::now();
+    const Step step = [&](const std::string& what, double limit_s) {
+        worker::send_message(kChannelFd, {MessageKind::running, 0, static_cast<float>(limit_s), check.name + '\n' + check.tried + '\n' + what});
+    };
+    step("beginning", 10);
+    Outcome outcome;
+    try {
+        outcome = check.run(step);
+    } catch (const std::bad_alloc&) {
+        outcome = Outcome::failed("out of memory");
+    } catch (const Error& e) {
+        outcome = Outcome::failed(shortened(std::string(e.what()) + (e.details().empty() ? "" : ": " + e.details())));
+    } catch (const std::exception& e) {
+        outcome = Outcome::failed(e.what());
+    }
+    constexpr const char* kKinds[] = {"passed", "failed", "skipped"};
+    const nlohmann::json report = {{"name", check.name},
+                                   {"tried", check.tried},
+                                   {"kind", kKinds[static_cast<int>(outcome.kind)]},
+                                   {"found", shortened(outcome.found)},
+                                   {"repeat", outcome.repeat},
+                                   {"seconds", seconds_since(start)}};
+    worker::send_message(kChannelFd, {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+}
+
+std::vector<Check> checks_for(const rt_plugin& plugin, const Arguments& arguments) {
+    if (arguments.phase == "builds") return build_checks(plugin, arguments.quick);
+    HitsOptions options;
+    options.quick = arguments.quick;
+    options.report_folder = arguments.report;
+    if (!arguments.lanes.empty()) options.lanes = arguments.lanes;
+    const std::string device = arguments.device;
+    return hits_checks(plugin, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
+}
+
+int run_all(const Arguments& arguments) {
+    // The library was loaded by the program before, to read its description; its constructors have run there.
+    const PluginRecord record = load_plugin(arguments.library);
+    if (!record.plugin) {
+        worker::send_message(kChannelFd, {MessageKind::failed, 0, 0, record.path + ": " + record.why});
+        return 1;
+    }
+    worker::WorkerLimits limits;
+    const bool builds = arguments.phase == "builds";
+    if (builds) {
+        limits.memory_bytes = limits.most_memory_bytes = kBuilderBytes;
+        use_one_arena();
+    }
+    const std::string self = "/proc/" + std::to_string(getpid());
+    for (const std::string& note : worker::enter_sandbox(builds ? worker::WorkerKind::builder : worker::WorkerKind::driver, {self}, {}, limits))
+        log(LogLevel::debug, "check worker: " + note);
+    for (const Check& check : checks_for(*record.plugin, arguments))
+        if (wanted(check, arguments)) run(check);
+    worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
+    return 0;
+}
+
+}  // namespace
+
+int check_worker_main(int argc, char** argv) {
+    Arguments arguments;
+    constexpr const char* instead = "to check a plugin, run `clarity check PLUGIN`";
+    if (!parse(argc, argv, arguments)) {
+        std::fprintf(stderr, "workers are started by clarity itself; %s\n", instead);
+        return static_cast<int>(Exit::usage);
+    }
+    if (!worker::begin_worker(worker::kCheckGreeting, arguments.parent, instead)) return static_cast<int>(Exit::usage);
+    int status = 1;
+    try {
+        status = run_all(arguments);
+    } catch (const std::exception& e) {
+        worker::send_message(kChannelFd, {MessageKind::failed, 0, 0, arguments.library + ": " + e.what()});
+    }
+    // Exit without destructors: a plugin or a driver may crash in them, which says nothing about the checks.
+    _exit(status);
+}
+
+}  // namespace clarity::check

@@ -1,0 +1,236 @@
+#include "check/hits/brute_force.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/parallel_for.hpp"
+
+namespace clarity::check {
+namespace {
+
+// Relative error of a coordinate that went through a few operations in single precision.
+constexpr double kRounding = 1.5e-6;
+constexpr double kInf = INFINITY;
+
+struct Vec {
+    double x, y, z;
+    double operator[](int k) const { return k == 0 ? x : k == 1 ? y : z; }
+};
+Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
+double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+Vec cross(const Vec& a, const Vec& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+double length(const Vec& a) { return std::sqrt(dot(a, a)); }
+double largest(const Vec& a) { return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}); }
+Vec vec(const float* p) { return {p[0], p[1], p[2]}; }
+
+struct Ray {
+    Vec o, d;
+    double t_min, t_max;
+    double length_d;  // of d
+    double blur;      // distance by which rounding moves the ray, besides what the primitive's own coordinates add
+};
+
+// Where a ray passes a primitive: whether it is inside, and the distance to the nearest edge across the ray.
+struct Passing {
+    bool inside = false;
+    double from_edge = 0;
+    double t = 0, cosine = 0;  // of the angle between ray and normal
+    double size = 0;           // largest coordinate
+};
+
+// The plane across the ray, in two axes.
+struct Across {
+    Vec u, v;
+    explicit Across(const Ray& ray) {
+        const Vec w = (1 / ray.length_d) * ray.d;
+        const Vec a = std::fabs(w.x) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0};
+        u = cross(w, a);
+        u = (1 / length(u)) * u;
+        v = cross(w, u);
+    }
+};
+
+double segment_distance(double ax, double ay, double bx, double by) {  // from the origin
+    const double dx = bx - ax, dy = by - ay, dd = dx * dx + dy * dy;
+    const double s = dd > 0 ? std::clamp(-(ax * dx + ay * dy) / dd, 0.0, 1.0) : 0;
+    return std::hypot(ax + s * dx, ay + s * dy);
+}
+
+// A flat face of any number of corners, by the even-odd rule in the plane across the ray.
+Passing pass_face(const Ray& ray, const Across& across, const Vec* corners, size_t count, const Vec& normal, const Vec& point) {
+    Passing p;
+    p.from_edge = kInf;
+    const auto flat = [&](const Vec& c) { return std::pair<double, double>{dot(c - ray.o, across.u), dot(c - ray.o, across.v)}; };
+    auto [ax, ay] = flat(corners[count - 1]);
+    for (size_t i = 0; i < count; ++i) {
+        const auto [bx, by] = flat(corners[i]);
+        if ((ay > 0) != (by > 0) && ax + (bx - ax) * (0 - ay) / (by - ay) > 0) p.inside = !p.inside;
+        p.from_edge = std::min(p.from_edge, segment_distance(ax, ay, bx, by));
+        p.size = std::max(p.size, largest(corners[i]));
+        ax = bx;
+        ay = by;
+    }
+    const double facing = dot(normal, ray.d), n = length(normal);
+    p.cosine = n > 0 ? std::fabs(facing) / (n * ray.length_d) : 0;
+    p.t = facing != 0 ? dot(normal, point - ray.o) / facing : kInf;
+    return p;
+}
+
+// Judges the contact with a flat face.
+void add_face(const Ray& ray, const Passing& p, Contact contact, std::vector<Contact>& contacts) {
+    const double blur = ray.blur + kRounding * (p.size + std::min(std::fabs(p.t) * ray.length_d, 1e9));
+    if (!p.inside && p.from_edge > blur) return;
+    contact.t = p.t;
+    contact.t_error = (p.cosine > 0 ? blur / p.cosine : kInf) / ray.length_d + 1e-5 * std::fabs(p.t);
+    if (!(std::fabs(contact.t) < kInf)) contact.t = 0, contact.t_error = kInf;
+    if (contact.t + contact.t_error < ray.t_min || contact.t - contact.t_error > ray.t_max) return;
+    contact.certain = p.inside && p.from_edge > blur && p.cosine > 1e-3 && contact.t - contact.t_error > ray.t_min &&
+                      contact.t + contact.t_error < ray.t_max && contact.t - contact.t_error > 0;
+    contacts.push_back(contact);
+}
+
+void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& prim, Contact contact, std::vector<Contact>& contacts) {
+    const Vec corners[3] = {vec(prim.a), vec(prim.b), vec(prim.c)};
+    // Most triangles are far from the ray: a quick look first.
+    const Vec middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
+    double reach = 0;
+    for (const Vec& c : corners) reach = std::max(reach, length(c - middle));
+    const double mx = dot(middle - ray.o, across.u), my = dot(middle - ray.o, across.v);
+    const double far = length(middle - ray.o);
+    if (std::hypot(mx, my) > reach + 4 * (ray.blur + kRounding * (largest(middle) + reach + far))) return;
+    const Vec normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
+    Passing p = pass_face(ray, across, corners, 3, normal, corners[0]);
+    // A triangle without area, as far as rounding can tell, may be hit or not.
+    const double edge = std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});
+    if (length(normal) <= 1e-5 * edge * edge || length(normal) <= 4 * edge * kRounding * p.size) {
+        p.inside = false;
+        if (!(std::fabs(p.t) < kInf) || p.cosine < 1e-3) {
+            p.t = dot(middle - ray.o, ray.d) / (ray.length_d * ray.length_d);
+            p.cosine = 1;
+            p.size += edge * 1e6;  // its distance may be anything along its edges
+        }
+    }
+    add_face(ray, p, contact, contacts);
+}
+
+void add_polygon(const Ray& ray, const Across& across, const BuildScene& scene, const rt_packed_prim& prim, Contact contact,
+                 std::vector<Contact>& contacts) {
+    const rt_polygon& polygon = scene.polygon_table[RT_REF_INDEX(prim.ref)];
+    std::vector<Vec> corners;
+    for (rt_u32 i = 0; i < polygon.count; ++i) corners.push_back(vec(&scene.polygon_corners[3 * size_t(polygon.first + i)]));
+    add_face(ray, pass_face(ray, across, corners.data(), corners.size(), vec(prim.a), vec(prim.b)), contact, contacts);
+}
+
+void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std::vector<Contact>& contacts) {
+    const Vec center = vec(prim.a), from = center - ray.o;
+    const double radius = prim.b[0], dd = ray.length_d * ray.length_d, middle = dot(from, ray.d) / dd;
+    const double away = length(from - middle * ray.d);
+    const double blur = ray.blur + kRounding * (largest(center) + radius + length(from));
+    if (away > radius + blur) return;
+    const double half = std::sqrt(std::max(radius * radius - away * away, 0.0)) / ray.length_d;
+    const double cosine = std::max(half * ray.length_d / radius, 1e-9);
+    contact.t_error = blur / cosine / ray.length_d + 1e-5 * std::fabs(middle);
+    if (away > radius - blur) contact.t_error = std::max(contact.t_error, half + std::sqrt(2 * radius * blur + blur * blur) / ray.length_d * 2);
+    const double least = std::max(ray.t_min, 0.0), near = middle - half, far = middle + half;
+    // The near side counts from t_min on, else the far side. Close to that limit either may be the answer.
+    const bool surely_near = near - contact.t_error > least, surely_far = near + contact.t_error < least;
+    for (const bool is_far : {false, true}) {
+        if (is_far ? surely_near : surely_far) continue;
+        contact.t = is_far ? far : near;
+        if (contact.t + contact.t_error < least || contact.t - contact.t_error > ray.t_max) continue;
+        contact.certain = away < radius - blur && (is_far ? surely_far : surely_near) &&
+                          contact.t - contact.t_error > least && contact.t + contact.t_error < ray.t_max;
+        contacts.push_back(contact);
+    }
+}
+
+}  // namespace
+
+const Contact* Truth::nearest_certain() const {
+    for (const Contact& contact : contacts)
+        if (contact.certain) return &contact;
+    return nullptr;
+}
+
+const Contact* Truth::of(rt_i32 prim, rt_i32 instance) const {
+    for (const Contact& contact : contacts)
+        if (contact.prim == prim && contact.instance == instance) return &contact;
+    return nullptr;
+}
+
+Truth BruteForce::trace(const rt_ray& given) const {
+    Truth truth;
+    Ray ray{vec(given.origin), vec(given.direction), given.t_min, given.t_max, 0, 0};
+    ray.length_d = length(ray.d);
+    ray.blur = kRounding * largest(ray.o);
+    const Across across(ray);
+    const auto add = [&](const Ray& r, const Across& a, const rt_packed_prim& prim, Contact contact) {
+        contact.ref = prim.ref;
+        switch (RT_REF_KIND(prim.ref)) {
+            case RT_REF_TRIANGLE:
+                return add_triangle(r, a, prim, contact, truth.contacts);
+            case RT_REF_SPHERE:
+                return add_sphere(r, prim, contact, truth.contacts);
+            case RT_REF_POLYGON:
+                return add_polygon(r, a, scene_, prim, contact, truth.contacts);
+        }
+    };
+    const auto packed = [&](rt_u32 ref) -> const rt_packed_prim& {
+        const rt_u32 index = RT_REF_INDEX(ref);
+        return RT_REF_KIND(ref) == RT_REF_TRIANGLE ? scene_.triangles[index]
+               : RT_REF_KIND(ref) == RT_REF_SPHERE ? scene_.spheres[index]
+                                                   : scene_.polygons[index];
+    };
+    const rt_group& world = scene_.groups[0];
+    for (rt_u32 i = world.first; i < world.first + world.count; ++i) {
+        const rt_u32 ref = scene_.prims[i].ref;
+        if (RT_REF_KIND(ref) != RT_REF_INSTANCE) {
+            const rt_packed_prim& prim = packed(ref);
+            Contact contact;
+            contact.prim = static_cast<rt_i32>(prim.prim);
+            add(ray, across, prim, contact);
+            continue;
+        }
+        const rt_u32 index = RT_REF_INDEX(ref);
+        const rt_instance& instance = scene_.instances[index];
+        const float* m = instance.object_from_world;
+        const auto turned = [&](const Vec& v) {
+            return Vec{m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z, m[8] * v.x + m[9] * v.y + m[10] * v.z};
+        };
+        Ray inner = ray;
+        const Vec moved = turned(ray.o);
+        inner.o = moved + Vec{m[3], m[7], m[11]};
+        inner.d = turned(ray.d);
+        inner.length_d = length(inner.d);
+        double norm = 0;
+        for (int r = 0; r < 3; ++r) norm = std::max(norm, double(std::fabs(m[4 * r]) + std::fabs(m[4 * r + 1]) + std::fabs(m[4 * r + 2])));
+        inner.blur = kRounding * (norm * largest(ray.o) + double(std::max({std::fabs(m[3]), std::fabs(m[7]), std::fabs(m[11])})) + largest(inner.o));
+        // Directions are rounded, too, which counts over the whole way to the object.
+        inner.blur += kRounding * length(inner.o);
+        const Across inner_across(inner);
+        const rt_group& group = scene_.groups[scene_.group_of_instance[index]];
+        for (rt_u32 k = group.first; k < group.first + group.count; ++k) {
+            const rt_packed_prim& prim = packed(scene_.prims[k].ref);
+            Contact contact;
+            contact.prim = static_cast<rt_i32>(instance.first_prim + prim.prim);
+            contact.instance = static_cast<rt_i32>(index);
+            add(inner, inner_across, prim, contact);
+        }
+    }
+    std::sort(truth.contacts.begin(), truth.contacts.end(), [](const Contact& a, const Contact& b) { return a.t < b.t; });
+    return truth;
+}
+
+std::vector<Truth> BruteForce::trace(const std::vector<rt_ray>& rays) const {
+    std::vector<Truth> truths(rays.size());
+    constexpr size_t kChunk = 64;
+    parallel_for(static_cast<uint32_t>((rays.size() + kChunk - 1) / kChunk), [&](uint32_t c) {
+        for (size_t i = c * kChunk; i < std::min(rays.size(), (c + 1) * kChunk); ++i) truths[i] = trace(rays[i]);
+    });
+    return truths;
+}
+
+}  // namespace clarity::check

@@ -1,0 +1,113 @@
+#include "check/hits/checked_scene.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "base/log.hpp"
+#include "check/builds/result_checks.hpp"
+#include "render/queries/query_scene.hpp"
+
+namespace clarity::check {
+namespace {
+
+// Three triangles across the scene's centre, one for each axis.
+rt_packed_prim trap(int i) {
+    constexpr float kFar = 1e5f;
+    rt_packed_prim prim{};
+    const int u = (i + 1) % 3, v = (i + 2) % 3;
+    prim.a[u] = prim.a[v] = -kFar;
+    prim.b[u] = 3 * kFar;
+    prim.b[v] = -kFar;
+    prim.c[u] = -kFar;
+    // The last component of c would be `prim`: the corner's third coordinate is c[2].
+    prim.c[v] = 3 * kFar;
+    prim.ref = RT_REF_TRIANGLE;
+    prim.prim = kTrapPrim + static_cast<rt_u32>(i);
+    return prim;
+}
+
+}  // namespace
+
+std::string Variant::text() const {
+    return std::to_string(lanes) + (lanes == 1 ? " lane" : " lanes") + (debug ? ", debug" : "") + (portable ? ", portable" : "");
+}
+std::string Variant::options() const {
+    return "--lanes " + std::to_string(lanes) + (debug ? " --debug true" : "") + (portable ? " --portable true" : "");
+}
+
+CheckedScene::CheckedScene(const rt_plugin& plugin, const ParameterValues& params, Scene scene, std::shared_ptr<Device> device)
+    : scene_(std::make_shared<const Scene>(std::move(scene))), case_("mixed", *scene_), device_(std::move(device)) {
+    run_ = case_.run(plugin, params, Schedule::program);
+    if (run_.cancelled) run_.why = "said that it was cancelled, but nobody had cancelled it";
+    if (run_.why.empty()) {
+        // A ref that is unknown cannot be packed; one that is missing is worth a run.
+        const std::string why = missing_refs(case_.scene(), run_.result);
+        if (why.find("not in the input") != std::string::npos) run_.why = why;
+    }
+    if (!run_.why.empty()) throw Error(Exit::failed, "the builder failed: " + run_.why + " (see builds.sound)");
+
+    auto accel = std::make_shared<AccelData>();
+    accel->plugin = &plugin;
+    accel->params = params;
+    accel->scene = case_.scene();
+    BuilderResult& result = run_.result;
+    for (BuilderResult::Slot& slot : result.slots) {
+        slot.memory.make_read_only();
+        AccelData::Slot out;
+        out.memory = AlignedBytes::borrow(slot.memory.data(), slot.memory.bytes());
+        out.count = slot.count;
+        accel->slots.push_back(std::move(out));
+    }
+    accel->leaf_count = result.leaf_count;
+    leaves_ = GuardedBytes((result.leaf_count + kLeafPadding) * sizeof(rt_packed_prim), "the leaves");
+    auto* leaves = static_cast<rt_packed_prim*>(leaves_.data());
+    const auto* refs = static_cast<const rt_u32*>(result.refs.data());
+    const BuildScene& build = case_.scene();
+    for (uint64_t i = 0; i < result.leaf_count; ++i) {
+        const rt_u32 index = RT_REF_INDEX(refs[i]);
+        leaves[i] = RT_REF_KIND(refs[i]) == RT_REF_TRIANGLE  ? build.triangles[index]
+                    : RT_REF_KIND(refs[i]) == RT_REF_SPHERE  ? build.spheres[index]
+                    : RT_REF_KIND(refs[i]) == RT_REF_POLYGON ? build.polygons[index]
+                                                             : build.instance_leaves[index];
+    }
+    for (uint64_t i = 0; i < kLeafPadding; ++i) leaves[result.leaf_count + i] = trap(static_cast<int>(i % 3));
+    leaves_.make_read_only();
+    accel->leaves = AlignedBytes::borrow(leaves_.data(), leaves_.bytes());
+    accel->roots = result.roots;
+    accel->defines = result.defines;
+    accel->stats = result.stats;
+    accel->instances = build.instances;
+    for (size_t i = 0; i < accel->instances.size(); ++i) accel->instances[i].root = accel->roots[build.group_of_instance[i]];
+    accel_ = std::move(accel);
+    queries_ = std::make_unique<RayQueries>(device_);
+}
+
+std::shared_ptr<const Prepared> CheckedScene::prepared(const Variant& variant) {
+    std::shared_ptr<const Prepared>& known = prepared_[variant.text()];
+    if (known) return known;
+    Settings settings;
+    settings.lanes = variant.lanes;
+    settings.debug = variant.debug;
+    settings.portable = variant.portable;
+    Progress progress;
+    return known = prepare_queries(*device_, scene_, accel_, settings, progress);
+}
+
+void CheckedScene::compile(const Variant& variant) {
+    // A ray of no extent: drivers compile a kernel when it first runs.
+    trace(variant, {rt_ray{{0, 0, 0}, 1, {0, 0, 1}, -1}}, false);
+}
+
+Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit) {
+    const auto at = prepared(variant);
+    Traced traced;
+    RayQuery query;
+    query.any_hit = any_hit;
+    queries_->trace(*at, RayBlocks(rays, at->layout.lanes), query, &traced.hits);
+    traced.overflows = queries_->overflows();
+    return traced;
+}
+
+}  // namespace clarity::check

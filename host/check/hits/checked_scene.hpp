@@ -1,0 +1,54 @@
+// checked_scene.hpp -- a structure over the mixed scene on a device, with guards around everything that its kernels read.
+#pragma once
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "check/builds/build_run.hpp"
+#include "device/device.hpp"
+#include "render/queries/ray_queries.hpp"
+
+namespace clarity::check {
+
+// How kernels are compiled.
+struct Variant {
+    int lanes = 1;
+    bool debug = false, portable = false;
+    std::string text() const;     // "8 lanes, debug"
+    std::string options() const;  // "--lanes 8 --debug true"
+};
+
+struct Traced {
+    std::vector<rt_hit> hits;
+    uint64_t overflows = 0;  // full traversal stacks, counted by debug programs
+};
+
+// Numbers of the primitives behind the last leaf. They cut every ray: if one is hit, a traversal has tested a leaf that does not
+// exist. On a CPU an access further behind ends the process.
+constexpr rt_u32 kTrapPrim = 0x7FFFFF00u;
+
+class CheckedScene {
+ public:
+    // Builds the structure. Throws Error with the reason if the build fails.
+    CheckedScene(const rt_plugin& plugin, const ParameterValues& params, Scene scene, std::shared_ptr<Device> device);
+    const BuildScene& build_scene() const { return case_.scene(); }
+    const Device& device() const { return *device_; }
+    // Compiles on first use. Throws Error.
+    void compile(const Variant& variant);
+    Traced trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit);
+
+ private:
+    std::shared_ptr<const Prepared> prepared(const Variant& variant);
+
+    std::shared_ptr<const Scene> scene_;
+    BuildCase case_;
+    std::shared_ptr<Device> device_;
+    BuildRun run_;
+    GuardedBytes leaves_;
+    std::shared_ptr<const AccelData> accel_;
+    std::map<std::string, std::shared_ptr<const Prepared>> prepared_;
+    std::unique_ptr<RayQueries> queries_;
+};
+
+}  // namespace clarity::check

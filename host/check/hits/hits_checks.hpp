@@ -1,0 +1,22 @@
+// hits_checks.hpp -- whether a structure's kernels hit what they should, on a device.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "check/steps.hpp"
+#include "device/device.hpp"
+#include "rt_plugin.h"
+
+namespace clarity::check {
+
+struct HitsOptions {
+    bool quick = false;
+    std::vector<int> lanes = {1, 4, 8, 16};
+    std::string report_folder;  // where wrong rays are written; "": nowhere
+};
+
+// The checks of one structure's kernels. open: opens the device on first use.
+std::vector<Check> hits_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options);
+
+}  // namespace clarity::check

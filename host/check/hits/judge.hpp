@@ -1,0 +1,32 @@
+// judge.hpp -- compares hits with the truth, and finds what wrong ones have in common.
+#pragma once
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "check/hits/brute_force.hpp"
+#include "rt_types.h"
+
+namespace clarity::check {
+
+enum class Fault { none, missed, too_far, wrong_distance, not_there, outside_limits, no_leaf, not_a_number };
+
+// Judges one nearest hit.
+Fault judge_nearest(const rt_ray& ray, const Truth& truth, const rt_hit& hit);
+// Judges one any-hit answer: t is 0 where the ray is occluded.
+Fault judge_any(const Truth& truth, const rt_hit& hit);
+
+// The wrong answers to one set of rays.
+struct Faults {
+    struct One {
+        size_t ray;
+        Fault fault;
+    };
+    std::vector<One> wrong;
+    size_t rays = 0;
+    bool any_hit = false;
+    // What they have in common: how many, how they are wrong, and, if it is one, the octant, the lane or the kind of primitive.
+    std::string text(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits, int lanes) const;
+};
+
+}  // namespace clarity::check

@@ -1,0 +1,216 @@
+#include "check/hits/ray_sets.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+namespace clarity::check {
+namespace {
+
+constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+
+class RayMaker {
+ public:
+    explicit RayMaker(unsigned seed) : random_(seed) {}
+    float any() { return std::uniform_real_distribution<float>(0, 1)(random_); }
+    size_t below(size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random_); }
+    Point direction() {
+        Point d;
+        float length = 0;
+        do {
+            for (float& c : d) c = std::normal_distribution<float>()(random_);
+            length = std::sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        } while (length < 1e-3f);
+        for (float& c : d) c /= length;
+        return d;
+    }
+    Point within(const Region& region, float share = 1) {
+        Point p = region.center;
+        for (float& c : p) c += share * region.radius * (2 * any() - 1);
+        return p;
+    }
+    static rt_ray from_to(const Point& from, const Point& to) {
+        rt_ray ray{{from[0], from[1], from[2]}, 0, {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, kInf};
+        const float length = std::sqrt(ray.direction[0] * ray.direction[0] + ray.direction[1] * ray.direction[1] +
+                                       ray.direction[2] * ray.direction[2]);
+        if (length > 0)
+            for (float& d : ray.direction) d /= length;
+        return ray;
+    }
+    // A ray from `away` radii outside to a point of the region.
+    rt_ray into(const Region& region, float away) {
+        const Point to = within(region, 0.8f), d = direction();
+        Point from = to;
+        for (int k = 0; k < 3; ++k) from[k] -= away * region.radius * d[k];
+        return from_to(from, to);
+    }
+
+ private:
+    std::mt19937 random_;
+};
+
+const Region& region(const char* name) {
+    for (const Region& r : mixed_regions())
+        if (std::string(r.name) == name) return r;
+    return mixed_regions().front();
+}
+
+// Camera rays: neighbours are alike, so packets stay together.
+void add_view(const Region& at, float away, const Point& d, int side, std::vector<rt_ray>& rays) {
+    const Point up = std::fabs(d[1]) < 0.9f ? Point{0, 1, 0} : Point{1, 0, 0};
+    Point u{d[1] * up[2] - d[2] * up[1], d[2] * up[0] - d[0] * up[2], d[0] * up[1] - d[1] * up[0]};
+    const float length = std::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
+    for (float& c : u) c /= length;
+    const Point v{d[1] * u[2] - d[2] * u[1], d[2] * u[0] - d[0] * u[2], d[0] * u[1] - d[1] * u[0]};
+    Point eye = at.center;
+    for (int k = 0; k < 3; ++k) eye[k] -= away * at.radius * d[k];
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x) {
+            Point to = at.center;
+            const float a = 2 * (float(x) + 0.37f) / float(side) - 1, b = 2 * (float(y) + 0.41f) / float(side) - 1;
+            for (int k = 0; k < 3; ++k) to[k] += at.radius * (a * u[k] + b * v[k]);
+            rays.push_back(RayMaker::from_to(eye, to));
+        }
+}
+
+}  // namespace
+
+std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
+    std::vector<RaySet> sets;
+    RayMaker make(4);
+    const auto add = [&](const char* name, const char* tried, auto fill, bool strange = false) {
+        RaySet set{name, tried, {}, strange};
+        if (count > 0) fill(set.rays);
+        sets.push_back(std::move(set));
+    };
+    const auto plain = [&](std::vector<rt_ray>& rays, std::initializer_list<const char*> names, size_t n) {
+        for (size_t i = 0; i < n; ++i)
+            for (const char* name : names) rays.push_back(make.into(region(name), i % 4 == 0 ? 0.3f : 1.5f + 2 * make.any()));
+    };
+    add("hits.random", "rays in random directions, no two alike, in a soup of triangles", [&](std::vector<rt_ray>& rays) { plain(rays, {"random"}, count); });
+    add("hits.octants", "packets of rays whose directions agree in sign, in each of the eight octants", [&](std::vector<rt_ray>& rays) {
+        const int side = std::max(8, static_cast<int>(std::sqrt(double(count) / 8)) / 8 * 8);
+        for (int octant = 0; octant < 8; ++octant)
+            add_view(region("random"), 3, {octant & 1 ? -0.5f : 0.5f, octant & 2 ? -0.62f : 0.62f, octant & 4 ? -0.6f : 0.6f}, side, rays);
+    });
+    add("hits.camera", "camera rays, whose packets hold several octants", [&](std::vector<rt_ray>& rays) {
+        const int side = std::max(8, static_cast<int>(std::sqrt(double(count) / 4)) / 8 * 8);
+        for (const char* name : {"random", "instanced", "boxes", "spheres"}) add_view(region(name), 2, {0, 0, -1}, side, rays);
+    });
+    add("hits.instances", "rays at instances that are turned, mirrored, stretched, tiny and within each other", [&](std::vector<rt_ray>& rays) {
+        plain(rays, {"instanced", "instanced", "instanced, tiny", "instanced, far away"}, count / 4);
+    });
+    add("hits.primitives", "rays at spheres and polygons", [&](std::vector<rt_ray>& rays) { plain(rays, {"spheres", "polygons"}, count / 3); });
+    add("hits.axes", "rays along one axis or within a plane of two, zeros of either sign, also within faces of boxes", [&](std::vector<rt_ray>& rays) {
+        for (size_t i = 0; i < count; ++i) {
+            const Region& at = region(i % 3 == 0 ? "boxes" : i % 3 == 1 ? "random" : "instanced");
+            Point from = make.within(at), d{};
+            if (i % 4 == 0)  // on the boxes' planes
+                for (int k = 0; k < 3; ++k) from[k] = at.center[k] + std::round(from[k] - at.center[k]);
+            for (float& c : d) c = make.any() < 0.5f ? 0.0f : -0.0f;
+            d[i % 3] = i & 8 ? 1.0f : -1.0f;
+            if (i % 2) d[(i + 1) % 3] = make.any() - 0.5f;
+            from[i % 3] -= 2 * at.radius * d[i % 3];
+            rays.push_back({{from[0], from[1], from[2]}, 0, {d[0], d[1], d[2]}, kInf});
+        }
+    });
+    add("hits.grazing", "rays through corners and along edges of triangles", [&](std::vector<rt_ray>& rays) {
+        const rt_group& world = scene.groups[0];
+        for (size_t i = 0; i < count; ++i) {
+            const rt_u32 ref = scene.prims[world.first + make.below(world.count)].ref;
+            if (RT_REF_KIND(ref) != RT_REF_TRIANGLE) continue;
+            const rt_packed_prim& p = scene.triangles[RT_REF_INDEX(ref)];
+            const float *a = p.a, *b = i % 3 ? p.b : p.c;
+            const float s = i % 2 ? make.any() : 0, far = 3;
+            Point to, from;
+            const Point d = make.direction();
+            for (int k = 0; k < 3; ++k) to[k] = a[k] + s * (b[k] - a[k]);
+            for (int k = 0; k < 3; ++k) from[k] = i % 5 == 4 ? a[k] - 2 * (b[k] - a[k]) : to[k] - far * d[k];
+            if (from == to) continue;
+            rays.push_back(RayMaker::from_to(from, to));
+        }
+    });
+    add("hits.close", "rays at pairs of faces whose distances differ by 4 in 10000", [&](std::vector<rt_ray>& rays) {
+        // The small flat faces are triangles of 0.008; aim at each from both sides, along the axis and nearly so.
+        const Region& at = region("faces");
+        for (const rt_packed_prim& p : scene.triangles) {
+            Point middle;
+            bool near = true;
+            float size = 0;
+            for (int k = 0; k < 3; ++k) {
+                middle[k] = (p.a[k] + p.b[k] + p.c[k]) / 3;
+                near &= std::fabs(middle[k] - at.center[k]) < 10;
+                size = std::max(size, std::fabs(p.a[k] - p.b[k]));
+            }
+            if (!near || size > 0.05f) continue;
+            for (int k = 0; k < 3; ++k)
+                if (p.a[k] == p.b[k] && p.a[k] == p.c[k])
+                    for (const float side : {-1.0f, 1.0f}) {
+                        Point from = middle;
+                        from[k] += 10 * side;
+                        from[(k + 1) % 3] += 0.3f * (make.any() - 0.5f);
+                        rays.push_back(RayMaker::from_to(from, middle));
+                        from = middle;
+                        from[k] += 10 * side;
+                        rays.push_back(RayMaker::from_to(from, middle));
+                    }
+        }
+    });
+    add("hits.scales", "rays at tiny, huge and far-away triangles, and from far away", [&](std::vector<rt_ray>& rays) {
+        plain(rays, {"tiny", "far away"}, count / 4);
+        for (size_t i = 0; i < count / 4; ++i) {
+            const Region& at = mixed_regions()[i % mixed_regions().size()];
+            rays.push_back(make.into(at, std::min(std::pow(10.0f, 1 + 3 * make.any()), 3e4f / at.radius)));
+        }
+    });
+    add("hits.nested", "rays through the common centre of many shells, which enter every box: the stack is as full as it gets",
+        [&](std::vector<rt_ray>& rays) {
+            const Region& at = region("nested");
+            for (size_t i = 0; i < count / 2; ++i) {
+                const Point d = make.direction();
+                Point from = at.center, to = at.center;
+                for (int k = 0; k < 3; ++k) from[k] -= (i % 3 == 0 ? 0.0f : 2.0f) * at.radius * d[k];
+                for (int k = 0; k < 3; ++k) to[k] += i % 3 == 0 ? d[k] : 0.01f * d[(k + 1) % 3];
+                rays.push_back(RayMaker::from_to(from, to));
+            }
+            plain(rays, {"degenerate", "copies"}, count / 8);
+        });
+    add("hits.limits", "rays with a least and a greatest distance, also just before and behind a surface", [&](std::vector<rt_ray>& rays) {
+        for (size_t i = 0; i < count; ++i) {
+            const Region& at = region(i % 3 == 0 ? "instanced" : i % 3 == 1 ? "spheres" : "random");
+            rt_ray ray = make.into(at, 2);
+            const float a = 4 * at.radius * make.any(), b = 4 * at.radius * make.any();
+            if (i % 2) ray.t_min = std::min(a, b);
+            ray.t_max = i % 4 == 3 ? kInf : std::max(a, b);
+            rays.push_back(ray);
+        }
+    });
+    add("hits.unit", "directions that are not unit vectors", [&](std::vector<rt_ray>& rays) {
+        for (size_t i = 0; i < count / 2; ++i) {
+            rt_ray ray = make.into(region(i % 2 ? "instanced" : "random"), 2);
+            const float scale = std::pow(10.0f, 6 * make.any() - 3);
+            for (float& d : ray.direction) d *= scale;
+            rays.push_back(ray);
+        }
+    });
+    add("hits.strange", "directions and origins that are zero, NaN or infinite, beside sound rays", [&](std::vector<rt_ray>& rays) {
+        const float tiny = 1e-40f;
+        const rt_ray strange[] = {
+            {{0, 0, 5}, 0, {0, 0, 0}, kInf},           {{0, 0, 5}, 0, {kNan, 0, -1}, kInf},      {{0, 0, 5}, 0, {kNan, kNan, kNan}, kInf},
+            {{kNan, 0, 5}, 0, {0, 0, -1}, kInf},       {{kInf, 0, 5}, 0, {0, 0, -1}, kInf},      {{0, 0, 5}, 0, {kInf, 0, -1}, kInf},
+            {{0, 0, 5}, 0, {0, -kInf, kInf}, kInf},    {{0, 0, 5}, 0, {1e30f, -1e30f, 1e30f}, kInf}, {{0, 0, 5}, 0, {tiny, -tiny, -1}, kInf},
+            {{0, 0, 5}, 0, {tiny, tiny, tiny}, kInf},  {{1e30f, 1e30f, -1e30f}, 0, {-1, -1, 1}, kInf}, {{0, 0, 5}, kNan, {0, 0, -1}, kInf},
+            {{0, 0, 5}, 0, {0, 0, -1}, kNan},          {{0, 0, 5}, 10, {0, 0, -1}, 1},           {{0, 0, 5}, 0, {0, 0, -1}, -1},
+        };
+        for (size_t i = 0; i < count; ++i)
+            rays.push_back(i % 5 == 2 ? strange[i / 5 % (sizeof strange / sizeof *strange)] : make.into(region(i % 2 ? "instanced" : "random"), 2));
+    }, true);
+    return sets;
+}
+
+std::vector<RaySet> ray_sets_by_name() {
+    return ray_sets(BuildScene(), 0);
+}
+
+}  // namespace clarity::check

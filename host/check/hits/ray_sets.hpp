@@ -1,0 +1,25 @@
+// ray_sets.hpp -- the rays that are sent into the mixed scene, by kind.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "check/scenes.hpp"
+#include "render/accel/build_scene.hpp"
+#include "rt_types.h"
+
+namespace clarity::check {
+
+struct RaySet {
+    const char* name;   // of the check: "hits.random"
+    const char* tried;  // what these rays are
+    std::vector<rt_ray> rays;
+    bool strange = false;  // rays that are not numbers: there is no truth, but answers must be sound and neighbours undisturbed
+};
+
+// count: rays of a set, roughly. scene: the mixed scene as builders see it.
+std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count);
+
+// The same without rays.
+std::vector<RaySet> ray_sets_by_name();
+
+}  // namespace clarity::check

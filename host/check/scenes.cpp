@@ -1,0 +1,308 @@
+#include "check/scenes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+namespace clarity::check {
+namespace {
+
+constexpr float kPi = 3.14159265f;
+
+// Adds meshes, and places them, in a scene.
+class Maker {
+ public:
+    Maker() { scene.materials.push_back({"default", default_material()}); }
+
+    void triangle(const Point& a, const Point& b, const Point& c) {
+        for (const Point& p : {a, b, c}) {
+            scene.triangles.push_back(static_cast<rt_u32>(scene.positions.size() / 3));
+            scene.positions.insert(scene.positions.end(), p.begin(), p.end());
+        }
+        scene.triangle_materials.push_back(0);
+    }
+    void quad(const Point& a, const Point& b, const Point& c, const Point& d) {
+        triangle(a, b, c);
+        triangle(a, c, d);
+    }
+    void box(const Point& lo, const Point& hi) {
+        const auto at = [&](int i) { return Point{i & 1 ? hi[0] : lo[0], i & 2 ? hi[1] : lo[1], i & 4 ? hi[2] : lo[2]}; };
+        constexpr int kQuads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+        for (const auto& q : kQuads) quad(at(q[0]), at(q[1]), at(q[2]), at(q[3]));
+    }
+    void ball(const Point& center, float radius, int segments, int rings) {
+        const auto at = [&](int r, int s) {
+            const float theta = kPi * float(r) / float(rings), phi = 2 * kPi * float(s % segments) / float(segments);
+            return Point{center[0] + radius * std::sin(theta) * std::sin(phi), center[1] + radius * std::cos(theta),
+                         center[2] + radius * std::sin(theta) * std::cos(phi)};
+        };
+        for (int r = 0; r < rings; ++r)
+            for (int s = 0; s < segments; ++s) {
+                if (r > 0) triangle(at(r, s), at(r + 1, s), at(r, s + 1));
+                if (r + 1 < rings) triangle(at(r + 1, s), at(r + 1, s + 1), at(r, s + 1));
+            }
+    }
+    void soup(const Point& center, float spread, float size, unsigned count) {
+        for (unsigned i = 0; i < count; ++i) {
+            const Point p = around(center, spread);
+            const float s = size * (0.1f + random() * random());
+            triangle(p, around(p, s), around(p, s));
+        }
+    }
+    float random() { return std::uniform_real_distribution<float>(0, 1)(random_); }
+    Point around(const Point& center, float spread) {
+        Point p = center;
+        for (float& c : p) c += spread * (2 * random() - 1);
+        return p;
+    }
+
+    // Ends the mesh of the triangles since the last call. Returns its number.
+    rt_u32 mesh() {
+        Mesh mesh;
+        mesh.first_vertex = vertices_;
+        mesh.first_triangle = triangles_;
+        vertices_ = static_cast<rt_u32>(scene.positions.size() / 3);
+        triangles_ = static_cast<rt_u32>(scene.triangles.size() / 3);
+        mesh.vertex_count = vertices_ - mesh.first_vertex;
+        mesh.triangle_count = mesh.polygon_count = triangles_ - mesh.first_triangle;
+        scene.meshes.push_back(mesh);
+        return static_cast<rt_u32>(scene.meshes.size() - 1);
+    }
+    void place(rt_u32 mesh, const Affine& world_from_object = kIdentity) {
+        Instance instance;
+        instance.mesh = mesh;
+        instance.world_from_object = world_from_object;
+        scene.instances.push_back(instance);
+    }
+    void sphere(const Point& center, float radius) { scene.spheres.push_back({center, radius, 0}); }
+    void polygon(const std::vector<Point>& corners) {
+        Polygon polygon;
+        polygon.first_corner = static_cast<rt_u32>(scene.polygon_corners.size() / 3);
+        polygon.corner_count = static_cast<rt_u32>(corners.size());
+        scene.polygons.push_back(polygon);
+        for (const Point& p : corners) scene.polygon_corners.insert(scene.polygon_corners.end(), p.begin(), p.end());
+    }
+
+    Scene scene;
+
+ private:
+    std::mt19937 random_{17};
+    rt_u32 vertices_ = 0, triangles_ = 0;
+};
+
+// A turn about a slanted axis, with a scale for each axis and a translation.
+Affine placed(const Point& at, float angle, const Point& scale) {
+    const float c = std::cos(angle), s = std::sin(angle), x = 0.48f, y = 0.6f, z = 0.64f, k = 1 - c;
+    const float turn[9] = {c + k * x * x,     k * x * y - s * z, k * x * z + s * y, k * x * y + s * z, c + k * y * y,
+                           k * y * z - s * x, k * x * z - s * y, k * y * z + s * x, c + k * z * z};
+    Affine m{};
+    for (int r = 0; r < 3; ++r) {
+        for (int j = 0; j < 3; ++j) m[4 * r + j] = turn[3 * r + j] * scale[j];
+        m[4 * r + 3] = at[r];
+    }
+    return m;
+}
+
+constexpr Point kSoup{0, 0, 0}, kBoxes{40, 0, 0}, kFaces{0, 40, 0}, kDegenerate{-40, 0, 0}, kTiny{0, 0, 40}, kFar{9000, 2000, -7000},
+    kShells{0, -40, 0}, kCopies{0, 0, -40}, kInstances{40, 40, 0}, kInstancesTiny{40, 0, 40}, kInstancesFar{-3000, 500, 4000},
+    kSpheres{-40, 40, 0}, kPolygons{-40, 0, 40};
+
+// Flat faces in front of slanted ones, nearer by a share of 4e-4 of the distance: a traversal that culls a little too much loses
+// them. The slanted faces' boxes begin well before.
+void add_faces(Maker& make) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto turned = [&](float a, float b, float c) {
+            Point p = kFaces;
+            p[axis] += a;
+            p[(axis + 1) % 3] += b;
+            p[(axis + 2) % 3] += c;
+            return p;
+        };
+        // A pair of slanted faces, a = b / 2, 6 from the centre on either side.
+        for (const float side : {-6.0f, 6.0f}) {
+            make.quad(turned(side - 1, -2, -2), turned(side + 1, 2, -2), turned(side + 1, 2, 2), turned(side - 1, -2, 2));
+            for (int i = 0; i < 60; ++i) {
+                const float b = 3.6f * make.random() - 1.8f, c = 3.6f * make.random() - 1.8f, s = 0.004f;
+                for (const float off : {-0.004f, 0.004f}) {
+                    const float a = side + b / 2 + off;
+                    make.triangle(turned(a, b - s, c - s), turned(a, b + s, c - s), turned(a, b, c + s));
+                }
+            }
+        }
+    }
+}
+
+void add_degenerate(Maker& make) {
+    const Point& o = kDegenerate;
+    const auto at = [&](float x, float y, float z) { return Point{o[0] + x, o[1] + y, o[2] + z}; };
+    for (int i = 0; i < 24; ++i) {
+        const float x = -3 + 0.25f * float(i);
+        make.triangle(at(x, 1, 0), at(x, 1, 0), at(x, 1, 0));                  // a point
+        make.triangle(at(x, -1, 0), at(x, 0, 0), at(x, 1, 0));                 // a line
+        make.triangle(at(x, -2, 1), at(x + 1e-4f, -2, 1), at(x, 3, 1));        // a needle
+        make.triangle(at(x, 0, -1), at(x + 0.2f, 0, -1), at(x, 0.2f, -1));     // sound, among them
+        make.triangle(at(x, -3, 2), at(x + 0.2f, -3, 2), at(x + 0.1f, -3, 2)); // no area
+    }
+}
+
+}  // namespace
+
+const std::vector<Region>& mixed_regions() {
+    static const std::vector<Region> regions = {
+        {"random", kSoup, 5},           {"boxes", kBoxes, 4},          {"faces", kFaces, 3},
+        {"degenerate", kDegenerate, 4}, {"tiny", kTiny, 0.02f},        {"far away", kFar, 12},
+        {"nested", kShells, 8},         {"copies", kCopies, 2},        {"instanced", kInstances, 8},
+        {"instanced, tiny", kInstancesTiny, 0.05f}, {"instanced, far away", kInstancesFar, 60},
+        {"spheres", kSpheres, 4},       {"polygons", kPolygons, 4},
+    };
+    return regions;
+}
+
+Scene mixed_scene() {
+    Maker make;
+    make.soup(kSoup, 4, 0.9f, 700);
+    make.place(make.mesh());
+    for (int i = 0; i < 27; ++i) {
+        const Point lo{kBoxes[0] - 3 + 2 * float(i % 3), kBoxes[1] - 3 + 2 * float(i / 3 % 3), kBoxes[2] - 3 + 2 * float(i / 9)};
+        make.box(lo, {lo[0] + 2 - 1.5f * float(i % 2), lo[1] + 2, lo[2] + 2});
+    }
+    add_faces(make);
+    make.place(make.mesh());
+    add_degenerate(make);
+    make.soup(kTiny, 0.015f, 0.004f, 150);
+    make.soup(kFar, 9, 4, 150);
+    for (int i = 0; i < 20; ++i) make.triangle({kCopies[0] - 1, kCopies[1] - 1, kCopies[2]}, {kCopies[0] + 1, kCopies[1] - 1, kCopies[2]},
+                                               {kCopies[0], kCopies[1] + 1, kCopies[2]});
+    make.soup(kCopies, 1.5f, 0.5f, 40);
+    // Huge: a floor far below and a wall far behind.
+    make.quad({-2e5f, -300, -2e5f}, {2e5f, -300, -2e5f}, {2e5f, -300, 2e5f}, {-2e5f, -300, 2e5f});
+    make.triangle({-1e5f, -1e5f, -2e4f}, {1e5f, -1e5f, -2e4f}, {0, 1e5f, -2e4f});
+    for (int i = 0; i < 30; ++i) {  // shells around one centre: a ray through it enters all boxes
+        const float r = 0.02f * std::pow(1.22f, float(i));
+        make.box({kShells[0] - r, kShells[1] - r, kShells[2] - r}, {kShells[0] + r, kShells[1] + r, kShells[2] + r});
+    }
+    make.place(make.mesh());
+
+    make.ball({0, 0, 0}, 1, 10, 6);
+    make.soup({0.4f, 0.2f, 0}, 1.2f, 0.5f, 40);
+    const rt_u32 ball = make.mesh();
+    make.soup({500, -200, 100}, 1, 0.7f, 80);  // far from its own origin: matrices must bring it back
+    const rt_u32 cloud = make.mesh();
+    make.triangle({-1, -1, 0}, {1, -1, 0}, {0, 1, 0});
+    const rt_u32 single = make.mesh();
+    const Point& i = kInstances;
+    make.place(ball, placed(i, 0.4f, {1.5f, 1.5f, 1.5f}));
+    make.place(ball, placed({i[0] + 4, i[1], i[2]}, 1.9f, {1, 2, 0.5f}));
+    make.place(ball, placed({i[0] - 4, i[1] + 1, i[2]}, 2.6f, {-1, 1, 1}));  // mirrored
+    make.place(ball, placed({i[0] - 4, i[1] + 1, i[2]}, 1.1f, {0.4f, 0.4f, 0.4f}));  // within the one before
+    make.place(ball, placed(kInstancesTiny, 0.7f, {0.02f, 0.03f, 0.02f}));
+    make.place(ball, placed({kInstancesTiny[0] + 0.03f, kInstancesTiny[1], kInstancesTiny[2]}, 3, {0.01f, 0.01f, -0.01f}));
+    make.place(ball, placed(kInstancesFar, 5, {40, 30, 20}));
+    for (int k = 0; k < 4; ++k) {
+        Affine m = placed({0, 0, 0}, 0.9f * float(k), {1, 1, 1});
+        const float center[3] = {500, -200, 100};
+        for (int r = 0; r < 3; ++r) {
+            float moved = 0;
+            for (int j = 0; j < 3; ++j) moved += m[4 * r + j] * center[j];
+            m[4 * r + 3] = i[r] + (r == 1 ? -4.0f : r == 2 ? 2 * float(k) - 3 : 0.0f) - moved;
+        }
+        make.place(cloud, m);
+    }
+    for (int k = 0; k < 12; ++k) make.place(single, placed({i[0] - 5 + float(k), i[1] + 5, i[2]}, 0.5f * float(k), {0.7f, 0.7f, 1}));
+
+    for (int k = 0; k < 12; ++k) make.sphere(make.around(kSpheres, 3), 0.05f + make.random());
+    make.sphere(kSpheres, 3.5f);  // around most of them
+    make.sphere({kSpheres[0], kSpheres[1], kSpheres[2] + 3.8f}, 1e-3f);
+    for (int k = 0; k < 6; ++k) {
+        const float z = kPolygons[2] - 3 + float(k), t = 0.1f * float(k);
+        const auto at = [&](float x, float y) { return Point{kPolygons[0] + x, kPolygons[1] + y, z + t * x}; };
+        if (k % 2)
+            make.polygon({at(-2, -2), at(2, -2), at(3, 1), at(0, 3), at(-3, 1)});
+        else
+            make.polygon({at(-2, -2), at(0, -0.5f), at(2, -2), at(0, 3)});  // concave
+    }
+    return std::move(make.scene);
+}
+
+std::vector<NamedScene> small_scenes() {
+    std::vector<NamedScene> scenes;
+    const auto add = [&](const char* name, auto fill) {
+        Maker make;
+        fill(make);
+        scenes.push_back({name, std::move(make.scene)});
+    };
+    add("empty", [](Maker&) {});
+    add("one triangle", [](Maker& make) {
+        make.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        make.place(make.mesh());
+    });
+    for (const int count : {2, 3, 5, 9, 17})
+        add(count == 2 ? "two triangles" : "a few triangles", [count](Maker& make) {
+            make.soup({0, 0, 0}, 3, 1, unsigned(count));
+            make.place(make.mesh());
+        });
+    add("one sphere", [](Maker& make) { make.sphere({1, 2, 3}, 0.5f); });
+    add("only instances", [](Maker& make) {
+        make.soup({0, 0, 0}, 1, 1, 20);
+        const rt_u32 mesh = make.mesh();
+        for (int i = 0; i < 30; ++i) make.place(mesh, placed({3 * float(i), 0, 0}, float(i), {1, 1, 1}));
+    });
+    add("two instances of one triangle", [](Maker& make) {
+        make.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        const rt_u32 mesh = make.mesh();
+        make.place(mesh);
+        make.place(mesh, placed({3, 0, 0}, 0, {1, 1, 1}));
+    });
+    add("300 times the same triangle", [](Maker& make) {
+        for (int i = 0; i < 300; ++i) make.triangle({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
+        make.place(make.mesh());
+    });
+    add("300 times the same point", [](Maker& make) {
+        for (int i = 0; i < 300; ++i) make.triangle({5, 5, 5}, {5, 5, 5}, {5, 5, 5});
+        make.place(make.mesh());
+    });
+    add("sizes that double", [](Maker& make) {  // unbalanced: deep trees
+        for (int i = 0; i < 60; ++i) {
+            const float s = std::pow(2.0f, float(i) - 30);
+            make.triangle({s, 0, 0}, {2 * s, 0, 0}, {s, s, s});
+        }
+        make.place(make.mesh());
+    });
+    add("in one plane", [](Maker& make) {
+        for (int i = 0; i < 400; ++i) make.triangle({float(i % 20), float(i / 20), 0}, {float(i % 20) + 1, float(i / 20), 0}, {float(i % 20), float(i / 20) + 1, 0});
+        make.place(make.mesh());
+    });
+    add("coordinates up to 1e18", [](Maker& make) {
+        make.soup({1e18f, -1e18f, 1e18f}, 1e18f, 1e17f, 200);
+        make.soup({0, 0, 0}, 1, 0.1f, 100);
+        make.place(make.mesh());
+    });
+    add("coordinates below 1e-30", [](Maker& make) {
+        make.soup({0, 0, 0}, 1e-30f, 1e-31f, 200);
+        make.place(make.mesh());
+    });
+    scenes.push_back({"mixed", mixed_scene()});
+    return scenes;
+}
+
+Scene sparse_scene(unsigned count) {
+    Maker make;
+    const int side = static_cast<int>(std::ceil(std::cbrt(double(count))));
+    for (unsigned i = 0; i < count; ++i) {
+        const int n = static_cast<int>(i);
+        const Point cell{float(n % side), float(n / side % side), float(n / side / side)};
+        const Point p = make.around({3.1f * cell[0] - 7.3f, 2.9f * cell[1] + 1.7f, 3.3f * cell[2] - 2.9f}, 0.6f);
+        make.triangle(make.around(p, 0.6f), make.around(p, 0.6f), make.around(p, 0.6f));
+    }
+    make.place(make.mesh());
+    return std::move(make.scene);
+}
+
+Scene soup_scene(unsigned count) {
+    Maker make;
+    make.soup({0, 0, 0}, 50, 60 / std::cbrt(float(count + 1)), count);
+    make.place(make.mesh());
+    return std::move(make.scene);
+}
+
+}  // namespace clarity::check

@@ -1,0 +1,38 @@
+// scenes.hpp -- the scenes on which structures are checked. They are made by formula: the same on every machine.
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace clarity::check {
+
+using Point = std::array<float, 3>;
+
+// Region of the mixed scene at which rays are aimed.
+struct Region {
+    const char* name;
+    Point center;
+    float radius;
+};
+
+// Every kind of primitive, in regions far from each other: a soup, boxes that touch, slanted and flat faces at nearly one distance,
+// degenerate triangles, tiny, huge and far-away ones, nested shells, copies at one place, and instances that are turned, mirrored,
+// stretched, tiny, large and within each other. About 3000 triangles. One scene, so that one program of each lane count does.
+Scene mixed_scene();
+const std::vector<Region>& mixed_regions();
+
+// Small scenes for builders.
+struct NamedScene {
+    std::string name;
+    Scene scene;
+};
+std::vector<NamedScene> small_scenes();
+
+// Triangles that lie apart, so that a bound that is too small is seen: no neighbour covers what it leaves out.
+Scene sparse_scene(unsigned count);
+// `count` triangles of any size in a cube; for tests of time and memory.
+Scene soup_scene(unsigned count);
+
+}  // namespace clarity::check

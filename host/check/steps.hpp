@@ -1,0 +1,31 @@
+// steps.hpp -- what a check says while it runs and when it is done.
+#pragma once
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace clarity::check {
+
+// What a check found. passed: `found` tells what was seen; else what is wrong, and why it matters.
+struct Outcome {
+    enum class Kind { passed, failed, skipped } kind = Kind::passed;
+    std::string found;
+    std::string repeat;  // how to repeat it alone, besides --only; may be empty
+
+    static Outcome passed(std::string found) { return {Kind::passed, std::move(found), {}}; }
+    static Outcome failed(std::string found, std::string repeat = {}) { return {Kind::failed, std::move(found), std::move(repeat)}; }
+    static Outcome skipped(std::string why) { return {Kind::skipped, std::move(why), {}}; }
+};
+
+// Told about each step before it begins, so that the parent process can name it if the worker dies in it. limit_s: seconds
+// after which the step counts as endless.
+using Step = std::function<void(const std::string& what, double limit_s)>;
+
+struct Check {
+    std::string name;   // "builds.threads": of letters, digits, dots and _
+    std::string tried;  // "the same result whatever the number of threads"
+    std::function<Outcome(const Step&)> run;
+};
+
+}  // namespace clarity::check

@@ -1,0 +1,99 @@
+// clarity check: says whether plugins are right, one line a check.
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/error.hpp"
+#include "base/printable.hpp"
+#include "check/check.hpp"
+#include "cli/commands.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/progress_bar.hpp"
+
+namespace clarity {
+namespace {
+
+using check::CheckResult;
+using check::Outcome;
+
+// The libraries that a word names: a file, or all plugins of that id.
+std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std::string& word) {
+    std::error_code error;
+    if (std::filesystem::is_directory(word, error))
+        throw Error(Exit::usage, word + ": is a folder; build it (`cmake -S " + word + " -B build && cmake --build build`) and name the library");
+    if (word.find('/') != std::string::npos || std::filesystem::path(word).extension() == ".so") {
+        PluginRecord record = load_plugin(word);
+        if (!record.plugin) throw Error(Exit::failed, word + ": the library was refused: " + record.why);
+        record.path = std::filesystem::absolute(word).string();
+        return {record};
+    }
+    std::vector<PluginRecord> found;
+    std::string ids;
+    for (const PluginRecord& record : plugins.records()) {
+        if (!record.plugin || record.shadowed) continue;
+        ids += (ids.empty() ? "" : ", ") + std::string(record.plugin->id);
+        if (word == record.plugin->id) found.push_back(record);
+    }
+    if (found.empty()) throw Error(Exit::usage, word + ": no plugin of this id; there are " + ids + "; or name a library, ./" + word + ".so");
+    return found;
+}
+
+const char* kind_text(Outcome::Kind kind) {
+    return kind == Outcome::Kind::passed ? "ok" : kind == Outcome::Kind::failed ? "FAILED" : "skipped";
+}
+
+std::string repeat_text(const CheckResult& result, const CheckCommand& command) {
+    std::string text = "clarity check " + result.plugin + " --only " + result.name;
+    for (const std::string& word : command.what)
+        if (word.find('/') != std::string::npos) text = "clarity check " + word + " --only " + result.name;
+    if (command.options.quick) text += " --quick";
+    return text;
+}
+
+void print(const CheckResult& result, const CheckCommand& command) {
+    std::string line = std::string(kind_text(result.outcome.kind)) + "  " + result.plugin + " " + result.name + ": " + result.tried + ": " +
+                       printable_line(result.outcome.found);
+    char time[32];
+    std::snprintf(time, sizeof time, "  (%.1f s)", result.seconds);
+    line += time;
+    if (result.outcome.kind == Outcome::Kind::failed) {
+        line += "; repeat: " + repeat_text(result, command);
+        if (!result.outcome.repeat.empty()) line += "; " + result.outcome.repeat;
+    }
+    std::printf("%s\n", line.c_str());
+    std::fflush(stdout);
+}
+
+}  // namespace
+
+int run_check(const PluginRegistry& plugins, const CheckCommand& command) {
+    std::vector<PluginRecord> libraries;
+    for (const std::string& word : command.what)
+        for (PluginRecord& record : libraries_of(plugins, word)) libraries.push_back(std::move(record));
+    if (!command.options.report_folder.empty()) std::filesystem::create_directories(command.options.report_folder);
+    Progress progress;
+    const CancelOnSignal cancel(progress);
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    bool all = true;
+    for (const PluginRecord& record : libraries)
+        all &= check::check_plugin_library(record, command.options, progress, [&](const CheckResult& result) {
+            if (!command.json) return print(result, command);
+            list.push_back({{"plugin", result.plugin},
+                            {"library", record.path},
+                            {"check", result.name},
+                            {"status", result.outcome.kind == Outcome::Kind::passed    ? "passed"
+                                       : result.outcome.kind == Outcome::Kind::failed ? "failed"
+                                                                                      : "skipped"},
+                            {"tried", result.tried},
+                            {"found", result.outcome.found},
+                            {"repeat", repeat_text(result, command)},
+                            {"report", result.outcome.repeat},
+                            {"seconds", result.seconds}});
+        });
+    if (command.json) std::printf("%s\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
+    return static_cast<int>(all ? Exit::done : Exit::failed);
+}
+
+}  // namespace clarity

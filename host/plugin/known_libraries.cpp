@@ -1,0 +1,79 @@
+#include "plugin/known_libraries.hpp"
+
+#include <sys/stat.h>
+
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <set>
+
+#include "base/read_file.hpp"
+#include "plugin/registry.hpp"
+
+namespace clarity {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr uint64_t kMaxLibraryBytes = uint64_t{1} << 30;
+
+// FNV-1a, 64 bits: tells libraries apart; it is no protection against somebody who wants two to be alike.
+std::string hash_of(const std::string& path) {
+    std::string content;
+    if (!try_read_file(path, kMaxLibraryBytes, content).empty()) return {};
+    uint64_t hash = 14695981039346656037ull;
+    for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
+    char text[32];
+    std::snprintf(text, sizeof text, "%016llx-%zx", static_cast<unsigned long long>(hash), content.size());
+    return text;
+}
+
+// Names a version of a file without reading it.
+std::string stamp_of(const std::string& path) {
+    struct stat status {};
+    if (stat(path.c_str(), &status) != 0) return {};
+    return path + ' ' + std::to_string(status.st_size) + ' ' + std::to_string(status.st_ino) + ' ' + std::to_string(status.st_mtim.tv_sec) +
+           '.' + std::to_string(status.st_mtim.tv_nsec);
+}
+
+fs::path folder() {
+    const char* cache = std::getenv("XDG_CACHE_HOME");
+    const char* home = std::getenv("HOME");
+    if (cache && cache[0] == '/') return fs::path(cache) / "clarity" / "known_plugins";
+    return home && home[0] == '/' ? fs::path(home) / ".cache" / "clarity" / "known_plugins" : fs::path();
+}
+
+std::mutex mutex;
+std::set<std::string>& known() {
+    static std::set<std::string>& stamps = *new std::set<std::string>;
+    return stamps;
+}
+
+}  // namespace
+
+bool is_known_library(const std::string& path) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    const std::string stamp = stamp_of(path);
+    if (known().count(stamp)) return true;
+    std::error_code error;
+    const fs::path file = folder();
+    const bool is_known = is_own_library(path) || (!file.empty() && fs::exists(file / hash_of(path), error));
+    if (is_known) known().insert(stamp);
+    return is_known;
+}
+
+void remember_library(const std::string& path) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    known().insert(stamp_of(path));
+    // The note for later processes is a convenience: without it the next first build runs in a worker again.
+    std::error_code error;
+    const std::string hash = hash_of(path);
+    if (folder().empty() || hash.empty()) return;
+    fs::create_directories(folder(), error);
+    std::ofstream(folder() / hash) << path << '\n';
+}
+
+}  // namespace clarity

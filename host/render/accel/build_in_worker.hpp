@@ -1,0 +1,23 @@
+// build_in_worker.hpp -- runs the builders of strangers' libraries in a worker process, so that a crash is one message.
+#pragma once
+#include "base/progress.hpp"
+#include "rt_plugin.h"
+
+namespace clarity {
+
+// Where builders run.
+enum class BuildPlace {
+    automatic,  // libraries that are not our own: in a worker the first time, until a build has come to its end; else here
+    worker,     // always in a worker, on memory between guard pages: for --debug
+    here
+};
+
+// Calls plugin.accel->build with these arguments, here or in a worker process, where a crash, an endless loop or a call of exit
+// ends only the worker. Same result and same meaning. Throws Cancelled. progress: the one behind `host`.
+int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
+                     const rt_build_output* out, Progress& progress);
+
+// Main function of the worker (`clarity build-worker ...`, which people do not call).
+int build_worker_main(int argc, char** argv);
+
+}  // namespace clarity

@@ -1,0 +1,56 @@
+#include "render/accel/guarded_memory.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <new>
+
+#include "worker/child.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr size_t kGuard = 1u << 20;  // bytes on either side: large strides miss a single page
+constexpr unsigned char kPattern = 0xA5;
+
+}  // namespace
+
+GuardedBytes::GuardedBytes(size_t bytes, const std::string& name, size_t align) : bytes_(bytes), name_(name) {
+    const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
+    const size_t room = (bytes + align - 1) / align * align, pages = (room + page - 1) / page * page;
+    map_bytes_ = pages + 2 * kGuard;
+    void* map = mmap(nullptr, map_bytes_, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (map == MAP_FAILED) throw std::bad_alloc();
+    map_ = static_cast<unsigned char*>(map);
+    if (pages > 0 && mprotect(map_ + kGuard, pages, PROT_READ | PROT_WRITE) != 0) {
+        munmap(map, map_bytes_);
+        throw std::bad_alloc();
+    }
+    data_ = map_ + kGuard + pages - room;
+    std::memset(map_ + kGuard, kPattern, static_cast<size_t>(data_ - map_) - kGuard);
+    std::memset(data_ + bytes, kPattern, room - bytes);
+    worker::name_memory(data_, bytes_, name_);
+}
+
+GuardedBytes::~GuardedBytes() {
+    if (!map_) return;
+    worker::forget_memory(data_);
+    munmap(map_, map_bytes_);
+}
+
+bool GuardedBytes::intact() const {
+    if (!map_) return true;
+    const auto is_pattern = [](const unsigned char* begin, const unsigned char* end) {
+        for (; begin < end; ++begin)
+            if (*begin != kPattern) return false;
+        return true;
+    };
+    return is_pattern(map_ + kGuard, data_) && is_pattern(data_ + bytes_, map_ + map_bytes_ - kGuard);
+}
+
+void GuardedBytes::make_read_only() {
+    if (map_ && map_bytes_ > 2 * kGuard) mprotect(map_ + kGuard, map_bytes_ - 2 * kGuard, PROT_READ);
+}
+
+}  // namespace clarity

@@ -1,0 +1,31 @@
+#include "render/queries/query_scene.hpp"
+
+#include <algorithm>
+
+#include "device/cl_errors.hpp"
+#include "render/frame/device_scene.hpp"
+
+namespace clarity {
+
+std::shared_ptr<const Prepared> prepare_queries(Device& device, std::shared_ptr<const Scene> scene,
+                                                std::shared_ptr<const AccelData> accel, const Settings& settings,
+                                                Progress& progress) {
+    auto prepared = std::make_shared<Prepared>();
+    prepared->scene = scene;
+    prepared->accel = accel;
+    Settings& s = prepared->settings = settings;
+    s.accel = accel->plugin->id;
+    s.accel_params = accel->params;
+    s.tracer = "iterative";
+    if (s.lanes == 0) s.lanes = static_cast<int>(device.info().preferred_lanes());
+    if (s.packet_w == 0) s.packet_w = s.packet_h = device.info().cpu ? std::max(4, s.lanes) : 1;
+    prepared->layout = make_layout(s, device.info().cpu);
+    progress.stage("uploading the scene");
+    wrap_cl_errors(device, "uploading the scene", [&] {
+        prepared->on_device = std::make_shared<DeviceScene>(device, std::move(scene), std::move(accel), progress);
+        return 0;
+    });
+    return prepared;
+}
+
+}  // namespace clarity

@@ -1,0 +1,24 @@
+// ray_text.hpp -- rays as lines of numbers, and their answers: the files of `clarity trace`.
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "rt_types.h"
+
+namespace clarity {
+
+// Reads a ray a line: origin x y z, t_min, direction x y z, t_max, separated by white space or commas. `inf` and `nan` are
+// numbers, too. Text after # is a comment; lines without numbers are skipped. Throws Error(usage) "FILE:LINE:COLUMN: why".
+// file: for messages.
+std::vector<rt_ray> parse_rays(std::string_view text, const std::string& file);
+// The same from a file; "-" is stdin. Throws Error(failed) if it cannot be read.
+std::vector<rt_ray> read_rays(const std::string& path);
+
+// The line that parse_rays() reads as this ray: all digits.
+std::string ray_text(const rt_ray& ray);
+
+// A line a hit, after a line with the names of the columns: t, prim, instance, u, v; for any-hit queries: occluded, 1 or 0.
+std::string hits_text(const std::vector<rt_hit>& hits, bool any_hit);
+
+}  // namespace clarity

@@ -1,0 +1,192 @@
+#include "worker/child.hpp"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
+#include <ucontext.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <new>
+
+#include "base/log.hpp"
+
+namespace clarity::worker {
+namespace {
+
+// Sanitizers handle crashes themselves and report more.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kHasCrashReports = true;
+#else
+constexpr bool kHasCrashReports = false;
+#endif
+
+alignas(16) char signal_stack[64 << 10];
+
+// Read by the signal handler, so it is plain memory.
+struct Named {
+    std::atomic<uintptr_t> begin{0};
+    size_t bytes = 0;
+    char name[64] = {};
+};
+Named named[kMostNamed];
+std::mutex named_mutex;
+constexpr uintptr_t kNear = 1u << 20;  // bytes beside a range within which an access is blamed on the range
+
+void append(char* text, size_t size, const char* more) {
+    const size_t at = std::strlen(text);
+    if (at + 1 < size) std::strncat(text, more, size - at - 1);
+}
+void append(char* text, size_t size, uintptr_t number) {
+    char digits[24], *end = digits + sizeof digits - 1;
+    *end = 0;
+    do *--end = static_cast<char>('0' + number % 10);
+    while ((number /= 10) != 0);
+    append(text, size, end);
+}
+
+// Says where an address is in terms of named memory; leaves the text empty if it is not near any.
+void place_of(uintptr_t address, char* text, size_t size) {
+    uintptr_t nearest = kNear;
+    for (const Named& range : named) {
+        const uintptr_t begin = range.begin;
+        if (begin == 0) continue;
+        const uintptr_t end = begin + range.bytes;
+        const uintptr_t away = address < begin ? begin - address : address < end ? 0 : address - end + 1;
+        if (away >= nearest) continue;
+        nearest = away;
+        text[0] = 0;
+        append(text, size, "an access ");
+        if (address >= begin && address < end) {
+            append(text, size, "at byte ");
+            append(text, size, address - begin);
+            append(text, size, " of ");
+        } else {
+            append(text, size, address < begin ? begin - address : address - end + 1);
+            append(text, size, address < begin ? " bytes before " : " bytes beyond the end of ");
+        }
+        append(text, size, range.name);
+    }
+}
+
+void on_crash(int signal, siginfo_t* info, void* context) {
+    uintptr_t stack_pointer = 0;
+#if defined(__x86_64__)
+    stack_pointer = static_cast<uintptr_t>(static_cast<ucontext_t*>(context)->uc_mcontext.gregs[REG_RSP]);
+#elif defined(__aarch64__)
+    stack_pointer = static_cast<uintptr_t>(static_cast<ucontext_t*>(context)->uc_mcontext.sp);
+#else
+    (void)context;
+#endif
+    const auto address = reinterpret_cast<uintptr_t>(info->si_addr);
+    const uintptr_t distance = address > stack_pointer ? address - stack_pointer : stack_pointer - address;
+    char text[250] = "";
+    place_of(address, text, sizeof text);
+    if (text[0])
+        send_short(kChannelFd, MessageKind::death, text);
+    else if (stack_pointer != 0 && distance < (1u << 20))
+        send_short(kChannelFd, MessageKind::death, "stack overflow");
+    // After the return the faulty access repeats, now without a handler.
+    std::signal(signal, SIG_DFL);
+}
+
+[[noreturn]] void on_terminate() {
+    try {
+        if (std::current_exception()) std::rethrow_exception(std::current_exception());
+    } catch (const std::bad_alloc&) {
+        send_short(kChannelFd, MessageKind::death, "out of memory");
+    } catch (const std::exception& e) {
+        send_short(kChannelFd, MessageKind::death, e.what());
+    } catch (...) {
+    }
+    std::abort();
+}
+
+// Sent once. The code that asked for memory may survive the refusal; if the worker dies instead, this was the reason.
+void on_out_of_memory() {
+    static bool said = false;
+    if (!said) send_short(kChannelFd, MessageKind::death, "out of memory");
+    said = true;
+    throw std::bad_alloc();
+}
+
+void prepare_last_words() {
+    std::set_terminate(on_terminate);
+    std::set_new_handler(on_out_of_memory);
+    if (kHasCrashReports) return;
+    const stack_t stack = {signal_stack, 0, sizeof signal_stack};
+    sigaltstack(&stack, nullptr);
+    struct sigaction action {};
+    action.sa_sigaction = on_crash;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+    for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
+}
+
+void send_log(LogLevel level, const std::string& text) {
+    send_message(kChannelFd, {MessageKind::log, static_cast<int32_t>(level), 0, text});
+}
+
+}  // namespace
+
+bool begin_worker(const char* greeting, long parent, const char* instead) {
+    if (fcntl(kChannelFd, F_GETFD) < 0 || fcntl(kResultFd, F_GETFD) < 0) {
+        std::fprintf(stderr, "workers are started by clarity itself; %s\n", instead);
+        return false;
+    }
+    // The kernel ends the worker when its parent dies, because the result is of no use then. The check after the call covers a
+    // parent that died before it.
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    if (parent != 0 && getppid() != parent) _exit(1);
+#ifdef SYS_close_range
+    syscall(SYS_close_range, kResultFd + 1, ~0u, 0);
+#endif
+    std::signal(SIGPIPE, SIG_IGN);
+    set_log_level(LogLevel::error);
+    set_log_listener(send_log);
+    prepare_last_words();
+    send_message(kChannelFd, {MessageKind::greeting, 0, 0, greeting});
+    return true;
+}
+
+void ChannelProgress::stage(const std::string& text) {
+    send_message(kChannelFd, {MessageKind::stage, 0, 0, text});
+}
+
+bool ChannelProgress::report(float fraction) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto now = std::chrono::steady_clock::now();
+    if (now - last_look_ < std::chrono::milliseconds(25)) return !cancelled();
+    last_look_ = now;
+    Message message;
+    while (!cancelled()) {
+        const Received received = receive_message(kChannelFd, message);
+        if (received == Received::nothing) break;
+        if (received == Received::closed || message.kind == MessageKind::cancel) cancel();
+    }
+    send_message(kChannelFd, {MessageKind::progress, 0, fraction, {}});
+    return !cancelled();
+}
+
+void name_memory(const void* begin, size_t bytes, const std::string& name) {
+    const std::lock_guard<std::mutex> lock(named_mutex);
+    for (Named& range : named) {
+        if (range.begin != 0) continue;
+        range.bytes = bytes;
+        std::snprintf(range.name, sizeof range.name, "%s", name.c_str());
+        range.begin = reinterpret_cast<uintptr_t>(begin);
+        return;
+    }
+}
+
+void forget_memory(const void* begin) {
+    const std::lock_guard<std::mutex> lock(named_mutex);
+    for (Named& range : named)
+        if (range.begin == reinterpret_cast<uintptr_t>(begin)) range.begin = 0;
+}
+
+}  // namespace clarity::worker

@@ -1,0 +1,80 @@
+/* broken.cl -- a binary BVH without any optimisation. The builder defines one BROKEN_... at most; without it the traversal is
+ * right. */
+void RT_TRAVERSE(const rt_ctx *ctx, uint root, const rt_rays *ray, rt_hits *hit)
+{
+    uint stack[BROKEN_STACK];
+    uint top = 0, ref = root;
+#if defined(BROKEN_ANY_FORGETS_T_MAX) && RT_ANY_HIT
+    hit->t = rt_select(RT_MASK(hit->t >= rt_vfloat(0.0f)), RT_INFINITY, hit->t);
+#endif
+    for (;;) {
+        const global broken_node *node = ctx->broken_nodes + ref;
+        vfloat entry;
+#ifdef BROKEN_NEVER_INCOHERENT
+        /* Takes the near planes of the first lane's octant for all lanes. */
+        const global float *box = node->box;
+        const uint x = rt_bits(rt_negative(ray->ix)) & 1u ? 3u : 0u, y = rt_bits(rt_negative(ray->iy)) & 1u ? 4u : 1u,
+                   z = rt_bits(rt_negative(ray->iz)) & 1u ? 5u : 2u;
+        uint inside = rt_bits(rt_enter_planes(rt_vfloat(box[x]), rt_vfloat(box[y]), rt_vfloat(box[z]), rt_vfloat(box[3u - x]),
+                                              rt_vfloat(box[5u - y]), rt_vfloat(box[7u - z]), ray, hit, &entry));
+#else
+        uint inside = rt_bits(rt_enter_box(node->box, ray, hit, &entry));
+#endif
+#ifdef BROKEN_CULLS_EAGERLY
+        inside &= rt_bits(RT_MASK(entry <= hit->t * rt_vfloat(0.999f)));
+#endif
+#ifdef BROKEN_OCTANT
+        /* A wrong sign: this octant's rays take the far side for the near one. */
+        inside &= ~rt_bits(rt_negative(ray->ix) & ~rt_negative(ray->iy) & rt_negative(ray->iz) & RT_MASK(entry > rt_vfloat(4.0f)));
+#endif
+#ifdef BROKEN_AXIS
+        inside &= ~rt_bits(RT_MASK(ray->dx == rt_vfloat(0.0f)) & RT_MASK(entry > rt_vfloat(1.0f)));
+#endif
+#ifdef BROKEN_FIRST_LANE
+        if (node->count == 0u) inside &= 1u;
+#endif
+#if defined(BROKEN_LANES_8) && RT_LANES == 8
+        inside &= 0x7fu;
+#endif
+        RT_COUNT_VISIT(hit, inside);
+        if (inside != 0u && node->count != BROKEN_EMPTY) {
+            if (node->count == 0u) {
+                stack[top] = node->first + 1u;
+                if (RT_STACK_OK(top + 1u, BROKEN_STACK, hit)) ++top;
+                ref = node->first;
+#ifdef BROKEN_DEVICE_LOOP
+                if (top == 3u) --top, ref = root; /* begins anew, for ever */
+#endif
+                continue;
+            }
+            for (uint i = 0; i < node->count; ++i) {
+#ifdef BROKEN_IGNORES_TRANSFORM
+                const global rt_packed_prim *leaf = ctx->leaves + node->first + i;
+                if (RT_REF_KIND(leaf->ref) == RT_REF_INSTANCE) {
+                    if (top + 1u < BROKEN_STACK) stack[top++] = ctx->instances[RT_REF_INDEX(leaf->ref)].root;
+                    continue;
+                }
+#endif
+                RT_LEAF(ctx, node->first + i, ray, hit);
+            }
+#ifdef BROKEN_WRITES_T
+            hit->t *= rt_vfloat(0.9f);
+#endif
+#ifdef BROKEN_STOPS_AT_FIRST_LEAF
+            if (rt_any(RT_MASK(hit->prim >= rt_vint(0)))) return;
+#endif
+#if RT_ANY_HIT
+#ifdef BROKEN_ANY_RETURNS_EARLY
+            if (rt_any(RT_MASK(hit->t < rt_vfloat(0.0f)))) return;
+#else
+            if (!rt_any(RT_MASK(hit->t >= rt_vfloat(0.0f)))) return;
+#endif
+#endif
+        }
+        if (top == 0u) return;
+        ref = stack[--top];
+#ifdef BROKEN_READS_BEYOND_SLOT
+        if (ctx->broken_nodes[ref + BROKEN_NODES].count == 77u) return;
+#endif
+    }
+}

@@ -1,0 +1,231 @@
+// broken.cpp -- a small binary BVH with one defect, which the macro DEFECT names. `clarity check` must find each, and none in
+// the plugin with the defect `none`.
+#include <algorithm>
+#include <atomic>
+#include <cfloat>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "rt_plugin.hpp"
+// needs the types of rt_types.h, so it must follow the headers above:
+#include "broken_types.h"
+
+#define STRING_OF(x) #x
+#define STRING(x) STRING_OF(x)
+
+namespace {
+
+constexpr const char* kDefect = STRING(DEFECT);
+constexpr bool same(const char* a, const char* b) {
+    for (; *a && *a == *b; ++a, ++b) {
+    }
+    return *a == *b;
+}
+constexpr bool is(const char* defect) {
+    return same(kDefect, defect);
+}
+
+// Defects of the traversal, which are macros there.
+struct Macro {
+    const char *defect, *macro;
+};
+constexpr Macro kMacros[] = {{"octant", "BROKEN_OCTANT"},
+                             {"any_forgets_t_max", "BROKEN_ANY_FORGETS_T_MAX"},
+                             {"any_returns_early", "BROKEN_ANY_RETURNS_EARLY"},
+                             {"culls_eagerly", "BROKEN_CULLS_EAGERLY"},
+                             {"axis", "BROKEN_AXIS"},
+                             {"first_lane", "BROKEN_FIRST_LANE"},
+                             {"lanes_8", "BROKEN_LANES_8"},
+                             {"never_incoherent", "BROKEN_NEVER_INCOHERENT"},
+                             {"device_loop", "BROKEN_DEVICE_LOOP"},
+                             {"ignores_transform", "BROKEN_IGNORES_TRANSFORM"},
+                             {"writes_t", "BROKEN_WRITES_T"},
+                             {"stops_at_first_leaf", "BROKEN_STOPS_AT_FIRST_LEAF"},
+                             {"reads_beyond_slot", "BROKEN_READS_BEYOND_SLOT"}};
+
+constexpr rt_param kParams[] = {rt::int_param("max_leaf", "Leaf size", "primitives in a leaf, at most", 1, 8, 3)};
+
+struct Box {
+    float lo[3] = {INFINITY, INFINITY, INFINITY}, hi[3] = {-INFINITY, -INFINITY, -INFINITY};
+    void add(const rt_prim& prim) {
+        for (int k = 0; k < 3; ++k) {
+            lo[k] = std::fmin(lo[k], prim.lo[k]);
+            hi[k] = std::fmax(hi[k], prim.hi[k]);
+        }
+    }
+};
+
+class Builder {
+ public:
+    explicit Builder(const rt_build_input* input) : input_(*input), most_(rt_u32(input->params[0])) {}
+
+    rt_u32 group(rt_u32 g) {
+        const rt_group& range = input_.groups[g];
+        std::vector<rt_u32> order(range.count);
+        for (rt_u32 i = 0; i < range.count; ++i) order[i] = range.first + i;
+        if (is("dropped") && range.count > 20) order.pop_back();
+        if (is("dropped_at_limit") && most_ == 1 && range.count > 20) order.pop_back();
+        if (is("half")) order.resize((order.size() + 1) / 2);
+        const rt_u32 root = add_nodes(1);
+        split(root, order.data(), rt_u32(order.size()), 1);
+        return root;
+    }
+
+    std::vector<broken_node> nodes;
+    std::vector<rt_u32> refs;
+    rt_u32 depth = 1;
+
+ private:
+    rt_u32 add_nodes(rt_u32 count) {
+        nodes.resize(nodes.size() + count);
+        return rt_u32(nodes.size() - count);
+    }
+    void split(rt_u32 at, rt_u32* order, rt_u32 count, rt_u32 level) {
+        Box box;
+        for (rt_u32 i = 0; i < count; ++i) box.add(input_.prims[order[i]]);
+        depth = std::max(depth, level);
+        if (is("ulp_short"))
+            for (float& hi : box.hi) hi = std::nextafter(hi, -INFINITY);
+        if (is("nan_planes") && level == 4) box.hi[1] = NAN;
+        for (int k = 0; k < 3; ++k) {
+            nodes[at].box[k] = count ? box.lo[k] : FLT_MAX;
+            nodes[at].box[3 + k] = count ? box.hi[k] : FLT_MAX;
+        }
+        if (count <= most_) {
+            nodes[at].first = rt_u32(refs.size());
+            nodes[at].count = count ? count : BROKEN_EMPTY;
+            for (rt_u32 i = 0; i < count; ++i) refs.push_back(input_.prims[order[i]].ref);
+            return;
+        }
+        // The median of the longest axis.
+        int axis = 0;
+        for (int k = 1; k < 3; ++k)
+            if (box.hi[k] - box.lo[k] > box.hi[axis] - box.lo[axis]) axis = k;
+        const auto middle = [&](rt_u32 i) { return 0.5f * input_.prims[i].lo[axis] + 0.5f * input_.prims[i].hi[axis]; };
+        std::sort(order, order + count, [&](rt_u32 x, rt_u32 y) {
+            const float p = middle(x), q = middle(y);
+            return p < q || (p == q && x < y);
+        });
+        const rt_u32 first = add_nodes(2);
+        nodes[at].first = first;
+        nodes[at].count = 0;
+        split(first, order, count / 2, level + 1);
+        split(first + 1, order + count / 2, count - count / 2, level + 1);
+    }
+    const rt_build_input& input_;
+    const rt_u32 most_;
+};
+
+volatile int sink = 0;
+int recurse(int n) {
+    char room[4096];
+    std::memset(room, n, sizeof room);
+    sink += room[n & 1023];
+    return recurse(n + 1) + room[7];
+}
+
+// What ends a process, or keeps it from ending.
+void misbehave() {
+    if (is("segfault")) *reinterpret_cast<volatile int*>(16) = 1;
+    if (is("aborts")) std::abort();
+    if (is("exits")) std::exit(0);
+    if (is("throws_in_thread")) std::thread([] { throw std::runtime_error("thrown in a thread of the plugin"); }).join();
+    if (is("stack_overflow")) sink += recurse(0);
+    if (is("build_loop"))
+        for (;;) sink = sink + 1;
+    if (is("memory_hog"))
+        for (;;) std::memset(std::malloc(64 << 20), 1, 64 << 20);
+    if (is("leak")) sink += int(reinterpret_cast<uintptr_t>(std::malloc(500)) & 1);
+    if (is("thread_leak"))
+        std::thread([] {
+            for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+        }).detach();
+}
+
+int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+    misbehave();
+    if (is("writes_input")) const_cast<rt_prim*>(input->prims)[0].lo[0] = 0;
+    Builder builder(input);
+    std::vector<rt_u32> roots;
+    for (rt_u32 g = 0; g < input->group_count; ++g) {
+        roots.push_back(builder.group(g));
+        if (host->progress(host->ctx, float(g + 1) / float(input->group_count)) == 0 && !is("ignores_cancel")) return RT_CANCELLED;
+    }
+    std::vector<broken_node>& nodes = builder.nodes;
+    if (is("root_of_another") && roots.size() > 2) std::swap(roots[1], roots[2]);
+    if (is("refs_of_another_group") && roots.size() > 1)  // the second tree's leaves name the world's primitives
+        for (size_t i = roots[1]; i < nodes.size(); ++i)
+            if (nodes[i].count != 0 && nodes[i].count != BROKEN_EMPTY) nodes[i].first = nodes[i].first % 64;
+    for (broken_node& node : nodes) {
+        const bool leaf = node.count != 0 && node.count != BROKEN_EMPTY;
+        if (is("leaf_reaches_too_far") && leaf && node.first + node.count == builder.refs.size()) node.count += 3;
+        if (is("leaf_far_outside") && leaf && node.first % 7 == 3) node.first += 1000000;
+        if (is("leaf_off_by_three") && leaf) node.first = node.first >= 3 ? node.first - 3 : 0;
+    }
+    const size_t more = is("wasteful") ? 40 * nodes.size() : 0;
+    auto* memory = rt::alloc<broken_node>(out, 0, nodes.size() + more);
+    std::memcpy(memory, nodes.data(), nodes.size() * sizeof nodes[0]);
+    if (is("overrun")) memory[nodes.size()] = memory[0];
+    if (is("overrun_far")) memory[nodes.size() + 100] = memory[0];
+    if (is("underrun")) memory[-1] = memory[0];
+    rt_u32* refs = rt::leaves(out, builder.refs.size());
+    std::memcpy(refs, builder.refs.data(), builder.refs.size() * sizeof refs[0]);
+    if (is("race")) {
+        // All bodies share a counter: the last to come wins.
+        rt_u32 shared = 0;
+        rt::parallel_for(host, 1000, [&](rt_u32 i) { shared = shared * 31 + i; });
+        memory[0].box[5] += float(shared % 1000) * 1e-3f;
+    }
+    if (is("keeps_state")) {
+        static std::atomic<int> builds{0};
+        memory[0].box[5] += 1e-3f * float(builds++ % 100);
+    }
+    if (is("writes_later"))
+        std::thread([memory] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+            memory[0].box[5] = 0;
+        }).detach();
+    for (rt_u32 g = 0; g < input->group_count; ++g)
+        if (!(is("no_root") && g == 1)) rt::root(out, g, roots[g]);
+    for (const Macro& macro : kMacros)
+        if (is(macro.defect)) rt::define(out, macro.macro, 1);
+    if (is("reads_beyond_slot")) rt::define(out, "BROKEN_NODES", rt_u32(nodes.size()));
+    rt::define(out, "BROKEN_STACK", is("small_stack") ? builder.depth - 1 : (builder.depth + 8) / 8 * 8 + 24);
+    rt::stat(out, "nodes", double(nodes.size()));
+    return RT_OK;
+}
+
+int32_t levels(const rt_host*, const rt_built* built, rt_u32 group, rt_u32 level, const rt_volume_sink* out) {
+    const auto* nodes = static_cast<const broken_node*>(built->slots[0]);
+    std::vector<std::pair<rt_u32, rt_u32>> stack{{built->roots[group], 0}};
+    while (!stack.empty()) {
+        const auto [at, depth] = stack.back();
+        stack.pop_back();
+        const broken_node& node = nodes[at];
+        if (node.count == BROKEN_EMPTY) continue;
+        if (level == RT_LEVEL_BOTTOM ? node.count > 0 : depth == level)
+            out->box(out->ctx, node.box, node.box + 3);
+        else if (node.count == 0) {
+            stack.push_back({node.first, depth + 1});
+            stack.push_back({node.first + 1, depth + 1});
+        }
+    }
+    return RT_OK;
+}
+
+constexpr rt_cl_file kFiles[] = {
+#include "broken.inc"
+};
+constexpr rt_slot kSlots[] = {rt::slot<broken_node>("broken_nodes", "broken_node")};
+constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), rt::file(kFiles, "broken.cl"), rt::guarded<build>,
+                                      rt::guarded<levels>, rt::Traits());
+
+}  // namespace
+
+const rt_plugin rt_plugin_v1 = rt::accel_plugin("broken", "A defect: " STRING(DEFECT), "1.0.0", nullptr, kParams, kAccel);

@@ -1,0 +1,109 @@
+// broken_test.cpp -- each broken plugin is found by the check that it is a case for, with the right reason.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+
+namespace {
+
+struct Defect {
+    const char* library;
+    const char* check;               // that must fail
+    std::vector<const char*> words;  // of what it found
+    const char* lanes = "1";         // with which it is tried
+};
+void PrintTo(const Defect& defect, std::ostream* out) {
+    *out << defect.library;
+}
+
+std::string library(const std::string& name) {
+    return std::string(BROKEN_PLUGINS) + "/" + name + ".so";
+}
+
+nlohmann::json checked(const std::vector<std::string>& words, int exit_code) {
+    std::vector<std::string> all = {"check", "--quick", "--json"};
+    all.insert(all.end(), words.begin(), words.end());
+    RunOptions options;
+    options.limit_s = 300;
+    const ProgramResult result = run_program(all, options);
+    EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+}
+
+class Broken : public testing::TestWithParam<Defect> {};
+
+TEST_P(Broken, IsFound) {
+    const Defect& defect = GetParam();
+    const nlohmann::json results = checked({library(defect.library), "--only", defect.check, "--lanes", defect.lanes}, 1);
+    ASSERT_TRUE(results.is_array() && results.size() >= 1) << results;
+    const nlohmann::json* failed = nullptr;
+    for (const auto& result : results)
+        if (result["status"] == "failed") failed = &result;
+    ASSERT_NE(failed, nullptr) << results.dump(2);
+    EXPECT_EQ((*failed)["check"], defect.check);
+    const std::string found = (*failed)["found"];
+    for (const char* word : defect.words) EXPECT_NE(found.find(word), std::string::npos) << word << "\nin: " << found;
+}
+
+const Defect kDefects[] = {
+    // what builders write
+    {"dropped", "builds.refs", {"primitives are in no leaf", "rays cannot hit them"}},
+    {"half", "builds.refs", {"primitives are in no leaf"}},
+    {"dropped_at_limit", "builds.parameters", {"max_leaf=1", "in no leaf"}},
+    {"ulp_short", "builds.bounds", {"is in no volume", "rounded to the wrong side"}},
+    {"nan_planes", "builds.bounds", {"no volume", "nan"}},
+    {"no_root", "builds.sound", {"no root for group 1"}},
+    {"overrun", "builds.sound", {"slot broken_nodes"}},
+    {"overrun_far", "builds.sound", {"crashed (segmentation fault", "beyond the end of slot broken_nodes"}},
+    {"underrun", "builds.sound", {"slot broken_nodes"}},
+    {"writes_input", "builds.sound", {"crashed (segmentation fault", "input prims (read-only)"}},
+    {"wasteful", "builds.memory", {"slot broken_nodes", "written"}},
+    // how builders behave
+    {"race", "builds.threads", {"another than with one thread", "race"}},
+    {"keeps_state", "builds.state", {"keeps state"}},
+    {"writes_later", "builds.afterwards", {"crashed", "slot broken_nodes"}},
+    {"ignores_cancel", "builds.cancel", {"must return RT_CANCELLED"}},
+    {"leak", "builds.leaks", {"leaks memory"}},
+    {"thread_leak", "builds.leaks", {"threads go on"}},
+    {"segfault", "builds.sound", {"crashed (segmentation fault", "while building"}},
+    {"aborts", "builds.sound", {"crashed (aborted"}},
+    {"exits", "builds.sound", {"ended the process (exit code 0)"}},
+    {"throws_in_thread", "builds.sound", {"thrown in a thread of the plugin"}},
+    {"stack_overflow", "builds.sound", {"stack overflow"}},
+    {"build_loop", "builds.sound", {"did not come to an end within 10 s", "while building"}},
+    {"memory_hog", "builds.sound", {"memory"}},
+    // trees that are wrong without a word
+    {"root_of_another", "hits.instances", {"wrong"}},
+    {"refs_of_another_group", "hits.instances", {"wrong"}},
+    {"leaf_reaches_too_far", "hits.random", {"behind the last leaf"}},
+    {"leaf_far_outside", "hits.random", {"crashed (segmentation fault", "the leaves"}},
+    {"leaf_off_by_three", "hits.random", {"wrong"}},
+    // kernels
+    {"octant", "hits.octants", {"direction signs (-,+,-)"}},
+    {"any_forgets_t_max", "hits.limits", {"any-hit", "nothing is between t_min and t_max"}},
+    {"any_returns_early", "hits.random", {"any-hit", "but something is hit"}, "4"},
+    {"culls_eagerly", "hits.close", {"behind the nearest"}},
+    {"axis", "hits.axes", {"wrong"}},
+    {"first_lane", "hits.random", {"wrong"}, "4"},
+    {"lanes_8", "hits.random", {"all in lane 7"}, "8"},
+    {"never_incoherent", "hits.random", {"wrong"}, "4"},
+    {"device_loop", "hits.random", {"did not come to an end within 10 s", "while tracing"}},
+    {"ignores_transform", "hits.instances", {"wrong"}},
+    {"writes_t", "hits.random", {"wrong"}},
+    {"stops_at_first_leaf", "hits.random", {"behind the nearest"}},
+    {"reads_beyond_slot", "hits.random", {"crashed (segmentation fault", "beyond the end of slot broken_nodes"}},
+    {"small_stack", "hits.stack", {"stack was full"}},
+};
+INSTANTIATE_TEST_SUITE_P(Plugins, Broken, testing::ValuesIn(kDefects),
+                         [](const testing::TestParamInfo<Defect>& info) { return info.param.library; });
+
+// Without a defect the same plugin passes: so the tests above fail because of the defect.
+TEST(Sound, PluginPasses) {
+    const nlohmann::json results = checked({library("none")}, 0);
+    ASSERT_TRUE(results.is_array());
+    EXPECT_GE(results.size(), 20u);
+    for (const auto& result : results) EXPECT_NE(result["status"], "failed") << result.dump(2);
+}
+
+}  // namespace

@@ -1,0 +1,36 @@
+// own_test.cpp -- `clarity check` accuses none of our own plugins.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+
+namespace {
+
+TEST(Check, AccusesNoneOfOurOwnStructures) {
+    const nlohmann::json plugins = nlohmann::json::parse(run_program({"plugins", "--json"}).out)["plugins"];
+    int count = 0;
+    for (const auto& plugin : plugins) {
+        if (plugin["status"] != "loaded" || plugin["kind"] != "accel") continue;
+        RunOptions options;
+        options.limit_s = 300;
+        const ProgramResult result = run_program({"check", plugin["id"], "--quick"}, options);
+        EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+        ++count;
+    }
+    EXPECT_GE(count, 3);
+}
+
+TEST(Check, SaysWhatIsWrongWithTheWords) {
+    const ProgramResult unknown = run_program({"check", "no_such_plugin"});
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_NE(unknown.err.find("no plugin of this id"), std::string::npos) << unknown.err;
+    const ProgramResult only = run_program({"check", "linear", "--only", "no_such_check"});
+    EXPECT_EQ(only.exit_code, 2);
+    EXPECT_NE(only.err.find("no check whose name begins"), std::string::npos) << only.err;
+    const ProgramResult folder = run_program({"check", "/tmp"});
+    EXPECT_EQ(folder.exit_code, 2);
+    EXPECT_NE(folder.err.find("is a folder"), std::string::npos) << folder.err;
+}
+
+}  // namespace
