@@ -77,6 +77,7 @@ class CheckSupervisor : public worker::Supervisor {
         }
     }
     double idle_limit_s() const override { return limit_s_; }
+    bool counts_processor_time() const override { return true; }
     uint64_t processor_limit_s() const override { return 0; }
     uint64_t memory_limit_bytes() const override { return kMemoryBytes; }
     std::string speaker() const override { return plugin_; }
@@ -108,7 +109,8 @@ class CheckSupervisor : public worker::Supervisor {
 // All checks of one library. Phases run side by side, each in workers of its own.
 class Run {
  public:
-    Run(const PluginRecord& record, const CheckOptions& options, Progress& progress, const std::function<void(const CheckResult&)>& on_result)
+    Run(const PluginRecord& record, const CheckOptions& options, Progress& progress,
+        const std::function<void(const CheckResult&)>& on_result)
         : record_(record), options_(options), progress_(progress), on_result_(on_result) {}
 
     bool all() {
@@ -132,7 +134,8 @@ class Run {
         if (thrown_here) std::rethrow_exception(thrown_here);
         if (count_ == 0)
             throw Error(Exit::usage, "--only " + options_.only.front() + ": " + record_.plugin->id +
-                                         " has no check whose name begins like this; `clarity check " + record_.plugin->id + "` lists them");
+                                         " has no check whose name begins like this; `clarity check " + record_.plugin->id +
+                                         "` lists them");
         return !failed_;
     }
 
@@ -165,7 +168,9 @@ class Run {
     void phase(const std::string& name) {
         std::vector<std::string> done;
         for (unsigned deaths = 0;;) {
-            std::vector<std::string> arguments = {"--library", record_.path, "--phase", name, "--quick", options_.quick ? "1" : "0",
+            std::vector<std::string> arguments = {"--library", record_.path,
+                                                  "--phase",   name,
+                                                  "--quick",   options_.quick ? "1" : "0",
                                                   "--parent",  std::to_string(getpid())};
             if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
             if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
@@ -183,7 +188,8 @@ class Run {
                 if (result.name.empty()) result.name = name + ".start";
                 result.outcome = Outcome::failed(died.how);
                 take(result, done);
-                if (died.endless || ++deaths >= kMostDeaths || result.name == "builds.sound" || result.name == name + ".start") return;
+                if (died.endless || ++deaths >= kMostDeaths || result.name == "builds.sound" || result.name == name + ".start")
+                    return;
             }
         }
     }
@@ -203,8 +209,10 @@ class Run {
 bool check_plugin_library(const PluginRecord& record, const CheckOptions& options, Progress& progress,
                           const std::function<void(const CheckResult&)>& on_result) {
     if (std::getenv(worker::kWorkerVariable))
-        throw Error(Exit::failed, "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
-    if (record.plugin->importer) throw Error(Exit::usage, std::string(record.plugin->id) + " is an importer: only structures can be checked yet");
+        throw Error(Exit::failed,
+                    "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
+    if (record.plugin->importer)
+        throw Error(Exit::usage, std::string(record.plugin->id) + " is an importer: only structures can be checked yet");
     return Run(record, options, progress, on_result).all();
 }
 

@@ -11,11 +11,11 @@
 namespace clarity::check {
 
 struct CheckOptions {
-    std::vector<std::string> only;    // names of checks, or their beginnings: "hits", "builds.refs"; empty: all
+    std::vector<std::string> only;  // names of checks, or their beginnings: "hits", "builds.refs"; empty: all
     bool quick = false;
-    std::string report_folder;        // "": none
-    std::string device;               // as for --device
-    std::vector<int> lanes;           // with which kernels are compiled; empty: 1, 4, 8 and 16
+    std::string report_folder;  // "": none
+    std::string device;         // as for --device
+    std::vector<int> lanes;     // with which kernels are compiled; empty: 1, 4, 8 and 16
 };
 
 struct CheckResult {

@@ -38,7 +38,8 @@ struct Arguments {
     long parent = 0;
 };
 
-// check-worker --library FILE --phase builds|hits [--quick 1] [--device D] [--report DIR] [--lanes N]... [--only NAME]... [--done NAME]...
+// check-worker --library FILE --phase builds|hits [--quick 1] [--device D] [--report DIR] [--lanes N]... [--only NAME]...
+// [--done NAME]...
 bool parse(int argc, char** argv, Arguments& arguments) {
     for (int i = 2; i + 1 < argc; i += 2) {
         const std::string key = argv[i], value = argv[i + 1];
@@ -83,7 +84,8 @@ std::string shortened(std::string text) {
 void run(const Check& check) {
     const auto start = std::chrono::steady_clock::now();
     const Step step = [&](const std::string& what, double limit_s) {
-        worker::send_message(kChannelFd, {MessageKind::running, 0, static_cast<float>(limit_s), check.name + '\n' + check.tried + '\n' + what});
+        worker::send_message(
+            kChannelFd, {MessageKind::running, 0, static_cast<float>(limit_s), check.name + '\n' + check.tried + '\n' + what});
     };
     step("beginning", 10);
     Outcome outcome;
@@ -103,7 +105,8 @@ void run(const Check& check) {
                                    {"found", shortened(outcome.found)},
                                    {"repeat", outcome.repeat},
                                    {"seconds", seconds_since(start)}};
-    worker::send_message(kChannelFd, {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
+    worker::send_message(kChannelFd,
+                         {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
 std::vector<Check> checks_for(const rt_plugin& plugin, const Arguments& arguments) {
@@ -113,7 +116,8 @@ std::vector<Check> checks_for(const rt_plugin& plugin, const Arguments& argument
     options.report_folder = arguments.report;
     if (!arguments.lanes.empty()) options.lanes = arguments.lanes;
     const std::string device = arguments.device;
-    return hits_checks(plugin, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
+    return hits_checks(
+        plugin, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
 }
 
 int run_all(const Arguments& arguments) {
@@ -130,7 +134,8 @@ int run_all(const Arguments& arguments) {
         use_one_arena();
     }
     const std::string self = "/proc/" + std::to_string(getpid());
-    for (const std::string& note : worker::enter_sandbox(builds ? worker::WorkerKind::builder : worker::WorkerKind::driver, {self}, {}, limits))
+    for (const std::string& note :
+         worker::enter_sandbox(builds ? worker::WorkerKind::builder : worker::WorkerKind::driver, {self}, {}, limits))
         log(LogLevel::debug, "check worker: " + note);
     for (const Check& check : checks_for(*record.plugin, arguments))
         if (wanted(check, arguments)) run(check);

@@ -103,12 +103,12 @@ Affine placed(const Point& at, float angle, const Point& scale) {
     return m;
 }
 
-constexpr Point kSoup{0, 0, 0}, kBoxes{40, 0, 0}, kFaces{0, 40, 0}, kDegenerate{-40, 0, 0}, kTiny{0, 0, 40}, kFar{9000, 2000, -7000},
-    kShells{0, -40, 0}, kCopies{0, 0, -40}, kInstances{40, 40, 0}, kInstancesTiny{40, 0, 40}, kInstancesFar{-3000, 500, 4000},
-    kSpheres{-40, 40, 0}, kPolygons{-40, 0, 40};
+constexpr Point kSoup{0, 0, 0}, kBoxes{40, 0, 0}, kFaces{0, 40, 0}, kDegenerate{-40, 0, 0}, kTiny{0, 0, 40},
+    kFar{9000, 2000, -7000}, kShells{0, -40, 0}, kCopies{0, 0, -40}, kInstances{40, 40, 0}, kInstancesTiny{40, 0, 40},
+    kInstancesFar{-3000, 500, 4000}, kSpheres{-40, 40, 0}, kPolygons{-40, 0, 40};
 
-// Flat faces in front of slanted ones, nearer by a share of 4e-4 of the distance: a traversal that culls a little too much loses
-// them. The slanted faces' boxes begin well before.
+// Flat faces in front of slanted ones, nearer by a share of 4e-4 of the distance: a traversal that culls a little too much
+// loses them. The slanted faces' boxes begin well before.
 void add_faces(Maker& make) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto turned = [&](float a, float b, float c) {
@@ -137,11 +137,11 @@ void add_degenerate(Maker& make) {
     const auto at = [&](float x, float y, float z) { return Point{o[0] + x, o[1] + y, o[2] + z}; };
     for (int i = 0; i < 24; ++i) {
         const float x = -3 + 0.25f * float(i);
-        make.triangle(at(x, 1, 0), at(x, 1, 0), at(x, 1, 0));                  // a point
-        make.triangle(at(x, -1, 0), at(x, 0, 0), at(x, 1, 0));                 // a line
-        make.triangle(at(x, -2, 1), at(x + 1e-4f, -2, 1), at(x, 3, 1));        // a needle
-        make.triangle(at(x, 0, -1), at(x + 0.2f, 0, -1), at(x, 0.2f, -1));     // sound, among them
-        make.triangle(at(x, -3, 2), at(x + 0.2f, -3, 2), at(x + 0.1f, -3, 2)); // no area
+        make.triangle(at(x, 1, 0), at(x, 1, 0), at(x, 1, 0));                   // a point
+        make.triangle(at(x, -1, 0), at(x, 0, 0), at(x, 1, 0));                  // a line
+        make.triangle(at(x, -2, 1), at(x + 1e-4f, -2, 1), at(x, 3, 1));         // a needle
+        make.triangle(at(x, 0, -1), at(x + 0.2f, 0, -1), at(x, 0.2f, -1));      // sound, among them
+        make.triangle(at(x, -3, 2), at(x + 0.2f, -3, 2), at(x + 0.1f, -3, 2));  // no area
     }
 }
 
@@ -149,11 +149,19 @@ void add_degenerate(Maker& make) {
 
 const std::vector<Region>& mixed_regions() {
     static const std::vector<Region> regions = {
-        {"random", kSoup, 5},           {"boxes", kBoxes, 4},          {"faces", kFaces, 3},
-        {"degenerate", kDegenerate, 4}, {"tiny", kTiny, 0.02f},        {"far away", kFar, 12},
-        {"nested", kShells, 8},         {"copies", kCopies, 2},        {"instanced", kInstances, 8},
-        {"instanced, tiny", kInstancesTiny, 0.05f}, {"instanced, far away", kInstancesFar, 60},
-        {"spheres", kSpheres, 4},       {"polygons", kPolygons, 4},
+        {"random", kSoup, 5},
+        {"boxes", kBoxes, 4},
+        {"faces", kFaces, 3},
+        {"degenerate", kDegenerate, 4},
+        {"tiny", kTiny, 0.02f},
+        {"far away", kFar, 12},
+        {"nested", kShells, 8},
+        {"copies", kCopies, 2},
+        {"instanced", kInstances, 8},
+        {"instanced, tiny", kInstancesTiny, 0.05f},
+        {"instanced, far away", kInstancesFar, 60},
+        {"spheres", kSpheres, 4},
+        {"polygons", kPolygons, 4},
     };
     return regions;
 }
@@ -163,7 +171,8 @@ Scene mixed_scene() {
     make.soup(kSoup, 4, 0.9f, 700);
     make.place(make.mesh());
     for (int i = 0; i < 27; ++i) {
-        const Point lo{kBoxes[0] - 3 + 2 * float(i % 3), kBoxes[1] - 3 + 2 * float(i / 3 % 3), kBoxes[2] - 3 + 2 * float(i / 9)};
+        const Point lo{kBoxes[0] - 3 + 2 * float(i % 3), kBoxes[1] - 3 + 2 * float(i / 3 % 3),
+                       kBoxes[2] - 3 + 2 * float(i / 9)};
         make.box(lo, {lo[0] + 2 - 1.5f * float(i % 2), lo[1] + 2, lo[2] + 2});
     }
     add_faces(make);
@@ -171,8 +180,9 @@ Scene mixed_scene() {
     add_degenerate(make);
     make.soup(kTiny, 0.015f, 0.004f, 150);
     make.soup(kFar, 9, 4, 150);
-    for (int i = 0; i < 20; ++i) make.triangle({kCopies[0] - 1, kCopies[1] - 1, kCopies[2]}, {kCopies[0] + 1, kCopies[1] - 1, kCopies[2]},
-                                               {kCopies[0], kCopies[1] + 1, kCopies[2]});
+    for (int i = 0; i < 20; ++i)
+        make.triangle({kCopies[0] - 1, kCopies[1] - 1, kCopies[2]}, {kCopies[0] + 1, kCopies[1] - 1, kCopies[2]},
+                      {kCopies[0], kCopies[1] + 1, kCopies[2]});
     make.soup(kCopies, 1.5f, 0.5f, 40);
     // Huge: a floor far below and a wall far behind.
     make.quad({-2e5f, -300, -2e5f}, {2e5f, -300, -2e5f}, {2e5f, -300, 2e5f}, {-2e5f, -300, 2e5f});
@@ -193,7 +203,7 @@ Scene mixed_scene() {
     const Point& i = kInstances;
     make.place(ball, placed(i, 0.4f, {1.5f, 1.5f, 1.5f}));
     make.place(ball, placed({i[0] + 4, i[1], i[2]}, 1.9f, {1, 2, 0.5f}));
-    make.place(ball, placed({i[0] - 4, i[1] + 1, i[2]}, 2.6f, {-1, 1, 1}));  // mirrored
+    make.place(ball, placed({i[0] - 4, i[1] + 1, i[2]}, 2.6f, {-1, 1, 1}));          // mirrored
     make.place(ball, placed({i[0] - 4, i[1] + 1, i[2]}, 1.1f, {0.4f, 0.4f, 0.4f}));  // within the one before
     make.place(ball, placed(kInstancesTiny, 0.7f, {0.02f, 0.03f, 0.02f}));
     make.place(ball, placed({kInstancesTiny[0] + 0.03f, kInstancesTiny[1], kInstancesTiny[2]}, 3, {0.01f, 0.01f, -0.01f}));
@@ -208,7 +218,8 @@ Scene mixed_scene() {
         }
         make.place(cloud, m);
     }
-    for (int k = 0; k < 12; ++k) make.place(single, placed({i[0] - 5 + float(k), i[1] + 5, i[2]}, 0.5f * float(k), {0.7f, 0.7f, 1}));
+    for (int k = 0; k < 12; ++k)
+        make.place(single, placed({i[0] - 5 + float(k), i[1] + 5, i[2]}, 0.5f * float(k), {0.7f, 0.7f, 1}));
 
     for (int k = 0; k < 12; ++k) make.sphere(make.around(kSpheres, 3), 0.05f + make.random());
     make.sphere(kSpheres, 3.5f);  // around most of them
@@ -269,7 +280,9 @@ std::vector<NamedScene> small_scenes() {
         make.place(make.mesh());
     });
     add("in one plane", [](Maker& make) {
-        for (int i = 0; i < 400; ++i) make.triangle({float(i % 20), float(i / 20), 0}, {float(i % 20) + 1, float(i / 20), 0}, {float(i % 20), float(i / 20) + 1, 0});
+        for (int i = 0; i < 400; ++i)
+            make.triangle({float(i % 20), float(i / 20), 0}, {float(i % 20) + 1, float(i / 20), 0},
+                          {float(i % 20), float(i / 20) + 1, 0});
         make.place(make.mesh());
     });
     add("coordinates up to 1e18", [](Maker& make) {

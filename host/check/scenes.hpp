@@ -17,9 +17,10 @@ struct Region {
     float radius;
 };
 
-// Every kind of primitive, in regions far from each other: a soup, boxes that touch, slanted and flat faces at nearly one distance,
-// degenerate triangles, tiny, huge and far-away ones, nested shells, copies at one place, and instances that are turned, mirrored,
-// stretched, tiny, large and within each other. About 3000 triangles. One scene, so that one program of each lane count does.
+// Every kind of primitive, in regions far from each other: a soup, boxes that touch, slanted and flat faces at nearly one
+// distance, degenerate triangles, tiny, huge and far-away ones, nested shells, copies at one place, and instances that are
+// turned, mirrored, stretched, tiny, large and within each other. About 3000 triangles. One scene, so that one program of each
+// lane count does.
 Scene mixed_scene();
 const std::vector<Region>& mixed_regions();
 

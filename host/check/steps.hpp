@@ -14,7 +14,9 @@ struct Outcome {
     std::string repeat;  // how to repeat it alone, besides --only; may be empty
 
     static Outcome passed(std::string found) { return {Kind::passed, std::move(found), {}}; }
-    static Outcome failed(std::string found, std::string repeat = {}) { return {Kind::failed, std::move(found), std::move(repeat)}; }
+    static Outcome failed(std::string found, std::string repeat = {}) {
+        return {Kind::failed, std::move(found), std::move(repeat)};
+    }
     static Outcome skipped(std::string why) { return {Kind::skipped, std::move(why), {}}; }
 };
 

@@ -22,7 +22,8 @@ using check::Outcome;
 std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std::string& word) {
     std::error_code error;
     if (std::filesystem::is_directory(word, error))
-        throw Error(Exit::usage, word + ": is a folder; build it (`cmake -S " + word + " -B build && cmake --build build`) and name the library");
+        throw Error(Exit::usage, word + ": is a folder; build it (`cmake -S " + word +
+                                     " -B build && cmake --build build`) and name the library");
     if (word.find('/') != std::string::npos || std::filesystem::path(word).extension() == ".so") {
         PluginRecord record = load_plugin(word);
         if (!record.plugin) throw Error(Exit::failed, word + ": the library was refused: " + record.why);
@@ -36,7 +37,8 @@ std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std:
         ids += (ids.empty() ? "" : ", ") + std::string(record.plugin->id);
         if (word == record.plugin->id) found.push_back(record);
     }
-    if (found.empty()) throw Error(Exit::usage, word + ": no plugin of this id; there are " + ids + "; or name a library, ./" + word + ".so");
+    if (found.empty())
+        throw Error(Exit::usage, word + ": no plugin of this id; there are " + ids + "; or name a library, ./" + word + ".so");
     return found;
 }
 
@@ -53,8 +55,8 @@ std::string repeat_text(const CheckResult& result, const CheckCommand& command) 
 }
 
 void print(const CheckResult& result, const CheckCommand& command) {
-    std::string line = std::string(kind_text(result.outcome.kind)) + "  " + result.plugin + " " + result.name + ": " + result.tried + ": " +
-                       printable_line(result.outcome.found);
+    std::string line = std::string(kind_text(result.outcome.kind)) + "  " + result.plugin + " " + result.name + ": " +
+                       result.tried + ": " + printable_line(result.outcome.found);
     char time[32];
     std::snprintf(time, sizeof time, "  (%.1f s)", result.seconds);
     line += time;
@@ -83,7 +85,7 @@ int run_check(const PluginRegistry& plugins, const CheckCommand& command) {
             list.push_back({{"plugin", result.plugin},
                             {"library", record.path},
                             {"check", result.name},
-                            {"status", result.outcome.kind == Outcome::Kind::passed    ? "passed"
+                            {"status", result.outcome.kind == Outcome::Kind::passed   ? "passed"
                                        : result.outcome.kind == Outcome::Kind::failed ? "failed"
                                                                                       : "skipped"},
                             {"tried", result.tried},

@@ -148,18 +148,25 @@ void add_rays(CLI::App& app, TraceCommand& command) {
 }
 
 void add_check(CLI::App& app, CheckCommand& command) {
-    app.add_option("plugin", command.what, "Ids as `clarity plugins` lists them, or libraries")->type_name("PLUGIN")->required();
-    app.add_option("--only", command.options.only, "Only checks whose name begins so, such as hits or builds.refs; may be repeated")
+    app.add_option("plugin", command.what, "Ids as `clarity plugins` lists them, or libraries")
+        ->type_name("PLUGIN")
+        ->required();
+    app.add_option("--only", command.options.only,
+                   "Only checks whose name begins so, such as hits or builds.refs; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
-    app.add_option("--lanes", command.options.lanes, "Only kernels of this many lanes; may be repeated; default: 1, 4, 8 and 16")
+    app.add_option("--lanes", command.options.lanes,
+                   "Only kernels of this many lanes; may be repeated; default: 1, 4, 8 and 16")
         ->type_name("N")
         ->allow_extra_args(false)
         ->check(CLI::IsMember({1, 4, 8, 16}));
-    app.add_flag("--quick", command.options.quick, "Fewer rays, repetitions and compiled variants: seconds instead of a minute");
+    app.add_flag("--quick", command.options.quick,
+                 "Fewer rays, repetitions and compiled variants: seconds instead of a minute");
     app.add_flag("--json", command.json, "As JSON");
-    single(app.add_option("--report", command.options.report_folder, "Write the rays with wrong answers into this folder"))->type_name("DIR");
-    single(app.add_option("--device", command.options.device, "The device that traces, as `clarity devices` lists them"))->type_name("D");
+    single(app.add_option("--report", command.options.report_folder, "Write the rays with wrong answers into this folder"))
+        ->type_name("DIR");
+    single(app.add_option("--device", command.options.device, "The device that traces, as `clarity devices` lists them"))
+        ->type_name("D");
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {
@@ -291,11 +298,8 @@ CommandLine parse_command_line(int argc, char** argv) {
     });
 
     add_check(*check, p.check);
-    check->callback([&] {
-        line.command = [parsed](const PluginRegistry& registry) {
-            return run_check(registry, parsed->check);
-        };
-    });
+    check->callback(
+        [&] { line.command = [parsed](const PluginRegistry& registry) { return run_check(registry, parsed->check); }; });
 
     add_bench(*bench, p.bench);
     bench->callback([&] {

@@ -38,14 +38,14 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     ProgressBar progress(command.quiet);
     const CancelOnSignal cancel(progress);
     const auto device = std::make_shared<Device>(choose_device(device_text));
-    const auto scene = std::make_shared<const Scene>(
-        import::import_scene(plugins, command.scene.files, command.scene.import, progress));
+    const auto scene =
+        std::make_shared<const Scene>(import::import_scene(plugins, command.scene.files, command.scene.import, progress));
 
     const rt_plugin& plugin = *plugins.accel(settings.accel);
     progress.stage(std::string("building ") + plugin.id);
     const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
-    const auto accel = std::make_shared<const AccelData>(build_accel(
-        *scene, plugin, params, progress, settings.debug ? BuildPlace::worker : BuildPlace::automatic));
+    const auto accel = std::make_shared<const AccelData>(
+        build_accel(*scene, plugin, params, progress, settings.debug ? BuildPlace::worker : BuildPlace::automatic));
     const auto prepared = prepare_queries(*device, scene, accel, settings, progress);
     progress.stage("tracing rays");
     std::vector<rt_hit> hits;

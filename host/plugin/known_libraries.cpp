@@ -35,8 +35,8 @@ std::string hash_of(const std::string& path) {
 std::string stamp_of(const std::string& path) {
     struct stat status {};
     if (stat(path.c_str(), &status) != 0) return {};
-    return path + ' ' + std::to_string(status.st_size) + ' ' + std::to_string(status.st_ino) + ' ' + std::to_string(status.st_mtim.tv_sec) +
-           '.' + std::to_string(status.st_mtim.tv_nsec);
+    return path + ' ' + std::to_string(status.st_size) + ' ' + std::to_string(status.st_ino) + ' ' +
+           std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec);
 }
 
 fs::path folder() {

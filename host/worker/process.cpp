@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -138,6 +139,13 @@ void WorkerProcess::raise_memory_limit(uint64_t more_bytes) const {
     if (pid_ <= 0 || prlimit(pid_, RLIMIT_AS, nullptr, &now) != 0 || now.rlim_cur == RLIM_INFINITY) return;
     now.rlim_cur = std::min<rlim_t>(now.rlim_cur + more_bytes, now.rlim_max);
     prlimit(pid_, RLIMIT_AS, &now, nullptr);
+}
+
+double WorkerProcess::processor_s() const {
+    clockid_t clock;
+    timespec now{};
+    if (pid_ <= 0 || clock_getcpuclockid(pid_, &clock) != 0 || clock_gettime(clock, &now) != 0) return -1;
+    return double(now.tv_sec) + 1e-9 * double(now.tv_nsec);
 }
 
 uint64_t WorkerProcess::resident_bytes() const {

@@ -51,6 +51,8 @@ class WorkerProcess {
     int wait();
     // Resident memory in bytes; 0 if it is not known.
     uint64_t resident_bytes() const;
+    // Processor time that it has used so far, of all its threads; negative if it is not known.
+    double processor_s() const;
     // Lets the worker map this many bytes more than now, up to its own hard limit.
     void raise_memory_limit(uint64_t more_bytes) const;
 

@@ -1,6 +1,6 @@
-// seccomp.cpp -- allows the system calls that a file parser or a builder needs; all others fail with EPERM. Calls newer than this
-// list fail with ENOSYS, after which the C library uses older ones instead. Workers that load OpenCL drivers may do everything but
-// what no driver needs.
+// seccomp.cpp -- allows the system calls that a file parser or a builder needs; all others fail with EPERM. Calls newer than
+// this list fail with ENOSYS, after which the C library uses older ones instead. Workers that load OpenCL drivers may do
+// everything but what no driver needs.
 #include <fcntl.h>
 #include <sched.h>
 #include <seccomp.h>
@@ -47,11 +47,12 @@ const int kAllowed[] = {
     SCMP_SYS(getegid), SCMP_SYS(getrandom)};
 
 // What a worker with a driver must not do: the network, other processes' memory, and the system as a whole.
-const int kRefused[] = {SCMP_SYS(connect), SCMP_SYS(bind),      SCMP_SYS(listen),   SCMP_SYS(accept),       SCMP_SYS(accept4),
-                        SCMP_SYS(ptrace),  SCMP_SYS(mount),     SCMP_SYS(umount2),  SCMP_SYS(pivot_root),   SCMP_SYS(chroot),
-                        SCMP_SYS(reboot),  SCMP_SYS(swapon),    SCMP_SYS(swapoff),  SCMP_SYS(init_module),  SCMP_SYS(finit_module),
-                        SCMP_SYS(bpf),     SCMP_SYS(setuid),    SCMP_SYS(setgid),   SCMP_SYS(process_vm_readv),
-                        SCMP_SYS(process_vm_writev), SCMP_SYS(settimeofday), SCMP_SYS(sethostname)};
+const int kRefused[] = {
+    SCMP_SYS(connect),      SCMP_SYS(bind),       SCMP_SYS(listen),  SCMP_SYS(accept),           SCMP_SYS(accept4),
+    SCMP_SYS(ptrace),       SCMP_SYS(mount),      SCMP_SYS(umount2), SCMP_SYS(pivot_root),       SCMP_SYS(chroot),
+    SCMP_SYS(reboot),       SCMP_SYS(swapon),     SCMP_SYS(swapoff), SCMP_SYS(init_module),      SCMP_SYS(finit_module),
+    SCMP_SYS(bpf),          SCMP_SYS(setuid),     SCMP_SYS(setgid),  SCMP_SYS(process_vm_readv), SCMP_SYS(process_vm_writev),
+    SCMP_SYS(settimeofday), SCMP_SYS(sethostname)};
 
 // From this number on all architectures use the same numbers. All calls above are older, except statx, getrandom, membarrier
 // and rseq. The last call today is about 470. Each number costs one rule: 600 of them took 7 ms at every import, these take 1

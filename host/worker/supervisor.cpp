@@ -75,13 +75,13 @@ void Supervisor::take(const Message& message) {
         case MessageKind::stage:
             progress_.stage(message.text);
             fraction_ = -1;
-            idle_s_ = 0;
+            made_progress();
             break;
         case MessageKind::progress:
             // A report counts as progress only if the fraction has grown.
             if (std::isfinite(message.fraction) && message.fraction > fraction_ + 0.001f) {
                 fraction_ = message.fraction;
-                idle_s_ = 0;
+                made_progress();
             }
             progress_.report(message.fraction);
             break;
@@ -119,6 +119,11 @@ void Supervisor::forward_output() {
     }
 }
 
+void Supervisor::made_progress() {
+    idle_s_ = 0;
+    busy_from_s_ = worker_.processor_s();
+}
+
 void Supervisor::printed(const std::string& line) {
     log(LogLevel::debug, speaker() + " printed: " + line);
 }
@@ -146,8 +151,12 @@ void Supervisor::watch() {
         throw Error(kind_.code, kind_.program + ": does not answer as " + kind_.name +
                                     "; name the program `clarity` in CLARITY_WORKER or unset it");
     }
-    if (idle_s_ > idle_limit_s()) ended({Ending::Kind::no_progress, in_words(idle_limit_s())});
-    // The memory that a worker may map is limited already, where no driver reserves addresses. Its resident memory is what counts.
+    const double busy_s = worker_.processor_s() - busy_from_s_;
+    const bool by_processor = counts_processor_time();
+    if (idle_s_ > (by_processor ? kWaitFactor : 1) * idle_limit_s() || (by_processor && busy_s > idle_limit_s()))
+        ended({Ending::Kind::no_progress, in_words(idle_limit_s())});
+    // The memory that a worker may map is limited already, where no driver reserves addresses. Its resident memory is what
+    // counts.
     memory_look_s_ += passed_s;
     if (memory_look_s_ < 0.1) return;
     memory_look_s_ = 0;

@@ -155,7 +155,8 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     std::vector<rt_u32> roots;
     for (rt_u32 g = 0; g < input->group_count; ++g) {
         roots.push_back(builder.group(g));
-        if (host->progress(host->ctx, float(g + 1) / float(input->group_count)) == 0 && !is("ignores_cancel")) return RT_CANCELLED;
+        if (host->progress(host->ctx, float(g + 1) / float(input->group_count)) == 0 && !is("ignores_cancel"))
+            return RT_CANCELLED;
     }
     std::vector<broken_node>& nodes = builder.nodes;
     if (is("root_of_another") && roots.size() > 2) std::swap(roots[1], roots[2]);
@@ -223,8 +224,8 @@ constexpr rt_cl_file kFiles[] = {
 #include "broken.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<broken_node>("broken_nodes", "broken_node")};
-constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), rt::file(kFiles, "broken.cl"), rt::guarded<build>,
-                                      rt::guarded<levels>, rt::Traits());
+constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), rt::file(kFiles, "broken.cl"),
+                                      rt::guarded<build>, rt::guarded<levels>, rt::Traits());
 
 }  // namespace
 

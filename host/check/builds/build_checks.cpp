@@ -14,10 +14,10 @@
 namespace clarity::check {
 namespace {
 
-constexpr double kBuildLimit_s = 10;      // a build of a small scene that lasts longer counts as endless
-constexpr double kManyLimit_s = 30;       // the same for the many triangles
+constexpr double kBuildLimit_s = 10;  // a build of a small scene that lasts longer counts as endless
+constexpr double kManyLimit_s = 30;   // the same for the many triangles
 constexpr unsigned kManyTriangles = 40000;
-constexpr double kPatience_ms = 500;      // a build that lasts longer must ask whether it is cancelled
+constexpr double kPatience_ms = 500;  // a build that lasts longer must ask whether it is cancelled
 
 // The inputs, made on first use and shared by all checks of a structure.
 class Inputs {
@@ -32,9 +32,15 @@ class Inputs {
         return small_;
     }
     const BuildCase& mixed() { return small().back(); }
-    const BuildCase& sparse() { return lazy(sparse_, "sparse", [] { return sparse_scene(700); }); }
-    const BuildCase& many() { return lazy(many_, "many", [] { return soup_scene(kManyTriangles); }); }
-    BuildRun run(const BuildCase& input, Schedule schedule = Schedule::program) const { return input.run(plugin, params, schedule); }
+    const BuildCase& sparse() {
+        return lazy(sparse_, "sparse", [] { return sparse_scene(700); });
+    }
+    const BuildCase& many() {
+        return lazy(many_, "many", [] { return soup_scene(kManyTriangles); });
+    }
+    BuildRun run(const BuildCase& input, Schedule schedule = Schedule::program) const {
+        return input.run(plugin, params, schedule);
+    }
 
  private:
     template <class Make>
@@ -119,8 +125,9 @@ Outcome threads(Inputs& inputs, const Step& step, bool quick) {
                     return Outcome::failed(on(*input) + " " + schedule_text(schedule) + ": " + why);
                 const std::string why = difference(first.result, run.result, *inputs.plugin.accel);
                 if (!why.empty())
-                    return Outcome::failed(on(*input) + ": the result " + schedule_text(schedule) + " is another than with one thread: " + why +
-                                           ". Bodies of parallel_for depend on their order, or write to the same memory (a race)");
+                    return Outcome::failed(
+                        on(*input) + ": the result " + schedule_text(schedule) + " is another than with one thread: " + why +
+                        ". Bodies of parallel_for depend on their order, or write to the same memory (a race)");
             }
     }
     return Outcome::passed("the same bytes with 1, 2 and 7 threads, in " + std::to_string(rounds) + " rounds");
@@ -135,7 +142,8 @@ Outcome state(Inputs& inputs, const Step& step) {
     for (const BuildRun* run : {&first, &other, &again})
         if (const std::string why = failure_of(*run); !why.empty()) return Outcome::failed(why);
     if (const std::string why = difference(first.result, again.result, *inputs.plugin.accel); !why.empty())
-        return Outcome::failed("the same scene gives another result after a build of another scene: " + why + ". The plugin keeps state");
+        return Outcome::failed("the same scene gives another result after a build of another scene: " + why +
+                               ". The plugin keeps state");
     step("building two scenes at a time", kBuildLimit_s);
     BuildRun together[2];
     std::thread thread([&] { together[1] = inputs.run(b, Schedule::forward); });
@@ -155,22 +163,28 @@ Outcome cancel(Inputs& inputs, const Step& step) {
     const BuildRun whole = inputs.run(input);
     if (const std::string why = failure_of(whole); !why.empty()) return Outcome::failed(on(input) + ": " + why);
     if (whole.reports == 0) {
-        if (whole.ms < kPatience_ms) return Outcome::skipped("it never calls host->progress; a build of " + std::to_string(kManyTriangles) + " triangles is short enough");
-        return Outcome::failed("a build of " + std::to_string(static_cast<int>(whole.ms)) + " ms never calls host->progress: nobody can cancel it");
+        if (whole.ms < kPatience_ms)
+            return Outcome::skipped("it never calls host->progress; a build of " + std::to_string(kManyTriangles) +
+                                    " triangles is short enough");
+        return Outcome::failed("a build of " + std::to_string(static_cast<int>(whole.ms)) +
+                               " ms never calls host->progress: nobody can cancel it");
     }
     for (const unsigned at : {1u, (whole.reports + 1) / 2}) {
         step("cancelling at report " + std::to_string(at) + " of " + on(input), kManyLimit_s);
         const BuildRun run = input.run(inputs.plugin, inputs.params, Schedule::program, at);
         if (run.cancelled) continue;
-        if (!run.why.empty()) return Outcome::failed("when it is cancelled, it fails instead of returning RT_CANCELLED: " + run.why);
+        if (!run.why.empty())
+            return Outcome::failed("when it is cancelled, it fails instead of returning RT_CANCELLED: " + run.why);
         // The last report may come after all work.
         if (at < whole.reports)
-            return Outcome::failed("host->progress returned 0 at report " + std::to_string(at) + " of " + std::to_string(whole.reports) +
+            return Outcome::failed("host->progress returned 0 at report " + std::to_string(at) + " of " +
+                                   std::to_string(whole.reports) +
                                    ", and it went on to the end: it must return RT_CANCELLED soon");
     }
     step("building " + on(input) + " after a cancel", kManyLimit_s);
     const BuildRun again = inputs.run(input);
-    if (const std::string why = failure_of(again); !why.empty()) return Outcome::failed("a build after a cancelled one: " + why);
+    if (const std::string why = failure_of(again); !why.empty())
+        return Outcome::failed("a build after a cancelled one: " + why);
     return Outcome::passed("stops when it is told to, and the next build is sound");
 }
 
@@ -201,7 +215,8 @@ Outcome parameters(Inputs& inputs, const Step& step, bool quick) {
             step("building " + what, kManyLimit_s);
             BuildRun run = input->run(plugin, params, Schedule::program);
             if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(what + ": " + why);
-            if (const std::string why = missing_refs(input->scene(), run.result); !why.empty()) return Outcome::failed(what + ": " + why);
+            if (const std::string why = missing_refs(input->scene(), run.result); !why.empty())
+                return Outcome::failed(what + ": " + why);
         }
     return Outcome::passed(std::to_string(tries.size()) + " sets of values at the ends of their ranges");
 }
@@ -233,12 +248,20 @@ Outcome leaks(Inputs& inputs, const Step& step, bool quick) {
         const uint64_t a = begin.*member, b = middle.*member, c = end.*member, least = each * uint64_t(builds / 2);
         return b > a && c > b && b - a >= least && c - b >= least;
     };
-    const auto per_build = [&](uint64_t ProcessSize::*member) { return std::to_string((end.*member - begin.*member) / uint64_t(builds)); };
+    const auto per_build = [&](uint64_t ProcessSize::*member) {
+        return std::to_string((end.*member - begin.*member) / uint64_t(builds));
+    };
     if (grows(&ProcessSize::heap_bytes, 8))
-        return Outcome::failed("each build leaves " + per_build(&ProcessSize::heap_bytes) + " bytes on the heap: it leaks memory");
-    if (grows(&ProcessSize::mapped_bytes, 4096)) return Outcome::failed("each build leaves " + per_build(&ProcessSize::mapped_bytes) + " bytes mapped: it leaks memory");
-    if (end.files > begin.files) return Outcome::failed(std::to_string(end.files - begin.files) + " files or pipes stay open after " + std::to_string(builds) + " builds");
-    if (end.threads > begin.threads + 4) return Outcome::failed(std::to_string(end.threads - begin.threads) + " threads go on after " + std::to_string(builds) + " builds");
+        return Outcome::failed("each build leaves " + per_build(&ProcessSize::heap_bytes) +
+                               " bytes on the heap: it leaks memory");
+    if (grows(&ProcessSize::mapped_bytes, 4096))
+        return Outcome::failed("each build leaves " + per_build(&ProcessSize::mapped_bytes) + " bytes mapped: it leaks memory");
+    if (end.files > begin.files)
+        return Outcome::failed(std::to_string(end.files - begin.files) + " files or pipes stay open after " +
+                               std::to_string(builds) + " builds");
+    if (end.threads > begin.threads + 4)
+        return Outcome::failed(std::to_string(end.threads - begin.threads) + " threads go on after " + std::to_string(builds) +
+                               " builds");
     return Outcome::passed("nothing grows over " + std::to_string(builds) + " builds");
 }
 
@@ -272,7 +295,8 @@ std::vector<Check> build_checks(const rt_plugin& plugin, bool quick) {
         {"builds.memory", "slots are not larger than what is in them", [=](const Step& step) { return memory(*inputs, step); }},
         {"builds.leaks", "no memory, file or thread is left behind by build after build",
          [=](const Step& step) { return leaks(*inputs, step, quick); }},
-        {"builds.afterwards", "nothing is written after `build` has returned", [=](const Step& step) { return afterwards(*inputs, step); }},
+        {"builds.afterwards", "nothing is written after `build` has returned",
+         [=](const Step& step) { return afterwards(*inputs, step); }},
     };
 }
 

@@ -101,7 +101,8 @@ BuildCase::BuildCase(std::string name, const Scene& scene) : name_(std::move(nam
                                             build_.triangles.size(), std::vector<double>{});
 }
 
-BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule, unsigned cancel_after) const {
+BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule,
+                        unsigned cancel_after) const {
     BuildRun run;
     CancelAt progress(cancel_after);
     HostServices services("builder", progress);

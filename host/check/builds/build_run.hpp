@@ -13,11 +13,11 @@ namespace clarity::check {
 
 // How the host's parallel_for runs its bodies.
 enum class Schedule {
-    program,   // as in the program
-    forward,   // one thread, in order
-    backward,  // one thread, the last first
-    shuffled2, // two threads, in an order of chance
-    shuffled7  // seven threads, which often wait for each other
+    program,    // as in the program
+    forward,    // one thread, in order
+    backward,   // one thread, the last first
+    shuffled2,  // two threads, in an order of chance
+    shuffled7   // seven threads, which often wait for each other
 };
 const char* schedule_text(Schedule schedule);
 
@@ -36,7 +36,9 @@ class BuildCase {
     BuildCase(std::string name, const Scene& scene);
     const std::string& name() const { return name_; }
     const BuildScene& scene() const { return build_; }
-    uint64_t input_bytes() const { return build_.prims.size() * sizeof(rt_prim) + build_.triangles.size() * sizeof(rt_packed_prim); }
+    uint64_t input_bytes() const {
+        return build_.prims.size() * sizeof(rt_prim) + build_.triangles.size() * sizeof(rt_packed_prim);
+    }
     // cancel_after: the number of the progress report that is answered with "cancelled"; 0: none.
     BuildRun run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule, unsigned cancel_after = 0) const;
 

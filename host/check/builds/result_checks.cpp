@@ -143,7 +143,9 @@ std::string loose_in_group(const rt_plugin& plugin, const BuildScene& scene, con
                 double least = INFINITY;
                 for (const Volume& v : all)
                     if (v.outside(corner) < least) least = v.outside(corner), nearest = &v;
-                if (!nearest) return level_text(level) + " of group " + std::to_string(group) + " shows no volume, but the group has primitives";
+                if (!nearest)
+                    return level_text(level) + " of group " + std::to_string(group) +
+                           " shows no volume, but the group has primitives";
                 return "a corner of " + name_of(ref) + " of group " + std::to_string(group) + " at " +
                        text("%.9g %.9g %.9g", corner[0], corner[1], corner[2]) + " is in no volume of " + level_text(level) +
                        "; it is " + text("%.3g", least) + " outside of the nearest one" +
@@ -177,8 +179,8 @@ std::string missing_refs(const BuildScene& scene, const BuilderResult& result) {
     for (const rt_prim& prim : scene.prims)
         if (times[prim.ref] == 0 && missing++ == 0) first = prim.ref;
     if (missing == 0) return {};
-    return std::to_string(missing) + " of " + std::to_string(scene.prims.size()) +
-           " primitives are in no leaf, the first is " + name_of(first) + ": rays cannot hit them";
+    return std::to_string(missing) + " of " + std::to_string(scene.prims.size()) + " primitives are in no leaf, the first is " +
+           name_of(first) + ": rays cannot hit them";
 }
 
 std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, BuilderResult& result) {
@@ -188,7 +190,8 @@ std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, Build
         slots.push_back(slot.memory.data());
         counts.push_back(slot.count);
     }
-    const rt_built built{sizeof(rt_built), static_cast<rt_u32>(result.roots.size()), slots.data(), counts.data(), result.roots.data()};
+    const rt_built built{sizeof(rt_built), static_cast<rt_u32>(result.roots.size()), slots.data(), counts.data(),
+                         result.roots.data()};
     for (rt_u32 g = 0; g < result.roots.size(); ++g) {
         const std::string why = loose_in_group(plugin, scene, built, g);
         if (!why.empty()) return why;

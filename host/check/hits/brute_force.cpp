@@ -17,14 +17,30 @@ struct Vec {
     double x, y, z;
     double operator[](int k) const { return k == 0 ? x : k == 1 ? y : z; }
 };
-Vec operator-(const Vec& a, const Vec& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
-Vec operator+(const Vec& a, const Vec& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-Vec operator*(double s, const Vec& a) { return {s * a.x, s * a.y, s * a.z}; }
-double dot(const Vec& a, const Vec& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-Vec cross(const Vec& a, const Vec& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
-double length(const Vec& a) { return std::sqrt(dot(a, a)); }
-double largest(const Vec& a) { return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)}); }
-Vec vec(const float* p) { return {p[0], p[1], p[2]}; }
+Vec operator-(const Vec& a, const Vec& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+Vec operator+(const Vec& a, const Vec& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+Vec operator*(double s, const Vec& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+double dot(const Vec& a, const Vec& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+Vec cross(const Vec& a, const Vec& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double length(const Vec& a) {
+    return std::sqrt(dot(a, a));
+}
+double largest(const Vec& a) {
+    return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
+}
+Vec vec(const float* p) {
+    return {p[0], p[1], p[2]};
+}
 
 struct Ray {
     Vec o, d;
@@ -63,7 +79,9 @@ double segment_distance(double ax, double ay, double bx, double by) {  // from t
 Passing pass_face(const Ray& ray, const Across& across, const Vec* corners, size_t count, const Vec& normal, const Vec& point) {
     Passing p;
     p.from_edge = kInf;
-    const auto flat = [&](const Vec& c) { return std::pair<double, double>{dot(c - ray.o, across.u), dot(c - ray.o, across.v)}; };
+    const auto flat = [&](const Vec& c) {
+        return std::pair<double, double>{dot(c - ray.o, across.u), dot(c - ray.o, across.v)};
+    };
     auto [ax, ay] = flat(corners[count - 1]);
     for (size_t i = 0; i < count; ++i) {
         const auto [bx, by] = flat(corners[i]);
@@ -92,7 +110,8 @@ void add_face(const Ray& ray, const Passing& p, Contact contact, std::vector<Con
     contacts.push_back(contact);
 }
 
-void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& prim, Contact contact, std::vector<Contact>& contacts) {
+void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& prim, Contact contact,
+                  std::vector<Contact>& contacts) {
     const Vec corners[3] = {vec(prim.a), vec(prim.b), vec(prim.c)};
     // Most triangles are far from the ray: a quick look first.
     const Vec middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
@@ -104,7 +123,8 @@ void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& pr
     const Vec normal = cross(corners[1] - corners[0], corners[2] - corners[0]);
     Passing p = pass_face(ray, across, corners, 3, normal, corners[0]);
     // A triangle without area, as far as rounding can tell, may be hit or not.
-    const double edge = std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});
+    const double edge =
+        std::max({length(corners[1] - corners[0]), length(corners[2] - corners[1]), length(corners[0] - corners[2])});
     if (length(normal) <= 1e-5 * edge * edge || length(normal) <= 4 * edge * kRounding * p.size) {
         p.inside = false;
         if (!(std::fabs(p.t) < kInf) || p.cosine < 1e-3) {
@@ -133,7 +153,8 @@ void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std
     const double half = std::sqrt(std::max(radius * radius - away * away, 0.0)) / ray.length_d;
     const double cosine = std::max(half * ray.length_d / radius, 1e-9);
     contact.t_error = blur / cosine / ray.length_d + 1e-5 * std::fabs(middle);
-    if (away > radius - blur) contact.t_error = std::max(contact.t_error, half + std::sqrt(2 * radius * blur + blur * blur) / ray.length_d * 2);
+    if (away > radius - blur)
+        contact.t_error = std::max(contact.t_error, half + std::sqrt(2 * radius * blur + blur * blur) / ray.length_d * 2);
     const double least = std::max(ray.t_min, 0.0), near = middle - half, far = middle + half;
     // The near side counts from t_min on, else the far side. Close to that limit either may be the answer.
     const bool surely_near = near - contact.t_error > least, surely_far = near + contact.t_error < least;
@@ -141,8 +162,8 @@ void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std
         if (is_far ? surely_near : surely_far) continue;
         contact.t = is_far ? far : near;
         if (contact.t + contact.t_error < least || contact.t - contact.t_error > ray.t_max) continue;
-        contact.certain = away < radius - blur && (is_far ? surely_far : surely_near) &&
-                          contact.t - contact.t_error > least && contact.t + contact.t_error < ray.t_max;
+        contact.certain = away < radius - blur && (is_far ? surely_far : surely_near) && contact.t - contact.t_error > least &&
+                          contact.t + contact.t_error < ray.t_max;
         contacts.push_back(contact);
     }
 }
@@ -198,7 +219,8 @@ Truth BruteForce::trace(const rt_ray& given) const {
         const rt_instance& instance = scene_.instances[index];
         const float* m = instance.object_from_world;
         const auto turned = [&](const Vec& v) {
-            return Vec{m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z, m[8] * v.x + m[9] * v.y + m[10] * v.z};
+            return Vec{m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
+                       m[8] * v.x + m[9] * v.y + m[10] * v.z};
         };
         Ray inner = ray;
         const Vec moved = turned(ray.o);
@@ -206,8 +228,10 @@ Truth BruteForce::trace(const rt_ray& given) const {
         inner.d = turned(ray.d);
         inner.length_d = length(inner.d);
         double norm = 0;
-        for (int r = 0; r < 3; ++r) norm = std::max(norm, double(std::fabs(m[4 * r]) + std::fabs(m[4 * r + 1]) + std::fabs(m[4 * r + 2])));
-        inner.blur = kRounding * (norm * largest(ray.o) + double(std::max({std::fabs(m[3]), std::fabs(m[7]), std::fabs(m[11])})) + largest(inner.o));
+        for (int r = 0; r < 3; ++r)
+            norm = std::max(norm, double(std::fabs(m[4 * r]) + std::fabs(m[4 * r + 1]) + std::fabs(m[4 * r + 2])));
+        inner.blur = kRounding * (norm * largest(ray.o) +
+                                  double(std::max({std::fabs(m[3]), std::fabs(m[7]), std::fabs(m[11])})) + largest(inner.o));
         // Directions are rounded, too, which counts over the whole way to the object.
         inner.blur += kRounding * length(inner.o);
         const Across inner_across(inner);

@@ -1,4 +1,5 @@
-// brute_force.hpp -- what rays hit, computed on the host in double precision by testing every primitive. The reference for hits.
+// brute_force.hpp -- what rays hit, computed on the host in double precision by testing every primitive. The reference for
+// hits.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -11,12 +12,12 @@ namespace clarity::check {
 
 // A primitive that a ray meets, or passes so closely that rounding decides.
 struct Contact {
-    rt_i32 prim = -1;       // its number, as hits report it
-    rt_i32 instance = -1;   // number in BuildScene::instances; -1: none
+    rt_i32 prim = -1;      // its number, as hits report it
+    rt_i32 instance = -1;  // number in BuildScene::instances; -1: none
     rt_u32 ref = 0;
     double t = 0;
-    double t_error = 0;     // by which a sound answer may differ
-    bool certain = false;   // a sound structure cannot miss it
+    double t_error = 0;    // by which a sound answer may differ
+    bool certain = false;  // a sound structure cannot miss it
 };
 
 // All primitives that one ray may hit between t_min and t_max, the nearest first.

@@ -31,7 +31,8 @@ rt_packed_prim trap(int i) {
 }  // namespace
 
 std::string Variant::text() const {
-    return std::to_string(lanes) + (lanes == 1 ? " lane" : " lanes") + (debug ? ", debug" : "") + (portable ? ", portable" : "");
+    return std::to_string(lanes) + (lanes == 1 ? " lane" : " lanes") + (debug ? ", debug" : "") +
+           (portable ? ", portable" : "");
 }
 std::string Variant::options() const {
     return "--lanes " + std::to_string(lanes) + (debug ? " --debug true" : "") + (portable ? " --portable true" : "");

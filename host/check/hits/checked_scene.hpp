@@ -24,8 +24,8 @@ struct Traced {
     uint64_t overflows = 0;  // full traversal stacks, counted by debug programs
 };
 
-// Numbers of the primitives behind the last leaf. They cut every ray: if one is hit, a traversal has tested a leaf that does not
-// exist. On a CPU an access further behind ends the process.
+// Numbers of the primitives behind the last leaf. They cut every ray: if one is hit, a traversal has tested a leaf that does
+// not exist. On a CPU an access further behind ends the process.
 constexpr rt_u32 kTrapPrim = 0x7FFFFF00u;
 
 class CheckedScene {

@@ -17,7 +17,7 @@ namespace clarity::check {
 namespace {
 
 constexpr double kCompileLimit_s = 120;
-constexpr double kTraceLimit_s = 10;  // some thousand rays take milliseconds; a loop without end takes for ever
+constexpr double kTraceLimit_s = 10;              // some thousand rays take milliseconds; a loop without end takes for ever
 constexpr size_t kRays = 2400, kQuickRays = 800;  // of a set
 
 // Everything that the checks of one structure share.
@@ -85,7 +85,8 @@ std::string write_report(const Bench& bench, const std::string& name, const Faul
     const std::string path = bench.options().report_folder + "/" + bench.plugin().id + "." + name + ".rays";
     std::string text = "# " + what + "\n";
     for (const Faults::One& one : faults.wrong)
-        text += ray_text(rays[one.ray]) + "  # found t " + std::to_string(hits[one.ray].t) + " prim " + std::to_string(hits[one.ray].prim) + "\n";
+        text += ray_text(rays[one.ray]) + "  # found t " + std::to_string(hits[one.ray].t) + " prim " +
+                std::to_string(hits[one.ray].prim) + "\n";
     try {
         write_text_file(path, text);
     } catch (const Error& e) {
@@ -122,7 +123,8 @@ Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
             faults.any_hit = any_hit;
             faults.rays = set.rays.size();
             for (size_t i = 0; i < set.rays.size(); ++i) {
-                const Fault fault = any_hit ? judge_any(truths[i], traced.hits[i]) : judge_nearest(set.rays[i], truths[i], traced.hits[i]);
+                const Fault fault =
+                    any_hit ? judge_any(truths[i], traced.hits[i]) : judge_nearest(set.rays[i], truths[i], traced.hits[i]);
                 if (fault != Fault::none) faults.wrong.push_back({i, fault});
             }
             if (faults.wrong.empty()) {
@@ -135,7 +137,9 @@ Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
             }
             wrong_variants.push_back(what);
         }
-    if (wrong_variants.empty()) return Outcome::passed(std::to_string(set.rays.size()) + " rays, nearest and any, are right with " + std::to_string(bench.variants().size()) + " programs");
+    if (wrong_variants.empty())
+        return Outcome::passed(std::to_string(set.rays.size()) + " rays, nearest and any, are right with " +
+                               std::to_string(bench.variants().size()) + " programs");
     if (right_variants.empty()) {
         first.found += ". With every number of lanes, nearest and any";
         return first;
@@ -165,15 +169,16 @@ Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
                 const rt_hit& hit = traced.hits[i];
                 if (is_strange(i)) {
                     if (std::isnan(hit.t) || hit.prim < -1 || hit.prim >= static_cast<rt_i32>(kTrapPrim))
-                        return Outcome::failed(what + ": the ray " + ray_text(set.rays[i]) + " has an answer that is none: t " + std::to_string(hit.t) +
-                                               ", prim " + std::to_string(hit.prim));
+                        return Outcome::failed(what + ": the ray " + ray_text(set.rays[i]) + " has an answer that is none: t " +
+                                               std::to_string(hit.t) + ", prim " + std::to_string(hit.prim));
                     continue;
                 }
                 const Fault fault = any_hit ? judge_any(truths[k], hit) : judge_nearest(set.rays[i], truths[k], hit);
                 ++k;
                 if (fault != Fault::none)
                     return Outcome::failed(what + ": the sound ray " + ray_text(set.rays[i]) +
-                                           " has a wrong answer beside rays that are no numbers (`--only hits.random` tells whether it is right without them)");
+                                           " has a wrong answer beside rays that are no numbers (`--only hits.random` tells "
+                                           "whether it is right without them)");
             }
         }
     return Outcome::passed("all have an answer, and sound rays beside them are right");
@@ -191,18 +196,23 @@ Outcome stack(Bench& bench, const Step& step) {
                 const Traced traced = scene.trace(variant, set.rays, any_hit);
                 rays += set.rays.size();
                 if (traced.overflows > 0)
-                    return Outcome::failed("the traversal stack was full " + std::to_string(traced.overflows) + " times (" + name + ", " + variant.text() +
-                                           "): the define of its size is too small for the tree; without --debug it would write beyond it");
+                    return Outcome::failed(
+                        "the traversal stack was full " + std::to_string(traced.overflows) + " times (" + name + ", " +
+                        variant.text() +
+                        "): the define of its size is too small for the tree; without --debug it would write beyond it");
             }
     return Outcome::passed("no stack was full, as far as the traversal asks RT_STACK_OK (" + std::to_string(rays) + " rays)");
 }
 
 }  // namespace
 
-std::vector<Check> hits_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options) {
+std::vector<Check> hits_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open,
+                               const HitsOptions& options) {
     const auto bench = std::make_shared<Bench>(plugin, open, options);
-    std::vector<Check> checks = {{"hits.kernels", "the kernels compile for 1, 4, 8 and 16 lanes", [=](const Step& step) { return compile(*bench, step); }},
-                                 {"hits.stack", "the traversal stack holds the tree, with --debug", [=](const Step& step) { return stack(*bench, step); }}};
+    std::vector<Check> checks = {{"hits.kernels", "the kernels compile for 1, 4, 8 and 16 lanes",
+                                  [=](const Step& step) { return compile(*bench, step); }},
+                                 {"hits.stack", "the traversal stack holds the tree, with --debug",
+                                  [=](const Step& step) { return stack(*bench, step); }}};
     for (const RaySet& set : ray_sets_by_name()) {
         const std::string name = set.name;
         if (set.strange)

@@ -17,6 +17,7 @@ struct HitsOptions {
 };
 
 // The checks of one structure's kernels. open: opens the device on first use.
-std::vector<Check> hits_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options);
+std::vector<Check> hits_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open,
+                               const HitsOptions& options);
 
 }  // namespace clarity::check

@@ -23,7 +23,8 @@ const char* words(Fault fault, bool any_hit) {
         case Fault::wrong_distance:
             return "have another distance than the primitive that they name";
         case Fault::not_there:
-            return any_hit ? "are said to be occluded, but nothing is between t_min and t_max" : "hit a primitive that the ray does not meet";
+            return any_hit ? "are said to be occluded, but nothing is between t_min and t_max"
+                           : "hit a primitive that the ray does not meet";
         case Fault::outside_limits:
             return "are not between t_min and t_max";
         case Fault::no_leaf:
@@ -55,7 +56,8 @@ std::string octant_text(const rt_ray& ray) {
 std::string hit_text(const rt_hit& hit, bool any_hit) {
     if (any_hit) return hit.t == 0 ? "occluded" : "free";
     if (hit.prim < 0) return "nothing";
-    return "t " + exact_text(hit.t) + ", prim " + std::to_string(hit.prim) + (hit.instance >= 0 ? ", instance " + std::to_string(hit.instance) : "");
+    return "t " + exact_text(hit.t) + ", prim " + std::to_string(hit.prim) +
+           (hit.instance >= 0 ? ", instance " + std::to_string(hit.instance) : "");
 }
 
 std::string truth_text(const Truth& truth, bool any_hit) {
@@ -91,7 +93,8 @@ Fault judge_any(const Truth& truth, const rt_hit& hit) {
     return occluded && truth.contacts.empty() ? Fault::not_there : Fault::none;
 }
 
-std::string Faults::text(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits, int lanes) const {
+std::string Faults::text(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits,
+                         int lanes) const {
     std::map<Fault, size_t> kinds;
     std::set<std::string> octants, primitives;
     std::map<size_t, size_t> by_lane;
@@ -103,7 +106,8 @@ std::string Faults::text(const std::vector<rt_ray>& set, const std::vector<Truth
     }
     std::set<std::string> all_octants;
     for (const rt_ray& ray : set) all_octants.insert(octant_text(ray));
-    std::string text = std::to_string(wrong.size()) + " of " + std::to_string(rays) + (any_hit ? " any-hit answers " : " nearest hits ") + "are wrong: ";
+    std::string text = std::to_string(wrong.size()) + " of " + std::to_string(rays) +
+                       (any_hit ? " any-hit answers " : " nearest hits ") + "are wrong: ";
     size_t left = kinds.size();
     for (const auto& [fault, count] : kinds) text += std::to_string(count) + " " + words(fault, any_hit) + (--left ? "; " : "");
     if (wrong.size() > 2 && octants.size() == 1 && all_octants.size() > 4)

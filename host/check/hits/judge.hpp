@@ -26,7 +26,8 @@ struct Faults {
     size_t rays = 0;
     bool any_hit = false;
     // What they have in common: how many, how they are wrong, and, if it is one, the octant, the lane or the kind of primitive.
-    std::string text(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits, int lanes) const;
+    std::string text(const std::vector<rt_ray>& set, const std::vector<Truth>& truths, const std::vector<rt_hit>& hits,
+                     int lanes) const;
 };
 
 }  // namespace clarity::check

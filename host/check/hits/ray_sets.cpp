@@ -88,33 +88,40 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
         for (size_t i = 0; i < n; ++i)
             for (const char* name : names) rays.push_back(make.into(region(name), i % 4 == 0 ? 0.3f : 1.5f + 2 * make.any()));
     };
-    add("hits.random", "rays in random directions, no two alike, in a soup of triangles", [&](std::vector<rt_ray>& rays) { plain(rays, {"random"}, count); });
-    add("hits.octants", "packets of rays whose directions agree in sign, in each of the eight octants", [&](std::vector<rt_ray>& rays) {
-        const int side = std::max(8, static_cast<int>(std::sqrt(double(count) / 8)) / 8 * 8);
-        for (int octant = 0; octant < 8; ++octant)
-            add_view(region("random"), 3, {octant & 1 ? -0.5f : 0.5f, octant & 2 ? -0.62f : 0.62f, octant & 4 ? -0.6f : 0.6f}, side, rays);
-    });
+    add("hits.random", "rays in random directions, no two alike, in a soup of triangles",
+        [&](std::vector<rt_ray>& rays) { plain(rays, {"random"}, count); });
+    add("hits.octants", "packets of rays whose directions agree in sign, in each of the eight octants",
+        [&](std::vector<rt_ray>& rays) {
+            const int side = std::max(8, static_cast<int>(std::sqrt(double(count) / 8)) / 8 * 8);
+            for (int octant = 0; octant < 8; ++octant)
+                add_view(region("random"), 3,
+                         {octant & 1 ? -0.5f : 0.5f, octant & 2 ? -0.62f : 0.62f, octant & 4 ? -0.6f : 0.6f}, side, rays);
+        });
     add("hits.camera", "camera rays, whose packets hold several octants", [&](std::vector<rt_ray>& rays) {
         const int side = std::max(8, static_cast<int>(std::sqrt(double(count) / 4)) / 8 * 8);
         for (const char* name : {"random", "instanced", "boxes", "spheres"}) add_view(region(name), 2, {0, 0, -1}, side, rays);
     });
-    add("hits.instances", "rays at instances that are turned, mirrored, stretched, tiny and within each other", [&](std::vector<rt_ray>& rays) {
-        plain(rays, {"instanced", "instanced", "instanced, tiny", "instanced, far away"}, count / 4);
+    add("hits.instances", "rays at instances that are turned, mirrored, stretched, tiny and within each other",
+        [&](std::vector<rt_ray>& rays) {
+            plain(rays, {"instanced", "instanced", "instanced, tiny", "instanced, far away"}, count / 4);
+        });
+    add("hits.primitives", "rays at spheres and polygons", [&](std::vector<rt_ray>& rays) {
+        plain(rays, {"spheres", "polygons"}, count / 3);
     });
-    add("hits.primitives", "rays at spheres and polygons", [&](std::vector<rt_ray>& rays) { plain(rays, {"spheres", "polygons"}, count / 3); });
-    add("hits.axes", "rays along one axis or within a plane of two, zeros of either sign, also within faces of boxes", [&](std::vector<rt_ray>& rays) {
-        for (size_t i = 0; i < count; ++i) {
-            const Region& at = region(i % 3 == 0 ? "boxes" : i % 3 == 1 ? "random" : "instanced");
-            Point from = make.within(at), d{};
-            if (i % 4 == 0)  // on the boxes' planes
-                for (int k = 0; k < 3; ++k) from[k] = at.center[k] + std::round(from[k] - at.center[k]);
-            for (float& c : d) c = make.any() < 0.5f ? 0.0f : -0.0f;
-            d[i % 3] = i & 8 ? 1.0f : -1.0f;
-            if (i % 2) d[(i + 1) % 3] = make.any() - 0.5f;
-            from[i % 3] -= 2 * at.radius * d[i % 3];
-            rays.push_back({{from[0], from[1], from[2]}, 0, {d[0], d[1], d[2]}, kInf});
-        }
-    });
+    add("hits.axes", "rays along one axis or within a plane of two, zeros of either sign, also within faces of boxes",
+        [&](std::vector<rt_ray>& rays) {
+            for (size_t i = 0; i < count; ++i) {
+                const Region& at = region(i % 3 == 0 ? "boxes" : i % 3 == 1 ? "random" : "instanced");
+                Point from = make.within(at), d{};
+                if (i % 4 == 0)  // on the boxes' planes
+                    for (int k = 0; k < 3; ++k) from[k] = at.center[k] + std::round(from[k] - at.center[k]);
+                for (float& c : d) c = make.any() < 0.5f ? 0.0f : -0.0f;
+                d[i % 3] = i & 8 ? 1.0f : -1.0f;
+                if (i % 2) d[(i + 1) % 3] = make.any() - 0.5f;
+                from[i % 3] -= 2 * at.radius * d[i % 3];
+                rays.push_back({{from[0], from[1], from[2]}, 0, {d[0], d[1], d[2]}, kInf});
+            }
+        });
     add("hits.grazing", "rays through corners and along edges of triangles", [&](std::vector<rt_ray>& rays) {
         const rt_group& world = scene.groups[0];
         for (size_t i = 0; i < count; ++i) {
@@ -176,16 +183,17 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
             }
             plain(rays, {"degenerate", "copies"}, count / 8);
         });
-    add("hits.limits", "rays with a least and a greatest distance, also just before and behind a surface", [&](std::vector<rt_ray>& rays) {
-        for (size_t i = 0; i < count; ++i) {
-            const Region& at = region(i % 3 == 0 ? "instanced" : i % 3 == 1 ? "spheres" : "random");
-            rt_ray ray = make.into(at, 2);
-            const float a = 4 * at.radius * make.any(), b = 4 * at.radius * make.any();
-            if (i % 2) ray.t_min = std::min(a, b);
-            ray.t_max = i % 4 == 3 ? kInf : std::max(a, b);
-            rays.push_back(ray);
-        }
-    });
+    add("hits.limits", "rays with a least and a greatest distance, also just before and behind a surface",
+        [&](std::vector<rt_ray>& rays) {
+            for (size_t i = 0; i < count; ++i) {
+                const Region& at = region(i % 3 == 0 ? "instanced" : i % 3 == 1 ? "spheres" : "random");
+                rt_ray ray = make.into(at, 2);
+                const float a = 4 * at.radius * make.any(), b = 4 * at.radius * make.any();
+                if (i % 2) ray.t_min = std::min(a, b);
+                ray.t_max = i % 4 == 3 ? kInf : std::max(a, b);
+                rays.push_back(ray);
+            }
+        });
     add("hits.unit", "directions that are not unit vectors", [&](std::vector<rt_ray>& rays) {
         for (size_t i = 0; i < count / 2; ++i) {
             rt_ray ray = make.into(region(i % 2 ? "instanced" : "random"), 2);
@@ -194,18 +202,32 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
             rays.push_back(ray);
         }
     });
-    add("hits.strange", "directions and origins that are zero, NaN or infinite, beside sound rays", [&](std::vector<rt_ray>& rays) {
-        const float tiny = 1e-40f;
-        const rt_ray strange[] = {
-            {{0, 0, 5}, 0, {0, 0, 0}, kInf},           {{0, 0, 5}, 0, {kNan, 0, -1}, kInf},      {{0, 0, 5}, 0, {kNan, kNan, kNan}, kInf},
-            {{kNan, 0, 5}, 0, {0, 0, -1}, kInf},       {{kInf, 0, 5}, 0, {0, 0, -1}, kInf},      {{0, 0, 5}, 0, {kInf, 0, -1}, kInf},
-            {{0, 0, 5}, 0, {0, -kInf, kInf}, kInf},    {{0, 0, 5}, 0, {1e30f, -1e30f, 1e30f}, kInf}, {{0, 0, 5}, 0, {tiny, -tiny, -1}, kInf},
-            {{0, 0, 5}, 0, {tiny, tiny, tiny}, kInf},  {{1e30f, 1e30f, -1e30f}, 0, {-1, -1, 1}, kInf}, {{0, 0, 5}, kNan, {0, 0, -1}, kInf},
-            {{0, 0, 5}, 0, {0, 0, -1}, kNan},          {{0, 0, 5}, 10, {0, 0, -1}, 1},           {{0, 0, 5}, 0, {0, 0, -1}, -1},
-        };
-        for (size_t i = 0; i < count; ++i)
-            rays.push_back(i % 5 == 2 ? strange[i / 5 % (sizeof strange / sizeof *strange)] : make.into(region(i % 2 ? "instanced" : "random"), 2));
-    }, true);
+    add(
+        "hits.strange", "directions and origins that are zero, NaN or infinite, beside sound rays",
+        [&](std::vector<rt_ray>& rays) {
+            const float tiny = 1e-40f;
+            const rt_ray strange[] = {
+                {{0, 0, 5}, 0, {0, 0, 0}, kInf},
+                {{0, 0, 5}, 0, {kNan, 0, -1}, kInf},
+                {{0, 0, 5}, 0, {kNan, kNan, kNan}, kInf},
+                {{kNan, 0, 5}, 0, {0, 0, -1}, kInf},
+                {{kInf, 0, 5}, 0, {0, 0, -1}, kInf},
+                {{0, 0, 5}, 0, {kInf, 0, -1}, kInf},
+                {{0, 0, 5}, 0, {0, -kInf, kInf}, kInf},
+                {{0, 0, 5}, 0, {1e30f, -1e30f, 1e30f}, kInf},
+                {{0, 0, 5}, 0, {tiny, -tiny, -1}, kInf},
+                {{0, 0, 5}, 0, {tiny, tiny, tiny}, kInf},
+                {{1e30f, 1e30f, -1e30f}, 0, {-1, -1, 1}, kInf},
+                {{0, 0, 5}, kNan, {0, 0, -1}, kInf},
+                {{0, 0, 5}, 0, {0, 0, -1}, kNan},
+                {{0, 0, 5}, 10, {0, 0, -1}, 1},
+                {{0, 0, 5}, 0, {0, 0, -1}, -1},
+            };
+            for (size_t i = 0; i < count; ++i)
+                rays.push_back(i % 5 == 2 ? strange[i / 5 % (sizeof strange / sizeof *strange)]
+                                          : make.into(region(i % 2 ? "instanced" : "random"), 2));
+        },
+        true);
     return sets;
 }
 

@@ -44,6 +44,7 @@ class BuildSupervisor : public worker::Supervisor {
 
  private:
     double idle_limit_s() const override { return idle_s_; }
+    bool counts_processor_time() const override { return true; }
     uint64_t processor_limit_s() const override { return 0; }
     uint64_t memory_limit_bytes() const override { return memory_bytes_; }
     std::string speaker() const override { return std::string("accel ") + plugin_.id; }
@@ -59,9 +60,11 @@ class BuildSupervisor : public worker::Supervisor {
             case End::no_progress:
                 throw Error(Exit::failed, "the builder made no progress for " + ending.how + " and was stopped" + advice);
             case End::memory:
-                throw Error(Exit::failed, "the builder needs more than " + ending.how + " of memory; take a smaller scene" + advice);
+                throw Error(Exit::failed,
+                            "the builder needs more than " + ending.how + " of memory; take a smaller scene" + advice);
             default:
-                throw Error(Exit::failed, "the builder's process was killed from outside; close other programs or take a smaller scene");
+                throw Error(Exit::failed,
+                            "the builder's process was killed from outside; close other programs or take a smaller scene");
         }
     }
     const rt_plugin& plugin_;
@@ -77,9 +80,9 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
         prims = std::max<uint64_t>(prims, uint64_t(input->groups[g].first) + input->groups[g].count);
     const uint64_t memory = physical_bytes() / 4 * 3;
     try {
-        worker::WorkerProcess process(worker::worker_program(), "build-worker",
-                                      {"--library", library, "--memory", std::to_string(memory), "--parent", std::to_string(getpid())},
-                                      Exit::failed);
+        worker::WorkerProcess process(
+            worker::worker_program(), "build-worker",
+            {"--library", library, "--memory", std::to_string(memory), "--parent", std::to_string(getpid())}, Exit::failed);
         std::string why = write_builder_input(process.result(), *input, prims, plugin.param_count);
         if (!why.empty()) throw Error(Exit::failed, why);
         worker::send_message(process.channel(), {worker::MessageKind::proceed, 0, 0, {}});

@@ -55,7 +55,8 @@ void wait_for_input() {
 
 void build(const Arguments& arguments) {
     const PluginRecord record = load_plugin(arguments.library);
-    if (!record.plugin || !record.plugin->accel) throw Error(Exit::failed, "the library is no structure any more: " + record.why);
+    if (!record.plugin || !record.plugin->accel)
+        throw Error(Exit::failed, "the library is no structure any more: " + record.why);
     const rt_plugin& plugin = *record.plugin;
     wait_for_input();
     std::unique_ptr<BuilderInput> input;
@@ -75,7 +76,8 @@ void build(const Arguments& arguments) {
         return plugin.accel->build(services.host(), &table, output.table());
     });
     const std::string overrun = output.result().overrun();
-    if (!overrun.empty()) throw Error(Exit::failed, "the builder wrote beyond the end of " + overrun + "; this is a fault of the plugin");
+    if (!overrun.empty())
+        throw Error(Exit::failed, "the builder wrote beyond the end of " + overrun + "; this is a fault of the plugin");
     worker::allow_writing_result();
     why = write_builder_result(worker::kResultFd, output.result());
     if (!why.empty()) throw Error(Exit::failed, why);

@@ -131,18 +131,18 @@ std::string read_builder_input(int fd, std::unique_ptr<BuilderInput>& input) {
     if (reader.failed()) return "the input is incomplete";
     std::vector<double> values(head.param_count);
     if (!values.empty()) std::memcpy(values.data(), params, values.size() * sizeof(double));
-    input = std::make_unique<BuilderInput>(static_cast<const rt_prim*>(prims), head.prim_count, static_cast<const rt_group*>(groups),
-                                           head.group_count, static_cast<const rt_packed_prim*>(triangles), head.triangle_count,
-                                           std::move(values));
+    input = std::make_unique<BuilderInput>(
+        static_cast<const rt_prim*>(prims), head.prim_count, static_cast<const rt_group*>(groups), head.group_count,
+        static_cast<const rt_packed_prim*>(triangles), head.triangle_count, std::move(values));
     if (lseek(fd, static_cast<off_t>(head.bytes), SEEK_SET) < 0) return std::strerror(errno);
     return {};
 }
 
 std::string write_builder_result(int fd, const BuilderResult& result) {
     std::string bytes;
-    put(bytes, ResultHead{result.leaf_count, static_cast<uint32_t>(result.slots.size()), static_cast<uint32_t>(result.roots.size()),
-                          static_cast<uint32_t>(result.defines.size()), static_cast<uint32_t>(result.stats.size()),
-                          result.leaves_given, 0});
+    put(bytes, ResultHead{result.leaf_count, static_cast<uint32_t>(result.slots.size()),
+                          static_cast<uint32_t>(result.roots.size()), static_cast<uint32_t>(result.defines.size()),
+                          static_cast<uint32_t>(result.stats.size()), result.leaves_given, 0});
     for (const BuilderResult::Slot& slot : result.slots) {
         put(bytes, static_cast<uint32_t>(slot.allocated));
         put(bytes, slot.count);

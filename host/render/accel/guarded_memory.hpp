@@ -11,8 +11,8 @@ namespace clarity {
 class GuardedBytes {
  public:
     GuardedBytes() = default;
-    // name: for the message, "slot bvh2_nodes". The memory is zeroed and aligned to `align` bytes, a power of two of at most 4096.
-    // Throws std::bad_alloc.
+    // name: for the message, "slot bvh2_nodes". The memory is zeroed and aligned to `align` bytes, a power of two of at most
+    // 4096. Throws std::bad_alloc.
     GuardedBytes(size_t bytes, const std::string& name, size_t align = 128);
     GuardedBytes(GuardedBytes&& o) noexcept { swap(o); }
     GuardedBytes& operator=(GuardedBytes&& o) noexcept {

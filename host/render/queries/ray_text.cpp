@@ -58,8 +58,7 @@ class Line {
     }
     static std::string shown(std::string_view word) { return printable_line(std::string(word.substr(0, 40))); }
     [[noreturn]] void fail(const std::string& why) const {
-        throw Error(Exit::usage,
-                    file_ + ":" + std::to_string(number_) + ":" + std::to_string(begin_ + 1) + ": " + why);
+        throw Error(Exit::usage, file_ + ":" + std::to_string(number_) + ":" + std::to_string(begin_ + 1) + ": " + why);
     }
     std::string_view text_;
     const std::string& file_;
