@@ -140,7 +140,7 @@ void misbehave() {
     if (is("build_loop"))
         for (;;) sink = sink + 1;
     if (is("memory_hog"))
-        for (;;) std::memset(std::malloc(64 << 20), 1, 64 << 20);
+        for (;;) std::memset(new char[64 << 20], 1, 64 << 20);
     if (is("leak")) sink += int(reinterpret_cast<uintptr_t>(std::malloc(500)) & 1);
     if (is("thread_leak"))
         std::thread([] {
