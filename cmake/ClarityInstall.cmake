@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 set_target_properties(clarity_sdk PROPERTIES EXPORT_NAME sdk)
 target_include_directories(clarity_sdk INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/clarity>)
 install(TARGETS clarity_sdk EXPORT clarityTargets)
-install(FILES host/sdk/rt_plugin.h host/sdk/rt_plugin.hpp cl/rt_types.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
+install(FILES host/sdk/rt_plugin.h host/sdk/rt_digest.h host/sdk/rt_plugin.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
 install(DIRECTORY host/sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
 install(FILES docs/plugins.md cl/CONTRACT.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk OPTIONAL)
 

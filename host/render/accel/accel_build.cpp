@@ -1,6 +1,8 @@
 // accel_build.cpp -- runs a builder, then checks and packs what it wrote.
 #include "render/accel/accel_build.hpp"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <atomic>
 #include <chrono>
@@ -14,6 +16,7 @@
 #include "base/scoped_fp_mode.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/plugin_check.hpp"
+#include "render/accel/topology_build.hpp"
 
 namespace clarity {
 namespace {
@@ -94,21 +97,6 @@ Output& output(void* ctx) {
 constexpr uint64_t kLeafChunk = 1u << 10;  // leaves that one task copies
 constexpr uint64_t kLeavesAhead = 24;      // how many leaves ahead triangles are prefetched
 
-bool is_known(rt_u32 ref, const BuildScene& scene) {
-    const rt_u32 index = RT_REF_INDEX(ref);
-    switch (RT_REF_KIND(ref)) {
-        case RT_REF_TRIANGLE:
-            return index < scene.triangles.size();
-        case RT_REF_SPHERE:
-            return index < scene.spheres.size();
-        case RT_REF_POLYGON:
-            return index < scene.polygons.size();
-        case RT_REF_INSTANCE:
-            return index < scene.instances.size();
-    }
-    return false;
-}
-
 // Returns how the builder broke its contract, in its terms; empty: it did not. Refs are checked by pack_leaves().
 std::string contract_breach(const Output& out) {
     for (rt_u32 s = 0; s < out.accel.slot_count; ++s)
@@ -138,7 +126,7 @@ std::string pack_leaves(const Output& out, AccelData& data) {
             // Neighbouring leaves are close in the scene, but may be anywhere in memory.
             const rt_u32 ahead = refs[std::min(i + kLeavesAhead, end - 1)];
             if (RT_REF_KIND(ahead) == RT_REF_TRIANGLE) __builtin_prefetch(triangles + RT_REF_INDEX(ahead));
-            if (!is_known(refs[i], data.scene)) {
+            if (!is_known_ref(refs[i], data.scene)) {
                 uint64_t first = first_unknown;
                 while (i < first && !first_unknown.compare_exchange_weak(first, i)) {
                 }
@@ -171,45 +159,98 @@ double AccelData::stat(const std::string& label, double otherwise) const {
     return otherwise;
 }
 
-AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress) {
-    AccelData data;
-    data.plugin = &plugin;
-    data.params = params;
-    auto start = std::chrono::steady_clock::now();
-    data.scene = make_build_scene(scene, progress);
-    data.pack_ms = ms_since(start);
+namespace {
 
-    HostServices services(std::string("accel ") + plugin.id, progress);
-    Output out(*plugin.accel, data, services, static_cast<rt_u32>(data.scene.groups.size()));
-    rt_geometry geometry{sizeof(rt_geometry), data.scene.triangles.data(), data.scene.triangles.size()};
-    rt_build_input input{sizeof(rt_build_input),   out.group_count, data.scene.prims.data(),
-                         data.scene.groups.data(), &geometry,       data.params.data()};
-    rt_build_output output_table{};
-    output_table.struct_bytes = sizeof output_table;
-    output_table.ctx = &out;
-    output_table.alloc = [](void* ctx, rt_u32 slot, uint64_t count) { return output(ctx).alloc(slot, count); };
-    output_table.leaves = [](void* ctx, uint64_t count) { return output(ctx).leaves(count); };
-    output_table.root = [](void* ctx, rt_u32 group, rt_u32 node) { output(ctx).root(group, node); };
-    output_table.define = [](void* ctx, const char* name, rt_u32 value) {
+rt_build_output table_of(Output& out) {
+    rt_build_output table{};
+    table.struct_bytes = sizeof table;
+    table.ctx = &out;
+    table.alloc = [](void* ctx, rt_u32 slot, uint64_t count) { return output(ctx).alloc(slot, count); };
+    table.leaves = [](void* ctx, uint64_t count) { return output(ctx).leaves(count); };
+    table.root = [](void* ctx, rt_u32 group, rt_u32 node) { output(ctx).root(group, node); };
+    table.define = [](void* ctx, const char* name, rt_u32 value) {
         const std::lock_guard<std::mutex> lock(output(ctx).mutex);
         if (is_identifier(name))
             output(ctx).data.defines[name] = value;
         else  // the name becomes a line of the kernel's source
             output(ctx).refuse(std::string("gave a define the name '") + (name ? name : "NULL") + "', which is no identifier");
     };
-    output_table.stat = [](void* ctx, const char* label, double value) {
+    table.stat = [](void* ctx, const char* label, double value) {
         const std::lock_guard<std::mutex> lock(output(ctx).mutex);
         if (label)
             output(ctx).data.stats.emplace_back(label, value);
         else
             output(ctx).refuse("gave a stat no label");
     };
+    return table;
+}
+
+std::string name_of(const rt_plugin& plugin, const rt_plugin& layout) {
+    return &plugin == &layout ? std::string("accel ") + plugin.id
+                              : std::string("accel ") + layout.id + ", which packs the tree of " + plugin.id;
+}
+
+}  // namespace
+
+rt_device device_for_builders(const DeviceInfo& info, unsigned lanes) {
+    rt_device device{};
+    device.struct_bytes = sizeof device;
+    device.kind = info.cpu ? RT_DEVICE_CPU : info.gpu ? RT_DEVICE_GPU : RT_DEVICE_UNKNOWN;
+    device.lanes = lanes;
+    device.compute_units = info.compute_units;
+    device.cache_line_bytes = info.cache_line_bytes;
+    device.local_bytes = static_cast<rt_u32>(std::min<uint64_t>(info.local_bytes, UINT32_MAX));
+    device.shared_cache_bytes = info.cache_bytes;
+    device.memory_bytes = info.global_bytes;
+#ifdef _SC_LEVEL2_CACHE_SIZE
+    // OpenCL tells only of one cache. A CPU's cores have their second level for themselves.
+    if (info.cpu) device.unit_cache_bytes = static_cast<uint64_t>(std::max(0L, sysconf(_SC_LEVEL2_CACHE_SIZE)));
+#endif
+    return device;
+}
+
+AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
+                      const BuildTarget& target) {
+    const rt_plugin& layout = target.layout ? *target.layout : plugin;
+    if (!layout.accel->build)
+        throw Error(Exit::failed, std::string("accel ") + plugin.id + ": it builds a topology, and its layout '" +
+                                      plugin.accel->layout + "' is not there to pack it; load that plugin, too");
+    AccelData data;
+    data.plugin = &plugin;
+    data.layout = &layout;
+    data.params = params;
+    auto start = std::chrono::steady_clock::now();
+    data.scene = make_build_scene(scene, progress);
+    data.pack_ms = ms_since(start);
+
+    const bool packs = &layout != &plugin;
+    const ParameterValues own = packs ? default_parameters(layout) : params;
+    const rt_geometry geometry{sizeof(rt_geometry), data.scene.triangles.data(), data.scene.triangles.size()};
+    rt_build_input input{};
+    input.struct_bytes = sizeof input;
+    input.group_count = static_cast<rt_u32>(data.scene.groups.size());
+    input.prims = data.scene.prims.data();
+    input.groups = data.scene.groups.data();
+    input.geometry = &geometry;
+    input.params = params.data();
+    input.device = &target.device;
+    TopologyData topology;
+    if (packs) topology = build_topology(data.scene, plugin, input, progress, data.stats);
+    data.pack_ms += topology.check_ms;
+    input.params = own.data();
+
+    HostServices services(name_of(plugin, layout), progress);
+    Output out(*layout.accel, data, services, input.group_count);
+    const rt_build_output output_table = table_of(out);
+    const rt_topology tree = topology.view();
     start = std::chrono::steady_clock::now();
     services.check(static_cast<int>(Exit::failed), [&] {
         const ScopedFpMode floats;
-        return plugin.accel->build(services.host(), &input, &output_table);
+        return packs ? layout.accel->pack(services.host(), &input, &tree, &output_table)
+                     : layout.accel->build(services.host(), &input, &output_table);
     });
-    data.build_ms = ms_since(start);
+    data.build_ms = topology.build_ms + ms_since(start);
+    topology = {};
     data.scene.prims = {};  // frees what is no longer needed at once: large scenes fill the memory with it
 
     start = std::chrono::steady_clock::now();
@@ -217,13 +258,15 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     if (why.empty()) why = pack_leaves(out, data);
     if (!why.empty())
         throw Error(Exit::failed,
-                    std::string("accel ") + plugin.id + ": the builder " + why + "; this is a fault of the plugin");
+                    name_of(plugin, layout) + ": the builder " + why + "; this is a fault of the plugin");
     out.refs = {};
     data.scene.triangles = {};
     data.instances = data.scene.instances;
     for (size_t i = 0; i < data.instances.size(); ++i) data.instances[i].root = data.roots[data.scene.group_of_instance[i]];
     data.bytes = data.leaf_count * sizeof(rt_packed_prim) + data.instances.size() * sizeof(rt_instance);
-    for (rt_u32 s = 0; s < plugin.accel->slot_count; ++s) data.bytes += data.slots[s].count * plugin.accel->slots[s].elem_bytes;
+    for (rt_u32 s = 0; s < layout.accel->slot_count; ++s)
+        if (!(layout.accel->slots[s].flags & RT_SLOT_HOST_ONLY))
+            data.bytes += data.slots[s].count * layout.accel->slots[s].elem_bytes;
     data.pack_ms += ms_since(start);
     return data;
 }

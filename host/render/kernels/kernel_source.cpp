@@ -40,7 +40,7 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
 
 // Writes the beginning of every kernel: types, lanes, the structure's types, and the buffers.
 void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel) {
-    for (const char* name : {"rt_types.h", "lanes/lanes.h"}) out.include(name);
+    for (const char* name : {"rt_shared.h", "rt_types.h", "lanes/lanes.h"}) out.include(name);
     if (!layout.cpu) out.include("lanes/subgroup.h");
     for (const char* name : {"lanes/rays.h", "lanes/ray_space.h", "primitives/loaded_prim.h"}) out.include(name);
     if (layout.cpu)
@@ -70,7 +70,7 @@ void write_queries(SourceWriter& out, const KernelRow& row, const KernelChoice& 
 KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart part) {
     const Settings& settings = prepared.settings;
     const Layout& layout = prepared.layout;
-    const rt_plugin& accel = *prepared.accel->plugin;
+    const rt_plugin& accel = *prepared.accel->layout;
     const KernelChoice choice{kind, part, settings, layout};
     const KernelRow& row = kernel_row(choice);
     const SceneFeatures features = features_of(*prepared.scene, prepared.accel->scene);
@@ -90,6 +90,7 @@ KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart par
     if (kind == KernelKind::aov) write_aovs(out, find_aov(settings.aov));
     if (part < FramePart::whole) out.define_int("RT_PART", std::min(static_cast<unsigned>(part), 2u));
     if (row.has(kRaySlots)) out.define_int("RT_RAY_SLOTS", static_cast<unsigned>(settings.ray_slots));
+    out.define_uint("RT_KERNEL_CONTRACT", accel.accel->kernel_contract);
     for (const Capability& capability : capabilities())
         if (accel.accel->capabilities & capability.bit) out.line(std::string("#define ") + capability.define);
     for (const auto& [name, value] : prepared.accel->defines) out.define_uint(name, value);

@@ -3,9 +3,12 @@
 // Source: Wald 2007, "On fast Construction of SAH-based Bounding Volume Hierarchies". A node takes 64 bytes. n primitives make
 // at most n - 1 nodes. The build measures the depth of the tree and defines the stack size of the traversal (BVH2_STACK) from
 // it. The structure suits static scenes. It is weak where large and small primitives overlap; there builder=spatial helps.
+#include <algorithm>
 #include <cstdio>
+#include <string>
 
 #include "levels.hpp"
+#include "pack.hpp"
 #include "rt_plugin.hpp"
 #include "statistics.hpp"
 #include "write_nodes.hpp"
@@ -35,6 +38,22 @@ constexpr rt_param kParams[] = {
                     4, 0.3),
 };
 
+Rules rules_of(const double* params) {
+    return {static_cast<uint32_t>(params[kMaxLeaf]),
+            static_cast<uint32_t>(params[kBins]),
+            static_cast<float>(params[kTraversalCost]),
+            static_cast<float>(params[kIntersectionCost]),
+            static_cast<Method>(params[kBuilder]),
+            static_cast<float>(params[kDuplicates]),
+            params[kSplit] == 1};
+}
+
+// The traversal needs one stack entry a level, and one more to tell a full stack from an overflow. The size is a multiple of 8,
+// because a new value recompiles the kernels.
+void define_stack(const rt_build_output* out, uint32_t depth) {
+    rt::define(out, "BVH2_STACK", (depth + 1 + 7) / 8 * 8);
+}
+
 int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
     uint64_t count = 0;
     for (uint32_t g = 0; g < input->group_count; ++g) count += input->groups[g].count;
@@ -44,13 +63,7 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
                       static_cast<unsigned long long>(Builder::kMaxPrimitives), static_cast<unsigned long long>(count));
         throw rt::fail(host, why);
     }
-    const Rules rules{static_cast<uint32_t>(input->params[kMaxLeaf]),
-                      static_cast<uint32_t>(input->params[kBins]),
-                      static_cast<float>(input->params[kTraversalCost]),
-                      static_cast<float>(input->params[kIntersectionCost]),
-                      static_cast<Method>(input->params[kBuilder]),
-                      static_cast<float>(input->params[kDuplicates]),
-                      input->params[kSplit] == 1};
+    const Rules rules = rules_of(input->params);
     try {
         Builder builder(host, *input, rules, count, 1.0f);
         const BinaryTree tree = builder.run(out, [](const Task&) {});
@@ -62,9 +75,7 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
         rt::stat(out, "references", static_cast<double>(tree.leaf_count));
         rt::stat(out, "sah_cost", statistics.sah_cost);
         rt::stat(out, "build_bytes", static_cast<double>(Builder::bytes(rules, count)));
-        // The traversal needs one stack entry a level, and one more to tell a full stack from an overflow. The size is a
-        // multiple of 8, because a new value recompiles the kernels.
-        rt::define(out, "BVH2_STACK", (tree.depth + 1 + 7) / 8 * 8);
+        define_stack(out, tree.depth);
         return RT_OK;
     } catch (const std::bad_alloc&) {
         std::snprintf(
@@ -75,12 +86,34 @@ int32_t build(const rt_host* host, const rt_build_input* input, const rt_build_o
     }
 }
 
+// Packs the tree of another plugin. Refs keep their order, so leaves are the topology's, or parts of them.
+int32_t pack(const rt_host* host, const rt_build_input* input, const rt_topology* topology, const rt_build_output* out) {
+    if (topology->ref_count > Builder::kMaxPrimitives)
+        throw rt::fail(host, "holds 2^28 - 1 refs at most, the topology has " + std::to_string(topology->ref_count));
+    const Packed packed = pack_topology(host, *topology);
+    if (packed.nodes.size() >= BVH2_LEAF)
+        throw rt::fail(host, "holds 2^31 - 1 nodes at most, the topology needs " + std::to_string(packed.nodes.size()));
+    auto* const nodes = rt::alloc<bvh2_node>(out, 0, packed.nodes.size());
+    std::copy(packed.nodes.begin(), packed.nodes.end(), nodes);
+    std::copy_n(topology->refs, topology->ref_count, rt::leaves(out, topology->ref_count));
+    for (rt_u32 g = 0; g < topology->group_count; ++g) rt::root(out, g, packed.roots[g]);
+    const Statistics statistics = measure(host, rules_of(input->params), nodes, static_cast<rt_u32>(packed.nodes.size()),
+                                          packed.roots, input->groups);
+    rt::stat(out, "nodes", static_cast<double>(packed.nodes.size()));
+    rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
+    rt::stat(out, "depth", packed.depth);
+    rt::stat(out, "references", static_cast<double>(topology->ref_count));
+    rt::stat(out, "sah_cost", statistics.sah_cost);
+    define_stack(out, packed.depth);
+    return RT_OK;
+}
+
 constexpr rt_cl_file kFiles[] = {
 #include "bvh2.inc"
 };
 constexpr rt_slot kSlots[] = {rt::slot<bvh2_node>("bvh2_nodes", "bvh2_node")};
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "bvh2_types.h"), rt::file(kFiles, "bvh2.cl"), rt::guarded<build>,
-                                      rt::guarded<levels>, rt::Traits().merit(1, 1));
+                                      rt::guarded<levels>, rt::Traits().merit(1, 1), rt::guarded<pack>);
 static_assert(sizeof(bvh2_node) == 64, "a node is a cache line");
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 

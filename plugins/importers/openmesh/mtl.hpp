@@ -8,7 +8,7 @@
 namespace openmesh_import {
 
 struct ObjMaterial {
-    rt_material values{};  // .texture is not set
+    rt_material_desc values{};  // without name and texture
     std::string texture;   // map_Kd as in the file, or empty
 };
 

@@ -94,8 +94,8 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
     }
     for (float& c : color) c = std::min(c * intensity, kMaxNumber);
     copy(color, light.values.color);
-    // The renderer stores the direction towards the light.
-    copy(is_point ? position : Vec3{-direction[0], -direction[1], -direction[2]}, light.values.position);
+    copy(position, light.values.position);
+    copy(direction, light.values.direction);
     document.lights.push_back(std::move(light));
 }
 
@@ -122,7 +122,7 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
     // Register the name before the keys are read, so that an error in a key does not make every use of the name an error.
     Material& material = document.materials.emplace_back();
     material.name = s.name("the material's name");
-    rt_material& values = material.values;
+    rt_material_desc& values = material.values;
     // The same values as the host's material for objects without one.
     copy({0.7f, 0.7f, 0.7f}, values.color);
     copy({0.15f, 0.15f, 0.15f}, values.specular);

@@ -46,6 +46,9 @@ struct Built {
 struct Options {
     std::map<std::string, double> params;  // parameters that are not listed have their defaults; an unknown key throws
     unsigned threads = 2;                  // number of threads of parallel_for
+    std::vector<uint8_t> wanted;           // groups to build, see rt_build_input; empty: all
+    std::vector<uint64_t> first_elements;
+    uint64_t first_leaf = 0;
     std::function<bool(float)> progress;   // returns false to cancel
 };
 
