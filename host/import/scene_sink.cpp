@@ -33,8 +33,8 @@ std::string clean_name(const char* name) {
     return text;
 }
 
-// Copies a struct of the plugin into one of this host's size. Throws Error(import_failed) if it is too small; the sink's function
-// then fails with that reason.
+// Copies a struct of the plugin into one of this host's size. Throws Error(import_failed) if it is too small; the sink's
+// function then fails with that reason.
 template <class T>
 T taken(const T* from, const char* what) {
     const std::string why = from ? check_bytes<T>(what, from->struct_bytes) : std::string(what) + " is NULL";
@@ -126,7 +126,9 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     sink_.material = [](void* ctx, const rt_material_desc* d) {
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.material(taken(d, "rt_material_desc")); });
     };
-    sink_.mesh = [](void* ctx, const rt_mesh* d) { return guarded(ctx, kFailed, [&](SceneSink& s) { return s.mesh(taken(d, "rt_mesh")); }); };
+    sink_.mesh = [](void* ctx, const rt_mesh* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.mesh(taken(d, "rt_mesh")); });
+    };
     sink_.instance = [](void* ctx, const rt_instance_desc* d) {
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.instance(taken(d, "rt_instance_desc")); });
     };
@@ -145,7 +147,9 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     sink_.camera = [](void* ctx, const rt_camera* d) {
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.camera(taken(d, "rt_camera")); });
     };
-    sink_.info = [](void* ctx, const rt_scene_info* d) { guarded(ctx, 0, [&](SceneSink& s) { return s.info(taken(d, "rt_scene_info")), 0; }); };
+    sink_.info = [](void* ctx, const rt_scene_info* d) {
+        guarded(ctx, 0, [&](SceneSink& s) { return s.info(taken(d, "rt_scene_info")), 0; });
+    };
     sink_.warn = [](void* ctx, const char* text) {
         guarded(ctx, 0, [&](SceneSink& s) { return s.builder_.warn(s.path_, clean_name(text)), 0; });
     };

@@ -240,7 +240,8 @@ std::string check_plugin(const rt_plugin& plugin) {
     if (plugin.accel && plugin.importer)
         return "it is both an accel and an importer, expected exactly one: make two libraries of it";
     if (!plugin.accel && !plugin.importer)
-        return "it is neither an accel nor an importer, expected exactly one: set one of the two; a plugin of another kind needs a "
+        return "it is neither an accel nor an importer, expected exactly one: set one of the two; a plugin of another kind "
+               "needs a "
                "later clarity";
     if (std::string why = check_params(plugin); !why.empty()) return why;
     if (std::string why = check_extensions(plugin); !why.empty()) return why;

@@ -170,8 +170,8 @@ using Build = int32_t (*)(const rt_host*, const rt_build_input*, const rt_build_
 using Levels = int32_t (*)(const rt_host*, const rt_built*, rt_u32 group, rt_u32 level, const rt_volume_sink*);
 using Pack = int32_t (*)(const rt_host*, const rt_build_input*, const rt_topology*, const rt_build_output*);
 using BuildTopology = int32_t (*)(const rt_host*, const rt_build_input*, const rt_topology_output*);
-// The description of a structure. levels: nullptr if it has no bounding volumes to draw. pack: nullptr if it cannot take the tree
-// of another plugin.
+// The description of a structure. levels: nullptr if it has no bounding volumes to draw. pack: nullptr if it cannot take the
+// tree of another plugin.
 template <size_t N>
 constexpr rt_accel accel(const rt_slot (&slots)[N], const rt_cl_file& types, const rt_cl_file& traverse, Build build,
                          Levels levels, const Traits& traits, Pack pack = nullptr) {
@@ -194,8 +194,22 @@ constexpr rt_accel accel(const rt_slot (&slots)[N], const rt_cl_file& types, con
 }
 // The description of a structure that builds only a binary tree. layout: id of the structure that packs and traces it, "bvh2".
 constexpr rt_accel topology(const char* layout, BuildTopology build, const Traits& traits) {
-    return {sizeof(rt_accel), 0,      0,     0, nullptr, {}, {}, nullptr, nullptr, nullptr, layout, build, 0, traits.merit_cpu,
-            traits.merit_gpu, traits.ray_cost};
+    return {sizeof(rt_accel),
+            0,
+            0,
+            0,
+            nullptr,
+            {},
+            {},
+            nullptr,
+            nullptr,
+            nullptr,
+            layout,
+            build,
+            0,
+            traits.merit_cpu,
+            traits.merit_gpu,
+            traits.ray_cost};
 }
 
 // Allocates zeroed host memory for `count` elements of a slot. Call it once per slot. Throws Stopped if there is no memory.
@@ -225,14 +239,15 @@ inline void stat(const rt_build_output* out, const char* label, double value) {
 
 // ---- topologies -------------------------------------------------------------------------------------------------------------
 
-// Allocates `count` zeroed nodes, at most as many as will be needed. Call it once per build. Throws Stopped if there is no memory.
+// Allocates `count` zeroed nodes, at most as many as will be needed. Call it once per build. Throws Stopped if there is no
+// memory.
 inline rt_topology_node* nodes(const rt_topology_output* out, uint64_t count) {
     rt_topology_node* memory = out->nodes(out->ctx, count);
     if (!memory) throw Stopped();
     return memory;
 }
-// Allocates the array of `count` refs, which the builder fills in leaf order. Call it once per build. Throws Stopped if there is
-// no memory.
+// Allocates the array of `count` refs, which the builder fills in leaf order. Call it once per build. Throws Stopped if there
+// is no memory.
 inline rt_u32* refs(const rt_topology_output* out, uint64_t count) {
     rt_u32* memory = out->refs(out->ctx, count);
     if (!memory) throw Stopped();
@@ -267,8 +282,8 @@ inline rt_u32 id(rt_u32 answer) {
 namespace detail {
 constexpr rt_plugin plugin(const char* id, const char* name, const char* version, const char* reference, const rt_param* params,
                            rt_u32 param_count, const rt_accel* accel, const rt_importer* importer) {
-    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, param_count, id,      name,
-            version,        reference,         params,          accel,       importer, nullptr,
+    return {RT_ABI_VERSION,   sizeof(rt_plugin),   RT_TYPES_DIGEST, param_count, id,       name,
+            version,          reference,           params,          accel,       importer, nullptr,
             sizeof(rt_param), sizeof(rt_extension)};
 }
 }  // namespace detail

@@ -257,8 +257,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     std::string why = contract_breach(out);
     if (why.empty()) why = pack_leaves(out, data);
     if (!why.empty())
-        throw Error(Exit::failed,
-                    name_of(plugin, layout) + ": the builder " + why + "; this is a fault of the plugin");
+        throw Error(Exit::failed, name_of(plugin, layout) + ": the builder " + why + "; this is a fault of the plugin");
     out.refs = {};
     data.scene.triangles = {};
     data.instances = data.scene.instances;

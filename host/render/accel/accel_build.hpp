@@ -45,7 +45,7 @@ struct AccelData {
 
 // What a builder is told besides the scene and its parameters.
 struct BuildTarget {
-    const rt_plugin* layout = nullptr;        // PluginRegistry::layout_of(); nullptr: the plugin itself
+    const rt_plugin* layout = nullptr;  // PluginRegistry::layout_of(); nullptr: the plugin itself
     rt_device device = {sizeof(rt_device), RT_DEVICE_UNKNOWN, 0, 0, 0, 0, 0, 0, 0};
 };
 // Describes a device to builders. lanes: rays of a work-item.

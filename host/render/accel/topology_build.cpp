@@ -97,7 +97,9 @@ class Checker {
         const rt_u32 count = scene_.groups[group].count, root = data_.roots[group];
         const std::string of_group = " of group " + std::to_string(group);
         if (root == RT_NONE)
-            return count == 0 ? "" : "reported no tree for group " + std::to_string(group) + ", which has " + number(count, "primitive");
+            return count == 0
+                       ? ""
+                       : "reported no tree for group " + std::to_string(group) + ", which has " + number(count, "primitive");
         uint64_t named = 0;
         struct Visit {
             rt_u32 node, depth;
@@ -107,8 +109,7 @@ class Checker {
             const Visit at = stack.back();
             stack.pop_back();
             const auto name = [&] { return "node " + std::to_string(at.node) + of_group; };
-            if (at.node >= data_.node_count)
-                return "named " + name() + ", but asked for " + number(data_.node_count, "node");
+            if (at.node >= data_.node_count) return "named " + name() + ", but asked for " + number(data_.node_count, "node");
             if (seen_[at.node]) return "gave " + name() + " two parents, or a circle leads through it";
             if (at.depth > RT_TOPOLOGY_DEPTH)
                 return "made a tree" + of_group + " with more than " + std::to_string(RT_TOPOLOGY_DEPTH) +
@@ -131,7 +132,8 @@ class Checker {
             named += size;
         }
         if (named < count)
-            return "lost primitives" + of_group + ": its leaves name " + number(named, "ref") + ", it was given " + std::to_string(count);
+            return "lost primitives" + of_group + ": its leaves name " + number(named, "ref") + ", it was given " +
+                   std::to_string(count);
         return {};
     }
 
@@ -161,12 +163,8 @@ std::string check(const Output& out, const BuildScene& scene) {
 }  // namespace
 
 rt_topology TopologyData::view() const {
-    return {sizeof(rt_topology),
-            static_cast<rt_u32>(roots.size()),
-            static_cast<const rt_topology_node*>(nodes.data()),
-            node_count,
-            static_cast<const rt_u32*>(refs.data()),
-            ref_count,
+    return {sizeof(rt_topology), static_cast<rt_u32>(roots.size()),       static_cast<const rt_topology_node*>(nodes.data()),
+            node_count,          static_cast<const rt_u32*>(refs.data()), ref_count,
             roots.data()};
 }
 

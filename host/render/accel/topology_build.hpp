@@ -20,8 +20,8 @@ struct TopologyData {
     rt_topology view() const;
 };
 
-// Runs the plugin's topology(). Appends the plugin's statistics to `stats`. Throws Error(failed) "accel median: why" if the plugin
-// fails or the tree is unsound, and Cancelled.
+// Runs the plugin's topology(). Appends the plugin's statistics to `stats`. Throws Error(failed) "accel median: why" if the
+// plugin fails or the tree is unsound, and Cancelled.
 TopologyData build_topology(const BuildScene& scene, const rt_plugin& plugin, const rt_build_input& input, Progress& progress,
                             std::vector<std::pair<std::string, double>>& stats);
 

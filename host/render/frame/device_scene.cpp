@@ -125,8 +125,8 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     const rt_accel& table = *accel_->layout->accel;
     for (rt_u32 s = 0; s < table.slot_count; ++s)
         if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))
-            contents.push_back({{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes},
-                                accel_->slots[s].memory.data()});
+            contents.push_back(
+                {{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes}, accel_->slots[s].memory.data()});
     std::vector<MemoryPiece> pieces;
     for (const Content& content : contents) pieces.push_back(content.piece);
     check_fits(pieces, device.info(), std::to_string(accel_->leaf_count) + " primitives in " + accel_->plugin->id);

@@ -151,7 +151,8 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     // The last scene is no longer in use elsewhere: free it before the next one is built.
     if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
     progress.stage(std::string("building ") + plugin.id);
-    return std::make_shared<AccelData>(build_accel(*scene, plugin, params, progress, {&layout, device_for_builders(info_, lanes)}));
+    return std::make_shared<AccelData>(
+        build_accel(*scene, plugin, params, progress, {&layout, device_for_builders(info_, lanes)}));
 }
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,

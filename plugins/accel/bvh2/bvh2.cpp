@@ -97,8 +97,8 @@ int32_t pack(const rt_host* host, const rt_build_input* input, const rt_topology
     std::copy(packed.nodes.begin(), packed.nodes.end(), nodes);
     std::copy_n(topology->refs, topology->ref_count, rt::leaves(out, topology->ref_count));
     for (rt_u32 g = 0; g < topology->group_count; ++g) rt::root(out, g, packed.roots[g]);
-    const Statistics statistics = measure(host, rules_of(input->params), nodes, static_cast<rt_u32>(packed.nodes.size()),
-                                          packed.roots, input->groups);
+    const Statistics statistics =
+        measure(host, rules_of(input->params), nodes, static_cast<rt_u32>(packed.nodes.size()), packed.roots, input->groups);
     rt::stat(out, "nodes", static_cast<double>(packed.nodes.size()));
     rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
     rt::stat(out, "depth", packed.depth);

@@ -14,8 +14,8 @@ constexpr rt_u32 kReportEvery = 1u << 16;  // nodes
 // A subtree whose node in the result is not written yet.
 struct Pending {
     const rt_topology_node* node;
-    rt_u32 first, count;        // refs of the leaf or of the part of a leaf; count 0: an inner node
-    rt_u32 parent, which;       // where its code goes; parent RT_NONE: it is a root
+    rt_u32 first, count;   // refs of the leaf or of the part of a leaf; count 0: an inner node
+    rt_u32 parent, which;  // where its code goes; parent RT_NONE: it is a root
     uint32_t depth;
 };
 

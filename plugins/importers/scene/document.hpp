@@ -29,7 +29,7 @@ struct Light {
 struct Material {
     Name name;
     rt_material_desc values{};  // without name and texture
-    std::string texture;  // path as in the file; empty: no texture
+    std::string texture;        // path as in the file; empty: no texture
 };
 struct Sphere {
     Vec3 center{0, 0, 0};

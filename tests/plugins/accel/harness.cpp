@@ -93,7 +93,7 @@ rt_u32* leaves(void* ctx, uint64_t count) {
 
 }  // namespace
 
-Built build(const rt_plugin& plugin, const Input& input, const Options& options) {
+Built build(const rt_plugin& plugin, const Input& input, const Options& options, const Part* part) {
     const rt_accel& accel = *plugin.accel;
     std::vector<double> params;
     for (rt_u32 i = 0; i < plugin.param_count; ++i) params.push_back(plugin.params[i].def);
@@ -122,10 +122,10 @@ Built build(const rt_plugin& plugin, const Input& input, const Options& options)
     in.geometry = &geometry;
     in.params = params.data();
     in.device = &device;
-    if (!options.wanted.empty()) {
-        in.wanted = options.wanted.data();
-        in.first_elements = options.first_elements.data();
-        in.first_leaf = options.first_leaf;
+    if (part) {
+        in.wanted = part->wanted.data();
+        in.first_elements = part->first_elements.data();
+        in.first_leaf = part->first_leaf;
     }
     OutputContext out_context{&plugin, &built, {}};
     rt_build_output out{};
