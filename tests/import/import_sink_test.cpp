@@ -67,7 +67,7 @@ TEST_P(Sink, a_file_of_bad_faces_fails) {
 }
 
 TEST_P(Sink, broken_descriptions_are_refused) {
-    const std::pair<const char*, const char*> cases[] = {{"struct", "struct_bytes of rt_mesh"},
+    const std::pair<const char*, const char*> cases[] = {{"struct", "rt_mesh has struct_bytes 8"},
                                                          {"stride", "position_stride 4"},
                                                          {"positions", "no positions"},
                                                          {"count", "absurd"},
