@@ -1,4 +1,4 @@
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 
 #include <algorithm>
 
