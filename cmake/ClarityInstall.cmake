@@ -1,5 +1,6 @@
 # Installs everything besides the program and the plugins: the SDK, its pages, and the package for find_package(clarity), which
-# provides the targets clarity::sdk and clarity::bvh, clarity_add_plugin() and clarity_embed(). No file contains the prefix, so the tree may be moved.
+# provides the targets clarity::sdk and clarity::bvh, clarity_add_plugin() and clarity_embed(). No file contains the prefix, so the
+# tree may be moved.
 include(CMakePackageConfigHelpers)
 
 set_target_properties(clarity_sdk PROPERTIES EXPORT_NAME sdk)
