@@ -1,6 +1,8 @@
 #include "pack.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <cstring>
 
 #include "clarity_bvh/build/builder.hpp"
 #include "clarity_bvh/pack_binary.hpp"
@@ -15,11 +17,12 @@ using namespace clarity::bvh;
 static_assert(BVH2_MAKE_LEAF(0u, 0u) == kEmpty && BVH2_MAKE_LEAF(5u, 3u) == make_leaf(5, 3) && BVH2_LEAF_MAX == kLeafMax,
               "the library's codes of children");
 
+// The layouts are the same, so a node is copied whole.
+static_assert(sizeof(bvh2_node) == sizeof(Node) && offsetof(bvh2_node, child0) == offsetof(Node, child0) &&
+                  offsetof(bvh2_node, box1) == offsetof(Node, box1) && offsetof(bvh2_node, child1) == offsetof(Node, child1),
+              "a bvh2_node is a Node");
 void convert(bvh2_node& to, const Node& from) {
-    std::copy_n(from.box0, 6, to.box0);
-    std::copy_n(from.box1, 6, to.box1);
-    to.child0 = from.child0;
-    to.child1 = from.child1;
+    std::memcpy(&to, &from, sizeof to);
     to.pad0 = to.pad1 = 0;
 }
 

@@ -86,8 +86,7 @@ TEST(Treelets, MakeTreesCheaperAndKeepTheirLeaves) {
         const Topology from = build_topology(services.host(), boxes.input(), {4, 32, 1, 1, method}, before.memory());
         const Topology to = optimize_treelets(services.host(), from, before.refs.data(), {}, after.memory());
         const double gain = cost(from, boxes) / cost(to, boxes);
-        EXPECT_GT(gain, method == Method::morton ? 1.08 : 1.0);
-        std::printf("cost %.3f to %.3f: %.3f\n", cost(from, boxes), cost(to, boxes), gain);
+        EXPECT_GT(gain, method == Method::morton ? 1.02 : 1.008);  // most of the cost is that of the leaves, which stay
         EXPECT_EQ(leaves_of(from, before.refs), leaves_of(to, after.refs));
         EXPECT_LE(to.depth, std::max(from.depth, kMaxDepth));
         ASSERT_EQ(from.roots.size(), to.roots.size());
