@@ -108,7 +108,7 @@ double App::wait_seconds() const {
 }
 
 bool App::typing() const {
-    return ImGui::GetIO().WantTextInput;
+    return ImGui::GetIO().WantTextInput || state_.browser_open;  // keys never move the camera behind the file browser
 }
 
 void App::turn() {
