@@ -175,7 +175,7 @@ void App::take_keys() {
         } else if (event.kind == KeyEvent::Kind::release) {
             held_.release(event.key);
         } else if (event.key == GLFW_KEY_ESCAPE && (state_.browser_open || state_.keys_open)) {
-            KeyTarget target{*session_, state_, *overlay_};
+            KeyTarget target = key_target();
             close_or_cancel(target);  // even while a text field has the keyboard
         } else if (!event.other_modifier && !typing()) {
             if (const KeyBinding* binding = state_.key_map->find(event.key, event.ctrl)) act(*binding);
@@ -194,7 +194,7 @@ void App::act(const KeyBinding& binding) {
 
 void App::press(const KeyBinding& binding) {
     if (binding.press) {
-        KeyTarget target{*session_, state_, *overlay_};
+        KeyTarget target = key_target();
         binding.press(target);
         return;
     }

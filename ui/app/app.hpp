@@ -33,6 +33,7 @@ class App {
     bool typing() const;
     void run_script();
     void take_keys();
+    KeyTarget key_target() { return {*session_, state_, *overlay_}; }
     void act(const KeyBinding& binding);
     void press(const KeyBinding& binding);
     void move_held(float seconds);

@@ -57,8 +57,8 @@ struct KeyMap {
     const KeyBinding* find(int key, bool ctrl = false) const;
 };
 
-const std::vector<KeyMap>&
-key_maps();  // "thesis" first; the table is in ui/app/key_table.cpp, because its rows act on all rooms
+// All key maps, "thesis" first. The table is in ui/app/key_table.cpp, because its rows act on session and overlay.
+const std::vector<KeyMap>& key_maps();
 // Returns nullptr if no key map has this id.
 const KeyMap* find_key_map(const std::string& id);
 

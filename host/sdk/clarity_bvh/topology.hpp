@@ -63,8 +63,8 @@ inline void set_child(Node& node, int which, const Bounds& box, uint32_t child) 
 
 // ---- the tree ---------------------------------------------------------------------------------------------------------------
 
-// A subtree that one thread built, and that one thread packs. Its nodes stand together, from first_node on, parents before
-// children, and a node whose child 0 is a node is followed by it (depth-first order).
+// A subtree that one thread built, and that one thread packs. Its nodes stand together, from first_node on, in depth-first
+// order: parents come before children. If child 0 of a node is a node, it is the next one.
 struct Part {
     uint32_t first_node;      // ascending with the places of the parts in leaf order, also for parts without a node
     float scale;              // unit_scale() of the group's box

@@ -1,4 +1,4 @@
-// incoherent.hpp -- how a CPU traces packets whose rays part: the parameter, and the choice of `auto`.
+// incoherent.hpp -- the parameter `incoherent`: how a CPU traces packets that diverge, and what `auto` chooses.
 #pragma once
 #include "clarity_bvh/parameters.hpp"
 

@@ -5,9 +5,9 @@
 
 namespace bvh8 {
 
-// Packs `topology`, whose refs in leaf order are `refs`, and writes all of the plugin's output: slot, leaf order, roots,
-// defines, statistics. input.params are the plugin's parameters; input.prims are not read. Leaves have at most BVH8_LEAF_MAX
-// primitives.
+// Packs a tree and writes all of the plugin's output: slot, leaf order, roots, defines, statistics. refs: the refs of the
+// tree's primitives in leaf order. input.params are the plugin's parameters; input.prims are not read. Leaves have at most
+// BVH8_LEAF_MAX primitives.
 void pack(const rt_host* host, const rt_build_input& input, clarity::bvh::Topology& topology, const rt_u32* refs,
           const rt_build_output* out);
 // Builds a tree by the plugin's parameters, and packs it.

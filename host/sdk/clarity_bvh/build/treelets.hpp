@@ -12,10 +12,10 @@ struct TreeletRules {
     uint32_t passes = 2;
 };
 
-// Returns a topology with the same leaves, whose cost by the surface area heuristic is at most that of `from`. old_refs: the
-// refs of `from` in leaf order. The leaf order changes: the new one is written to `refs`. No leaf gets deeper than kMaxDepth
-// unless one was before. Uses all cores; the result does not depend on their number. Throws std::bad_alloc, or rt::Cancelled if
-// the user cancels.
+// Returns a topology with the same leaves. Its cost by the surface area heuristic is at most that of `from`. old_refs: the refs
+// of `from` in leaf order. The leaf order changes: the function writes the new one to `refs`. No leaf gets deeper than
+// kMaxDepth unless one was before. Uses all cores; the result does not depend on their number. Throws std::bad_alloc, or
+// rt::Cancelled if the user cancels.
 Topology optimize_treelets(const rt_host* host, const Topology& from, const uint32_t* old_refs, const TreeletRules& rules,
                            const RefMemory& refs);
 

@@ -1,4 +1,4 @@
-// octant_slots.hpp -- wide nodes whose slots tell where in the node a child lies.
+// octant_slots.hpp -- writes wide nodes. The slot of a child tells in which octant of the node the child lies.
 #pragma once
 #include "clarity_bvh/wide/wide_node.hpp"
 
