@@ -83,6 +83,7 @@ typedef struct rt_frame {
     rt_u32 packet_w, packet_h; /* pixels of one work-item */
     rt_f32 min_weight; /* rays of a smaller weight are not spawned */
     rt_u32 shadows;    /* 0: no shadow rays */
+    rt_u32 aov;        /* what aov.cl writes: RT_AOV_T, ... */
     rt_u32 root; /* root of group 0's tree */
     rt_u32 block_w, block_w_log2; /* width of a block in pixels; a block has RT_LANES pixels, traced together */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */

@@ -2,13 +2,13 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "render/accel/accel_choice.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/device_scene.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/view.hpp"
 

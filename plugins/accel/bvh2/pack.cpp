@@ -1,115 +1,75 @@
 #include "pack.hpp"
 
 #include <algorithm>
-#include <cfloat>
+#include <cstddef>
+#include <cstring>
 
-#include "rt_plugin.hpp"
+#include "clarity_bvh/build/builder.hpp"
+#include "clarity_bvh/pack_binary.hpp"
+#include "parameters.hpp"
+#include "statistics.hpp"
 
 namespace bvh2 {
 namespace {
 
-constexpr rt_u32 kNone = BVH2_MAKE_LEAF(0u, 0u);
-constexpr rt_u32 kReportEvery = 1u << 16;  // nodes
+using namespace clarity::bvh;
 
-// A subtree whose node in the result is not written yet.
-struct Pending {
-    const rt_topology_node* node;
-    rt_u32 first, count;   // refs of the leaf or of the part of a leaf; count 0: an inner node
-    rt_u32 parent, which;  // where its code goes; parent RT_NONE: it is a root
-    uint32_t depth;
-};
+static_assert(BVH2_MAKE_LEAF(0u, 0u) == kEmpty && BVH2_MAKE_LEAF(5u, 3u) == make_leaf(5, 3) && BVH2_LEAF_MAX == kLeafMax,
+              "the library's codes of children");
 
-class Packer {
- public:
-    Packer(const rt_host* host, const rt_topology& topology) : host_(host), topology_(topology) {
-        // An upper bound of the usual case, in which no leaf must be divided.
-        packed_.nodes.reserve(topology.node_count / 2 + topology.group_count);
-    }
+// The layouts are the same, so a node is copied whole.
+static_assert(sizeof(bvh2_node) == sizeof(Node) && offsetof(bvh2_node, child0) == offsetof(Node, child0) &&
+                  offsetof(bvh2_node, box1) == offsetof(Node, box1) && offsetof(bvh2_node, child1) == offsetof(Node, child1),
+              "a bvh2_node is a Node");
+void convert(bvh2_node& to, const Node& from) {
+    std::memcpy(&to, &from, sizeof to);
+    to.pad0 = to.pad1 = 0;
+}
 
-    void add_group(rt_u32 root) {
-        packed_.roots.push_back(static_cast<rt_u32>(packed_.nodes.size()));
-        if (root == RT_NONE) {
-            const rt_u32 at = add_node(1);
-            clear_child(at, 0);
-            clear_child(at, 1);
-            return;
-        }
-        const Pending top = pending(root, RT_NONE, 0, 1);
-        if (top.count > 0 && top.count <= BVH2_LEAF_MAX) {  // the root must be a node
-            const rt_u32 at = add_node(1);
-            set_child(at, 0, *top.node, BVH2_MAKE_LEAF(top.first, top.count));
-            clear_child(at, 1);
-            return;
-        }
-        stack_.push_back(top);
-        while (!stack_.empty()) {
-            const Pending next = stack_.back();
-            stack_.pop_back();
-            expand(next);
-        }
-    }
-    Packed take() { return std::move(packed_); }
-
- private:
-    Pending pending(rt_u32 index, rt_u32 parent, rt_u32 which, uint32_t depth) const {
-        const rt_topology_node& node = topology_.nodes[index];
-        const bool leaf = (node.right & RT_TOPOLOGY_LEAF) != 0;
-        return {&node, leaf ? node.left : 0, leaf ? node.right & ~RT_TOPOLOGY_LEAF : 0, parent, which, depth};
-    }
-    rt_u32 add_node(uint32_t depth) {
-        if (packed_.nodes.size() % kReportEvery == 0)
-            rt::progress(host_, static_cast<float>(packed_.nodes.size()) / static_cast<float>(topology_.node_count + 1));
-        packed_.depth = std::max(packed_.depth, depth);
-        packed_.nodes.push_back({});
-        return static_cast<rt_u32>(packed_.nodes.size() - 1);
-    }
-    void clear_child(rt_u32 at, int which) {
-        rt_topology_node nowhere{};
-        std::fill_n(nowhere.lo, 3, FLT_MAX);
-        std::fill_n(nowhere.hi, 3, FLT_MAX);
-        set_child(at, which, nowhere, kNone);
-    }
-    void set_child(rt_u32 at, int which, const rt_topology_node& box, rt_u32 code) {
-        bvh2_node& node = packed_.nodes[at];
-        float* const to = which == 0 ? node.box0 : node.box1;
-        std::copy_n(box.lo, 3, to);
-        std::copy_n(box.hi, 3, to + 3);
-        (which == 0 ? node.child0 : node.child1) = code;
-    }
-
-    // Writes the node of a subtree. Its children that are nodes follow later, the first one next (depth-first order).
-    void expand(const Pending& of) {
-        const rt_u32 at = add_node(of.depth);
-        if (of.parent != RT_NONE) (of.which == 0 ? packed_.nodes[of.parent].child0 : packed_.nodes[of.parent].child1) = at;
-        Pending children[2];
-        if (of.count > 0) {  // a part of a large leaf
-            const rt_u32 half = of.count / 2;
-            children[0] = {of.node, of.first, half, at, 0, of.depth + 1};
-            children[1] = {of.node, of.first + half, of.count - half, at, 1, of.depth + 1};
-        } else {
-            children[0] = pending(of.node->left, at, 0, of.depth + 1);
-            children[1] = pending(of.node->right, at, 1, of.depth + 1);
-        }
-        for (int which : {1, 0}) {
-            const Pending& child = children[which];
-            const bool leaf = child.count > 0 && child.count <= BVH2_LEAF_MAX;
-            set_child(at, which, *child.node, leaf ? BVH2_MAKE_LEAF(child.first, child.count) : 0);
-            if (!leaf) stack_.push_back(child);
-        }
-    }
-
-    const rt_host* const host_;
-    const rt_topology& topology_;
-    Packed packed_;
-    std::vector<Pending> stack_;
-};
+// Writes slot 0, the roots, the defines and the statistics. The leaf order is written already.
+void write(const rt_host* host, const rt_build_input& input, const Topology& topology, uint64_t build_bytes,
+           const rt_build_output* out) {
+    const bvh2_node* nodes = nullptr;
+    rt_u32 count = 0;
+    const std::vector<rt_u32> roots = pack_binary(
+        host, topology,
+        [&](uint32_t node_count) {
+            count = node_count;
+            bvh2_node* const memory = rt::alloc<bvh2_node>(out, 0, node_count);
+            nodes = memory;
+            return memory;
+        },
+        convert);
+    for (rt_u32 g = 0; g < roots.size(); ++g) rt::root(out, g, roots[g]);
+    const Statistics statistics = measure(host, rules_of(input.params), nodes, count, roots, input.groups);
+    rt::stat(out, "nodes", count);
+    rt::stat(out, "leaves", static_cast<double>(statistics.leaves));
+    rt::stat(out, "depth", topology.depth);
+    rt::stat(out, "references", static_cast<double>(topology.ref_count));
+    rt::stat(out, "sah_cost", statistics.sah_cost);
+    rt::stat(out, "build_bytes", static_cast<double>(build_bytes));
+    // The traversal needs one stack entry a level, and one more to tell a full stack from an overflow. The size is a multiple
+    // of 8, because a new value recompiles the kernels.
+    rt::define(out, "BVH2_STACK", (topology.depth + 1 + 7) / 8 * 8);
+}
 
 }  // namespace
 
-Packed pack_topology(const rt_host* host, const rt_topology& topology) {
-    Packer packer(host, topology);
-    for (rt_u32 g = 0; g < topology.group_count; ++g) packer.add_group(topology.roots[g]);
-    return packer.take();
+void pack(const rt_host* host, const rt_build_input& input, Topology& topology, const rt_u32* refs,
+          const rt_build_output* out) {
+    std::copy_n(refs, topology.ref_count, rt::leaves(out, topology.ref_count));
+    write(host, input, topology, topology.nodes.count() * sizeof(Node), out);
+}
+
+void build(const rt_host* host, const rt_build_input& input, const rt_build_output* out) {
+    const uint64_t count = count_primitives(host, input);
+    const Rules rules = rules_of(input.params);
+    const uint64_t bytes = TopologyBuilder::bytes(rules, count);
+    with_memory_for(host, count, bytes, [&] {
+        TopologyBuilder builder(host, input, rules, count, 1.0f);
+        const Topology topology = builder.run([out](uint64_t refs) { return rt::leaves(out, refs); }, [](const Part&) {});
+        write(host, input, topology, bytes, out);
+    });
 }
 
 }  // namespace bvh2

@@ -1,22 +1,16 @@
-// pack.hpp -- turns the binary tree of another plugin into nodes of bvh2.
+// pack.hpp -- writes trees in the layout of bvh2: its own builds, and any binary topology.
 #pragma once
-#include <vector>
-
-#include "rt_plugin.h"
-// needs the types of rt_shared.h, so it must follow the header above:
-#include "bvh2_types.h"
+#include "clarity_bvh/topology.hpp"
+#include "rt_plugin.hpp"
 
 namespace bvh2 {
 
-// The nodes of all groups in depth-first order, one group after the other. Positions in leaf order are those of the topology's
-// refs.
-struct Packed {
-    std::vector<bvh2_node> nodes;
-    std::vector<rt_u32> roots;
-    uint32_t depth = 1;  // number of nodes on the path from a root to the deepest leaf
-};
-
-// Leaves of more than BVH2_LEAF_MAX refs become trees of leaves, which all have the box of the leaf. Throws rt::Cancelled.
-Packed pack_topology(const rt_host* host, const rt_topology& topology);
+// Packs a tree and writes all of the plugin's output: slot, leaf order, roots, defines, statistics. refs: the refs of the
+// tree's primitives in leaf order. input.params are the plugin's parameters; input.prims are not read. Leaves have at most
+// BVH2_LEAF_MAX primitives.
+void pack(const rt_host* host, const rt_build_input& input, clarity::bvh::Topology& topology, const rt_u32* refs,
+          const rt_build_output* out);
+// Builds a tree by the plugin's parameters, and packs it.
+void build(const rt_host* host, const rt_build_input& input, const rt_build_output* out);
 
 }  // namespace bvh2

@@ -1,7 +1,7 @@
 // linear.cpp -- no structure at all: every ray tests every primitive, in order. It is slow and hard to get wrong. So it is the
 // reference for the other structures, and the shortest example of a plugin.
 #include "rt_plugin.hpp"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "linear_types.h"
 
 namespace {

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "harness.hpp"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "linear_types.h"
 
 using namespace accel_test;
