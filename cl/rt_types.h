@@ -1,45 +1,13 @@
-/* rt_types.h -- structs shared by host, plugins and kernels.
+/* rt_types.h -- structs shared by host and kernels. Plugins see only those of rt_shared.h, so these may change at any time.
  *
  * C99 subset, scalars and arrays only: no vector types (float3 is 16 bytes wide and aligned on a device), no bool, no
- * size_t, no pointers, no integer stored as a float. Sizes are checked on the host (static_assert), between host and plugin
- * (RT_TYPES_DIGEST) and on every device (a probe kernel that the host generates). */
+ * size_t, no pointers, no integer stored as a float. Sizes are checked on the host (static_assert) and on every device (a line of
+ * the kernels that the host generates). */
 #ifndef RT_TYPES_H
 #define RT_TYPES_H
-#ifdef __OPENCL_VERSION__
-typedef uint rt_u32;
-typedef int rt_i32;
-typedef float rt_f32;
-#else
-#include <stdint.h>
-typedef uint32_t rt_u32;
-typedef int32_t rt_i32;
-typedef float rt_f32;
+#ifndef __OPENCL_VERSION__
+#include "rt_shared.h" /* in kernels the host writes its text in front of this one */
 #endif
-
-#define RT_NONE 0xFFFFFFFFu
-
-/* A ref names one primitive: its kind in the top 4 bits, its index within that kind in the low 28. */
-#define RT_REF_TRIANGLE 0x00000000u
-#define RT_REF_SPHERE 0x10000000u
-#define RT_REF_POLYGON 0x20000000u
-#define RT_REF_INSTANCE 0x30000000u
-#define RT_REF_KIND(r) ((r)&0xF0000000u)
-#define RT_REF_INDEX(r) ((r)&0x0FFFFFFFu)
-#define RT_REF_INDEX_MAX 0x0FFFFFFFu
-
-/* One primitive as the leaf tests read it, packed by the host in the leaf order that the builder chose. 48 B.
- *   triangle   a, b, c = corners in the group's space
- *   sphere     a = centre, b[0] = radius
- *   polygon    a = unit normal, b = a point of its plane; corners in rt_polygon
- *   instance   a, b = lower and upper bounds in the world */
-typedef struct rt_packed_prim {
-    rt_f32 a[3];
-    rt_u32 ref;
-    rt_f32 b[3];
-    rt_u32 material;
-    rt_f32 c[3];
-    rt_u32 prim; /* number shown as `prim`; within an instance it counts from rt_instance.first_prim */
-} rt_packed_prim;
 
 /* Corners of a triangle as indices into the vertex attributes (normals, uvs). 12 B. Read by shading only. */
 typedef struct rt_triangle {
@@ -80,10 +48,7 @@ typedef struct rt_material {
     rt_u32 flags;       /* RT_MATERIAL_* */
     rt_u32 pad;
 } rt_material;
-#define RT_MATERIAL_CHECKER 1u /* a unit checkerboard of color and a third of it, in world x and z; for planes */
 
-#define RT_LIGHT_POINT 0u
-#define RT_LIGHT_DIRECTIONAL 1u
 /* A light without falloff, as in the thesis. 32 B. */
 typedef struct rt_light {
     rt_f32 position[3]; /* point: position, world. directional: unit vector towards the light */
@@ -118,6 +83,7 @@ typedef struct rt_frame {
     rt_u32 packet_w, packet_h; /* pixels of one work-item */
     rt_f32 min_weight; /* rays of a smaller weight are not spawned */
     rt_u32 shadows;    /* 0: no shadow rays */
+    rt_u32 aov;        /* what aov.cl writes: RT_AOV_T, ... */
     rt_u32 root; /* root of group 0's tree */
     rt_u32 block_w, block_w_log2; /* width of a block in pixels; a block has RT_LANES pixels, traced together */
     rt_u32 blocks_x, blocks_y;    /* blocks that cover a packet */
@@ -168,10 +134,4 @@ typedef struct rt_ray_record {
 #define RT_FATE_TOO_LIGHT 2u /* below min_weight */
 #define RT_FATE_TOO_DEEP 3u  /* beyond the last generation */
 #define RT_FATE_UNASKED 4u   /* shadows are off */
-
-/* A hash of the sizes of these structs. Host and plugin must have been compiled with the same version of this file. */
-#define RT_TYPES_DIGEST                                                                                                          \
-    ((rt_u32)(sizeof(rt_packed_prim) + 131u * sizeof(rt_triangle) + 17161u * sizeof(rt_polygon) + 2248091u * sizeof(rt_plane) +         \
-              294499921u * sizeof(rt_instance) + 31u * sizeof(rt_material) + 961u * sizeof(rt_light) +                           \
-              29791u * sizeof(rt_texture) + 923521u * sizeof(rt_frame) + 28629151u * sizeof(rt_hit)))
 #endif

@@ -1,13 +1,16 @@
 # Installs everything besides the program and the plugins: the SDK, its pages, and the package for find_package(clarity), which
-# provides the target clarity::sdk, clarity_add_plugin() and clarity_embed(). No file contains the prefix, so the tree may be moved.
+# provides the targets clarity::sdk and clarity::bvh, clarity_add_plugin() and clarity_embed(). No file contains the prefix, so the
+# tree may be moved.
 include(CMakePackageConfigHelpers)
 
 set_target_properties(clarity_sdk PROPERTIES EXPORT_NAME sdk)
 target_include_directories(clarity_sdk INTERFACE $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/clarity>)
-install(TARGETS clarity_sdk EXPORT clarityTargets)
-install(FILES host/sdk/rt_plugin.h host/sdk/rt_plugin.hpp cl/rt_types.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
+set_target_properties(clarity_bvh PROPERTIES EXPORT_NAME bvh)
+install(TARGETS clarity_sdk clarity_bvh EXPORT clarityTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT sdk)
+install(DIRECTORY host/sdk/clarity_bvh DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk FILES_MATCHING PATTERN "*.hpp")
+install(FILES host/sdk/rt_plugin.h host/sdk/rt_digest.h host/sdk/rt_plugin.hpp cl/rt_shared.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/clarity COMPONENT sdk)
 install(DIRECTORY host/sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
-install(FILES docs/plugins.md cl/CONTRACT.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk OPTIONAL)
+install(FILES docs/plugins.md docs/clarity_bvh.md cl/CONTRACT.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk OPTIONAL)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/clarity)
 install(EXPORT clarityTargets NAMESPACE clarity:: DESTINATION ${package} COMPONENT sdk)
@@ -16,7 +19,6 @@ string(REGEX REPLACE "^#define RT_ABI_VERSION ([0-9]+)u$" "\\1" CLARITY_ABI_VERS
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/clarityConfig.cmake.in ${PROJECT_BINARY_DIR}/package/clarityConfig.cmake
   INSTALL_DESTINATION ${package} NO_CHECK_REQUIRED_COMPONENTS_MACRO)
 # Plugins depend on the ABI version, which the host checks, and not on the program's version.
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/clarityConfigVersion.cmake COMPATIBILITY SameMajorVersion
-  ARCH_INDEPENDENT)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/clarityConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/package/clarityConfig.cmake ${PROJECT_BINARY_DIR}/package/clarityConfigVersion.cmake
   cmake/ClarityPlugin.cmake cmake/ClarityEmbed.cmake cmake/embed_text.cmake cmake/rt_plugin.map DESTINATION ${package} COMPONENT sdk)

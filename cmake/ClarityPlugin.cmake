@@ -2,6 +2,7 @@
 #
 # Compiles every .cpp and .c file of the folder. For an accel plugin, ID.cl and ID_types.h are embedded, with the parts
 # that they include, ID_*.cl and ID_*.h. The plugin includes "ID.inc", which has rows of {path, text}. The library is written to lib/clarity/plugins/{importers,accel} beside bin/.
+# LIBRARIES clarity::bvh links the builders' library (docs/clarity_bvh.md).
 # Outside of clarity's tree (with find_package(clarity)) that folder is in the plugin's build folder: add
 # build/lib/clarity/plugins to CLARITY_PLUGIN_PATH, or run `cmake --install build --prefix ~/.local`, which installs the plugin
 # where clarity looks for it.
@@ -39,11 +40,11 @@ function(clarity_add_plugin kind id)
   endif()
 endfunction()
 
-# clarity_quiet_vectors(TARGET...): for code that passes vectors and 32-byte records by value. GCC otherwise notes at each of them
-# that versions before 4.6 passed them differently, which does not matter here.
+# clarity_quiet_vectors(TARGET...): for code that passes vectors and 32-byte records by value, and whatever includes its headers.
+# GCC otherwise notes at each of them that versions before 4.6 passed them differently, which does not matter here.
 function(clarity_quiet_vectors)
   foreach(target IN LISTS ARGN)
-    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
+    target_compile_options(${target} PUBLIC $<$<CXX_COMPILER_ID:GNU>:-Wno-psabi>)
   endforeach()
 endfunction()
 

@@ -1,42 +1,38 @@
-/* aov.cl -- one quantity of what the camera rays hit, without shading. RT_AOV selects it when the program is built.
+/* aov.cl -- one quantity of what the camera rays hit, without shading: frame->aov.
  *
  * A quantity is a row of the host's table (host/render/settings/aov.cpp), from which RT_AOV_T, RT_AOV_PRIM and the like are defined.
- * out: 1 or 3 floats a pixel as the table says, top row first. prim and instance are ints in the bits of floats. Steps, leaf tests
- * and lanes are counted for the packet that the pixel's ray belongs to. */
+ * With RT_COUNT_STEPS the program has those that are counted, else the others. out: 1 or 3 floats a pixel as the table says, top row
+ * first. prim and instance are ints in the bits of floats. Steps, leaf tests and lanes are counted for the packet that the pixel's
+ * ray belongs to. */
+#if RT_AOV_COUNT != 10
+#error "rt_store_aov() has no branch for the new AOV: add one, and count it here"
+#endif
 
 RT_INLINE void rt_store_aov(const rt_ctx *ctx, const constant rt_frame *frame, vint x, vint y, const rt_rays *ray, const rt_hits *hit,
                            uint bits, global float *out)
 {
     const vint at = y * rt_vint((int)frame->width) + x;
-#if RT_AOV == RT_AOV_T
-    RT_FOR_LANES_STORE(out, at, hit->t, bits)
-#elif RT_AOV == RT_AOV_STEPS
-    RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit->steps), bits)
-#elif RT_AOV == RT_AOV_LEAF_TESTS
-    RT_FOR_LANES_STORE(out, at, rt_vfloat((float)hit->leaf_tests), bits)
-#elif RT_AOV == RT_AOV_LANES
+#ifdef RT_COUNT_STEPS
     /* A packet that visits no node has no idle lane. */
     const float visited = (float)(hit->steps * popcount(bits));
-    RT_FOR_LANES_STORE(out, at, rt_vfloat(hit->steps != 0u ? (float)hit->lane_steps / visited : 1.0f), bits)
+    const float lanes = hit->steps != 0u ? (float)hit->lane_steps / visited : 1.0f;
+    const float value = frame->aov == RT_AOV_STEPS ? (float)hit->steps : frame->aov == RT_AOV_LEAF_TESTS ? (float)hit->leaf_tests : lanes;
+    RT_FOR_LANES_STORE(out, at, rt_vfloat(value), bits)
 #else
+    if (frame->aov == RT_AOV_T) {
+        RT_FOR_LANES_STORE(out, at, hit->t, bits)
+        return;
+    }
     const rt_surface s = rt_resolve(ctx, ray, hit, bits);
-#if RT_AOV == RT_AOV_PRIM
-    RT_FOR_LANES_STORE(out, at, rt_as_vfloat(s.prim), bits)
-#elif RT_AOV == RT_AOV_INSTANCE
-    RT_FOR_LANES_STORE(out, at, rt_as_vfloat(hit->instance), bits)
-#elif RT_AOV == RT_AOV_NORMAL
+    if (frame->aov == RT_AOV_PRIM || frame->aov == RT_AOV_INSTANCE) {
+        RT_FOR_LANES_STORE(out, at, rt_as_vfloat(frame->aov == RT_AOV_PRIM ? s.prim : hit->instance), bits)
+        return;
+    }
+    const bool normal = frame->aov == RT_AOV_NORMAL;
     const vint at3 = at * 3;
-    RT_FOR_LANES_STORE(out, at3, s.geometric.x, bits)
-    RT_FOR_LANES_STORE(out, at3 + 1, s.geometric.y, bits)
-    RT_FOR_LANES_STORE(out, at3 + 2, s.geometric.z, bits)
-#elif RT_AOV == RT_AOV_UV
-    const vint at3 = at * 3;
-    RT_FOR_LANES_STORE(out, at3, s.tex_u, bits)
-    RT_FOR_LANES_STORE(out, at3 + 1, s.tex_v, bits)
-    RT_FOR_LANES_STORE(out, at3 + 2, rt_vfloat(0.0f), bits)
-#else
-#error "rt_store_aov() has no branch for this AOV: add one"
-#endif
+    RT_FOR_LANES_STORE(out, at3, normal ? s.geometric.x : s.tex_u, bits)
+    RT_FOR_LANES_STORE(out, at3 + 1, normal ? s.geometric.y : s.tex_v, bits)
+    RT_FOR_LANES_STORE(out, at3 + 2, normal ? s.geometric.z : rt_vfloat(0.0f), bits)
 #endif
 }
 

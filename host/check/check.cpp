@@ -109,9 +109,9 @@ class CheckSupervisor : public worker::Supervisor {
 // All checks of one library. Phases run side by side, each in workers of its own.
 class Run {
  public:
-    Run(const PluginRecord& record, const CheckOptions& options, Progress& progress,
+    Run(const PluginRecord& record, const std::string& layout, const CheckOptions& options, Progress& progress,
         const std::function<void(const CheckResult&)>& on_result)
-        : record_(record), options_(options), progress_(progress), on_result_(on_result) {}
+        : record_(record), layout_(layout), options_(options), progress_(progress), on_result_(on_result) {}
 
     bool all() {
         std::exception_ptr thrown;
@@ -172,6 +172,7 @@ class Run {
                                                   "--phase",   name,
                                                   "--quick",   options_.quick ? "1" : "0",
                                                   "--parent",  std::to_string(getpid())};
+            if (!layout_.empty()) arguments.insert(arguments.end(), {"--layout", layout_});
             if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
             if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
             for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
@@ -195,6 +196,7 @@ class Run {
     }
 
     const PluginRecord& record_;
+    const std::string& layout_;
     const CheckOptions& options_;
     Progress& progress_;
     const std::function<void(const CheckResult&)>& on_result_;
@@ -206,14 +208,14 @@ class Run {
 
 }  // namespace
 
-bool check_plugin_library(const PluginRecord& record, const CheckOptions& options, Progress& progress,
-                          const std::function<void(const CheckResult&)>& on_result) {
+bool check_plugin_library(const PluginRecord& record, const std::string& layout, const CheckOptions& options,
+                          Progress& progress, const std::function<void(const CheckResult&)>& on_result) {
     if (std::getenv(worker::kWorkerVariable))
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
     if (record.plugin->importer)
         throw Error(Exit::usage, std::string(record.plugin->id) + " is an importer: only structures can be checked yet");
-    return Run(record, options, progress, on_result).all();
+    return Run(record, layout, options, progress, on_result).all();
 }
 
 }  // namespace clarity::check

@@ -24,10 +24,11 @@ struct CheckResult {
     double seconds = 0;
 };
 
-// Checks one library, whose plugin the host has accepted. on_result is called from several threads, one at a time, in the order
+// Checks one library, whose plugin the host has accepted. layout: the library that packs and traces its topology; empty: it has
+// none. on_result is called from several threads, one at a time, in the order
 // in which checks end. Returns whether all passed. Throws Cancelled, and Error if no worker can be started or `only` names
 // nothing.
-bool check_plugin_library(const PluginRecord& record, const CheckOptions& options, Progress& progress,
+bool check_plugin_library(const PluginRecord& record, const std::string& layout, const CheckOptions& options, Progress& progress,
                           const std::function<void(const CheckResult&)>& on_result);
 
 // Main function of the worker (`clarity check-worker ...`, which people do not call).

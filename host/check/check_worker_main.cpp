@@ -30,7 +30,7 @@ constexpr uint64_t kBuilderBytes = uint64_t(3) << 30;  // for scenes of at most 
 constexpr size_t kMostText = 3000;
 
 struct Arguments {
-    std::string library, phase, device, report;
+    std::string library, layout, phase, device, report;  // layout: the library that packs a topology
     std::vector<std::string> only;
     std::set<std::string> done;  // checks that an earlier worker ran
     std::vector<int> lanes;
@@ -38,13 +38,16 @@ struct Arguments {
     long parent = 0;
 };
 
-// check-worker --library FILE --phase builds|hits [--quick 1] [--device D] [--report DIR] [--lanes N]... [--only NAME]...
+// check-worker --library FILE [--layout FILE] --phase builds|hits [--quick 1] [--device D] [--report DIR] [--lanes N]...
+// [--only NAME]...
 // [--done NAME]...
 bool parse(int argc, char** argv, Arguments& arguments) {
     for (int i = 2; i + 1 < argc; i += 2) {
         const std::string key = argv[i], value = argv[i + 1];
         if (key == "--library") {
             arguments.library = value;
+        } else if (key == "--layout") {
+            arguments.layout = value;
         } else if (key == "--phase") {
             arguments.phase = value;
         } else if (key == "--quick") {
@@ -109,7 +112,7 @@ void run(const Check& check) {
                          {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
-std::vector<Check> checks_for(const rt_plugin& plugin, const Arguments& arguments) {
+std::vector<Check> checks_for(const rt_plugin& plugin, const rt_plugin* layout, const Arguments& arguments) {
     if (arguments.phase == "builds") return build_checks(plugin, arguments.quick);
     HitsOptions options;
     options.quick = arguments.quick;
@@ -117,7 +120,7 @@ std::vector<Check> checks_for(const rt_plugin& plugin, const Arguments& argument
     if (!arguments.lanes.empty()) options.lanes = arguments.lanes;
     const std::string device = arguments.device;
     return hits_checks(
-        plugin, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
+        plugin, layout, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
 }
 
 int run_all(const Arguments& arguments) {
@@ -125,6 +128,12 @@ int run_all(const Arguments& arguments) {
     const PluginRecord record = load_plugin(arguments.library);
     if (!record.plugin) {
         worker::send_message(kChannelFd, {MessageKind::failed, 0, 0, record.path + ": " + record.why});
+        return 1;
+    }
+    PluginRecord layout;
+    if (!arguments.layout.empty()) layout = load_plugin(arguments.layout);
+    if (!arguments.layout.empty() && !layout.plugin) {
+        worker::send_message(kChannelFd, {MessageKind::failed, 0, 0, layout.path + ": " + layout.why});
         return 1;
     }
     worker::WorkerLimits limits;
@@ -137,7 +146,7 @@ int run_all(const Arguments& arguments) {
     for (const std::string& note :
          worker::enter_sandbox(builds ? worker::WorkerKind::builder : worker::WorkerKind::driver, {self}, {}, limits))
         log(LogLevel::debug, "check worker: " + note);
-    for (const Check& check : checks_for(*record.plugin, arguments))
+    for (const Check& check : checks_for(*record.plugin, layout.plugin, arguments))
         if (wanted(check, arguments)) run(check);
     worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
     return 0;

@@ -42,6 +42,17 @@ std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std:
     return found;
 }
 
+// The library of the structure that packs and traces a topology; empty: the plugin is no topology.
+std::string layout_of(const PluginRegistry& plugins, const PluginRecord& record) {
+    if (!record.plugin->accel || !record.plugin->accel->layout) return {};
+    const std::string id = record.plugin->accel->layout;
+    for (const PluginRecord& other : plugins.records())
+        if (other.plugin && !other.shadowed && id == other.plugin->id && other.plugin->accel && other.plugin->accel->pack)
+            return other.path;
+    throw Error(Exit::failed, record.path + ": its layout '" + id +
+                                  "' was not found, or packs no trees; `clarity plugins` lists the structures that do");
+}
+
 const char* kind_text(Outcome::Kind kind) {
     return kind == Outcome::Kind::passed ? "ok" : kind == Outcome::Kind::failed ? "FAILED" : "skipped";
 }
@@ -80,20 +91,21 @@ int run_check(const PluginRegistry& plugins, const CheckCommand& command) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
     bool all = true;
     for (const PluginRecord& record : libraries)
-        all &= check::check_plugin_library(record, command.options, progress, [&](const CheckResult& result) {
-            if (!command.json) return print(result, command);
-            list.push_back({{"plugin", result.plugin},
-                            {"library", record.path},
-                            {"check", result.name},
-                            {"status", result.outcome.kind == Outcome::Kind::passed   ? "passed"
-                                       : result.outcome.kind == Outcome::Kind::failed ? "failed"
-                                                                                      : "skipped"},
-                            {"tried", result.tried},
-                            {"found", result.outcome.found},
-                            {"repeat", repeat_text(result, command)},
-                            {"report", result.outcome.repeat},
-                            {"seconds", result.seconds}});
-        });
+        all &= check::check_plugin_library(
+            record, layout_of(plugins, record), command.options, progress, [&](const CheckResult& result) {
+                if (!command.json) return print(result, command);
+                list.push_back({{"plugin", result.plugin},
+                                {"library", record.path},
+                                {"check", result.name},
+                                {"status", result.outcome.kind == Outcome::Kind::passed   ? "passed"
+                                           : result.outcome.kind == Outcome::Kind::failed ? "failed"
+                                                                                          : "skipped"},
+                                {"tried", result.tried},
+                                {"found", result.outcome.found},
+                                {"repeat", repeat_text(result, command)},
+                                {"report", result.outcome.repeat},
+                                {"seconds", result.seconds}});
+            });
     if (command.json) std::printf("%s\n", list.dump(2, ' ', false, nlohmann::json::error_handler_t::replace).c_str());
     return static_cast<int>(all ? Exit::done : Exit::failed);
 }

@@ -200,7 +200,7 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
         ->type_name("SECONDS")
         ->check(CLI::Range(1.0, 1e6));
     single(app.add_option("--max-spread", bench.max_spread,
-                          "Refuse rows whose middle half of repetitions spreads over more than this share of the median"))
+                          "Refuse a row if the middle half of its repetitions spreads over more than this share of the median"))
         ->type_name("SHARE")
         ->check(CLI::Range(0.0, 10.0))
         ->capture_default_str();

@@ -83,11 +83,20 @@ Json record_json(const PluginRecord& record) {
         for (const std::string& name : capability_names(*plugin.accel)) json["capabilities"].push_back(name);
         json["merit"] = {{"cpu", plugin.accel->merit_cpu}, {"gpu", plugin.accel->merit_gpu}};
         json["ray_cost"] = ray_cost_name(*plugin.accel);
+        if (plugin.accel->layout) {
+            json["layout"] = plugin.accel->layout;
+        } else {
+            json["kernel_contract"] = plugin.accel->kernel_contract;
+            json["packs_topologies"] = plugin.accel->pack != nullptr;
+        }
     }
     if (plugin.importer) {
         json["extensions"] = Json::array();
         for (const char* const* e = plugin.importer->extensions; *e; ++e) json["extensions"].push_back(*e);
     }
+    json["abi_extensions"] = Json::array();
+    for (const rt_extension* e = plugin.extensions; e && e->name; ++e)
+        json["abi_extensions"].push_back({{"name", e->name}, {"version", e->version}});
     json["parameters"] = Json::array();
     for (rt_u32 i = 0; i < plugin.param_count; ++i) json["parameters"].push_back(param_json(plugin.params[i]));
     return json;
@@ -118,6 +127,8 @@ void print_accel(const rt_accel& accel) {
     std::string can;
     for (const std::string& name : capability_names(accel)) can += (can.empty() ? "" : ", ") + name;
     if (!can.empty()) print_text("%scapabilities: %s\n", kIndent, can.c_str());
+    if (accel.layout) print_text("%sbuilds a tree, which %s packs and traces\n", kIndent, accel.layout);
+    if (accel.pack) print_text("%spacks trees that other plugins build\n", kIndent);
     print_text("%smerit: %s, %s; a ray's cost is %s\n", kIndent, merit_text(accel.merit_cpu, "CPU").c_str(),
                merit_text(accel.merit_gpu, "GPU").c_str(), ray_cost_name(accel));
 }
@@ -134,6 +145,8 @@ void print_plugin(const PluginRecord& record) {
         for (const char* const* e = plugin.importer->extensions; *e; ++e) print_text(" .%s", *e);
         print_text("\n");
     }
+    for (const rt_extension* e = plugin.extensions; e && e->name; ++e)
+        print_text("%sextension: %s, version %u\n", kIndent, e->name, unsigned(e->version));
     const ParameterValues defaults = default_parameters(plugin);
     for (rt_u32 i = 0; i < plugin.param_count; ++i) {
         const rt_param& param = plugin.params[i];

@@ -20,7 +20,7 @@ struct RenderStats {
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, overflowed = 0;  // of one frame
 };
 
-// The statistics as the JSON of DESIGN.md section 5; ends in a newline.
+// The statistics as JSON, which ends in a newline. Its keys never change; new ones may come.
 std::string stats_json(const RenderStats& stats);
 // Median of frame_ms; 0 if nothing was timed.
 double median_frame_ms(const RenderStats& stats);

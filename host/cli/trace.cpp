@@ -9,10 +9,10 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/accel/accel_choice.hpp"
 #include "render/queries/query_scene.hpp"
 #include "render/queries/ray_queries.hpp"
 #include "render/queries/ray_text.hpp"
+#include "render/settings/accel_choice.hpp"
 
 namespace clarity {
 namespace {
@@ -44,8 +44,10 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     const rt_plugin& plugin = *plugins.accel(settings.accel);
     progress.stage(std::string("building ") + plugin.id);
     const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
-    const auto accel = std::make_shared<const AccelData>(
-        build_accel(*scene, plugin, params, progress, settings.debug ? BuildPlace::worker : BuildPlace::automatic));
+    const BuildTarget target{&plugins.layout_of(plugin),
+                             device_for_builders(device->info(), static_cast<unsigned>(settings.lanes)),
+                             settings.debug ? BuildPlace::worker : BuildPlace::automatic};
+    const auto accel = std::make_shared<const AccelData>(build_accel(*scene, plugin, params, progress, target));
     const auto prepared = prepare_queries(*device, scene, accel, settings, progress);
     progress.stage("tracing rays");
     std::vector<rt_hit> hits;

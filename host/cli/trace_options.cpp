@@ -7,7 +7,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "import/file_access.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "render/settings/preset.hpp"
 
 namespace clarity {

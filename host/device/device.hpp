@@ -16,6 +16,8 @@ struct DeviceInfo {
     bool cpu = false, gpu = false;
     unsigned compute_units = 0, clock_mhz = 0, float_width = 1;  // float_width: native_vector_width_float
     uint64_t global_bytes = 0, max_allocation_bytes = 0;
+    uint64_t cache_bytes = 0, local_bytes = 0;  // cache that all units share, local memory of a work-group; 0: not known
+    unsigned cache_line_bytes = 0;
     bool pocl = false, nvidia = false;
     cl::Platform cl_platform;
     cl::Device cl_device;

@@ -85,6 +85,9 @@ DeviceInfo describe(const cl::Platform& platform, const cl::Device& device, unsi
     info.float_width = std::max(1u, ask<cl_uint>(device, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT));
     info.global_bytes = ask<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_SIZE);
     info.max_allocation_bytes = ask<cl_ulong>(device, CL_DEVICE_MAX_MEM_ALLOC_SIZE);
+    info.cache_bytes = ask<cl_ulong>(device, CL_DEVICE_GLOBAL_MEM_CACHE_SIZE);
+    info.local_bytes = ask<cl_ulong>(device, CL_DEVICE_LOCAL_MEM_SIZE);
+    info.cache_line_bytes = ask<cl_uint>(device, CL_DEVICE_GLOBAL_MEM_CACHELINE_SIZE);
     info.pocl = says(info.platform, "Portable Computing Language");
     info.nvidia = says(info.vendor, "NVIDIA");
     return info;

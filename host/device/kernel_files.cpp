@@ -159,7 +159,7 @@ std::string kernel_text(const std::string& name) {
     const char* embedded = embedded_text(name);
     std::string text;
     if (!where.kernels.empty() && read_if_present(where.kernels / name, text)) {
-        if (name == "rt_types.h" && embedded)
+        if ((name == "rt_types.h" || name == "rt_shared.h") && embedded)
             require_same(where.kernels / name, text, embedded,
                          "this program was compiled with, so its structs may: build the program again, or set "
                          "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");

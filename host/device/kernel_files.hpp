@@ -22,7 +22,7 @@
 namespace clarity {
 
 // Returns the text of a file; `name` is relative to cl/ ("tracers/iterative.cl"). Throws Error(kernel_build_failed) if there is
-// no such text, or if rt_types.h on disk differs from the program's.
+// no such text, or if rt_types.h or rt_shared.h on disk differ from the program's.
 std::string kernel_text(const std::string& name);
 
 // Returns the text of a plugin's file, with the files that it includes (kernel_includes.hpp). Throws Error(kernel_build_failed)

@@ -10,7 +10,6 @@ namespace {
 constexpr uint64_t kMaxVertices = RT_NONE - 1;
 
 std::string check_description(const rt_mesh& m) {
-    if (m.struct_bytes < sizeof(rt_mesh)) return "struct_bytes of rt_mesh is too small: rebuild the plugin against this SDK";
     const auto bad_stride = [](rt_u32 stride, rt_u32 least) { return stride < least || stride % 4 != 0; };
     if (m.vertex_count > 0) {
         if (!m.positions) return "it has vertices but no positions";

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "import/texture.hpp"
+#include "plugin/abi_struct.hpp"
 
 namespace clarity::import {
 namespace {
@@ -32,8 +33,28 @@ std::string clean_name(const char* name) {
     return text;
 }
 
-std::string too_small(const char* what) {
-    return std::string("struct_bytes of ") + what + " is too small: rebuild the plugin against this SDK";
+// Copies a struct of the plugin into one of this host's size. Throws Error(import_failed) if it is too small; the sink's
+// function then fails with that reason.
+template <class T>
+T taken(const T* from, const char* what) {
+    const std::string why = from ? check_bytes<T>(what, from->struct_bytes) : std::string(what) + " is NULL";
+    if (!why.empty()) throw Error(Exit::import_failed, why);
+    return copied<T>(from, from->struct_bytes);
+}
+
+// Converts a description to the kernels' struct. The texture is still an id of the sink.
+rt_material kernel_material(const rt_material_desc& d) {
+    rt_material m{};
+    std::copy_n(d.color, 3, m.color);
+    std::copy_n(d.emission, 3, m.emission);
+    std::copy_n(d.specular, 3, m.specular);
+    m.reflect = d.reflect;
+    m.refract = d.refract;
+    m.shininess = d.shininess;
+    m.ior = d.ior;
+    m.texture = d.texture;
+    m.flags = d.flags & RT_MATERIAL_CHECKER;
+    return m;
 }
 
 // Clamps values to what the shading can handle. Returns false if a value was not a number; it is replaced by the default.
@@ -55,8 +76,6 @@ bool make_sound(rt_material& m) {
     m.refract = std::clamp(m.refract, 0.f, 1.f);
     m.shininess = std::max(m.shininess, 0.f);
     if (!(m.ior > 0)) m.ior = usual.ior;
-    m.flags &= RT_MATERIAL_CHECKER;
-    m.pad = 0;
     return good;
 }
 
@@ -102,14 +121,16 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     sink_.struct_bytes = sizeof(rt_scene_sink);
     sink_.ctx = this;
     sink_.texture = [](void* ctx, const rt_texture_desc* d) {
-        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.texture(*d); });
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.texture(taken(d, "rt_texture_desc")); });
     };
     sink_.material = [](void* ctx, const rt_material_desc* d) {
-        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.material(*d); });
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.material(taken(d, "rt_material_desc")); });
     };
-    sink_.mesh = [](void* ctx, const rt_mesh* d) { return guarded(ctx, kFailed, [&](SceneSink& s) { return s.mesh(*d); }); };
+    sink_.mesh = [](void* ctx, const rt_mesh* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.mesh(taken(d, "rt_mesh")); });
+    };
     sink_.instance = [](void* ctx, const rt_instance_desc* d) {
-        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.instance(*d); });
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.instance(taken(d, "rt_instance_desc")); });
     };
     sink_.sphere = [](void* ctx, const float* center, float radius, rt_u32 material) {
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.sphere(center, radius, material); });
@@ -121,17 +142,19 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.polygon(corners, count, material); });
     };
     sink_.light = [](void* ctx, const rt_light_desc* d) {
-        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.light(*d); });
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.light(taken(d, "rt_light_desc")); });
     };
     sink_.camera = [](void* ctx, const rt_camera* d) {
-        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.camera(*d); });
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.camera(taken(d, "rt_camera")); });
     };
-    sink_.info = [](void* ctx, const rt_scene_info* d) { guarded(ctx, 0, [&](SceneSink& s) { return s.info(*d), 0; }); };
+    sink_.info = [](void* ctx, const rt_scene_info* d) {
+        guarded(ctx, 0, [&](SceneSink& s) { return s.info(taken(d, "rt_scene_info")), 0; });
+    };
     sink_.warn = [](void* ctx, const char* text) {
         guarded(ctx, 0, [&](SceneSink& s) { return s.builder_.warn(s.path_, clean_name(text)), 0; });
     };
     sink_.load = [](void* ctx, const rt_load* d) {
-        return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.load(*d); });
+        return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.load(taken(d, "rt_load")); });
     };
 }
 
@@ -151,7 +174,6 @@ bool SceneSink::scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32
 }
 
 rt_u32 SceneSink::texture(const rt_texture_desc& d) {
-    if (d.struct_bytes < sizeof d) return fail(too_small("rt_texture_desc"));
     if (!d.path && !d.bytes) return fail("a texture has neither a path nor bytes");
     Scene& scene = builder_.scene();
     rt_u32 index = RT_NONE;
@@ -174,14 +196,13 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
 }
 
 rt_u32 SceneSink::material(const rt_material_desc& d) {
-    if (d.struct_bytes < sizeof d) return fail(too_small("rt_material_desc"));
-    Material material = {clean_name(d.name), d.values};
-    if (d.values.texture != RT_NONE) {
-        if (d.values.texture >= textures_.size()) {
-            return fail("material '" + material.name + "': texture id " + std::to_string(d.values.texture) + " of " +
+    Material material = {clean_name(d.name), kernel_material(d)};
+    if (d.texture != RT_NONE) {
+        if (d.texture >= textures_.size()) {
+            return fail("material '" + material.name + "': texture id " + std::to_string(d.texture) + " of " +
                         std::to_string(textures_.size()) + " is unknown: pass an id that the sink returned");
         }
-        material.values.texture = textures_[d.values.texture];
+        material.values.texture = textures_[d.texture];
     }
     if (!make_sound(material.values)) {
         builder_.warn(path_,
@@ -196,14 +217,13 @@ rt_u32 SceneSink::material(const rt_material_desc& d) {
 rt_u32 SceneSink::mesh(const rt_mesh& d) {
     Scene& scene = builder_.scene();
     const std::string why = copy_mesh(d, materials_, scene, builder_.triangulator(), faces_);
-    if (!why.empty()) return fail("mesh '" + clean_name(d.struct_bytes >= sizeof d ? d.name : nullptr) + "': " + why);
+    if (!why.empty()) return fail("mesh '" + clean_name(d.name) + "': " + why);
     scene.meshes.back().name = clean_name(d.name);
     meshes_.push_back(static_cast<rt_u32>(scene.meshes.size() - 1));
     return static_cast<rt_u32>(meshes_.size() - 1);
 }
 
 rt_u32 SceneSink::instance(const rt_instance_desc& d) {
-    if (d.struct_bytes < sizeof d) return fail(too_small("rt_instance_desc"));
     Instance instance;
     instance.name = clean_name(d.name);
     if (d.mesh >= meshes_.size()) {
@@ -263,12 +283,16 @@ rt_u32 SceneSink::polygon(const float* corners, rt_u32 corner_count, rt_u32 mate
 }
 
 rt_u32 SceneSink::light(const rt_light_desc& d) {
-    if (d.struct_bytes < sizeof d) return fail(too_small("rt_light_desc"));
-    Light light = {clean_name(d.name), d.values};
+    Light light;
+    light.name = clean_name(d.name);
     rt_light& values = light.values;
-    if (values.kind != RT_LIGHT_POINT && values.kind != RT_LIGHT_DIRECTIONAL) {
-        return fail("light '" + light.name + "': kind " + std::to_string(values.kind) + " is unknown");
+    values.kind = d.kind;
+    if (d.kind != RT_LIGHT_POINT && d.kind != RT_LIGHT_DIRECTIONAL) {
+        return fail("light '" + light.name + "': kind " + std::to_string(d.kind) + " is unknown");
     }
+    std::copy_n(d.color, 3, values.color);
+    // The kernels' struct has the direction towards the light.
+    for (int i = 0; i < 3; ++i) values.position[i] = d.kind == RT_LIGHT_POINT ? d.position[i] : -d.direction[i];
     const rt_u32 id = static_cast<rt_u32>(content_.lights.size() + lost_views_);
     bool good = usable(values.position) && usable(values.color);
     if (good && values.kind == RT_LIGHT_DIRECTIONAL) {
@@ -285,7 +309,6 @@ rt_u32 SceneSink::light(const rt_light_desc& d) {
 }
 
 rt_u32 SceneSink::camera(const rt_camera& d) {
-    if (d.struct_bytes < sizeof d) return fail(too_small("rt_camera"));
     Camera camera;
     camera.name = clean_name(d.name);
     std::copy(d.eye, d.eye + 3, camera.eye.begin());
@@ -302,16 +325,12 @@ rt_u32 SceneSink::camera(const rt_camera& d) {
 }
 
 void SceneSink::info(const rt_scene_info& d) {
-    if (d.struct_bytes < sizeof d) {
-        fail(too_small("rt_scene_info"));
-        return;
-    }
     builder_.set_info(d);
 }
 
 int32_t SceneSink::load(const rt_load& d) {
-    if (d.struct_bytes < sizeof d || !d.path) {
-        fail(d.path ? too_small("rt_load") : "a load has no path");
+    if (!d.path) {
+        fail("a load has no path");
         return RT_FAILED;
     }
     Placement placement;

@@ -19,7 +19,7 @@ int32_t host_fail(void* ctx, const char* why) {
 
 }  // namespace
 
-HostServices::HostServices(std::string who, Progress& progress) : who_(std::move(who)), progress_(progress) {
+HostServices::HostServices(std::string name, Progress& progress) : plugin_name_(std::move(name)), progress_(progress) {
     host_.struct_bytes = sizeof(rt_host);
     host_.ctx = this;
     host_.fail = host_fail;
@@ -30,10 +30,10 @@ HostServices::HostServices(std::string who, Progress& progress) : who_(std::move
             const LogLevel known = level <= RT_LOG_DEBUG  ? LogLevel::debug
                                    : level == RT_LOG_INFO ? LogLevel::info
                                                           : LogLevel::warning;
-            const std::string& who = static_cast<HostServices*>(ctx)->who_;
+            const std::string& name = static_cast<HostServices*>(ctx)->plugin_name_;
             const std::string said = text ? text : "";
             // "main.scene:3:9: ..." contains the file's name already.
-            log(known, said.compare(0, who.size() + 1, who + ":") == 0 ? said : who + ": " + said);
+            log(known, said.compare(0, name.size() + 1, name + ":") == 0 ? said : name + ": " + said);
         } catch (...) {
         }
     };
@@ -82,7 +82,7 @@ std::string HostServices::why() const {
 }
 
 void HostServices::check(int exit_code, const std::function<int32_t()>& call) {
-    const auto error = [&](const std::string& why) { return Error(static_cast<Exit>(exit_code), who_ + ": " + why); };
+    const auto error = [&](const std::string& why) { return Error(static_cast<Exit>(exit_code), plugin_name_ + ": " + why); };
     int32_t status = RT_FAILED;
     std::string thrown;
     try {
@@ -109,7 +109,7 @@ void HostServices::check(int exit_code, const std::function<int32_t()>& call) {
         case RT_FAILED:
             throw error("failed without saying why; the plugin should call host->fail");
         case RT_CANCELLED:
-            throw error("said it was cancelled, but nobody had cancelled it; a bug of the plugin");
+            throw error("returned RT_CANCELLED, but the host had not asked it to stop; a bug of the plugin");
         default:
             throw error("returned " + std::to_string(status) + ", which is no status; a bug of the plugin");
     }

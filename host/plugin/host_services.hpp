@@ -14,8 +14,8 @@ namespace clarity {
 // Exists for one call of a plugin.
 class HostServices {
  public:
-    // who: the plugin's name in log lines and error messages, "accel bvh2".
-    HostServices(std::string who, Progress& progress);
+    // name: the plugin's name in log lines and error messages, "accel bvh2".
+    HostServices(std::string name, Progress& progress);
     HostServices(const HostServices&) = delete;
     HostServices& operator=(const HostServices&) = delete;
 
@@ -25,12 +25,12 @@ class HostServices {
     bool failed() const;
     std::string why() const;
 
-    // Calls the plugin. Throws Error(exit_code) "<who>: <why>" if the call returns a failure, throws an exception, or returns
+    // Calls the plugin. Throws Error(exit_code) "<name>: <why>" if the call returns a failure, throws an exception, or returns
     // success after fail(). Throws Cancelled if the plugin returns RT_CANCELLED after progress told it to stop.
     void check(int exit_code, const std::function<int32_t()>& call);
 
  private:
-    std::string who_;
+    std::string plugin_name_;
     Progress& progress_;
     rt_host host_{};
     mutable std::mutex mutex_;

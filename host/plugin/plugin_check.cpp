@@ -6,11 +6,12 @@
 #include <cstring>
 #include <set>
 
+#include "plugin/abi_struct.hpp"
+
 namespace clarity {
 namespace {
 
-// Far more than any plugin needs, and far less than a random word is likely to hold.
-constexpr rt_u32 kMaxParams = 64, kMaxSlots = 16, kMaxChoices = 64, kMaxExtensions = 256, kMaxStructBytes = 4096;
+constexpr rt_u32 kMaxChoices = 64, kMaxFileExtensions = 256, kMaxElementBytes = 4096;
 constexpr size_t kMaxText = 4096;
 
 std::string hex(uint32_t word) {
@@ -44,13 +45,6 @@ bool is_type_name(const char* text) {
         word.clear();
     }
     return true;
-}
-
-std::string check_struct_bytes(const char* what, rt_u32 found, size_t expected) {
-    if (found >= expected && found <= kMaxStructBytes) return {};
-    return std::string(what) + " has struct_bytes " + std::to_string(found) + ", this host expects " +
-           std::to_string(expected) + " or, of a newer SDK, more: write sizeof(" + what +
-           ") there and rebuild it against this SDK";
 }
 
 std::string check_choices(const std::string& who, const rt_param& param) {
@@ -111,8 +105,7 @@ std::string check_merit(const char* which, float merit) {
     return std::string("its ") + which + " is " + text + ", expected a finite number, 0 or more (0: not measured)";
 }
 
-std::string check_accel(const rt_accel& accel) {
-    if (std::string why = check_struct_bytes("rt_accel", accel.struct_bytes, sizeof(rt_accel)); !why.empty()) return why;
+std::string check_slots(const rt_accel& accel) {
     if (accel.slot_count == 0 || accel.slot_count > kMaxSlots)
         return "it declares " + std::to_string(accel.slot_count) + " slots, expected 1 to " + std::to_string(kMaxSlots) +
                " (slot 0 holds the nodes)";
@@ -123,17 +116,52 @@ std::string check_accel(const rt_accel& accel) {
         const std::string who = "slot " + std::to_string(i);
         if (!is_identifier(slot.name)) return who + " has no name, or one that is no identifier";
         if (!names.insert(slot.name).second) return "two slots are named '" + std::string(slot.name) + "'";
-        if (!is_type_name(slot.cl_type)) return who + " ('" + slot.name + "') has no cl_type, or one that is no type's name";
-        if (slot.elem_bytes == 0 || slot.elem_bytes > kMaxStructBytes)
-            return who + " ('" + slot.name + "') has elem_bytes " + std::to_string(slot.elem_bytes) +
-                   ", expected sizeof(its element), 1 to " + std::to_string(kMaxStructBytes);
+        const std::string called = who + " ('" + slot.name + "')";
+        const bool host_only = (slot.flags & RT_SLOT_HOST_ONLY) != 0;
+        if (i == 0 && host_only) return called + " is RT_SLOT_HOST_ONLY, but roots are elements of it: put it behind the nodes";
+        if (!host_only && !is_type_name(slot.cl_type)) return called + " has no cl_type, or one that is no type's name";
+        if (slot.elem_bytes == 0 || slot.elem_bytes > kMaxElementBytes)
+            return called + " has elem_bytes " + std::to_string(slot.elem_bytes) + ", expected sizeof(its element), 1 to " +
+                   std::to_string(kMaxElementBytes);
     }
+    return {};
+}
+
+std::string check_kernels(const rt_accel& accel) {
+    if (accel.kernel_contract != RT_KERNEL_CONTRACT)
+        return "its traversal was written for version " + std::to_string(accel.kernel_contract) +
+               " of the kernel contract, this host offers " + std::to_string(RT_KERNEL_CONTRACT) +
+               (accel.kernel_contract > RT_KERNEL_CONTRACT
+                    ? ": update clarity, or write it for the version that this host offers (CONTRACT.md)"
+                    : ": write RT_KERNEL_CONTRACT into kernel_contract, and see in CONTRACT.md what that version asks");
     if (accel.types.text && !accel.types.name) return "its types file has a text but no name";
     if (std::string why = check_text("the name of its types file", accel.types.name, false); !why.empty()) return why;
     if (std::string why = check_text("the name of its traversal file", accel.traverse.name, true); !why.empty()) return why;
     if (!accel.traverse.text || !*accel.traverse.text)
         return "its traversal has no text: embed <id>.cl (clarity_add_plugin does) and point traverse.text at it";
-    if (!accel.build) return "build is NULL";
+    return {};
+}
+
+// A structure that builds only a topology, for another plugin's layout.
+std::string check_topology(const rt_accel& accel) {
+    const size_t bytes = accel.layout ? strnlen(accel.layout, 64) : 0;
+    if (!is_plugin_id(std::string_view(accel.layout ? accel.layout : "", bytes)))
+        return "it builds a topology, but `layout` names no structure that traces it: write the id of one, as \"bvh2\"";
+    if (!accel.topology) return std::string("its layout is '") + accel.layout + "', but topology is NULL";
+    if (accel.build || accel.pack || accel.levels || accel.slot_count > 0 || accel.traverse.text || accel.types.text)
+        return std::string("its layout is '") + accel.layout +
+               "', so slots, kernels, build, levels and pack are that structure's: leave its own 0";
+    return {};
+}
+
+std::string check_accel(const rt_accel& accel) {
+    if (accel.layout || accel.topology) {
+        if (std::string why = check_topology(accel); !why.empty()) return why;
+    } else {
+        if (std::string why = check_slots(accel); !why.empty()) return why;
+        if (std::string why = check_kernels(accel); !why.empty()) return why;
+        if (!accel.build) return "build is NULL";
+    }
     if (std::string why = check_merit("merit_cpu", accel.merit_cpu); !why.empty()) return why;
     if (std::string why = check_merit("merit_gpu", accel.merit_gpu); !why.empty()) return why;
     if (accel.ray_cost != RT_RAY_COST_LOGARITHMIC && accel.ray_cost != RT_RAY_COST_LINEAR)
@@ -141,12 +169,20 @@ std::string check_accel(const rt_accel& accel) {
     return {};
 }
 
+std::string check_extensions(const rt_plugin& plugin) {
+    for (const rt_extension* e = plugin.extensions; e && e->name; ++e) {
+        if (std::string why = check_text("the name of an extension", e->name, true); !why.empty()) return why;
+        if (e->data_bytes > 0 && !e->data)
+            return std::string("extension '") + e->name + "' has data_bytes " + std::to_string(e->data_bytes) +
+                   ", but its data is NULL";
+    }
+    return {};
+}
+
 std::string check_importer(const rt_importer& importer) {
-    if (std::string why = check_struct_bytes("rt_importer", importer.struct_bytes, sizeof(rt_importer)); !why.empty())
-        return why;
     if (!importer.extensions) return "extensions is NULL";
     rt_u32 count = 0;
-    for (; count <= kMaxExtensions && importer.extensions[count]; ++count) {
+    for (; count <= kMaxFileExtensions && importer.extensions[count]; ++count) {
         const char* extension = importer.extensions[count];
         const size_t bytes = strnlen(extension, kMaxText);
         const bool plain = bytes > 0 && bytes <= 32 && std::all_of(extension, extension + bytes, [](unsigned char c) {
@@ -154,7 +190,7 @@ std::string check_importer(const rt_importer& importer) {
                            });
         if (!plain) return "extension " + std::to_string(count) + " is not plain: lower case, no dot, for example \"obj\"";
     }
-    if (count > kMaxExtensions) return "its extensions have no NULL at the end";
+    if (count > kMaxFileExtensions) return "its extensions have no NULL at the end";
     if (count == 0 && !importer.probe) return "it has neither extensions nor probe, so that no file could be given to it";
     if (!importer.load) return "load is NULL";
     return {};
@@ -182,14 +218,13 @@ std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes) {
     if (head[0] != RT_ABI_VERSION)
         return "ABI version " + std::to_string(head[0]) + ", this host speaks " + std::to_string(RT_ABI_VERSION) +
                (head[0] > RT_ABI_VERSION ? ": update clarity, or rebuild the plugin against this SDK" : rebuild);
-    if (head[1] < sizeof(rt_plugin) || head[1] > kMaxStructBytes)
-        return check_struct_bytes("rt_plugin", head[1], sizeof(rt_plugin));
+    if (std::string why = check_bytes<rt_plugin>("rt_plugin", head[1]); !why.empty()) return why;
     if (object_bytes < head[1])
         return "rt_plugin_v1 says struct_bytes " + std::to_string(head[1]) + ", but the library exports " +
                std::to_string(object_bytes) + " bytes of it: declare it as `const rt_plugin rt_plugin_v1` and rebuild";
     if (head[2] != RT_TYPES_DIGEST)
         return "digest of the shared structs " + hex(head[2]) + ", this host has " + hex(RT_TYPES_DIGEST) +
-               " (its rt_types.h differs from ours)" + rebuild;
+               " (its structs have another layout: packed, of another machine, or of a changed rt_plugin.h)" + rebuild;
     return {};
 }
 
@@ -205,8 +240,11 @@ std::string check_plugin(const rt_plugin& plugin) {
     if (plugin.accel && plugin.importer)
         return "it is both an accel and an importer, expected exactly one: make two libraries of it";
     if (!plugin.accel && !plugin.importer)
-        return "it is neither an accel nor an importer, expected exactly one: set one of the two";
+        return "it is neither an accel nor an importer, expected exactly one: set one of the two; a plugin of another kind "
+               "needs a "
+               "later clarity";
     if (std::string why = check_params(plugin); !why.empty()) return why;
+    if (std::string why = check_extensions(plugin); !why.empty()) return why;
     return plugin.accel ? check_accel(*plugin.accel) : check_importer(*plugin.importer);
 }
 

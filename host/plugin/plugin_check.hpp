@@ -8,6 +8,9 @@
 
 namespace clarity {
 
+// Far more than any plugin needs, and far less than a random word is likely to hold.
+inline constexpr uint32_t kMaxParams = 64, kMaxSlots = 16, kMaxExtensions = 64;
+
 // True for [a-z][a-z0-9_]*, at most 32 bytes.
 bool is_plugin_id(std::string_view text);
 
@@ -20,7 +23,8 @@ bool is_identifier(const char* text);
 // found, what was expected and what to do.
 std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes);
 
-// Checks everything after the head: names, parameters, tables, required functions. Returns an empty text if it is sound.
+// Checks everything after the head: names, parameters, tables, required functions. `plugin` has structs of this host's size
+// (copy_plugin). Returns an empty text if it is sound.
 std::string check_plugin(const rt_plugin& plugin);
 
 }  // namespace clarity

@@ -16,6 +16,7 @@
 #include "base/lower.hpp"
 #include "plugin/elf_file.hpp"
 #include "plugin/plugin_check.hpp"
+#include "plugin/plugin_copy.hpp"
 
 namespace clarity {
 namespace {
@@ -64,8 +65,10 @@ PluginRecord load_checked(const std::string& path) {
     uint32_t head[4];
     std::memcpy(head, plugin, sizeof head);
     record.why = check_plugin_head(head, symbol.bytes);
-    if (record.why.empty()) record.why = check_plugin(*plugin);
-    if (record.why.empty()) record.plugin = plugin;
+    if (!record.why.empty()) return record;
+    const rt_plugin* const copy = copy_plugin(*plugin, record.why);
+    if (copy) record.why = check_plugin(*copy);
+    if (record.why.empty()) record.plugin = copy;
     return record;
 }
 
@@ -224,6 +227,24 @@ bool is_own_library(const std::string& path) {
     return false;
 }
 
+// Refuses topologies without a layout that packs them, so that nobody can choose a structure that cannot be traced.
+void PluginRegistry::link_layouts() {
+    for (PluginRecord& record : records_) {
+        if (!record.plugin || !record.plugin->accel || !record.plugin->accel->layout) continue;
+        const char* const id = record.plugin->accel->layout;
+        const rt_plugin* const layout = accel(id);
+        if (layout && layout->accel->pack) continue;
+        record.plugin = nullptr;
+        record.why = std::string("its layout '") + id + "' " +
+                     (layout ? "has no `pack`, so it cannot take a tree of another plugin: name one of "
+                             : "was not found: load that plugin, or name one of ");
+        std::string packs;
+        for (const rt_plugin* other : accels())
+            if (other->accel->pack) packs += (packs.empty() ? "" : ", ") + std::string(other->id);
+        record.why += packs.empty() ? "those with `pack` (there are none)" : packs;
+    }
+}
+
 PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files) {
     Search search;
     for (const std::string& file : plugin_files) search.add_file(file);
@@ -234,24 +255,26 @@ PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_f
 
     PluginRegistry registry;
     std::set<std::string> taken;
-    for (size_t i = 0; i < search.paths().size(); ++i) {
-        PluginRecord record = load_plugin(search.paths()[i]);
+    for (const std::string& path : search.paths()) {
+        PluginRecord record = load_plugin(path);
+        if (record.plugin) record.shadowed = !taken.insert(key_of(*record.plugin)).second;
+        registry.records_.push_back(std::move(record));
+    }
+    registry.link_layouts();
+    for (size_t i = 0; i < registry.records_.size(); ++i) {
+        const PluginRecord& record = registry.records_[i];
         if (!record.plugin)
             log(i < named ? LogLevel::error : LogLevel::warning, "plugin refused: " + record.path + ": " + record.why);
-        else
-            record.shadowed = !taken.insert(key_of(*record.plugin)).second;
-        registry.records_.push_back(std::move(record));
     }
     return registry;
 }
 
 PluginRegistry PluginRegistry::of(const std::vector<std::string>& plugin_files) {
     PluginRegistry registry;
-    for (const std::string& file : plugin_files) {
-        registry.records_.push_back(load_plugin(file));
-        const PluginRecord& record = registry.records_.back();
+    for (const std::string& file : plugin_files) registry.records_.push_back(load_plugin(file));
+    registry.link_layouts();
+    for (const PluginRecord& record : registry.records_)
         if (!record.plugin) log(LogLevel::warning, "plugin refused: " + record.path + ": " + record.why);
-    }
     return registry;
 }
 
@@ -259,6 +282,11 @@ const rt_plugin* PluginRegistry::accel(std::string_view id) const {
     for (const PluginRecord& record : records_)
         if (record.plugin && !record.shadowed && record.plugin->accel && id == record.plugin->id) return record.plugin;
     return nullptr;
+}
+
+const rt_plugin& PluginRegistry::layout_of(const rt_plugin& plugin) const {
+    const rt_plugin* const layout = plugin.accel->layout ? accel(plugin.accel->layout) : nullptr;
+    return layout ? *layout : plugin;
 }
 
 const rt_plugin* PluginRegistry::importer(std::string_view id) const {

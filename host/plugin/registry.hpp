@@ -11,7 +11,7 @@ namespace clarity {
 
 struct PluginRecord {
     std::string path;
-    const rt_plugin* plugin = nullptr;  // nullptr: the library was refused, `why` tells the reason
+    const rt_plugin* plugin = nullptr;  // a copy of the host's (plugin_copy.hpp); nullptr: refused, `why` tells the reason
     std::string why;                    // "ABI version 2, this host speaks 1: rebuild it against this SDK"
     bool shadowed = false;              // loaded but not used, because an earlier library has the same id
 };
@@ -30,12 +30,16 @@ class PluginRegistry {
     // Return nullptr if there is no usable plugin of that id.
     const rt_plugin* accel(std::string_view id) const;
     const rt_plugin* importer(std::string_view id) const;
+    // The structure whose nodes and kernels a structure uses: for a topology its layout, else the structure itself.
+    const rt_plugin& layout_of(const rt_plugin& accel) const;
     std::vector<const rt_plugin*> accels() const;     // usable ones, sorted by id
     std::vector<const rt_plugin*> importers() const;  // usable ones, sorted by id
     // The importer that is most certain of a file, judged by extension and first bytes; nullptr if no importer accepts it.
     const rt_plugin* importer_for(const std::string& path) const;
 
  private:
+    void link_layouts();
+
     std::vector<PluginRecord> records_;
 };
 

@@ -137,7 +137,12 @@ constexpr rt_param enum_param(const char* key, const char* label, const char* he
 template <class T>
 constexpr rt_slot slot(const char* name, const char* cl_type) {
     static_assert(std::is_trivially_copyable_v<T>, "slots are copied to a device byte by byte");
-    return {name, cl_type, rt_u32(sizeof(T))};
+    return {name, cl_type, rt_u32(sizeof(T)), 0};
+}
+// Describes a slot that stays on the host, for `levels`.
+template <class T>
+constexpr rt_slot host_slot(const char* name) {
+    return {name, nullptr, rt_u32(sizeof(T)), RT_SLOT_HOST_ONLY};
 }
 
 // One of the files that clarity_add_plugin embedded: constexpr rt_cl_file files[] = {
@@ -163,19 +168,45 @@ struct Traits {
 
 using Build = int32_t (*)(const rt_host*, const rt_build_input*, const rt_build_output*);
 using Levels = int32_t (*)(const rt_host*, const rt_built*, rt_u32 group, rt_u32 level, const rt_volume_sink*);
-// The description of a structure. levels: nullptr if it has no bounding volumes to draw.
+using Pack = int32_t (*)(const rt_host*, const rt_build_input*, const rt_topology*, const rt_build_output*);
+using BuildTopology = int32_t (*)(const rt_host*, const rt_build_input*, const rt_topology_output*);
+// The description of a structure. levels: nullptr if it has no bounding volumes to draw. pack: nullptr if it cannot take the
+// tree of another plugin.
 template <size_t N>
 constexpr rt_accel accel(const rt_slot (&slots)[N], const rt_cl_file& types, const rt_cl_file& traverse, Build build,
-                         Levels levels, const Traits& traits) {
+                         Levels levels, const Traits& traits, Pack pack = nullptr) {
     return {sizeof(rt_accel),
+            RT_KERNEL_CONTRACT,
             N,
+            sizeof(rt_slot),
             slots,
             types,
             traverse,
             build,
             levels,
+            pack,
+            nullptr,
             nullptr,
             traits.capabilities,
+            traits.merit_cpu,
+            traits.merit_gpu,
+            traits.ray_cost};
+}
+// The description of a structure that builds only a binary tree. layout: id of the structure that packs and traces it, "bvh2".
+constexpr rt_accel topology(const char* layout, BuildTopology build, const Traits& traits) {
+    return {sizeof(rt_accel),
+            0,
+            0,
+            0,
+            nullptr,
+            {},
+            {},
+            nullptr,
+            nullptr,
+            nullptr,
+            layout,
+            build,
+            0,
             traits.merit_cpu,
             traits.merit_gpu,
             traits.ray_cost};
@@ -206,7 +237,38 @@ inline void stat(const rt_build_output* out, const char* label, double value) {
     out->stat(out->ctx, label, value);
 }
 
+// ---- topologies -------------------------------------------------------------------------------------------------------------
+
+// Allocates `count` zeroed nodes, at most as many as will be needed. Call it once per build. Throws Stopped if there is no
+// memory.
+inline rt_topology_node* nodes(const rt_topology_output* out, uint64_t count) {
+    rt_topology_node* memory = out->nodes(out->ctx, count);
+    if (!memory) throw Stopped();
+    return memory;
+}
+// Allocates the array of `count` refs, which the builder fills in leaf order. Call it once per build. Throws Stopped if there
+// is no memory.
+inline rt_u32* refs(const rt_topology_output* out, uint64_t count) {
+    rt_u32* memory = out->refs(out->ctx, count);
+    if (!memory) throw Stopped();
+    return memory;
+}
+inline void root(const rt_topology_output* out, rt_u32 group, rt_u32 node) {
+    out->root(out->ctx, group, node);
+}
+inline void stat(const rt_topology_output* out, const char* label, double value) {
+    out->stat(out->ctx, label, value);
+}
 // ---- importers --------------------------------------------------------------------------------------------------------------
+
+// A material of the values that the host gives to objects without one.
+constexpr rt_material_desc material(const char* name = nullptr) {
+    return {sizeof(rt_material_desc), 0, name, {0.7f, 0.7f, 0.7f}, 0, {0, 0, 0}, 0, {0.15f, 0.15f, 0.15f}, 32, 1.5f, RT_NONE};
+}
+// A white light at the origin, or one that shines downwards. kind: RT_LIGHT_POINT or RT_LIGHT_DIRECTIONAL.
+constexpr rt_light_desc light(rt_u32 kind, const char* name = nullptr) {
+    return {sizeof(rt_light_desc), kind, name, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0};
+}
 
 // Returns an id that the sink gave, or throws Stopped if it gave none: rt::id(sink->mesh(sink->ctx, &mesh)). Do not use it for
 // textures: a texture may be missing without an error.
@@ -217,23 +279,38 @@ inline rt_u32 id(rt_u32 answer) {
 
 // ---- the description --------------------------------------------------------------------------------------------------------
 
+namespace detail {
+constexpr rt_plugin plugin(const char* id, const char* name, const char* version, const char* reference, const rt_param* params,
+                           rt_u32 param_count, const rt_accel* accel, const rt_importer* importer) {
+    return {RT_ABI_VERSION,   sizeof(rt_plugin),   RT_TYPES_DIGEST, param_count, id,       name,
+            version,          reference,           params,          accel,       importer, nullptr,
+            sizeof(rt_param), sizeof(rt_extension)};
+}
+}  // namespace detail
+
 template <size_t N>
 constexpr rt_plugin accel_plugin(const char* id, const char* name, const char* version, const char* reference,
                                  const rt_param (&params)[N], const rt_accel& accel) {
-    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, N, id, name, version, reference, params, &accel, nullptr};
+    return detail::plugin(id, name, version, reference, params, N, &accel, nullptr);
 }
 constexpr rt_plugin accel_plugin(const char* id, const char* name, const char* version, const char* reference,
                                  const rt_accel& accel) {
-    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, 0, id, name, version, reference, nullptr, &accel, nullptr};
+    return detail::plugin(id, name, version, reference, nullptr, 0, &accel, nullptr);
 }
 template <size_t N>
 constexpr rt_plugin importer_plugin(const char* id, const char* name, const char* version, const char* reference,
                                     const rt_param (&params)[N], const rt_importer& importer) {
-    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, N, id, name, version, reference, params, nullptr, &importer};
+    return detail::plugin(id, name, version, reference, params, N, nullptr, &importer);
 }
 constexpr rt_plugin importer_plugin(const char* id, const char* name, const char* version, const char* reference,
                                     const rt_importer& importer) {
-    return {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, 0, id, name, version, reference, nullptr, nullptr, &importer};
+    return detail::plugin(id, name, version, reference, nullptr, 0, nullptr, &importer);
+}
+// The same plugin with extensions: a static array that ends with {nullptr, 0, 0, nullptr}.
+template <size_t N>
+constexpr rt_plugin with_extensions(rt_plugin plugin, const rt_extension (&extensions)[N]) {
+    plugin.extensions = extensions;
+    return plugin;
 }
 
 }  // namespace rt

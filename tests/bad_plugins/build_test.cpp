@@ -81,7 +81,7 @@ const Breach kBreaches[] = {
     {"fails_silently", "without saying why"},
     {"ok_after_fail", "this builder failed and goes on (and then it reported success"},
     {"odd_status", "returned 77"},
-    {"cancelled_by_nobody", "nobody had cancelled"},
+    {"cancelled_by_nobody", "had not asked it to stop"},
     {"throws", "thrown by the builder"},
     {"throws_no_exception_class", "unknown type"},
     {"throws_in_loop", "thrown in iteration 7"},

@@ -10,6 +10,7 @@
 #include <iterator>
 #include <random>
 
+#include "plugin/abi_struct.hpp"
 #include "plugin/elf_file.hpp"
 #include "plugin/registry.hpp"
 
@@ -77,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"old_abi", {"ABI version 0", "this host speaks 2", "rebuild"}},
         Refusal{"not_constant", {"zero in the file", "constexpr"}},
         Refusal{"aborts_when_loaded", {"ABI version 3", "this host speaks 2"}},
-        Refusal{"wrong_digest", {"digest", "0x", "rt_types.h", "rebuild"}},
-        Refusal{"small_struct", {"rt_plugin has struct_bytes", "expects", "rebuild"}},
+        Refusal{"wrong_digest", {"digest", "0x", "rt_plugin.h", "rebuild"}},
+        Refusal{"small_struct", {"rt_plugin has struct_bytes 80", "ABI version 2 has 88", "rebuild"}},
         Refusal{"large_struct", {"struct_bytes", "exports", "bytes"}},
         Refusal{"no_symbol", {"no symbol rt_plugin_v1", "docs/plugins.md"}},
         Refusal{"hidden_symbol", {"no symbol rt_plugin_v1"}}, Refusal{"function_symbol", {"as a function", "expected data"}},
@@ -86,9 +87,22 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"bad_id", {"'Sound-1'", "[a-z][a-z0-9_]*"}}, Refusal{"null_id", {"id", "[a-z][a-z0-9_]*"}},
         Refusal{"control_characters", {"name holds control characters"}}, Refusal{"both_kinds", {"both", "exactly one"}},
         Refusal{"neither_kind", {"neither", "exactly one"}},
-        Refusal{"small_accel", {"rt_accel has struct_bytes", "expects", "rebuild"}},
-        Refusal{"small_importer", {"rt_importer has struct_bytes 8", "expects"}}, Refusal{"no_build", {"build is NULL"}},
-        Refusal{"no_traversal", {"traversal has no text", "embed"}},
+        Refusal{"small_accel", {"rt_accel has struct_bytes 104", "ABI version 2 has 112", "rebuild"}},
+        Refusal{"small_importer", {"rt_importer has struct_bytes 8", "has 32"}}, Refusal{"no_build", {"build is NULL"}},
+        Refusal{"small_param", {"rt_param has param_bytes 56", "has 64", "rebuild"}},
+        Refusal{"odd_param", {"rt_param has param_bytes 65", "sizeof(rt_param)"}},
+        Refusal{"no_param_size", {"rt_param has param_bytes 0", "sizeof(rt_param)"}},
+        Refusal{"small_slot", {"rt_slot has slot_bytes 16", "has 24"}},
+        Refusal{"small_extension", {"rt_extension has extension_bytes 8", "has 24"}},
+        Refusal{"extension_without_data", {"'refit'", "data_bytes 16", "NULL"}},
+        Refusal{"endless_extensions", {"extensions", "at the end"}},
+        Refusal{"later_contract", {"version 2 of the kernel contract", "offers 1", "update clarity"}},
+        Refusal{"no_contract", {"version 0 of the kernel contract", "offers 1", "RT_KERNEL_CONTRACT"}},
+        Refusal{"host_only_nodes", {"slot 0", "RT_SLOT_HOST_ONLY", "roots"}},
+        Refusal{"topology_of_no_layout", {"topology", "`layout`", "bvh2"}},
+        Refusal{"topology_with_kernels", {"layout is 'bvh2'", "leave its own 0"}},
+        Refusal{"layout_of_no_topology", {"layout is 'bvh2'", "topology is NULL"}},
+        Refusal{"layout_of_odd_name", {"`layout`", "id"}}, Refusal{"no_traversal", {"traversal has no text", "embed"}},
         Refusal{"merit_not_a_number", {"merit_gpu is nan", "0 or more"}},
         Refusal{"merit_below_zero", {"merit_cpu is -1", "0 or more"}}, Refusal{"unknown_ray_cost", {"ray_cost is 7"}},
         Refusal{"slots_of_one_name", {"two slots", "'sound_nodes'"}},
@@ -103,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 // The same parts without a defect are accepted. This shows that the libraries above are refused because of the defect.
 TEST(GoodPlugin, IsAccepted) {
-    for (const char* name : {"sound", "bad_builder", "unknown_capability"}) {
+    for (const char* name : {"sound", "bad_builder", "unknown_capability", "unknown_extension"}) {
         const clarity::PluginRecord record = clarity::load_plugin(library(name));
         ASSERT_NE(record.plugin, nullptr) << record.why;
         EXPECT_EQ(record.why, "");
@@ -114,7 +128,34 @@ TEST(GoodPlugin, IsAccepted) {
 TEST(GoodPlugin, MayComeFromALaterSdkWithLongerStructs) {
     const clarity::PluginRecord record = clarity::load_plugin(library("grown_struct"));
     ASSERT_NE(record.plugin, nullptr) << record.why;
-    EXPECT_GT(record.plugin->struct_bytes, sizeof(rt_plugin));
+    const rt_plugin& plugin = *record.plugin;
+    EXPECT_GT(plugin.struct_bytes, sizeof(rt_plugin));
+    ASSERT_EQ(plugin.param_count, 2u);
+    EXPECT_STREQ(plugin.params[0].key, "max_leaf");
+    EXPECT_STREQ(plugin.params[1].key, "bins") << "the second element begins where the plugin says";
+    EXPECT_EQ(plugin.params[1].max, 32);
+    ASSERT_EQ(plugin.accel->slot_count, 2u);
+    EXPECT_STREQ(plugin.accel->slots[1].name, "sound_boxes");
+    EXPECT_STREQ(plugin.extensions[0].name, "org.example.later");
+    EXPECT_EQ(plugin.extensions[1].name, nullptr);
+}
+
+// A later host's structs are longer than those of a plugin of today.
+TEST(GoodPlugin, MayComeFromAnEarlierSdkWithShorterStructs) {
+    struct Later {
+        rt_slot known;
+        double more[2];
+    };
+    const rt_slot slots[2] = {{"nodes", "uint", 4, 7}, {"others", "uint", 4, 7}};
+    const auto later = clarity::copied<Later>(slots, sizeof slots[0]);
+    EXPECT_STREQ(later.known.name, "nodes");
+    EXPECT_EQ(later.known.flags, 7u);
+    EXPECT_EQ(later.more[0], 0) << "not what lies behind the plugin's struct";
+    EXPECT_EQ(later.more[1], 0);
+}
+
+TEST(GoodPlugin, IsTheSameWhenItIsLoadedAgain) {
+    EXPECT_EQ(clarity::load_plugin(library("sound")).plugin, clarity::load_plugin(library("sound")).plugin);
 }
 
 // If this library were loaded, it would end the process. So its refusal above proves that it was not loaded.
@@ -131,7 +172,7 @@ TEST(BadPlugins, AllAreTested) {
     for (int i = 0; i < all.total_test_suite_count(); ++i)
         if (std::string(all.GetTestSuite(i)->name()) == "Defects/BadPlugin")
             tests = static_cast<size_t>(all.GetTestSuite(i)->total_test_count());
-    EXPECT_EQ(tests + 3, libraries) << "sound.c, grown_struct.c and unknown_capability.c are the three without a defect";
+    EXPECT_EQ(tests + 4, libraries) << "sound.c, grown_struct.c, unknown_capability.c and unknown_extension.c have no defect";
 }
 
 TEST(NoPlugin, TextFile) {

@@ -7,7 +7,7 @@
 #include "bench/baselines/baseline.hpp"
 #include "bench/cases/analysis.hpp"
 #include "bench/suites/ray_sets.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "support/generated.hpp"
 #include "support/scenes.hpp"
 

@@ -8,6 +8,7 @@
 #include "device/kernel_files.hpp"
 #include "device/kernel_includes.hpp"
 #include "device/program.hpp"
+#include "rt_plugin.hpp"
 #include "support/scratch.hpp"
 
 using namespace clarity;
@@ -16,20 +17,10 @@ namespace fs = std::filesystem;
 namespace {
 
 // A plugin that is this test program. Files beside its library are then files beside the test.
-const rt_accel kAccel = {sizeof(rt_accel),
-                         0,
-                         nullptr,
-                         {"watched_types.h", "compiled types\n"},
-                         {"watched.cl", "compiled"},
-                         nullptr,
-                         nullptr,
-                         nullptr,
-                         0,
-                         0,
-                         0,
-                         0};
-const rt_plugin kPlugin = {RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST, 0,      "watched", "Watched", "1",
-                           nullptr,        nullptr,           &kAccel,         nullptr};
+constexpr rt_slot kSlots[] = {rt::slot<rt_u32>("nodes", "uint")};
+constexpr rt_accel kAccel =
+    rt::accel(kSlots, {"watched_types.h", "compiled types\n"}, {"watched.cl", "compiled"}, nullptr, nullptr, rt::Traits());
+constexpr rt_plugin kPlugin = rt::accel_plugin("watched", "Watched", "1", nullptr, kAccel);
 
 class KernelText : public ::testing::Test {
  protected:

@@ -152,7 +152,7 @@ TEST(Transform, products_and_inverses) {
     EXPECT_FALSE(invert({kNan, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, inverse));
 }
 
-// Projects a point with DESIGN's camera model; both coordinates are -1..1 within the picture.
+// Projects a point with the camera model of docs/scene_format.md; both coordinates are -1..1 within the picture.
 std::array<double, 3> on_screen(const Camera& c, float aspect, const std::array<float, 3>& p) {
     double w[3], u[3], v[3], d[3];
     const auto normalize = [](double* x) {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "misbehave.hpp"
-#include "rt_plugin.h"
+#include "rt_plugin.hpp"
 
 namespace test_importer {
 namespace {
@@ -137,10 +137,11 @@ struct Run {
         if (what == "light") {
             auto light = sized<rt_light_desc>();
             light.name = "lamp";
-            light.values.kind = v[3] != 0 ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT;
+            light.kind = v[3] != 0 ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT;
             for (int i = 0; i < 3; ++i) {
-                light.values.position[i] = v[i];
-                light.values.color[i] = 1;
+                light.position[i] = v[i];
+                light.direction[i] = -v[i];
+                light.color[i] = 1;
             }
             return status(sink.light(sink.ctx, &light));
         }
@@ -158,14 +159,14 @@ struct Run {
     int32_t material(std::istream& words) {
         auto desc = sized<rt_material_desc>();
         desc.name = "paint";
-        desc.values.texture = RT_NONE;
+        desc.texture = RT_NONE;
         std::string color, texture;
         words >> color;
-        for (float& channel : desc.values.color) channel = std::strtof(color.c_str(), nullptr);
+        for (float& channel : desc.color) channel = std::strtof(color.c_str(), nullptr);
         if (words >> texture) {
             auto picture = sized<rt_texture_desc>();
             picture.path = texture.c_str();
-            desc.values.texture = sink.texture(sink.ctx, &picture);
+            desc.texture = sink.texture(sink.ctx, &picture);
         }
         materials.push_back(sink.material(sink.ctx, &desc));
         return status(materials.back());
@@ -264,6 +265,5 @@ const rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, load};
 }  // namespace
 }  // namespace test_importer
 
-extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = {
-    RT_ABI_VERSION, sizeof(rt_plugin), RT_TYPES_DIGEST,          0, "cltest", "Test importer", "1.0", nullptr,
-    nullptr,        nullptr,           &test_importer::kImporter};
+extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 =
+    rt::importer_plugin("cltest", "Test importer", "1.0", nullptr, test_importer::kImporter);

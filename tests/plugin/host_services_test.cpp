@@ -108,7 +108,7 @@ TEST(HostServices, CancelledOnlyAfterItWasTold) {
     EXPECT_EQ(outcome(progress, call), "");
     progress.cancel();
     EXPECT_EQ(outcome(progress, call), "cancelled");
-    EXPECT_NE(outcome([](const rt_host*) { return RT_CANCELLED; }).find("nobody had cancelled"), std::string::npos);
+    EXPECT_NE(outcome([](const rt_host*) { return RT_CANCELLED; }).find("had not asked it to stop"), std::string::npos);
 }
 
 // A Progress that stands for another process may return false without being cancelled itself.

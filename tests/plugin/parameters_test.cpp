@@ -17,7 +17,7 @@ constexpr rt_param kParams[] = {
     rt::bool_param("packed", "Packed", "store triangles in the nodes", false, RT_EFFECT_RECOMPILE),
     rt::enum_param("split", "Split", "where a node is divided", kSplits, 1),
 };
-constexpr rt_accel kAccel = {sizeof(rt_accel), 0, nullptr, {}, {}, nullptr, nullptr, nullptr, 0, 0, 0, 0};
+constexpr rt_accel kAccel = rt::topology("tree", nullptr, rt::Traits());
 constexpr rt_plugin kPlugin = rt::accel_plugin("bvh2", "A tree", "1.0", nullptr, kParams, kAccel);
 constexpr rt_plugin kPlain = rt::accel_plugin("plain", "No parameters", "1.0", nullptr, kAccel);
 

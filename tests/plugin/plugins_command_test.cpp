@@ -53,6 +53,9 @@ TEST_F(PluginsCommand, JsonListsEveryLibrary) {
     EXPECT_EQ(loaded["capabilities"], nlohmann::json({"streams", "splits_incoherent"}));
     EXPECT_EQ(loaded["merit"], nlohmann::json({{"cpu", 0.25}, {"gpu", 0}}));
     EXPECT_EQ(loaded["ray_cost"], "linear");
+    EXPECT_EQ(loaded["kernel_contract"], 1);
+    EXPECT_EQ(loaded["packs_topologies"], false);
+    EXPECT_EQ(loaded["abi_extensions"], nlohmann::json::array());
     ASSERT_EQ(loaded["parameters"].size(), 1u);
     const nlohmann::json expected = {{"key", "max_leaf"},
                                      {"label", "Max leaf size"},

@@ -56,6 +56,24 @@ class Registry : public testing::Test {
     std::vector<std::string> warnings_;
 };
 
+// A structure that nothing can trace must not be chosen.
+TEST_F(Registry, TreesNeedALayoutThatPacksThem) {
+    const std::string folder = std::string(TEST_PLUGINS) + "/",
+                      bvh2 = std::string(CLARITY_BUILD_DIR) + "/lib/clarity/plugins/accel/bvh2.so";
+    const PluginRegistry registry = PluginRegistry::of(
+        {folder + "tree_of_nobody.so", folder + "tree_of_sound.so", folder + "tree_of_bvh2.so", kSound, bvh2});
+    ASSERT_EQ(registry.records().size(), 5u);
+    EXPECT_EQ(registry.records()[0].plugin, nullptr);
+    EXPECT_NE(registry.records()[0].why.find("layout 'nobody' was not found"), std::string::npos) << registry.records()[0].why;
+    EXPECT_NE(registry.records()[0].why.find("name one of bvh2"), std::string::npos) << registry.records()[0].why;
+    EXPECT_NE(registry.records()[1].why.find("layout 'sound' has no `pack`"), std::string::npos) << registry.records()[1].why;
+    EXPECT_TRUE(warned("tree_of_nobody.so: its layout"));
+    const rt_plugin* tree = registry.accel("tree_of_bvh2");
+    ASSERT_NE(tree, nullptr) << registry.records()[2].why;
+    EXPECT_EQ(&registry.layout_of(*tree), registry.accel("bvh2")) << "the order of the libraries does not matter";
+    EXPECT_EQ(&registry.layout_of(*registry.accel("sound")), registry.accel("sound"));
+}
+
 TEST_F(Registry, OrderIsFilesThenVariableThenUserData) {
     const std::string user = copy(kSound, "data/clarity/plugins/a.so");
     const std::string second = copy(kSound, "two/b.so"), first_b = copy(kSound, "one/b.so"), first_a = copy(kSound, "one/a.so");

@@ -105,12 +105,20 @@ static_assert(kParams[0].min == 0 && kParams[0].max == 2 && kParams[0].def == 2)
 constexpr rt_accel kAccel =
     rt::accel(kSlots, kFiles[0], kFiles[1], nullptr, nullptr,
               rt::Traits().can(RT_TRAVERSES_STEPS).can(RT_TRAVERSES_WARPS).merit(0.5f, 2).tests_everything());
-static_assert(kAccel.struct_bytes == sizeof(rt_accel) && kAccel.slot_count == 1 && kAccel.slots == kSlots && !kAccel.refit);
+static_assert(kAccel.struct_bytes == sizeof(rt_accel) && kAccel.slot_count == 1 && kAccel.slots == kSlots && !kAccel.pack &&
+              kAccel.kernel_contract == RT_KERNEL_CONTRACT && kAccel.slot_bytes == sizeof(rt_slot) && !kAccel.layout);
 static_assert(kAccel.types.text == kFiles[0].text && kAccel.traverse.text == kFiles[1].text);
 static_assert(kAccel.capabilities == (RT_TRAVERSES_STEPS | RT_TRAVERSES_WARPS) && kAccel.merit_cpu == 0.5f &&
               kAccel.merit_gpu == 2 && kAccel.ray_cost == RT_RAY_COST_LINEAR);
+static_assert(rt::host_slot<rt_prim>("boxes").elem_bytes == 32 && rt::host_slot<rt_prim>("boxes").flags == RT_SLOT_HOST_ONLY);
+constexpr rt_accel kTree = rt::topology("bvh2", nullptr, rt::Traits().merit(0.5f, 2));
+static_assert(kTree.struct_bytes == sizeof(rt_accel) && kTree.layout[0] == 'b' && kTree.slot_count == 0 && !kTree.build &&
+              !kTree.pack && kTree.merit_gpu == 2 && kTree.ray_cost == RT_RAY_COST_LOGARITHMIC);
 constexpr rt_plugin kPlugin = rt::accel_plugin("a", "A", "1", nullptr, kParams, kAccel);
 static_assert(kPlugin.abi_version == RT_ABI_VERSION && kPlugin.param_count == 1 && kPlugin.accel == &kAccel &&
-              !kPlugin.importer);
+              !kPlugin.importer && kPlugin.param_bytes == sizeof(rt_param) && !kPlugin.extensions);
+constexpr rt_extension kExtensions[] = {{"org.example.paint", 2, 0, nullptr}, {nullptr, 0, 0, nullptr}};
+static_assert(rt::with_extensions(kPlugin, kExtensions).extensions == kExtensions &&
+              rt::with_extensions(kPlugin, kExtensions).extension_bytes == sizeof(rt_extension));
 
 }  // namespace

@@ -23,7 +23,8 @@ class Workbench {
     // For tests of what follows tracing, and of objects that work beside the renderer.
     const std::shared_ptr<Device>& shared_device() const { return device_; }
     FrameRenderer& frames() { return frames_; }
-    // Ids of all structures, so that new ones are tested without a change here.
+    // Ids of all structures, so that new ones are tested without a change here. Quick tests (the environment variable
+    // CLARITY_QUICK_TESTS, which ./test sets) take some of them, and fewer lane counts and packets below.
     std::vector<std::string> accels() const;
     // The same without structures that test every primitive: on large scenes they would take minutes.
     std::vector<std::string> fast_accels() const;
@@ -39,6 +40,7 @@ class Workbench {
 
  private:
     Workbench();
+    bool is_default(const rt_plugin& plugin) const;  // on this device
     PluginRegistry plugins_;
     std::shared_ptr<Device> device_;
     Progress progress_;

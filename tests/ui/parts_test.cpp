@@ -112,7 +112,7 @@ TEST(KeyMap, ReleasedKeysAreNoLongerHeld) {
     HeldKeys held;
     held.press(map.bindings[0].key);
     EXPECT_TRUE(held.any_held(map));
-    EXPECT_EQ(held.value(map, map.bindings[0].action), 1);
+    EXPECT_EQ(held.value(map, map.bindings[0].motion), 1);
     held.release(map.bindings[0].key);
     held.release(map.bindings[0].key);
     EXPECT_FALSE(held.any_held(map));

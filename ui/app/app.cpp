@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "render/film/image_io.hpp"
+#include "ui/app/key_actions.hpp"
 #include "ui/automation/script.hpp"
 #include "ui/hud/hud.hpp"
 #include "ui/panel/panel.hpp"
@@ -107,7 +108,7 @@ double App::wait_seconds() const {
 }
 
 bool App::typing() const {
-    return ImGui::GetIO().WantTextInput;
+    return ImGui::GetIO().WantTextInput || state_.browser_open;  // keys never move the camera behind the file browser
 }
 
 void App::turn() {
@@ -174,7 +175,8 @@ void App::take_keys() {
         } else if (event.kind == KeyEvent::Kind::release) {
             held_.release(event.key);
         } else if (event.key == GLFW_KEY_ESCAPE && (state_.browser_open || state_.keys_open)) {
-            close_or_cancel();  // even while a text field has the keyboard
+            KeyTarget target = key_target();
+            close_or_cancel(target);  // even while a text field has the keyboard
         } else if (!event.other_modifier && !typing()) {
             if (const KeyBinding* binding = state_.key_map->find(event.key, event.ctrl)) act(*binding);
         }
@@ -191,92 +193,15 @@ void App::act(const KeyBinding& binding) {
 }
 
 void App::press(const KeyBinding& binding) {
-    if (is_held(binding.action)) {
-        held_.press(binding.key);
-        HeldKeys tapped;
-        tapped.press(binding.key);
-        apply_motion(kTapSeconds, tapped);
+    if (binding.press) {
+        KeyTarget target = key_target();
+        binding.press(target);
         return;
     }
-    switch (binding.action) {
-        case Action::print_frame_rate:
-            std::printf("%s\n", session_->frame_rate_line().c_str());
-            std::fflush(stdout);
-            break;
-        case Action::show_level:
-            overlay_->toggle(static_cast<rt_u32>(binding.argument));
-            break;
-        case Action::show_bottom_level:
-            overlay_->toggle(RT_LEVEL_BOTTOM);
-            break;
-        case Action::reset_camera:
-            session_->reset_view();
-            break;
-        case Action::cancel_work:
-            close_or_cancel();
-            break;
-        case Action::show_help:
-            state_.keys_open = !state_.keys_open;
-            break;
-        case Action::undo:
-            session_->undo();
-            break;
-        case Action::redo:
-            session_->redo();
-            break;
-        case Action::open_file:
-            state_.browser_open = true;
-            break;
-        case Action::save_picture:
-            session_->save_picture(next_picture_path(state_.pictures_folder));
-            break;
-        case Action::toggle_compare:
-            session_->compare(!session_->desired.other);
-            break;
-        case Action::swap_sides:
-            session_->swap_sides();
-            break;
-        case Action::toggle_inspector:
-            state_.inspect_hover = !state_.inspect_hover;
-            if (state_.inspect_hover) state_.show_tab(Tab::inspect);
-            break;
-        case Action::toggle_lights:
-            state_.show_lights = !state_.show_lights;
-            break;
-        case Action::add_bookmark:
-            state_.bookmarks.push_back({"view " + std::to_string(state_.bookmarks.size() + 1), session_->desired.camera});
-            break;
-        case Action::next_bookmark:
-            go_to_next_bookmark();
-            break;
-        case Action::frame_scene:
-            session_->frame_selection();
-            break;
-        case Action::toggle_panel:
-            state_.panel_visible = !state_.panel_visible;
-            break;
-        default:
-            break;
-    }
-}
-
-// Closes what lies over the picture, if anything does. Otherwise stops the work that is under way.
-void App::close_or_cancel() {
-    if (state_.keys_open)
-        state_.keys_open = false;
-    else if (state_.browser_open)
-        state_.browser_open = false;
-    else if (session_->sequence().running())
-        session_->sequence().stop(*session_);
-    else
-        session_->cancel();
-}
-
-void App::go_to_next_bookmark() {
-    std::vector<Camera> cameras;
-    if (session_->ready()) cameras = session_->ready()->loaded->scene->cameras;
-    for (const Bookmark& bookmark : state_.bookmarks) cameras.push_back(bookmark.camera);
-    if (!cameras.empty()) session_->desired.camera = cameras[next_bookmark_++ % cameras.size()];
+    held_.press(binding.key);
+    HeldKeys tapped;
+    tapped.press(binding.key);
+    apply_motion(kTapSeconds, tapped);
 }
 
 void App::move_held(float seconds) {
@@ -285,24 +210,24 @@ void App::move_held(float seconds) {
 
 void App::apply_motion(float seconds, const HeldKeys& keys) {
     if (!keys.any_held(*state_.key_map)) return;
-    const auto between = [&](Action less, Action more) {
+    const auto between = [&](Motion less, Motion more) {
         return keys.value(*state_.key_map, more) - keys.value(*state_.key_map, less);
     };
     const float step = session_->scene_size() * 0.33f * seconds;
     const float camera = step * state_.camera_speed, turn = kTurnRadPerSecond * seconds * std::min(state_.camera_speed, 2.0f);
-    const Step motion{between(Action::camera_left, Action::camera_right) * camera,
-                      between(Action::camera_down, Action::camera_up) * camera,
-                      between(Action::camera_back, Action::camera_forward) * camera};
+    const Step walk{between(Motion::camera_left, Motion::camera_right) * camera,
+                    between(Motion::camera_down, Motion::camera_up) * camera,
+                    between(Motion::camera_back, Motion::camera_forward) * camera};
     Camera& eye = session_->desired.camera;
-    if (!motion.none()) state_.key_map->mouse_look ? fly_camera(eye, motion) : move_camera(eye, motion);
-    const float yaw = between(Action::yaw_right, Action::yaw_left) * turn,
-                pitch = between(Action::pitch_down, Action::pitch_up) * turn;
+    if (!walk.none()) state_.key_map->mouse_look ? fly_camera(eye, walk) : move_camera(eye, walk);
+    const float yaw = between(Motion::yaw_right, Motion::yaw_left) * turn,
+                pitch = between(Motion::pitch_down, Motion::pitch_up) * turn;
     if (yaw != 0 || pitch != 0) turn_camera(eye, yaw, pitch);
 
     const float reach = step * state_.light_speed;
-    const Step shift{between(Action::light_left, Action::light_right) * reach,
-                     between(Action::light_down, Action::light_up) * reach,
-                     between(Action::light_back, Action::light_forward) * reach};
+    const Step shift{between(Motion::light_left, Motion::light_right) * reach,
+                     between(Motion::light_down, Motion::light_up) * reach,
+                     between(Motion::light_back, Motion::light_forward) * reach};
     auto& lights = session_->desired.lights;
     if (!shift.none() && session_->selected_light < lights.size())
         move_light(lights[session_->selected_light].values, eye, shift, session_->scene_size());

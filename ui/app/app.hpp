@@ -33,10 +33,9 @@ class App {
     bool typing() const;
     void run_script();
     void take_keys();
+    KeyTarget key_target() { return {*session_, state_, *overlay_}; }
     void act(const KeyBinding& binding);
     void press(const KeyBinding& binding);
-    void close_or_cancel();
-    void go_to_next_bookmark();
     void move_held(float seconds);
     void apply_motion(float seconds, const HeldKeys& keys);
     void draw();
@@ -56,7 +55,6 @@ class App {
     HeldKeys held_;
     std::shared_ptr<const Picture> uploaded_;
     std::string capture_path_;
-    size_t next_bookmark_ = 0;
     double last_turn_s_ = 0;   // start of the last turn, in seconds of the steady clock
     double oldest_key_s_ = 0;  // time of the oldest key event that the coming frame handles; 0: no key event
     int settle_frames_ = 3;    // frames still to draw: ImGui needs a few to settle after an event

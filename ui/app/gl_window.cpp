@@ -17,6 +17,8 @@
 namespace clarity::ui {
 namespace {
 
+constexpr float kDoubleClickSeconds = 0.3f;  // at most so long between the clicks of a double click, as ImGui's default
+
 std::string& last_glfw_error() {
     static std::string text;
     return text;
@@ -56,7 +58,11 @@ struct Callbacks {
         self.dropped_.assign(paths, paths + count);
     }
     static void character(GLFWwindow* window, unsigned) { of(window).any_event_ = true; }
-    static void button(GLFWwindow* window, int, int, int) { of(window).any_event_ = true; }
+    static void button(GLFWwindow* window, int button, int action, int) {
+        GlWindow& self = of(window);
+        self.any_event_ = true;
+        if (button == GLFW_MOUSE_BUTTON_LEFT && action == GLFW_PRESS) ++self.left_presses_;
+    }
     static void cursor(GLFWwindow* window, double, double) { of(window).any_event_ = true; }
     static void scroll(GLFWwindow* window, double, double) { of(window).any_event_ = true; }
     static void resized(GLFWwindow* window, int, int) { of(window).any_event_ = true; }
@@ -142,8 +148,8 @@ void GlWindow::wake() {
 }
 
 bool GlWindow::wait_events(double seconds) {
-    any_event_ = false;
-    if (seconds > 0)
+    any_event_ = left_presses_ > 0;
+    if (seconds > 0 && !any_event_)
         glfwWaitEventsTimeout(seconds);
     else
         glfwPollEvents();
@@ -181,7 +187,21 @@ void GlWindow::size(int& width, int& height) const {
 void GlWindow::begin_frame() {
     ImGui_ImplOpenGL3_NewFrame();
     ImGui_ImplGlfw_NewFrame();
+    keep_clicks_apart();
     ImGui::NewFrame();
+}
+
+// ImGui looks at the mouse button once a frame. If a frame takes as long as a double click, both presses arrive before one
+// frame, and ImGui would see a single click. So a frame with the button released, then one with it pressed follow for each
+// further press.
+void GlWindow::keep_clicks_apart() {
+    ImGuiIO& io = ImGui::GetIO();
+    io.MouseDoubleClickTime = kDoubleClickSeconds + 2 * io.DeltaTime;  // the time of a press is known to a frame
+    if (left_presses_ > 0) {
+        io.MouseDown[0] = !left_was_down_;
+        if (io.MouseDown[0]) --left_presses_;
+    }
+    left_was_down_ = io.MouseDown[0];
 }
 
 void GlWindow::end_frame() {

@@ -54,13 +54,16 @@ class GlWindow {
 
  private:
     void init_imgui();
+    void keep_clicks_apart();
     void draw();
 
     GLFWwindow* window_ = nullptr;
     std::vector<KeyEvent> keys_;
     std::vector<std::string> dropped_;
     bool any_event_ = false;
-    std::string ini_path_;  // a member, because ImGui keeps a pointer to its text
+    int left_presses_ = 0;        // presses of the left mouse button which ImGui has not seen
+    bool left_was_down_ = false;  // what ImGui saw in the last frame
+    std::string ini_path_;        // a member, because ImGui keeps a pointer to its text
     std::string gl_text_;
     friend struct Callbacks;
 };

@@ -138,11 +138,20 @@ void head_row(Session& session, UiState& state) {
     tooltip(folder);
 }
 
-// Whenever nothing else has the keyboard, the path field takes it, so that keys do not move the camera.
+// Whether the last click was on this window and may be the first half of a double click. If the path field took the keyboard
+// between the halves, it could become active in the frame of the second press, and ImGui would give that press to no row.
+bool may_double_click() {
+    const ImGuiIO& io = ImGui::GetIO();
+    const ImVec2 low = ImGui::GetWindowPos(), size = ImGui::GetWindowSize(), click = io.MouseClickedPos[0];
+    const bool here = click.x >= low.x && click.y >= low.y && click.x < low.x + size.x && click.y < low.y + size.y;
+    return here && ImGui::GetTime() - io.MouseClickedTime[0] < 2 * io.MouseDoubleClickTime;
+}
+
+// Whenever nothing else has the keyboard, the path field takes it.
 void field_row(Session& session, UiState& state) {
     Browser& b = browser();
     const bool was_empty = b.text.empty();
-    if (!ImGui::IsAnyItemActive() && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows))
+    if (!ImGui::IsAnyItemActive() && !may_double_click() && ImGui::IsWindowFocused(ImGuiFocusedFlags_RootAndChildWindows))
         ImGui::SetKeyboardFocusHere();
     ImGui::SetNextItemWidth(-FLT_MIN);
     const bool entered = ImGui::InputTextWithHint(

@@ -161,6 +161,7 @@ void memory_rows(const ReadySide& side) {
     const uint64_t all = side.device_bytes;
     uint64_t slots = 0;
     for (size_t i = 0; i < accel.slots.size(); ++i) {
+        if (accel.layout->accel->slots[i].flags & RT_SLOT_HOST_ONLY) continue;  // not on the device
         const uint64_t bytes = accel.slots[i].memory.bytes();
         slots += bytes;
         row_text(("Nodes " + std::to_string(i)).c_str(), bytes_text(static_cast<double>(bytes)), "a buffer of the structure");

@@ -9,7 +9,7 @@ namespace clarity::ui {
 
 using Vec3 = std::array<float, 3>;
 
-// Orthonormal axes of a camera (in DESIGN.md: forward is w, right is u, up is v).
+// Orthonormal axes of a camera.
 struct CameraAxes {
     Vec3 right, up, forward;
 };

@@ -10,7 +10,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "plugin/parameters.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "ui/session/comparisons.hpp"
 
 namespace clarity::ui {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "render/settings/aov.hpp"
+
 namespace clarity::ui {
 
 Settings frame_settings(const Settings& prepared, const Settings& desired_now) {
@@ -19,8 +21,8 @@ FrameStats traced_part(FrameStats stats) {
 }
 
 void share_scale(PictureSide& a, PictureSide& b) {
-    const bool amounts = a.scale.map == FalseColorScale::Map::heat && b.scale.map == a.scale.map && a.values && b.values;
-    if (!amounts || a.settings.aov != b.settings.aov || a.scale.max == b.scale.max) return;
+    if (a.settings.aov != b.settings.aov || !a.values || !b.values || a.scale.max == b.scale.max) return;
+    if (find_aov(a.settings.aov).about != Aov::About::cost) return;  // only costs can be compared by their colours
     PictureSide& shorter = a.scale.max < b.scale.max ? a : b;
     shorter.scale = scale_of(*shorter.values, shorter.settings.aov, std::max(a.scale.max, b.scale.max));
     shorter.image = false_colors(*shorter.values, shorter.settings.aov, shorter.scale);

@@ -6,8 +6,13 @@
 
 namespace clarity::ui {
 
-enum class Action {
-    // Held actions: they last while the key is down.
+class Session;
+class VolumeOverlay;
+struct UiState;
+
+// What a key moves while it is down.
+enum class Motion {
+    none,
     camera_left,
     camera_right,
     camera_forward,
@@ -24,37 +29,22 @@ enum class Action {
     light_back,
     light_up,
     light_down,
-    // Single actions: once for each press.
-    print_frame_rate,
-    show_level,  // argument: level of the bounding volumes, 0 is the root
-    show_bottom_level,
-    reset_camera,
-    cancel_work,
-    show_help,
-    toggle_panel,
-    undo,
-    redo,
-    open_file,
-    save_picture,
-    toggle_compare,
-    swap_sides,
-    toggle_inspector,
-    toggle_lights,
-    add_bookmark,
-    next_bookmark,  // bookmarks and the scene's own cameras
-    frame_scene,    // the selection, or the whole scene if nothing is selected
 };
-inline bool is_held(Action action) {
-    return action < Action::print_frame_rate;
-}
 
-// What one key does in one key map.
+// What a press of a key acts on.
+struct KeyTarget {
+    Session& session;
+    UiState& state;
+    VolumeOverlay& overlay;
+};
+
+// What one key does in one key map: either it moves something while it is down, or it does something once for each press.
 struct KeyBinding {
     int key;  // GLFW's key code: a position on the keyboard
     const char* name;
-    Action action;
-    int argument;
-    const char* help;   // the help lists neighbouring bindings with equal text in one line
+    const char* help;  // the help lists neighbouring bindings with equal text in one line
+    Motion motion = Motion::none;
+    void (*press)(KeyTarget&) = nullptr;
     bool ctrl = false;  // true: only with Ctrl; false: only without
 };
 
@@ -67,7 +57,8 @@ struct KeyMap {
     const KeyBinding* find(int key, bool ctrl = false) const;
 };
 
-const std::vector<KeyMap>& key_maps();  // "thesis" first
+// All key maps, "thesis" first. The table is in ui/app/key_table.cpp, because its rows act on session and overlay.
+const std::vector<KeyMap>& key_maps();
 // Returns nullptr if no key map has this id.
 const KeyMap* find_key_map(const std::string& id);
 
@@ -78,8 +69,8 @@ class HeldKeys {
     void release(int key) { keys_.erase(key); }
     void clear() { keys_.clear(); }
     bool any_held(const KeyMap& map) const;
-    // 1 while a key of this action is down, otherwise 0.
-    float value(const KeyMap& map, Action action) const;
+    // 1 while a key of this motion is down, otherwise 0.
+    float value(const KeyMap& map, Motion motion) const;
 
  private:
     std::set<int> keys_;

@@ -47,6 +47,7 @@ struct UiState {
     std::string browser_folder;  // the folder that the file browser shows
     std::vector<std::string> recent_files;     // newest first
     std::vector<Bookmark> bookmarks;           // of the open scene
+    size_t next_bookmark = 0;                  // which view the next press of N shows, among cameras and bookmarks
     float panel_width = 400;                   // in pixels at text scale 1
     std::string presets_folder;                // empty: there is none
     std::string notice;                        // short text about the last action, shown for a few seconds

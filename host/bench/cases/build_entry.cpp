@@ -10,7 +10,8 @@ void add_build(CaseState& state, Entry& entry, const rt_plugin& plugin, const Se
     const auto last = std::make_shared<BenchRecord>(entry.row);
     entry.once = [=, &state, &plugin] {
         const auto begin = std::chrono::steady_clock::now();
-        const AccelData built = build_accel(*state.fixture.scene(), plugin, settings.accel_params, state.progress);
+        const AccelData built =
+            build_accel(*state.fixture.scene(), plugin, settings.accel_params, state.progress, state.fixture.target_of(plugin));
         describe(*last, built);
         return Sample{built.build_ms + built.pack_ms, ms_since(begin)};
     };

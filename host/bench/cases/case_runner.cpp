@@ -10,7 +10,7 @@
 #include "bench/cases/pictures.hpp"
 #include "bench/cases/ray_entries.hpp"
 #include "bench/run/bench.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -13,8 +13,8 @@
 #include "bench/output/row.hpp"
 #include "bench/run/bench.hpp"
 #include "bench/run/failure.hpp"
-#include "render/accel/accel_choice.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
+#include "render/settings/accel_choice.hpp"
 
 namespace clarity::bench {
 namespace {

@@ -21,7 +21,7 @@ void add_rays(CaseState& state, Entry& entry, const Fixture::Held& held) {
     };
     entry.finish = [=, &set, &state](BenchRecord& row) {
         const auto hits = held.frames->trace_rays(*held.prepared, set.rays, RayQuery{set.any_hit, true});
-        const rt_accel& accel = *held.prepared->accel->plugin->accel;
+        const rt_accel& accel = *held.prepared->accel->layout->accel;
         row.analysis = analyze(set.rays, hits, lanes, accel.slot_count > 0 ? accel.slots[0].elem_bytes : 0);
         std::vector<float> distances;
         for (const rt_hit& hit : hits) distances.push_back(hit.t);

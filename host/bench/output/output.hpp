@@ -7,7 +7,7 @@
 namespace clarity::bench {
 
 // A JSON list of records which ends in a newline. Each record holds its machine and run, so that lists of several runs can be
-// joined (DESIGN.md section 5).
+// joined.
 std::string bench_json(const BenchReport& report);
 // One record of the list, indented as in the list, without a comma or newline after it.
 std::string bench_json_row(const BenchReport& report, const BenchRecord& record);

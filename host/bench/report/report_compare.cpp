@@ -82,8 +82,8 @@ std::string packets_section(const BenchReport& report, const SeriesNames& names)
         paragraph(
             "Packet: the pixels which one work-item computes. Lanes: the rays which it traces side by side. The thesis found "
             "4x4 best on its graphics cards, where every ray of a packet was traced on its own. Here a packet of 4x4 on 16 "
-            "lanes is traversed like one ray: a node is fetched once for all. bvh8 traces all such groups of a larger packet "
-            "together, up to as many groups as lanes.") +
+            "lanes is traversed like one ray: a node is fetched once for all. A structure that takes streams traces all such "
+            "groups of a larger packet together, up to as many groups as lanes.") +
         "<div class=\"grid\">\n";
     for (const auto& scene : scenes.all()) {
         BarChart chart;

@@ -14,7 +14,7 @@
 #include "bench/run/failure.hpp"
 #include "bench/run/fixture.hpp"
 #include "bench/run/machine.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 
 namespace clarity::bench {
 namespace {

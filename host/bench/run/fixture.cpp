@@ -97,6 +97,10 @@ const Fixture::Held& Fixture::prepare(size_t device, const Settings& settings, P
     return held;
 }
 
+BuildTarget Fixture::target_of(const rt_plugin& accel) const {
+    return {&plugins_.layout_of(accel), device_for_builders(device(0), device(0).preferred_lanes())};
+}
+
 std::shared_ptr<const MultiPrepared> Fixture::prepare_all(const Settings& settings, Progress& progress) {
     if (!together_) {
         Devices devices;

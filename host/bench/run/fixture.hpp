@@ -38,6 +38,9 @@ class Fixture {
     // Builds it on first use and keeps it until the next scene. Throws what Preparer::prepare throws.
     const Held& prepare(size_t device, const Settings& settings, Progress& progress);
 
+    // What a builder is told if it builds for the first device.
+    BuildTarget target_of(const rt_plugin& accel) const;
+
     // Prepares the scene on all devices, to share pictures.
     std::shared_ptr<const MultiPrepared> prepare_all(const Settings& settings, Progress& progress);
 

@@ -5,7 +5,7 @@
 
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 
 namespace clarity::bench {
 namespace {

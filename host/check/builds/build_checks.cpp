@@ -123,7 +123,7 @@ Outcome threads(Inputs& inputs, const Step& step, bool quick) {
                 const BuildRun run = inputs.run(*input, schedule);
                 if (const std::string why = failure_of(run); !why.empty())
                     return Outcome::failed(on(*input) + " " + schedule_text(schedule) + ": " + why);
-                const std::string why = difference(first.result, run.result, *inputs.plugin.accel);
+                const std::string why = difference(first.result, run.result, built_slots(inputs.plugin));
                 if (!why.empty())
                     return Outcome::failed(
                         on(*input) + ": the result " + schedule_text(schedule) + " is another than with one thread: " + why +
@@ -141,7 +141,7 @@ Outcome state(Inputs& inputs, const Step& step) {
                    again = inputs.run(a, Schedule::forward);
     for (const BuildRun* run : {&first, &other, &again})
         if (const std::string why = failure_of(*run); !why.empty()) return Outcome::failed(why);
-    if (const std::string why = difference(first.result, again.result, *inputs.plugin.accel); !why.empty())
+    if (const std::string why = difference(first.result, again.result, built_slots(inputs.plugin)); !why.empty())
         return Outcome::failed("the same scene gives another result after a build of another scene: " + why +
                                ". The plugin keeps state");
     step("building two scenes at a time", kBuildLimit_s);
@@ -152,7 +152,7 @@ Outcome state(Inputs& inputs, const Step& step) {
     for (const BuildRun& run : together)
         if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed("two builds at a time: " + why);
     for (const auto& [x, y] : {std::pair(&first, &together[0]), std::pair(&other, &together[1])})
-        if (const std::string why = difference(x->result, y->result, *inputs.plugin.accel); !why.empty())
+        if (const std::string why = difference(x->result, y->result, built_slots(inputs.plugin)); !why.empty())
             return Outcome::failed("two builds at a time disturb each other: " + why + ". The plugin keeps state");
     return Outcome::passed("builds do not depend on what was built before or is built beside");
 }
@@ -226,7 +226,7 @@ Outcome memory(Inputs& inputs, const Step& step) {
     step("building " + on(input), kManyLimit_s);
     const BuildRun run = inputs.run(input);
     if (const std::string why = failure_of(run); !why.empty()) return Outcome::failed(on(input) + ": " + why);
-    const std::string why = wasted_memory(*inputs.plugin.accel, input, run.result);
+    const std::string why = wasted_memory(built_slots(inputs.plugin), input, run.result);
     if (!why.empty()) return Outcome::failed(on(input) + ": " + why);
     return Outcome::passed("slots are as large as what is in them");
 }

@@ -12,6 +12,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/scoped_fp_mode.hpp"
+#include "render/accel/topology_check.hpp"
 
 namespace clarity::check {
 namespace {
@@ -96,17 +97,19 @@ const char* schedule_text(Schedule schedule) {
 BuildCase::BuildCase(std::string name, const Scene& scene) : name_(std::move(name)) {
     Progress progress;
     build_ = make_build_scene(scene, progress);
-    input_ = std::make_unique<BuilderInput>(build_.prims.data(), build_.prims.size(), build_.groups.data(),
-                                            static_cast<rt_u32>(build_.groups.size()), build_.triangles.data(),
-                                            build_.triangles.size(), std::vector<double>{});
+    input_ = std::make_unique<BuilderInput>(
+        build_.prims.data(), build_.prims.size(), build_.groups.data(), static_cast<rt_u32>(build_.groups.size()),
+        build_.triangles.data(), build_.triangles.size(), std::vector<double>{},
+        rt_device{sizeof(rt_device), RT_DEVICE_CPU, 8, 4, 64, 32u << 10, 1u << 20, 8u << 20, uint64_t(1) << 32});
 }
 
-BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule,
-                        unsigned cancel_after) const {
+template <class Call>
+BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule, unsigned cancel_after,
+                            Call&& call) const {
     BuildRun run;
     CancelAt progress(cancel_after);
     HostServices services("builder", progress);
-    GuardedOutput output(*plugin.accel, static_cast<rt_u32>(build_.groups.size()), services);
+    GuardedOutput output(plugin, static_cast<rt_u32>(build_.groups.size()), services);
     rt_host host = *services.host();
     switch (schedule) {
         case Schedule::program:
@@ -130,7 +133,7 @@ BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, 
     try {
         services.check(static_cast<int>(Exit::failed), [&] {
             const ScopedFpMode floats;
-            return run.status = plugin.accel->build(&host, &input, output.table());
+            return run.status = call(&host, &input, output.table());
         });
     } catch (const Cancelled&) {
         run.cancelled = true;
@@ -143,12 +146,29 @@ BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, 
     run.reports = progress.reports();
     run.result = std::move(output.result());
     if (run.why.empty() && !run.cancelled) {
-        run.why = run.result.breach(*plugin.accel);
-        const std::string overrun = run.result.overrun();
+        run.why = run.result.breach(plugin);
+        const std::string overrun = overrun_of(run.result);
         if (run.why.empty() && !overrun.empty()) run.why = "wrote beyond the end of " + overrun;
+        if (run.why.empty() && plugin.accel->topology) run.why = topology_fault(topology_of(run.result), build_);
         if (!run.why.empty()) run.why = "the builder " + run.why;
     }
     return run;
+}
+
+BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule,
+                        unsigned cancel_after) const {
+    return execute(plugin, params, schedule, cancel_after,
+                   [&](const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+                       return run_builder(plugin, host, input, out);
+                   });
+}
+
+BuildRun BuildCase::pack(const rt_plugin& layout, const BuilderResult& tree) const {
+    const rt_topology topology = topology_of(tree);
+    return execute(layout, default_parameters(layout), Schedule::program, 0,
+                   [&](const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+                       return layout.accel->pack(host, input, &topology, out);
+                   });
 }
 
 std::string difference(const BuilderResult& a, const BuilderResult& b, const rt_accel& accel) {

@@ -41,8 +41,14 @@ class BuildCase {
     }
     // cancel_after: the number of the progress report that is answered with "cancelled"; 0: none.
     BuildRun run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule, unsigned cancel_after = 0) const;
+    // Packs the tree of a topology's builder. layout: a structure with rt_accel::pack.
+    BuildRun pack(const rt_plugin& layout, const BuilderResult& tree) const;
 
  private:
+    template <class Call>
+    BuildRun execute(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule, unsigned cancel_after,
+                     Call&& call) const;
+
     std::string name_;
     BuildScene build_;
     std::unique_ptr<BuilderInput> input_;

@@ -38,9 +38,11 @@ std::string Variant::options() const {
     return "--lanes " + std::to_string(lanes) + (debug ? " --debug true" : "") + (portable ? " --portable true" : "");
 }
 
-CheckedScene::CheckedScene(const rt_plugin& plugin, const ParameterValues& params, Scene scene, std::shared_ptr<Device> device)
+CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device)
     : scene_(std::make_shared<const Scene>(std::move(scene))), case_("mixed", *scene_), device_(std::move(device)) {
+    const ParameterValues params = default_parameters(plugin);
     run_ = case_.run(plugin, params, Schedule::program);
+    if (layout && run_.why.empty() && !run_.cancelled) run_ = case_.pack(*layout, run_.result);
     if (run_.cancelled) run_.why = "said that it was cancelled, but nobody had cancelled it";
     if (run_.why.empty()) {
         // A ref that is unknown cannot be packed; one that is missing is worth a run.
@@ -51,6 +53,7 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const ParameterValues& param
 
     auto accel = std::make_shared<AccelData>();
     accel->plugin = &plugin;
+    accel->layout = layout ? layout : &plugin;
     accel->params = params;
     accel->scene = case_.scene();
     BuilderResult& result = run_.result;

@@ -30,8 +30,9 @@ constexpr rt_u32 kTrapPrim = 0x7FFFFF00u;
 
 class CheckedScene {
  public:
-    // Builds the structure. Throws Error with the reason if the build fails.
-    CheckedScene(const rt_plugin& plugin, const ParameterValues& params, Scene scene, std::shared_ptr<Device> device);
+    // Builds the structure. layout: what packs and traces it if the plugin builds a topology, otherwise nullptr. Throws Error
+    // with the reason if the build fails.
+    CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device);
     const BuildScene& build_scene() const { return case_.scene(); }
     const Device& device() const { return *device_; }
     // Compiles on first use. Throws Error.

@@ -23,8 +23,9 @@ constexpr size_t kRays = 2400, kQuickRays = 800;  // of a set
 // Everything that the checks of one structure share.
 class Bench {
  public:
-    Bench(const rt_plugin& plugin, std::function<std::shared_ptr<Device>()> open, const HitsOptions& options)
-        : plugin_(plugin), options_(options), open_(std::move(open)) {}
+    Bench(const rt_plugin& plugin, const rt_plugin* layout, std::function<std::shared_ptr<Device>()> open,
+          const HitsOptions& options)
+        : plugin_(plugin), layout_(layout), options_(options), open_(std::move(open)) {}
 
     const HitsOptions& options() const { return options_; }
     std::vector<Variant> variants() const {
@@ -40,7 +41,7 @@ class Bench {
             step("opening the device", kCompileLimit_s);
             device_ = open_();
             step("building the mixed scene", kCompileLimit_s);
-            scene_ = std::make_unique<CheckedScene>(plugin_, default_parameters(plugin_), mixed_scene(), device_);
+            scene_ = std::make_unique<CheckedScene>(plugin_, layout_, mixed_scene(), device_);
         }
         return *scene_;
     }
@@ -69,6 +70,7 @@ class Bench {
 
  private:
     const rt_plugin& plugin_;
+    const rt_plugin* const layout_;
     const HitsOptions options_;
     const std::function<std::shared_ptr<Device>()> open_;
     std::shared_ptr<Device> device_;
@@ -206,9 +208,9 @@ Outcome stack(Bench& bench, const Step& step) {
 
 }  // namespace
 
-std::vector<Check> hits_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open,
-                               const HitsOptions& options) {
-    const auto bench = std::make_shared<Bench>(plugin, open, options);
+std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
+                               const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options) {
+    const auto bench = std::make_shared<Bench>(plugin, layout, open, options);
     std::vector<Check> checks = {{"hits.kernels", "the kernels compile for 1, 4, 8 and 16 lanes",
                                   [=](const Step& step) { return compile(*bench, step); }},
                                  {"hits.stack", "the traversal stack holds the tree, with --debug",

@@ -16,8 +16,9 @@ struct HitsOptions {
     std::string report_folder;  // where wrong rays are written; "": nowhere
 };
 
-// The checks of one structure's kernels. open: opens the device on first use.
-std::vector<Check> hits_checks(const rt_plugin& plugin, const std::function<std::shared_ptr<Device>()>& open,
-                               const HitsOptions& options);
+// The checks of one structure's kernels. layout: what traces the tree if the plugin builds a topology, otherwise nullptr. open:
+// opens the device on first use.
+std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
+                               const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options);
 
 }  // namespace clarity::check

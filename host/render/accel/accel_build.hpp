@@ -8,6 +8,7 @@
 
 #include "base/aligned_bytes.hpp"
 #include "base/progress.hpp"
+#include "device/device.hpp"
 #include "plugin/parameters.hpp"
 #include "render/accel/build_in_worker.hpp"
 #include "render/accel/build_scene.hpp"
@@ -22,6 +23,7 @@ constexpr uint64_t kLeafPadding = 3;
 // A finished structure. Immutable.
 struct AccelData {
     const rt_plugin* plugin = nullptr;
+    const rt_plugin* layout = nullptr;  // whose slots and kernels these are: plugin itself, or the layout of its topology
     ParameterValues params;
     struct Slot {
         AlignedBytes memory;
@@ -35,17 +37,26 @@ struct AccelData {
     std::vector<std::pair<std::string, double>> stats;  // as the plugin reported them, in its order
     std::vector<rt_instance> instances;                 // with roots
     BuildScene scene;
-    double build_ms = 0;  // time of the plugin's build() alone
+    double build_ms = 0;  // time of the plugin's build() alone, or of topology() and the layout's pack()
     double pack_ms = 0;   // time of the conversion before and of checks and packing after it
     uint64_t bytes = 0;   // size of slots, leaves and instances
     // The plugin's statistic of that label, or `otherwise`.
     double stat(const std::string& label, double otherwise = 0) const;
 };
 
+// What decides about a build besides the plugin, the scene and the parameters.
+struct BuildTarget {
+    const rt_plugin* layout = nullptr;  // PluginRegistry::layout_of(); nullptr: the plugin itself
+    rt_device device = {sizeof(rt_device), RT_DEVICE_UNKNOWN, 0, 0, 0, 0, 0, 0, 0};
+    BuildPlace place = BuildPlace::automatic;
+};
+// Describes a device to builders. lanes: rays of a work-item.
+rt_device device_for_builders(const DeviceInfo& info, unsigned lanes);
+
 // Runs a plugin's builder on a scene, on the calling thread and those that it starts. Throws Error(failed) "accel bvh2: why",
 // and Cancelled. It also throws if the builder breaks its contract, for example by a missing root, a root or a ref out of
-// range, a slot allocated twice, or an exception. A stranger's builder runs in a worker process: see `place`.
+// range, a slot allocated twice, or an exception. A stranger's builder runs in a worker process: see BuildTarget::place.
 AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const ParameterValues& params, Progress& progress,
-                      BuildPlace place = BuildPlace::automatic);
+                      const BuildTarget& target = {});
 
 }  // namespace clarity

@@ -44,7 +44,7 @@ void add_sphere(void* ctx, const float center[3], float radius) {
 
 Volumes accel_volumes(const AccelData& accel, rt_u32 level, size_t limit) {
     Volumes volumes;
-    const rt_accel& table = *accel.plugin->accel;
+    const rt_accel& table = *accel.layout->accel;
     if (!table.levels) return volumes;
     std::vector<const void*> slots;
     std::vector<uint64_t> counts;

@@ -12,6 +12,7 @@
 #include "base/printable.hpp"
 #include "plugin/known_libraries.hpp"
 #include "render/accel/builder_wire.hpp"
+#include "render/accel/run_builder.hpp"
 #include "worker/child.hpp"
 #include "worker/supervisor.hpp"
 
@@ -89,7 +90,7 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
         BuildSupervisor(process, plugin, library, prims, memory, progress).follow();
         process.kill_now();
         process.wait();
-        why = replay_builder_result(process.result(), *plugin.accel, input->group_count, *out);
+        why = replay_builder_result(process.result(), built_slots(plugin), input->group_count, *out);
         if (!why.empty()) throw Error(Exit::failed, why);
     } catch (const Cancelled&) {
         throw;
@@ -105,7 +106,7 @@ int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* h
                      const rt_build_output* out, Progress& progress) {
     const std::string library = place == BuildPlace::here || std::getenv(worker::kWorkerVariable) ? "" : library_of(plugin);
     if (library.empty() || (place == BuildPlace::automatic && is_known_library(library)))
-        return plugin.accel->build(host, input, out);
+        return run_builder(plugin, host, input, out);
     const int32_t status = build_in_worker(plugin, library, host, input, out, progress);
     if (status == RT_OK) remember_library(library);
     return status;

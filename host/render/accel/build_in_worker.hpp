@@ -12,7 +12,7 @@ enum class BuildPlace {
     here
 };
 
-// Calls plugin.accel->build with these arguments, here or in a worker process, where a crash, an endless loop or a call of exit
+// Calls run_builder() with these arguments, here or in a worker process, where a crash, an endless loop or a call of exit
 // ends only the worker. Same result and same meaning. Throws Cancelled. progress: the one behind `host`.
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
                      const rt_build_output* out, Progress& progress);

@@ -27,6 +27,21 @@ struct BuildScene {
     std::vector<rt_plane> planes;
     Bounds bounds;  // of the world's group, that is of everything but planes
 };
+// True if a builder of that scene was given such a ref.
+inline bool is_known_ref(rt_u32 ref, const BuildScene& scene) {
+    const rt_u32 index = RT_REF_INDEX(ref);
+    switch (RT_REF_KIND(ref)) {
+        case RT_REF_TRIANGLE:
+            return index < scene.triangles.size();
+        case RT_REF_SPHERE:
+            return index < scene.spheres.size();
+        case RT_REF_POLYGON:
+            return index < scene.polygons.size();
+        case RT_REF_INSTANCE:
+            return index < scene.instances.size();
+    }
+    return false;
+}
 // Converts a scene. Throws Error(failed) if it has too many triangles, and Cancelled.
 BuildScene make_build_scene(const Scene& scene, Progress& progress);
 

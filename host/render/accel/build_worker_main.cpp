@@ -69,13 +69,13 @@ void build(const Arguments& arguments) {
 
     worker::ChannelProgress progress;
     HostServices services("builder", progress);
-    GuardedOutput output(*plugin.accel, input->group_count, services);
+    GuardedOutput output(plugin, input->group_count, services);
     const rt_build_input& table = input->table();
     services.check(static_cast<int>(Exit::failed), [&] {
         const ScopedFpMode floats;
-        return plugin.accel->build(services.host(), &table, output.table());
+        return run_builder(plugin, services.host(), &table, output.table());
     });
-    const std::string overrun = output.result().overrun();
+    const std::string overrun = overrun_of(output.result());
     if (!overrun.empty())
         throw Error(Exit::failed, "the builder wrote beyond the end of " + overrun + "; this is a fault of the plugin");
     worker::allow_writing_result();

@@ -14,6 +14,7 @@ namespace {
 struct InputHead {
     uint64_t bytes, prim_count, triangle_count;  // bytes: of the whole input, a multiple of kAlign
     uint32_t group_count, param_count;
+    rt_device device;
 };
 struct ResultHead {
     uint64_t leaf_count;
@@ -105,7 +106,7 @@ void put_text(std::string& bytes, const std::string& text) {
 
 std::string write_builder_input(int fd, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count) {
     const uint64_t triangles = input.geometry ? input.geometry->triangle_count : 0;
-    InputHead head{sizeof head, prim_count, triangles, input.group_count, param_count};
+    InputHead head{sizeof head, prim_count, triangles, input.group_count, param_count, *input.device};
     const uint64_t params_bytes = param_count * sizeof(double), groups_bytes = input.group_count * sizeof(rt_group),
                    prims_bytes = prim_count * sizeof(rt_prim), triangles_bytes = triangles * sizeof(rt_packed_prim);
     const uint64_t used = sizeof head + params_bytes + groups_bytes + prims_bytes + triangles_bytes;
@@ -133,7 +134,7 @@ std::string read_builder_input(int fd, std::unique_ptr<BuilderInput>& input) {
     if (!values.empty()) std::memcpy(values.data(), params, values.size() * sizeof(double));
     input = std::make_unique<BuilderInput>(
         static_cast<const rt_prim*>(prims), head.prim_count, static_cast<const rt_group*>(groups), head.group_count,
-        static_cast<const rt_packed_prim*>(triangles), head.triangle_count, std::move(values));
+        static_cast<const rt_packed_prim*>(triangles), head.triangle_count, std::move(values), head.device);
     if (lseek(fd, static_cast<off_t>(head.bytes), SEEK_SET) < 0) return std::strerror(errno);
     return {};
 }

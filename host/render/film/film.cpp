@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <map>
 #include <utility>
 
 #include "base/elapsed.hpp"
@@ -18,10 +17,10 @@ namespace {
 constexpr size_t kSumBytes = 4 * sizeof(uint64_t);  // four sums of two uints each, low half first
 constexpr unsigned kSummersPerUnit = 2048;          // work-items that run on a GPU's compute unit at the same time
 
-// The numbers that film.cl uses.
+// The number that film.cl uses.
 cl_uint number_of_tone(const std::string& tone) {
-    static const std::map<std::string, cl_uint> numbers = {{"linear", 0}, {"reinhard", 1}, {"aces", 2}, {"agx", 3}};
-    return numbers.at(tone);
+    const std::vector<std::string> names = tone_names();
+    return static_cast<cl_uint>(std::find(names.begin(), names.end(), tone) - names.begin());
 }
 
 // Upper bound of the vectors of pixels in a row of work-groups. A row that is no whole number of vectors may begin inside one.

@@ -122,10 +122,11 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     };
     materials_at_ = 5;
     const size_t before_lights = contents.size();
-    const rt_accel& table = *accel_->plugin->accel;
+    const rt_accel& table = *accel_->layout->accel;
     for (rt_u32 s = 0; s < table.slot_count; ++s)
-        contents.push_back(
-            {{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes}, accel_->slots[s].memory.data()});
+        if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))
+            contents.push_back(
+                {{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes}, accel_->slots[s].memory.data()});
     std::vector<MemoryPiece> pieces;
     for (const Content& content : contents) pieces.push_back(content.piece);
     check_fits(pieces, device.info(), std::to_string(accel_->leaf_count) + " primitives in " + accel_->plugin->id);

@@ -1,4 +1,5 @@
 #include "render/frame/frame_constants.hpp"
+#include "render/settings/aov.hpp"
 
 #include <cmath>
 #include <cstring>
@@ -65,6 +66,7 @@ rt_frame make_frame(const View& view, const Settings& settings, const Layout& la
     frame.within_y = static_cast<float>(y - std::floor(y));
     frame.min_weight = static_cast<float>(settings.min_weight);
     frame.shadows = settings.shadows;
+    frame.aov = number_of(find_aov(settings.aov));
     frame.root = accel.roots.empty() ? 0 : accel.roots[0];
     const Bounds& bounds = accel.scene.bounds;
     for (int k = 0; k < 3; ++k) {

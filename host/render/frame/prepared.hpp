@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "render/accel/accel_build.hpp"
+#include "render/kernels/kernel_source.hpp"
 #include "render/kernels/layout.hpp"
 #include "render/settings/settings.hpp"
 #include "scene/scene.hpp"
@@ -24,5 +25,10 @@ struct Prepared {
     double compile_ms = 0, upload_ms = 0;  // 0 if the result is shared with an earlier Prepared
     bool compile_cached = false;           // the program was compiled for an earlier Prepared
 };
+
+// Returns the source of a kernel of this kind. The scene, accel, settings and layout must be set; the program need not.
+inline KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart part = FramePart::whole) {
+    return kernel_for({kind, part, prepared.settings, prepared.layout}, *prepared.scene, *prepared.accel);
+}
 
 }  // namespace clarity

@@ -2,13 +2,13 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "render/accel/accel_choice.hpp"
 #include "render/accel/memory_plan.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/device_scene.hpp"
 #include "render/frame/frame_constants.hpp"
 #include "render/frame/wavefront.hpp"
 #include "render/kernels/program_cache.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/view.hpp"
 
@@ -144,13 +144,16 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->params == params)
         return last_->accel;
     const SceneCounts counts = count_scene(*scene);
-    check_fits(plan_memory(counts, *scene, *plugin.accel), info_,
+    const rt_plugin& layout = plugins_.layout_of(plugin);
+    const unsigned lanes = settings.lanes > 0 ? static_cast<unsigned>(settings.lanes) : info_.preferred_lanes();
+    check_fits(plan_memory(counts, *scene, *layout.accel), info_,
                std::to_string(counts.references) + " primitives in " + plugin.id);
     // The last scene is no longer in use elsewhere: free it before the next one is built.
     if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
     progress.stage(std::string("building ") + plugin.id);
     return std::make_shared<AccelData>(
-        build_accel(*scene, plugin, params, progress, settings.debug ? BuildPlace::worker : BuildPlace::automatic));
+        build_accel(*scene, plugin, params, progress,
+                    {&layout, device_for_builders(info_, lanes), settings.debug ? BuildPlace::worker : BuildPlace::automatic}));
 }
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "plugin/capabilities.hpp"
-#include "render/frame/prepared.hpp"
 #include "render/kernels/layout.hpp"
 #include "render/kernels/traversal_source.hpp"
 #include "render/settings/aov.hpp"
@@ -12,10 +11,12 @@
 namespace clarity {
 namespace {
 
-// Defines a number for each AOV (RT_AOV_T, ...), and RT_AOV, the AOV that the program computes. aov.cl compares them.
+// Defines a number for each AOV: RT_AOV_T, ... One program computes all that need no counters, another one those that do, so
+// that changing from one to the next compiles nothing.
 void write_aovs(SourceWriter& out, const Aov& wanted) {
-    for (const Aov& aov : aov_table()) out.define_int(kernel_macro(aov), static_cast<unsigned>(&aov - aov_table().data()));
-    out.line("#define RT_AOV " + kernel_macro(wanted));
+    for (const Aov& aov : aov_table()) out.define_int(kernel_macro(aov), number_of(aov));
+    out.define_int("RT_AOV_COUNT", static_cast<unsigned>(aov_table().size()));
+    out.line("#define RT_AOV");
     if (wanted.counts_steps) out.line("#define RT_COUNT_STEPS");
 }
 
@@ -40,7 +41,7 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
 
 // Writes the beginning of every kernel: types, lanes, the structure's types, and the buffers.
 void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel) {
-    for (const char* name : {"rt_types.h", "lanes/lanes.h"}) out.include(name);
+    for (const char* name : {"rt_shared.h", "rt_types.h", "lanes/lanes.h"}) out.include(name);
     if (!layout.cpu) out.include("lanes/subgroup.h");
     for (const char* name : {"lanes/rays.h", "lanes/ray_space.h", "primitives/loaded_prim.h"}) out.include(name);
     if (layout.cpu)
@@ -67,13 +68,13 @@ void write_queries(SourceWriter& out, const KernelRow& row, const KernelChoice& 
 
 }  // namespace
 
-KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart part) {
-    const Settings& settings = prepared.settings;
-    const Layout& layout = prepared.layout;
-    const rt_plugin& accel = *prepared.accel->plugin;
-    const KernelChoice choice{kind, part, settings, layout};
+KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const AccelData& data) {
+    const Settings& settings = choice.settings;
+    const Layout& layout = choice.layout;
+    const FramePart part = choice.part;
+    const rt_plugin& accel = *data.layout;
     const KernelRow& row = kernel_row(choice);
-    const SceneFeatures features = features_of(*prepared.scene, prepared.accel->scene);
+    const SceneFeatures features = features_of(scene, data.scene);
     KernelSource source;
     source.row = &row;
     source.what = std::string(row.what) + " with accel " + accel.id;
@@ -87,12 +88,13 @@ KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart par
     if (settings.debug) out.line("#define RT_DEBUG");
     if (source.limit_registers) out.line("#define RT_FEWER_REGISTERS");
     for (const std::string& define : row.defines) out.line("#define " + define);
-    if (kind == KernelKind::aov) write_aovs(out, find_aov(settings.aov));
+    if (choice.kind == KernelKind::aov) write_aovs(out, find_aov(settings.aov));
     if (part < FramePart::whole) out.define_int("RT_PART", std::min(static_cast<unsigned>(part), 2u));
     if (row.has(kRaySlots)) out.define_int("RT_RAY_SLOTS", static_cast<unsigned>(settings.ray_slots));
+    out.define_uint("RT_KERNEL_CONTRACT", accel.accel->kernel_contract);
     for (const Capability& capability : capabilities())
         if (accel.accel->capabilities & capability.bit) out.line(std::string("#define ") + capability.define);
-    for (const auto& [name, value] : prepared.accel->defines) out.define_uint(name, value);
+    for (const auto& [name, value] : data.defines) out.define_uint(name, value);
 
     write_preamble(out, layout, accel);
     write_queries(out, row, choice, features, accel);

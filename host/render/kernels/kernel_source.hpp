@@ -3,11 +3,11 @@
 #pragma once
 #include <string>
 
+#include "render/accel/accel_build.hpp"
 #include "render/kernels/kernel_table.hpp"
+#include "scene/scene.hpp"
 
 namespace clarity {
-
-struct Prepared;
 
 struct KernelSource {
     const KernelRow* row = nullptr;
@@ -15,8 +15,8 @@ struct KernelSource {
     std::string what;              // for messages: "tracer iterative with accel bvh2"
     bool limit_registers = false;  // limit the kernel's registers on GPUs: it is faster with fewer than it would take
 };
-// Returns the source of a kernel of this kind. Prepared's scene, accel, settings and layout must be set; its program need not.
-// Throws Error(kernel_build_failed) if a file of the kernel cannot be read.
-KernelSource kernel_for(const Prepared& prepared, KernelKind kind, FramePart part = FramePart::whole);
+// Returns the source of the chosen kernel for this scene in this structure. Throws Error(kernel_build_failed) if a file of the
+// kernel cannot be read.
+KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const AccelData& accel);
 
 }  // namespace clarity

@@ -96,7 +96,8 @@ void write_context(SourceWriter& out, const rt_accel& accel) {
         init += " ctx." + name + " = ctx_" + name + ";";
     };
     for (const Member& member : kMembers) add(member.type, member.name);
-    for (rt_u32 s = 0; s < accel.slot_count; ++s) add(accel.slots[s].cl_type, accel.slots[s].name);
+    for (rt_u32 s = 0; s < accel.slot_count; ++s)
+        if (!(accel.slots[s].flags & RT_SLOT_HOST_ONLY)) add(accel.slots[s].cl_type, accel.slots[s].name);
     out.line("} rt_ctx;");
     // If the size of a struct differs between host and device, compiling fails, and the message names the struct.
     const auto check = [&](const std::string& type, const std::string& name, size_t bytes) {
@@ -108,7 +109,8 @@ void write_context(SourceWriter& out, const rt_accel& accel) {
     check("rt_material", "rt_material", sizeof(rt_material));
     check("rt_frame", "rt_frame", sizeof(rt_frame));
     for (rt_u32 s = 0; s < accel.slot_count; ++s)
-        check(accel.slots[s].cl_type, std::string("slot_") + accel.slots[s].name, accel.slots[s].elem_bytes);
+        if (!(accel.slots[s].flags & RT_SLOT_HOST_ONLY))
+            check(accel.slots[s].cl_type, std::string("slot_") + accel.slots[s].name, accel.slots[s].elem_bytes);
     out.line("#define RT_CTX_PARAMS " + params);
     out.line("#define RT_CTX_INIT(ctx) rt_ctx ctx;" + init);
 }

@@ -24,6 +24,7 @@ void TileScheduler::begin(unsigned tile_count, const std::vector<bool>& takes_pa
     unsigned few = known ? taking : std::max(taking, alike ? tile_count / 16 : tile_count);
     if (taking < 2 || (known && alike)) few = 0;
     assign_in_advance(tile_count, std::min(tile_count, few));
+    if (few == 0) give_each_one();
     dynamic_ = !left_.empty();
 }
 
@@ -57,6 +58,19 @@ void TileScheduler::assign_in_advance(unsigned tile_count, unsigned left_over) {
         (to == unassigned ? left_ : reserved_[to]).push_back(tile);
     }
     std::reverse(left_.begin(), left_.end());
+}
+
+// Gives each device that has no tile one of the device with the most. A device that was busy with other work for a while would
+// otherwise stay without tiles in small pictures, because without a tile it shows no speed.
+void TileScheduler::give_each_one() {
+    for (size_t i = 0; i < reserved_.size(); ++i) {
+        if (!takes_part_[i] || !reserved_[i].empty()) continue;
+        const auto most = std::max_element(reserved_.begin(), reserved_.end(),
+                                           [](const auto& a, const auto& b) { return a.size() < b.size(); });
+        if (most->size() < 2) return;
+        reserved_[i].push_back(most->back());
+        most->pop_back();
+    }
 }
 
 double TileScheduler::share_locked(size_t device) const {

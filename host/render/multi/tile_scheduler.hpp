@@ -35,6 +35,7 @@ class TileScheduler {
     };
     void learn();
     void assign_in_advance(unsigned tile_count, unsigned left_over);
+    void give_each_one();
     double share_locked(size_t device) const;
 
     mutable std::mutex mutex_;

@@ -73,7 +73,7 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         }
         if (packing_ != rays.packing()) {
             packing_ = rays.packing();
-            kinds_ = kinds_for(*prepared.accel->plugin, layout, votes(device_->info(), prepared.settings), query);
+            kinds_ = kinds_for(*prepared.accel->layout, layout, votes(device_->info(), prepared.settings), query);
             autotuner_ = Autotuner(static_cast<unsigned>(kinds_.size()));
         }
         const KernelKind kind = kinds_[autotuner_.variant()];

@@ -72,6 +72,10 @@ const Aov& find_aov(const std::string& name) {
     throw std::out_of_range("no AOV `" + name + "`");
 }
 
+unsigned number_of(const Aov& aov) {
+    return static_cast<unsigned>(&aov - aov_table().data());
+}
+
 std::string kernel_macro(const Aov& aov) {
     std::string macro = std::string("RT_AOV_") + aov.name;
     for (char& c : macro)

@@ -44,7 +44,8 @@ struct Aov {
 const std::vector<Aov>& aov_table();
 // Returns the row of that name. Throws std::out_of_range for unknown names, which settings never contain.
 const Aov& find_aov(const std::string& name);
-// Returns the name of the macro that kernels use: RT_AOV_T, RT_AOV_LEAF_TESTS. Its value is the row's number in the table.
+// Returns the number of a row of the table, and the name of the macro that kernels use for it: RT_AOV_T, RT_AOV_LEAF_TESTS.
+unsigned number_of(const Aov& aov);
 std::string kernel_macro(const Aov& aov);
 // Returns the names in the table's order, and one sentence that describes them all.
 std::vector<std::string> aov_names();

@@ -6,7 +6,7 @@
 #include "base/output_file.hpp"
 #include "base/read_file.hpp"
 #include "plugin/parameters.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 
 namespace clarity {
 namespace {

@@ -125,6 +125,10 @@ Setting lanes_setting() {
 
 }  // namespace
 
+std::vector<std::string> tone_names() {
+    return {"linear", "reinhard", "aces", "agx"};
+}
+
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
         choice("tracer", "Tracer",
@@ -147,8 +151,7 @@ const std::vector<Setting>& settings_table() {
         real("scale_max", "Scale end", "value at the upper end of false colours; 0: the largest of the picture", 0, 1e9,
              Effect::frame, &Settings::scale_max),
         real("exposure", "Exposure", "factor before tone mapping", 0, 1000, Effect::frame, &Settings::exposure),
-        choice("tone", "Tone mapping", "from linear light to the screen", {"linear", "reinhard", "aces", "agx"}, Effect::frame,
-               &Settings::tone),
+        choice("tone", "Tone mapping", "from linear light to the screen", tone_names(), Effect::frame, &Settings::tone),
         boolean("fast_math", "Fast maths", "lets the compiler ignore NaN and rounding rules; pictures may break",
                 Effect::recompile, &Settings::fast_math),
         boolean("portable", "Portable code", "no CPU instructions beyond OpenCL C: for tests of the fallbacks",

@@ -58,4 +58,7 @@ const Setting* find_setting(const std::string& key);
 // Reads a value. Throws Error(usage); for an unknown key the message lists the known ones.
 void set_setting(Settings& settings, const std::string& key, const std::string& value);
 
+// Returns the names of the tone curves in the order of their numbers in cl/film.cl.
+std::vector<std::string> tone_names();
+
 }  // namespace clarity

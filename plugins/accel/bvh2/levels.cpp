@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "rt_plugin.hpp"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "bvh2_types.h"
 
 namespace bvh2 {

@@ -1,5 +1,7 @@
 #include "statistics.hpp"
 
+#include <algorithm>
+
 #include "rt_plugin.hpp"
 
 namespace bvh2 {
@@ -37,7 +39,7 @@ struct Part {
 
 }  // namespace
 
-Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
+Statistics measure(const rt_host* host, const clarity::bvh::Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
                    const std::vector<rt_u32>& roots, const rt_group* groups) {
     constexpr rt_u32 kPart = 8192;
     std::vector<Part> parts;

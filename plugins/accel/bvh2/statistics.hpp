@@ -2,9 +2,9 @@
 #pragma once
 #include <vector>
 
-#include "range.hpp"
+#include "clarity_bvh/rules.hpp"
 #include "rt_plugin.h"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "bvh2_types.h"
 
 namespace bvh2 {
@@ -19,7 +19,7 @@ struct Statistics {
 
 // Measures the trees, on all cores. The nodes of group g begin at roots[g] and end where those of the next group begin, or at
 // node_count.
-Statistics measure(const rt_host* host, const Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
+Statistics measure(const rt_host* host, const clarity::bvh::Rules& rules, const bvh2_node* nodes, rt_u32 node_count,
                    const std::vector<rt_u32>& roots, const rt_group* groups);
 
 }  // namespace bvh2

@@ -24,6 +24,7 @@ typedef struct bvh4_node {
  * root of a group is always a node; the builder reports its index. A slot without a child is BVH4_EMPTY, with a box from +inf
  * to -inf that no ray enters. */
 #define BVH4_LEAF 0x80000000u
+#define BVH4_LEAF_MAX 7u
 #define BVH4_LEAF_COUNT(child) (((child) >> 28) & 7u)
 #define BVH4_LEAF_FIRST(child) ((child)&0x0FFFFFFFu)
 #define BVH4_MAKE_LEAF(first, count) (BVH4_LEAF | ((count) << 28) | (first))

@@ -6,9 +6,7 @@
 #ifndef BVH8_TYPES_H
 #define BVH8_TYPES_H
 
-#ifndef BVH8_WIDTH
 #define BVH8_WIDTH 8
-#endif
 
 /* 224 B, a multiple of 32, so that a row is one aligned vector. plane[k] is a row: for k = 0..2 the children's lower bounds in
  * x, y, z, for k = 3..5 the upper ones. Bounds are exact and not padded: the traversal accounts for its own rounding.
@@ -19,9 +17,6 @@
 typedef struct bvh8_node {
     rt_f32 plane[6][BVH8_WIDTH];
     rt_u32 child[BVH8_WIDTH];
-#if BVH8_WIDTH == 4 /* bvh4 */
-    rt_u32 pad[4];
-#endif
 } bvh8_node;
 
 /* A child is a node reference: the index of a node, or, with bit 31 set, a leaf. Bits 28..30 of a leaf are the number of its

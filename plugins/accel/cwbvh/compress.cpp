@@ -2,16 +2,18 @@
 
 #include <algorithm>
 
+#include "clarity_bvh/base/scratch.hpp"
 #include "rt_plugin.hpp"
-#include "scratch.hpp"
 
 namespace cwbvh {
 namespace {
 
+using namespace clarity::bvh;
+
 constexpr rt_u32 kChunk = 4096;  // nodes per task
 
 bool is_node(rt_u32 child) {
-    return (child & BVH8_LEAF) == 0;
+    return !is_leaf(child);
 }
 
 // The numbers of children and primitives directly below the nodes of a chunk; later the sums over all earlier chunks.
@@ -19,13 +21,13 @@ struct Below {
     uint64_t nodes = 0, primitives = 0;
 };
 
-Below below(const bvh8_node& node) {
+Below below(const cwbvh::WideNode& node) {
     Below sum;
     for (const rt_u32 child : node.child) {
         if (is_node(child))
             ++sum.nodes;
         else
-            sum.primitives += BVH8_LEAF_COUNT(child);
+            sum.primitives += leaf_count(child);
     }
     return sum;
 }
@@ -56,7 +58,7 @@ void compress(const rt_host* host, const WideNodes& wide, const rt_build_output*
     }
 
     // The index of a node depends on its parent, so all indices are computed before any node is written.
-    const bvh2::Scratch<rt_u32> place(wide.node_count);
+    const Scratch<rt_u32> place(wide.node_count);
     for (rt_u32 g = 0; g < root_count; ++g) {
         place.data()[(*wide.roots)[g]] = g;
         rt::root(out, g, g);
@@ -74,20 +76,20 @@ void compress(const rt_host* host, const WideNodes& wide, const rt_build_output*
     rt::parallel_for(host, chunk_count, [&](rt_u32 c) {
         auto next_child = static_cast<rt_u32>(before[c].nodes), next_leaf = static_cast<rt_u32>(before[c].primitives);
         each_of(c, [&](rt_u32 i) {
-            const bvh8_node& from = wide.nodes[i];
+            const cwbvh::WideNode& from = wide.nodes[i];
             cwbvh_node to{};
             to.first_child = next_child;
             to.first_leaf = next_leaf;
-            for (rt_u32 slot = 0; slot < BVH8_WIDTH; ++slot) {
+            for (rt_u32 slot = 0; slot < 8; ++slot) {
                 const rt_u32 child = from.child[slot];
                 if (is_node(child)) {
                     to.cells |= 1u << (24 + slot);
                     ++next_child;
                     continue;
                 }
-                const rt_u32 count = BVH8_LEAF_COUNT(child);
+                const rt_u32 count = leaf_count(child);
                 to.primitives |= ((1u << count) - 1u) << 4 * slot;
-                std::copy_n(wide.refs + BVH8_LEAF_FIRST(child), count, refs + next_leaf);
+                std::copy_n(wide.refs + leaf_first(child), count, refs + next_leaf);
                 next_leaf += count;
             }
             quantize(from, to);

@@ -1,4 +1,4 @@
-// compress.hpp -- converts a finished tree of bvh8 to compressed nodes.
+// compress.hpp -- converts a finished 8-wide tree to compressed nodes.
 #pragma once
 #include <vector>
 
@@ -6,9 +6,9 @@
 
 namespace cwbvh {
 
-// A tree of bvh8: its nodes in depth-first order, its leaf order, and the roots of its groups.
+// An 8-wide tree: its nodes in depth-first order, its leaf order, and the roots of its groups.
 struct WideNodes {
-    const bvh8_node* nodes;
+    const WideNode* nodes;
     rt_u32 node_count;
     const rt_u32* refs;
     uint64_t ref_count;

@@ -29,7 +29,7 @@ Box rounded(const cwbvh_node& node, rt_u32 slot) {
 template <class Body>
 void each_child(const cwbvh_node& node, Body&& do_one) {
     rt_u32 next = node.first_child;
-    for (rt_u32 slot = 0; slot < BVH8_WIDTH; ++slot) {
+    for (rt_u32 slot = 0; slot < 8; ++slot) {
         if (CWBVH_INNER(&node) >> slot & 1u)
             do_one(rounded(node, slot), next++);
         else if (node.primitives >> 4 * slot & 15u)

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "rt_plugin.hpp"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "spheres_types.h"
 
 namespace spheres {

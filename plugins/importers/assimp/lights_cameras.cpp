@@ -63,34 +63,33 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
         rt_light_desc desc{};
         desc.struct_bytes = sizeof desc;
         desc.name = light.mName.C_Str();
-        rt_light& out = desc.values;
         if (light.mType == aiLightSource_DIRECTIONAL) {
             Vec direction = transform_vector(world, light.mDirection);
             if (!normalize(direction)) direction = {0, -1, 0};
-            out.kind = RT_LIGHT_DIRECTIONAL;
-            store({-direction[0], -direction[1], -direction[2]}, out.position);
+            desc.kind = RT_LIGHT_DIRECTIONAL;
+            store(direction, desc.direction);
         } else {
             if (light.mType != aiLightSource_POINT) {
                 const char* kind = light.mType == aiLightSource_SPOT ? "spot" : "area";
                 const std::string text = "the " + std::string(kind) + " light " + quoted(light.mName) + " became a point light";
                 sink.warn(sink.ctx, text.c_str());
             }
-            out.kind = RT_LIGHT_POINT;
-            store(transform_point(world, light.mPosition), out.position);
+            desc.kind = RT_LIGHT_POINT;
+            store(transform_point(world, light.mPosition), desc.position);
         }
         for (int k = 0; k < 3; ++k) {
             const float c = light.mColorDiffuse[k];
-            out.color[k] = std::isfinite(c) ? std::max(c, 0.0f) : 0;
-            brightest = std::max(brightest, out.color[k]);
+            desc.color[k] = std::isfinite(c) ? std::max(c, 0.0f) : 0;
+            brightest = std::max(brightest, desc.color[k]);
         }
-        if (all_finite(out.position)) lights.push_back(desc);
+        if (all_finite(desc.position)) lights.push_back(desc);
     }
     // Physical intensities (watts, candela) assume falloff with distance. Lights here have no falloff, so all of them are
     // scaled until the brightest is 1.
     if (brightest > 1) {
         rt::log(&host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest));
         for (rt_light_desc& light : lights) {
-            for (float& c : light.values.color) c /= brightest;
+            for (float& c : light.color) c /= brightest;
         }
     }
     for (const rt_light_desc& light : lights) rt::id(sink.light(sink.ctx, &light));

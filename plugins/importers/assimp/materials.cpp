@@ -34,7 +34,7 @@ float brightest(const aiColor3D& c) {
 }
 
 // Converts metallic-roughness materials (glTF and others): a smooth metal mirrors, a rough one stays diffuse in its own colour.
-void apply_metallic(const aiMaterial& m, rt_material& out) {
+void apply_metallic(const aiMaterial& m, rt_material_desc& out) {
     const float metallic = finite(number(m, AI_MATKEY_METALLIC_FACTOR, 0), 0, 1, 0);
     const float roughness = finite(number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1), 0, 1, 1);
     const float smooth = 1 - roughness;
@@ -45,7 +45,7 @@ void apply_metallic(const aiMaterial& m, rt_material& out) {
     for (int k = 0; k < 3; ++k) out.specular[k] = smooth * (0.04f + metallic * (out.color[k] - 0.04f));
 }
 
-void apply_phong(const aiMaterial& m, rt_material& out) {
+void apply_phong(const aiMaterial& m, rt_material_desc& out) {
     const aiColor3D specular = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
     const float strength = finite(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
     store(specular * strength, 1, out.specular);
@@ -57,7 +57,7 @@ void apply_phong(const aiMaterial& m, rt_material& out) {
 
 // Converts opacity and transmission to refraction. Rays are bent only if the file gives an index of refraction or a
 // transmission.
-void apply_transparency(const aiMaterial& m, Format format, rt_material& out) {
+void apply_transparency(const aiMaterial& m, Format format, rt_material_desc& out) {
     float opacity = finite(number(m, AI_MATKEY_OPACITY, 1), 0, 1, 1);
     if (format == Format::gltf) {
         aiString mode;
@@ -107,7 +107,7 @@ rt_u32 MaterialTable::id(unsigned material) {
     if (m.Get(AI_MATKEY_NAME, name) == aiReturn_SUCCESS && name.length > 0) desc.name = name.C_Str();
     // assimp adds a material where the file has none. The host's default material takes its place.
     if (std::string(name.C_Str()) == AI_DEFAULT_MATERIAL_NAME) return RT_NONE;
-    rt_material& out = desc.values;
+    rt_material_desc& out = desc;
     out.texture = texture(m);
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);

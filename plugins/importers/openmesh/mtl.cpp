@@ -50,7 +50,7 @@ float largest(const float c[3]) {
 ObjMaterial finish(const Statements& s) {
     ObjMaterial m;
     m.texture = s.texture;
-    rt_material& out = m.values;
+    rt_material_desc& out = m.values;
     out.texture = RT_NONE;
     const bool mirrors = s.illumination == 3 || s.illumination == 5 || s.illumination == 8;
     const bool is_glass = s.illumination == 4 || s.illumination == 6 || s.illumination == 7 || s.illumination == 9;

@@ -8,8 +8,8 @@
 namespace openmesh_import {
 
 struct ObjMaterial {
-    rt_material values{};  // .texture is not set
-    std::string texture;   // map_Kd as in the file, or empty
+    rt_material_desc values{};  // without name and texture
+    std::string texture;        // map_Kd as in the file, or empty
 };
 
 // Adds the materials of one file to `materials`, by name. Lines that cannot be understood are skipped, as other programs do.

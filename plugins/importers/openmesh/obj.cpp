@@ -133,11 +133,10 @@ class ObjLines {
             material_ = ids_[name] = RT_NONE;
             return;
         }
-        rt_material_desc desc{};
+        rt_material_desc desc = found->second.values;
         desc.struct_bytes = sizeof desc;
         desc.name = name.c_str();
-        desc.values = found->second.values;
-        if (!found->second.texture.empty()) desc.values.texture = texture(found->second.texture);
+        if (!found->second.texture.empty()) desc.texture = texture(found->second.texture);
         material_ = ids_[name] = rt::id(source_.sink.material(source_.sink.ctx, &desc));
     }
     rt_u32 texture(const std::string& path) {

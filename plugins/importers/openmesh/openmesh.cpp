@@ -81,10 +81,10 @@ rt_u32 texture_material(const Source& source, const std::string& path) {
     rt_material_desc material{};
     material.struct_bytes = sizeof material;
     material.name = path.c_str();
-    material.values.texture = source.sink.texture(source.sink.ctx, &texture);
-    if (material.values.texture == RT_NONE) return RT_NONE;
-    std::fill(material.values.color, material.values.color + 3, 1.0f);
-    material.values.shininess = material.values.ior = 1;
+    material.texture = source.sink.texture(source.sink.ctx, &texture);
+    if (material.texture == RT_NONE) return RT_NONE;
+    std::fill(material.color, material.color + 3, 1.0f);
+    material.shininess = material.ior = 1;
     return rt::id(source.sink.material(source.sink.ctx, &material));
 }
 

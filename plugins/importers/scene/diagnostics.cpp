@@ -48,7 +48,7 @@ std::string located(std::string_view file, const Diagnostic& diagnostic) {
            std::to_string(diagnostic.position.column) + ": " + diagnostic.message;
 }
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     if (text.size() <= kMaxShown) return "`" + std::string(text) + "`";
     size_t end = kMaxShown;
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // do not cut inside a character

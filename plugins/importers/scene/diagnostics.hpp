@@ -45,7 +45,7 @@ class Diagnostics {
 std::string located(std::string_view file, const Diagnostic& diagnostic);
 
 // Returns the text in backquotes for a message, cut if it is long.
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 // Joins the words: "a, b, c".
 std::string listed(const std::vector<std::string_view>& words);
 // Returns "; did you mean `radius`?" with the word nearest to what was read, or nothing if no word is near. The distance is the

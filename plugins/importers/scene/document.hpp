@@ -24,12 +24,12 @@ struct Camera {
 };
 struct Light {
     std::string name;
-    rt_light values{};
+    rt_light_desc values{};  // without name
 };
 struct Material {
     Name name;
-    rt_material values{};
-    std::string texture;  // path as in the file; empty: no texture
+    rt_material_desc values{};  // without name and texture
+    std::string texture;        // path as in the file; empty: no texture
 };
 struct Sphere {
     Vec3 center{0, 0, 0};

@@ -55,9 +55,9 @@ bool Emitter::materials() {
     std::unordered_map<std::string, rt_u32> texture_ids;
     for (const Material& material : document_.materials) {
         position_ = material.name.position;
-        auto desc = sized<rt_material_desc>();
+        rt_material_desc desc = material.values;
+        desc.struct_bytes = sizeof desc;
         desc.name = material.name.text.c_str();
-        desc.values = material.values;
         if (!material.texture.empty()) {
             auto [known, is_new] = texture_ids.emplace(material.texture, RT_NONE);
             if (is_new) {
@@ -65,7 +65,7 @@ bool Emitter::materials() {
                 texture.path = material.texture.c_str();
                 known->second = sink_.texture(sink_.ctx, &texture);  // RT_NONE: the host has already warned
             }
-            desc.values.texture = known->second;
+            desc.texture = known->second;
         }
         const rt_u32 id = sink_.material(sink_.ctx, &desc);
         if (id == RT_NONE) return false;
@@ -76,9 +76,9 @@ bool Emitter::materials() {
 
 bool Emitter::lights_and_cameras() {
     for (const Light& light : document_.lights) {
-        auto desc = sized<rt_light_desc>();
+        rt_light_desc desc = light.values;
+        desc.struct_bytes = sizeof desc;
         desc.name = name_or_null(light.name);
-        desc.values = light.values;
         if (sink_.light(sink_.ctx, &desc) == RT_NONE) return false;
     }
     constexpr float rad_per_deg = 3.14159265358979323846f / 180.0f;

@@ -13,21 +13,11 @@ namespace {
 
 constexpr uint32_t kLinesBetweenReports = 4096;
 
-using ReadFunction = void (*)(Statement&, Document&, Diagnostics&);
-const std::vector<std::pair<std::string_view, ReadFunction>>& statements() {
-    static const std::vector<std::pair<std::string_view, ReadFunction>> table = {
-        {"camera", read_camera},     {"light", read_light},   {"background", read_background}, {"ambient", read_ambient},
-        {"material", read_material}, {"sphere", read_sphere}, {"plane", read_plane},           {"polygon", read_polygon},
-        {"triangle", read_triangle}, {"load", read_load},     {"animate", read_animate},
-    };
-    return table;
-}
-
 void read_statement(Statement& statement, const Token& first, Document& document, Diagnostics& diagnostics) {
     std::vector<std::string_view> words;
     if (first.is_quoted) {
         throw StatementError{first.position,
-                             "text in quotes, " + quoted(first.text) + "; expected a statement, without quotes"};
+                             "text in quotes, " + in_quotes(first.text) + "; expected a statement, without quotes"};
     }
     for (const auto& [word, read] : statements()) {
         if (word == first.text) {
@@ -37,7 +27,7 @@ void read_statement(Statement& statement, const Token& first, Document& document
         }
         words.push_back(word);
     }
-    throw StatementError{first.position, "unknown statement " + quoted(first.text) + suggestion(first.text, words) +
+    throw StatementError{first.position, "unknown statement " + in_quotes(first.text) + suggestion(first.text, words) +
                                              " (statements: " + listed(words) + ")"};
 }
 
@@ -52,7 +42,7 @@ Names defined_names(const Things& things, const char* kind, Diagnostics& diagnos
         if (name.text.empty() || diagnostics.full()) continue;
         const auto [first, is_new] = names.emplace(name.text, name.position);
         if (is_new) continue;
-        diagnostics.error({name.position, std::string(kind) + " " + quoted(name.text) +
+        diagnostics.error({name.position, std::string(kind) + " " + in_quotes(name.text) +
                                               " for the second time; the first is in line " +
                                               std::to_string(first->second.line)});
     }
@@ -68,7 +58,7 @@ void check_use(const Name& use, const Names& names, const char* kind, Diagnostic
     const bool is_cut = known.size() > most_listed;
     if (is_cut) known.resize(most_listed);
     const std::string all = known.empty() ? "none" : listed(known) + (is_cut ? ", ..." : "");
-    diagnostics.error({use.position, "unknown " + std::string(kind) + " " + quoted(use.text) + nearest +
+    diagnostics.error({use.position, "unknown " + std::string(kind) + " " + in_quotes(use.text) + nearest +
                                          " (defined in this file: " + all + ")"});
 }
 

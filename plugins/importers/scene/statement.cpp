@@ -49,11 +49,12 @@ size_t Statement::key() {
     const Token& token = tokens_[at_++];
     const std::string keys = " (keys of " + std::string(word()) + ": " + listed(key_names()) + ")";
     if (token.is_quoted)
-        throw StatementError{token.position, "text in quotes, " + quoted(token.text) + "; expected a key" + keys};
+        throw StatementError{token.position, "text in quotes, " + in_quotes(token.text) + "; expected a key" + keys};
     for (size_t i = 0; i < keys_.size(); ++i) {
         if (keys_[i].name != token.text) continue;
         if (given(i) && !keys_[i].repeats) {
-            throw StatementError{token.position, "key " + quoted(token.text) + " for the second time; the first is in column " +
+            throw StatementError{token.position, "key " + in_quotes(token.text) +
+                                                     " for the second time; the first is in column " +
                                                      std::to_string(key_positions_[i].column)};
         }
         seen_ |= 1u << i;
@@ -62,21 +63,22 @@ size_t Statement::key() {
     }
     if (parse_number(token.text).error != NumberError::not_a_number) {
         throw StatementError{token.position,
-                             "number " + quoted(token.text) + " is one too many; expected a key or the line's end" + keys};
+                             "number " + in_quotes(token.text) + " is one too many; expected a key or the line's end" + keys};
     }
-    throw StatementError{token.position, "unknown key " + quoted(token.text) + suggestion(token.text, key_names()) + keys};
+    throw StatementError{token.position, "unknown key " + in_quotes(token.text) + suggestion(token.text, key_names()) + keys};
 }
 
 void Statement::expect_end() {
     if (done()) return;
-    throw StatementError{tokens_[at_].position, quoted(tokens_[at_].text) + " is one word too many; expected the line's end"};
+    throw StatementError{tokens_[at_].position,
+                         in_quotes(tokens_[at_].text) + " is one word too many; expected the line's end"};
 }
 
 // ---- words
 
 std::string Statement::text(std::string_view what, size_t most_bytes) {
     if (at_key()) {
-        throw StatementError{tokens_[at_].position, "key " + quoted(tokens_[at_].text) + "; expected " + std::string(what) +
+        throw StatementError{tokens_[at_].position, "key " + in_quotes(tokens_[at_].text) + "; expected " + std::string(what) +
                                                         " (in quotes, if that is what it is)"};
     }
     const Token& token = take(std::string(what));
@@ -90,8 +92,8 @@ std::string Statement::text(std::string_view what, size_t most_bytes) {
 
 Name Statement::name(std::string_view what) {
     if (!done() && !tokens_[at_].is_quoted && parse_number(tokens_[at_].text).error != NumberError::not_a_number) {
-        throw StatementError{tokens_[at_].position, "number " + quoted(tokens_[at_].text) + "; expected " + std::string(what) +
-                                                        " (in quotes, if it looks like a number)"};
+        throw StatementError{tokens_[at_].position, "number " + in_quotes(tokens_[at_].text) + "; expected " +
+                                                        std::string(what) + " (in quotes, if it looks like a number)"};
     }
     std::string read = text(what, kMaxNameBytes);
     return {std::move(read), last()};
@@ -106,7 +108,7 @@ size_t Statement::choice(std::string_view what, const std::vector<std::string_vi
     for (size_t i = 0; i < words.size(); ++i) {
         if (!token.is_quoted && words[i] == token.text) return i;
     }
-    throw StatementError{token.position, quoted(token.text) + " is no " + std::string(what) + suggestion(token.text, words) +
+    throw StatementError{token.position, in_quotes(token.text) + " is no " + std::string(what) + suggestion(token.text, words) +
                                              " (expected: " + listed(words) + ")"};
 }
 
@@ -118,28 +120,28 @@ float Statement::number(std::string_view what, size_t index, size_t count) {
         expected = "number " + std::to_string(index + 1) + " of " + std::to_string(count) + " for " + std::string(what);
     const Token& token = take(expected);
     if (token.is_quoted)
-        throw StatementError{token.position, "text in quotes, " + quoted(token.text) + "; expected " + expected};
+        throw StatementError{token.position, "text in quotes, " + in_quotes(token.text) + "; expected " + expected};
     const Number number = parse_number(token.text);
     switch (number.error) {
         case NumberError::none:
             return number.value;
         case NumberError::not_a_number:
-            throw StatementError{token.position, quoted(token.text) + " is no number; expected " + expected};
+            throw StatementError{token.position, in_quotes(token.text) + " is no number; expected " + expected};
         case NumberError::trailing_text:
             throw StatementError{token.position,
-                                 quoted(token.text) + " goes on behind a number; expected " + expected +
+                                 in_quotes(token.text) + " goes on behind a number; expected " + expected +
                                      (token.text.find(',') != std::string_view::npos ? " (the decimal sign is a point)" : "")};
         case NumberError::out_of_range:
             break;
     }
-    throw StatementError{token.position, quoted(token.text) + " is out of range; expected " + expected +
+    throw StatementError{token.position, in_quotes(token.text) + " is out of range; expected " + expected +
                                              ", finite and of size " + short_number(kMaxNumber) + " at most"};
 }
 
 float Statement::number_between(std::string_view what, float least, float most) {
     const float value = number(what);
     if (value < least || value > most) {
-        fail_at_last(quoted(tokens_[at_ - 1].text) + " is out of range; expected " + std::string(what) + " between " +
+        fail_at_last(in_quotes(tokens_[at_ - 1].text) + " is out of range; expected " + std::string(what) + " between " +
                      short_number(least) + " and " + short_number(most));
     }
     return value;
@@ -166,7 +168,7 @@ Vec3 Statement::color(std::string_view what, float most) {
         if (i == 1 && (done() || at_key())) return {c[0], c[0], c[0]};
         c[i] = number(what, i, 3);
         if (c[i] < 0 || c[i] > most) {
-            fail_at_last(quoted(tokens_[at_ - 1].text) + " is out of range; expected " + std::string(what) +
+            fail_at_last(in_quotes(tokens_[at_ - 1].text) + " is out of range; expected " + std::string(what) +
                          " in linear light, " + (most < kMaxNumber ? "0 to " + short_number(most) : std::string("0 or more")));
         }
     }

@@ -9,6 +9,8 @@
 namespace scene_format {
 namespace {
 
+// Below, one function for each statement. Their reference is docs/scene_format.md.
+
 constexpr float kNoLimit = kMaxNumber;
 
 void copy(const Vec3& from, float (&to)[3]) {
@@ -21,12 +23,10 @@ void add_item(Document& document, ItemKind kind, size_t index, Position position
 
 void once(Statement& s, Position first) {
     if (first.line != 0) {
-        throw StatementError{s.position(), "statement " + quoted(s.word()) + " for the second time; the first is in line " +
+        throw StatementError{s.position(), "statement " + in_quotes(s.word()) + " for the second time; the first is in line " +
                                                std::to_string(first.line)};
     }
 }
-
-}  // namespace
 
 void read_camera(Statement& s, Document& document, Diagnostics&) {
     enum { kEye, kTarget, kUp, kFov };
@@ -94,8 +94,8 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
     }
     for (float& c : color) c = std::min(c * intensity, kMaxNumber);
     copy(color, light.values.color);
-    // The renderer stores the direction towards the light.
-    copy(is_point ? position : Vec3{-direction[0], -direction[1], -direction[2]}, light.values.position);
+    copy(position, light.values.position);
+    copy(direction, light.values.direction);
     document.lights.push_back(std::move(light));
 }
 
@@ -122,7 +122,7 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
     // Register the name before the keys are read, so that an error in a key does not make every use of the name an error.
     Material& material = document.materials.emplace_back();
     material.name = s.name("the material's name");
-    rt_material& values = material.values;
+    rt_material_desc& values = material.values;
     // The same values as the host's material for objects without one.
     copy({0.7f, 0.7f, 0.7f}, values.color);
     copy({0.15f, 0.15f, 0.15f}, values.specular);
@@ -171,7 +171,7 @@ void read_material(Statement& s, Document& document, Diagnostics& diagnostics) {
             char text[160];
             std::snprintf(text, sizeof text,
                           "`reflect` and `refract` of material %s add up to %g; both are scaled down to add up to 1",
-                          quoted(material.name.text).c_str(), static_cast<double>(sum));
+                          in_quotes(material.name.text).c_str(), static_cast<double>(sum));
             diagnostics.warning(refract_position, text);
         }
         values.reflect /= sum;
@@ -330,6 +330,17 @@ void read_animate(Statement& s, Document& document, Diagnostics& diagnostics) {
         diagnostics.warning(s.position(), "animation is not supported yet: `animate` is ignored, the scene is shown at rest");
     }
     document.animated.push_back(std::move(target));
+}
+
+}  // namespace
+
+const std::vector<StatementRow>& statements() {
+    static const std::vector<StatementRow> table = {
+        {"camera", read_camera},     {"light", read_light},   {"background", read_background}, {"ambient", read_ambient},
+        {"material", read_material}, {"sphere", read_sphere}, {"plane", read_plane},           {"polygon", read_polygon},
+        {"triangle", read_triangle}, {"load", read_load},     {"animate", read_animate},
+    };
+    return table;
 }
 
 }  // namespace scene_format

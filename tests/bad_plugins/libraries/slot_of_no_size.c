@@ -1,4 +1,4 @@
 #define SLOTS \
-    { "sound_nodes", "uint", 0 }
+    { "sound_nodes", "uint", 0, 0 }
 #include "sound.h"
 PLUGIN

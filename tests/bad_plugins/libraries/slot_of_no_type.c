@@ -1,4 +1,4 @@
 #define SLOTS \
-    { "sound_nodes", NULL, 4 }
+    { "sound_nodes", NULL, 4, 0 }
 #include "sound.h"
 PLUGIN

@@ -1,4 +1,4 @@
 #define SLOTS \
-    { "nodes; }", "uint", 4 }
+    { "nodes; }", "uint", 4, 0 }
 #include "sound.h"
 PLUGIN

@@ -38,9 +38,28 @@
 #ifndef TRAITS
 #define TRAITS RT_TRAVERSES_STREAMS | RT_SPLITS_INCOHERENT, 0.25f, 0, RT_RAY_COST_LINEAR
 #endif
+#ifndef CONTRACT
+#define CONTRACT RT_KERNEL_CONTRACT
+#endif
+#ifndef PARAM_BYTES
+#define PARAM_BYTES sizeof(rt_param)
+#endif
+#ifndef SLOT_BYTES
+#define SLOT_BYTES sizeof(rt_slot)
+#endif
+#ifndef EXTENSION_BYTES
+#define EXTENSION_BYTES sizeof(rt_extension)
+#endif
+#ifndef EXTENSIONS
+#define EXTENSIONS NULL
+#endif
+/* pack, layout, topology */
+#ifndef TREE
+#define TREE NULL, NULL, NULL
+#endif
 #ifndef SLOTS
 #define SLOTS \
-    { "sound_nodes", "uint", sizeof(rt_u32) }
+    { "sound_nodes", "uint", sizeof(rt_u32), 0 }
 #endif
 #ifndef PARAMS
 #define PARAMS \
@@ -70,12 +89,14 @@ static const char* const choices[] = {"fast", "good", NULL};
 static const char* const no_choices[] = {NULL};
 static const rt_param params[] = {PARAMS};
 static const rt_slot slots[] = {SLOTS};
-static const rt_accel accel = {ACCEL_BYTES, sizeof slots / sizeof slots[0], slots, {NULL, NULL}, {TRAVERSE}, BUILD, NULL, NULL, TRAITS};
+static const rt_accel accel = {ACCEL_BYTES, CONTRACT, sizeof slots / sizeof slots[0], SLOT_BYTES, slots, {NULL, NULL}, {TRAVERSE},
+                               BUILD, NULL, TREE, TRAITS};
 static const char* const extensions[] = {"sound", NULL};
 static const rt_importer importer = {IMPORTER_BYTES, extensions, NULL, load};
 /* Avoids warnings about unused parts: not every library uses all of them. */
 const void* const sound_parts[] = {choices, no_choices, &accel, &importer, params, (const void*)&build};
 
 #define PLUGIN \
-    const rt_plugin rt_plugin_v1 = {ABI, PLUGIN_BYTES, DIGEST, PARAM_COUNT, ID, NAME, "1.0", NULL, params, ACCEL, IMPORTER};
+    const rt_plugin rt_plugin_v1 = {ABI,  PLUGIN_BYTES, DIGEST, PARAM_COUNT, ID,       NAME,       "1.0", \
+                                    NULL, params,       ACCEL,  IMPORTER,    EXTENSIONS, PARAM_BYTES, EXTENSION_BYTES};
 #endif

@@ -6,5 +6,6 @@ static int32_t call(const rt_host* host, const rt_build_input* in, const rt_buil
     sound_function_that_nobody_has();
     return build(host, in, out);
 }
-static const rt_accel calling = {sizeof(rt_accel), 1, slots, {NULL, NULL}, {TRAVERSE}, call, NULL, NULL, TRAITS};
+static const rt_accel calling = {sizeof(rt_accel), CONTRACT, 1, SLOT_BYTES, slots, {NULL, NULL}, {TRAVERSE},
+                                 call, NULL, TREE, TRAITS};
 PLUGIN

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "harness.hpp"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "cwbvh_types.h"
 
 namespace accel_test {

@@ -93,7 +93,7 @@ rt_u32* leaves(void* ctx, uint64_t count) {
 
 }  // namespace
 
-Built build(const rt_plugin& plugin, const Input& input, const Options& options) {
+Built build(const rt_plugin& plugin, const Input& input, const Options& options, const Part* part) {
     const rt_accel& accel = *plugin.accel;
     std::vector<double> params;
     for (rt_u32 i = 0; i < plugin.param_count; ++i) params.push_back(plugin.params[i].def);
@@ -112,9 +112,21 @@ Built build(const rt_plugin& plugin, const Input& input, const Options& options)
     HostContext host_context{options.threads, &options.progress, {}, {}};
     const rt_host host{sizeof(rt_host), &host_context, fail, [](void*, int32_t, const char*) {}, progress, parallel_for};
     const rt_geometry geometry{sizeof(rt_geometry), input.triangles.data(), input.triangles.size()};
-    const rt_build_input in{
-        sizeof(rt_build_input), static_cast<rt_u32>(input.groups.size()), input.prims.data(), input.groups.data(), &geometry,
-        params.data()};
+    rt_device device{};
+    device.struct_bytes = sizeof device;
+    rt_build_input in{};
+    in.struct_bytes = sizeof in;
+    in.group_count = static_cast<rt_u32>(input.groups.size());
+    in.prims = input.prims.data();
+    in.groups = input.groups.data();
+    in.geometry = &geometry;
+    in.params = params.data();
+    in.device = &device;
+    if (part) {
+        in.wanted = part->wanted.data();
+        in.first_elements = part->first_elements.data();
+        in.first_leaf = part->first_leaf;
+    }
     OutputContext out_context{&plugin, &built, {}};
     rt_build_output out{};
     out.struct_bytes = sizeof out;

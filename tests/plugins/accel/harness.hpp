@@ -49,7 +49,15 @@ struct Options {
     std::function<bool(float)> progress;   // returns false to cancel
 };
 
-Built build(const rt_plugin& plugin, const Input& input, const Options& options = {});
+// A part of a structure: some groups, and what is in front of them. See rt_build_input.
+struct Part {
+    std::vector<uint8_t> wanted;
+    std::vector<uint64_t> first_elements;
+    uint64_t first_leaf = 0;
+};
+
+// part: nullptr to build all groups.
+Built build(const rt_plugin& plugin, const Input& input, const Options& options = {}, const Part* part = nullptr);
 
 // One of the volumes of a level.
 struct Volume {

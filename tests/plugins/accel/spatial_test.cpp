@@ -8,7 +8,7 @@
 #include <random>
 
 #include "harness.hpp"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "bvh2_types.h"
 #include "bvh8_types.h"
 

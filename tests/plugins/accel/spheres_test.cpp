@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "harness.hpp"
-// needs the types of rt_types.h, so it must follow the headers above:
+// needs the types of rt_shared.h, so it must follow the headers above:
 #include "spheres_types.h"
 
 using namespace accel_test;

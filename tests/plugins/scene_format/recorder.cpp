@@ -89,11 +89,11 @@ void add_look_calls(rt_scene_sink& sink) {
         return r.refuse_textures ? RT_NONE : id_of(r.textures.size());
     };
     sink.material = [](void* ctx, const rt_material_desc* material) -> rt_u32 {
-        recording_of(ctx).materials.push_back({material->name, material->values});
+        recording_of(ctx).materials.push_back({material->name, *material});
         return id_of(recording_of(ctx).materials.size());
     };
     sink.light = [](void* ctx, const rt_light_desc* light) -> rt_u32 {
-        recording_of(ctx).lights.push_back({text_or_empty(light->name), light->values});
+        recording_of(ctx).lights.push_back({text_or_empty(light->name), *light});
         return id_of(recording_of(ctx).lights.size());
     };
     sink.camera = [](void* ctx, const rt_camera* camera) -> rt_u32 {
@@ -165,13 +165,13 @@ std::string Recording::unsound() const {
         if (std::any_of(m.face_materials.begin(), m.face_materials.end(), bad_material)) return "face material";
     }
     for (const auto& m : materials) {
-        const rt_material& v = m.values;
+        const rt_material_desc& v = m.values;
         if (!all_finite(v.color) || !all_finite(v.emission) || !all_finite(v.specular)) return "material";
         if (!(v.reflect >= 0 && v.refract >= 0 && v.reflect + v.refract <= 1.0001f && v.ior > 0)) return "material shares";
         if (v.texture != RT_NONE && v.texture >= textures.size()) return "texture";
     }
     for (const auto& l : lights) {
-        if (!all_finite(l.values.position) || !all_finite(l.values.color)) return "light";
+        if (!all_finite(l.values.position) || !all_finite(l.values.direction) || !all_finite(l.values.color)) return "light";
     }
     for (const auto& c : cameras) {
         if (!all_finite(c.values.eye) || !all_finite(c.values.target) || !all_finite(c.values.up)) return "camera";

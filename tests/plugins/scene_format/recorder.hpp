@@ -8,7 +8,7 @@
 
 struct RecordedMaterial {
     std::string name;
-    rt_material values;
+    rt_material_desc values;  // its name pointer is not valid any more
 };
 struct RecordedMesh {
     std::vector<float> positions;
@@ -30,7 +30,7 @@ struct RecordedPolygon {
 };
 struct RecordedLight {
     std::string name;
-    rt_light values;
+    rt_light_desc values;  // its name pointer is not valid any more
 };
 struct RecordedCamera {
     std::string name;

@@ -84,8 +84,8 @@ TEST(SceneFormat, FillsInDefaults) {
     expect_near(r.lights.at(0).values.position, {0, 10, 0});
     expect_near(r.lights[0].values.color, {1, 1, 1});
     EXPECT_EQ(r.lights.at(1).values.kind, RT_LIGHT_DIRECTIONAL);
-    expect_near(r.lights[1].values.position, {0, 1, 0});
-    const rt_material& m = r.materials.at(0).values;
+    expect_near(r.lights[1].values.direction, {0, -1, 0});
+    const rt_material_desc& m = r.materials.at(0).values;
     expect_near(m.color, {0.7f, 0.7f, 0.7f});
     expect_near(m.specular, {0.15f, 0.15f, 0.15f});
     expect_near(m.emission, {0, 0, 0});
@@ -110,7 +110,7 @@ TEST(SceneFormat, ReadsEveryMaterialKey) {
         "material a color .1 .2 .3 reflect .25 refract .5 ior 2.4 specular .5 shininess 80 emission 1 2 3 checker\n"
         "material b specular .1 .2 .3 texture \"my wood.png\"\n"
         "material c texture \"my wood.png\" color .5\n");
-    const rt_material& a = r.materials.at(0).values;
+    const rt_material_desc& a = r.materials.at(0).values;
     expect_near(a.color, {0.1f, 0.2f, 0.3f});
     EXPECT_EQ(a.reflect, 0.25f);
     EXPECT_EQ(a.refract, 0.5f);
@@ -119,7 +119,7 @@ TEST(SceneFormat, ReadsEveryMaterialKey) {
     EXPECT_EQ(a.shininess, 80);
     expect_near(a.emission, {1, 2, 3});
     EXPECT_EQ(a.flags, RT_MATERIAL_CHECKER);
-    const rt_material& b = r.materials.at(1).values;
+    const rt_material_desc& b = r.materials.at(1).values;
     expect_near(b.specular, {0.1f, 0.2f, 0.3f});
     EXPECT_EQ(b.texture, 0u);
     expect_near(b.color, {1, 1, 1});  // a texture without a colour is shown unchanged
@@ -147,7 +147,7 @@ TEST(SceneFormat, SharesAboveOneAreScaledWithAWarning) {
 TEST(SceneFormat, LightsHaveIntensityNameAndDirectionOfTravel) {
     const Recording r =
         import_good("light directional direction 0 -3 4 color 1 .5 0 intensity 2 name sun\nlight point intensity 0.5\n");
-    expect_near(r.lights.at(0).values.position, {0, 0.6f, -0.8f});
+    expect_near(r.lights.at(0).values.direction, {0, -0.6f, 0.8f});
     expect_near(r.lights[0].values.color, {2, 1, 0});
     EXPECT_EQ(r.lights[0].name, "sun");
     expect_near(r.lights.at(1).values.color, {0.5f, 0.5f, 0.5f});

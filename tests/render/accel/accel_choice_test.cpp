@@ -3,7 +3,7 @@
 
 #include "base/error.hpp"
 #include "plugin/parameters.hpp"
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "render/accel/accel_choice.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "support/generated.hpp"
 
 using namespace clarity;

@@ -56,6 +56,17 @@ TEST(TileScheduler, DevicesOfOneKindGetEqualShares) {
     }
 }
 
+TEST(TileScheduler, ADeviceThatWasBusyGetsTilesAgain) {
+    TileScheduler scheduler(2);
+    for (int picture = 0; picture < 8; ++picture) play(scheduler, 2048, {1, 200}, true);
+    Played played;
+    for (int picture = 0; picture < 8; ++picture) {
+        played = play(scheduler, 8, {1, 1}, true);
+        EXPECT_GE(played.tiles[1], 1u) << picture;
+    }
+    EXPECT_EQ(played.tiles[1], 4u);
+}
+
 TEST(TileScheduler, SharesFollowMeasuredSpeeds) {
     TileScheduler scheduler(2);
     const std::vector<double> ms = {1, 4};

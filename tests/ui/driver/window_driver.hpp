@@ -94,6 +94,7 @@ class WindowDriver {
     void click(double x, double y);
     void click(const Place& at, Button button = Button::left);
     void double_click(const Place& at);
+    void double_click_in_one_frame(const Place& at);  // as on a machine that is too busy to draw between the clicks
     // Presses the button, moves in steps, releases.
     void drag(const Place& from, const Place& to, Button button = Button::left);
     void wheel(const Place& at, int steps);  // steps > 0: away from the user

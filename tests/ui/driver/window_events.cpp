@@ -1,5 +1,6 @@
 // The part of the driver that stands for a user's hands: key and mouse events through xdotool.
 #include <gtest/gtest.h>
+#include <signal.h>
 
 #include <cmath>
 #include <cstdlib>
@@ -74,6 +75,15 @@ void WindowDriver::double_click(const Place& place) {
     move(place);
     const std::string press = "mousedown 1 sleep 0.04 mouseup 1 ";
     mouse(press + "sleep 0.06 " + press);
+}
+
+// A stopped process draws no frames, and the X server keeps the events for it.
+void WindowDriver::double_click_in_one_frame(const Place& place) {
+    move(place);
+    ASSERT_EQ(kill(pid_, SIGSTOP), 0);
+    xdotool("click --repeat 2 --delay 60 1");
+    ASSERT_EQ(kill(pid_, SIGCONT), 0);
+    pass_frame();
 }
 
 void WindowDriver::drag(const Place& from, const Place& to, Button button) {

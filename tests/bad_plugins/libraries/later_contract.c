@@ -1,0 +1,3 @@
+#define CONTRACT (RT_KERNEL_CONTRACT + 1)
+#include "sound.h"
+PLUGIN

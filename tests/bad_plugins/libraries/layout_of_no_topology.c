@@ -1,0 +1,3 @@
+#define TREE NULL, "bvh2", NULL
+#include "sound.h"
+PLUGIN

@@ -1,0 +1,3 @@
+#define TREE NULL, "BVH 2", NULL
+#include "sound.h"
+PLUGIN

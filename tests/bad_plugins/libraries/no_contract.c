@@ -1,0 +1,3 @@
+#define CONTRACT 0
+#include "sound.h"
+PLUGIN

@@ -1,0 +1,3 @@
+#define PARAM_BYTES 0
+#include "sound.h"
+PLUGIN

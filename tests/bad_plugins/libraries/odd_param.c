@@ -1,0 +1,3 @@
+#define PARAM_BYTES (sizeof(rt_param) + 1)
+#include "sound.h"
+PLUGIN

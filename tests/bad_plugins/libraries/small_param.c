@@ -1,0 +1,3 @@
+#define PARAM_BYTES (sizeof(rt_param) - 8)
+#include "sound.h"
+PLUGIN
