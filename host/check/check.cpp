@@ -2,9 +2,13 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <condition_variable>
 #include <cstdlib>
+#include <cstring>
 #include <exception>
+#include <filesystem>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -106,14 +110,53 @@ class CheckSupervisor : public worker::Supervisor {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
+// Where damaged files are written: a folder that goes with this object, or the one of the report.
+class ScratchFolder {
+ public:
+    explicit ScratchFolder(const std::string& report) : path_(report), keep_(!report.empty()) {
+        if (keep_) return;
+        path_ = (std::filesystem::temp_directory_path() / "clarity-check-XXXXXX").string();
+        if (!mkdtemp(path_.data()))
+            throw Error(Exit::failed, path_ + ": cannot make a folder for damaged files: " + std::strerror(errno) +
+                                          "; name one with --report DIR");
+    }
+    ~ScratchFolder() {
+        std::error_code error;
+        if (!keep_) std::filesystem::remove_all(path_, error);
+    }
+    ScratchFolder(const ScratchFolder&) = delete;
+    ScratchFolder& operator=(const ScratchFolder&) = delete;
+    const std::string& path() const { return path_; }
+
+ private:
+    std::string path_;
+    const bool keep_;
+};
+
 // All checks of one library. Phases run side by side, each in workers of its own.
 class Run {
  public:
-    Run(const PluginRecord& record, const std::string& layout, const CheckOptions& options, Progress& progress,
+    Run(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options, Progress& progress,
         const std::function<void(const CheckResult&)>& on_result)
-        : record_(record), layout_(layout), options_(options), progress_(progress), on_result_(on_result) {}
+        : record_(record), beside_(beside), options_(options), progress_(progress), on_result_(on_result) {}
 
     bool all() {
+        if (record_.plugin->importer) {
+            scratch_ = std::make_unique<ScratchFolder>(options_.report_folder);
+            phase("imports");
+        } else {
+            structure();
+        }
+        if (count_ == 0)
+            throw Error(Exit::usage, "--only " + options_.only.front() + ": " + record_.plugin->id +
+                                         " has no check whose name begins like this; `clarity check " + record_.plugin->id +
+                                         "` lists them");
+        return !failed_;
+    }
+
+ private:
+    // Builds and hits side by side.
+    void structure() {
         std::exception_ptr thrown;
         std::thread builds([&] {
             try {
@@ -132,14 +175,7 @@ class Run {
         builds.join();
         if (thrown) std::rethrow_exception(thrown);
         if (thrown_here) std::rethrow_exception(thrown_here);
-        if (count_ == 0)
-            throw Error(Exit::usage, "--only " + options_.only.front() + ": " + record_.plugin->id +
-                                         " has no check whose name begins like this; `clarity check " + record_.plugin->id +
-                                         "` lists them");
-        return !failed_;
     }
-
- private:
     // Hits of a builder that fails say nothing: wait for builds.sound.
     bool wait_until_sound() {
         std::unique_lock<std::mutex> lock(mutex_);
@@ -172,7 +208,10 @@ class Run {
                                                   "--phase",   name,
                                                   "--quick",   options_.quick ? "1" : "0",
                                                   "--parent",  std::to_string(getpid())};
-            if (!layout_.empty()) arguments.insert(arguments.end(), {"--layout", layout_});
+            for (const std::string& other : beside_) arguments.insert(arguments.end(), {"--beside", other});
+            for (const std::string& sample : options_.samples) arguments.insert(arguments.end(), {"--sample", sample});
+            if (!options_.truth_folder.empty()) arguments.insert(arguments.end(), {"--truth", options_.truth_folder});
+            if (name == "imports") arguments.insert(arguments.end(), {"--scratch", scratch_->path()});
             if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
             if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
             for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
@@ -196,8 +235,9 @@ class Run {
     }
 
     const PluginRecord& record_;
-    const std::string& layout_;
+    const std::vector<std::string>& beside_;
     const CheckOptions& options_;
+    std::unique_ptr<ScratchFolder> scratch_;
     Progress& progress_;
     const std::function<void(const CheckResult&)>& on_result_;
     std::mutex mutex_;
@@ -208,14 +248,12 @@ class Run {
 
 }  // namespace
 
-bool check_plugin_library(const PluginRecord& record, const std::string& layout, const CheckOptions& options,
+bool check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
                           Progress& progress, const std::function<void(const CheckResult&)>& on_result) {
     if (std::getenv(worker::kWorkerVariable))
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
-    if (record.plugin->importer)
-        throw Error(Exit::usage, std::string(record.plugin->id) + " is an importer: only structures can be checked yet");
-    return Run(record, layout, options, progress, on_result).all();
+    return Run(record, beside, options, progress, on_result).all();
 }
 
 }  // namespace clarity::check

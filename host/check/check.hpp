@@ -13,9 +13,11 @@ namespace clarity::check {
 struct CheckOptions {
     std::vector<std::string> only;  // names of checks, or their beginnings: "hits", "builds.refs"; empty: all
     bool quick = false;
-    std::string report_folder;  // "": none
-    std::string device;         // as for --device
-    std::vector<int> lanes;     // with which kernels are compiled; empty: 1, 4, 8 and 16
+    std::string report_folder;         // "": none
+    std::string device;                // as for --device
+    std::vector<int> lanes;            // with which kernels are compiled; empty: 1, 4, 8 and 16
+    std::vector<std::string> samples;  // of importers: files, and folders with files of their extensions
+    std::string truth_folder;          // of importers: what others read from the samples; "": none
 };
 
 struct CheckResult {
@@ -24,12 +26,12 @@ struct CheckResult {
     double seconds = 0;
 };
 
-// Checks one library, whose plugin the host has accepted. layout: the library that packs and traces its topology; empty: it has
-// none. on_result is called from several threads, one at a time, in the order
+// Checks one library, whose plugin the host has accepted. beside: the libraries that it needs: the one that packs and traces
+// its topology, or importers of files that samples load. on_result is called from several threads, one at a time, in the order
 // in which checks end. Returns whether all passed. Throws Cancelled, and Error if no worker can be started or `only` names
 // nothing.
-bool check_plugin_library(const PluginRecord& record, const std::string& layout, const CheckOptions& options, Progress& progress,
-                          const std::function<void(const CheckResult&)>& on_result);
+bool check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
+                          Progress& progress, const std::function<void(const CheckResult&)>& on_result);
 
 // Main function of the worker (`clarity check-worker ...`, which people do not call).
 int check_worker_main(int argc, char** argv);

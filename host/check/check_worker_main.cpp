@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <memory>
 #include <set>
 
@@ -13,9 +14,10 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "check/builds/build_checks.hpp"
-#include "check/builds/process_size.hpp"
 #include "check/check.hpp"
 #include "check/hits/hits_checks.hpp"
+#include "check/importers/import_checks.hpp"
+#include "check/process_size.hpp"
 #include "device/device.hpp"
 #include "worker/child.hpp"
 #include "worker/sandbox.hpp"
@@ -26,11 +28,13 @@ namespace {
 using worker::kChannelFd;
 using worker::MessageKind;
 
-constexpr uint64_t kBuilderBytes = uint64_t(3) << 30;  // for scenes of at most 40000 triangles
+constexpr uint64_t kBuilderBytes = uint64_t(3) << 30;   // for scenes of at most 40000 triangles
+constexpr uint64_t kImporterBytes = uint64_t(1) << 30;  // what the program gives to small files
 constexpr size_t kMostText = 3000;
 
 struct Arguments {
-    std::string library, layout, phase, device, report;  // layout: the library that packs a topology
+    std::string library, phase, device, report, truth, scratch;
+    std::vector<std::string> beside, samples;
     std::vector<std::string> only;
     std::set<std::string> done;  // checks that an earlier worker ran
     std::vector<int> lanes;
@@ -38,16 +42,23 @@ struct Arguments {
     long parent = 0;
 };
 
-// check-worker --library FILE [--layout FILE] --phase builds|hits [--quick 1] [--device D] [--report DIR] [--lanes N]...
+// check-worker --library FILE [--beside FILE]... --phase builds|hits|imports [--quick 1] [--device D] [--report DIR] [--lanes
+// N]...
 // [--only NAME]...
-// [--done NAME]...
+// [--done NAME]... [--sample FILE|DIR]... [--truth DIR] [--scratch DIR]
 bool parse(int argc, char** argv, Arguments& arguments) {
     for (int i = 2; i + 1 < argc; i += 2) {
         const std::string key = argv[i], value = argv[i + 1];
         if (key == "--library") {
             arguments.library = value;
-        } else if (key == "--layout") {
-            arguments.layout = value;
+        } else if (key == "--beside") {
+            arguments.beside.push_back(value);
+        } else if (key == "--sample") {
+            arguments.samples.push_back(value);
+        } else if (key == "--truth") {
+            arguments.truth = value;
+        } else if (key == "--scratch") {
+            arguments.scratch = value;
         } else if (key == "--phase") {
             arguments.phase = value;
         } else if (key == "--quick") {
@@ -112,41 +123,71 @@ void run(const Check& check) {
                          {MessageKind::report, 0, 0, report.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)});
 }
 
-std::vector<Check> checks_for(const rt_plugin& plugin, const rt_plugin* layout, const Arguments& arguments) {
-    if (arguments.phase == "builds") return build_checks(plugin, arguments.quick);
+using worker::WorkerKind;
+
+void enter_sandbox(WorkerKind kind, const std::vector<std::string>& folders, const worker::WorkerLimits& limits) {
+    for (const std::string& note : worker::enter_sandbox(kind, folders, {}, limits))
+        log(LogLevel::debug, "check worker: " + note);
+}
+worker::WorkerLimits limits_of(uint64_t memory_bytes) {
+    worker::WorkerLimits limits;
+    limits.memory_bytes = limits.most_memory_bytes = memory_bytes;
+    return limits;
+}
+std::string own_folder() {  // tells how large this process is
+    return "/proc/" + std::to_string(getpid());
+}
+
+std::vector<Check> builder_checks(const PluginRecord& record, const Arguments& arguments) {
+    use_one_arena();
+    enter_sandbox(WorkerKind::builder, {own_folder()}, limits_of(kBuilderBytes));
+    return build_checks(*record.plugin, arguments.quick);
+}
+
+std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& arguments) {
+    const rt_plugin* layout = nullptr;
+    for (const std::string& library : arguments.beside) {
+        const PluginRecord beside = load_plugin(library);
+        if (!beside.plugin) throw Error(Exit::failed, beside.path + ": " + beside.why);
+        layout = beside.plugin;
+    }
+    enter_sandbox(WorkerKind::driver, {}, {});
     HitsOptions options;
     options.quick = arguments.quick;
     options.report_folder = arguments.report;
     if (!arguments.lanes.empty()) options.lanes = arguments.lanes;
     const std::string device = arguments.device;
     return hits_checks(
-        plugin, layout, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
+        *record.plugin, layout, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
+}
+
+std::vector<Check> importer_checks(const Arguments& arguments) {
+    const auto inputs = std::make_shared<ImportInputs>();
+    std::vector<std::string> libraries = {arguments.library};
+    libraries.insert(libraries.end(), arguments.beside.begin(), arguments.beside.end());
+    inputs->plugins = PluginRegistry::of(libraries);
+    inputs->plugin = inputs->plugins.records().front().plugin;
+    const rt_importer& importer = *inputs->plugin->importer;
+    inputs->samples = samples_among(importer, arguments.samples);
+    for (const std::string& sample : inputs->samples)
+        if (const auto truth = truth_of(sample, arguments.truth)) inputs->truths[sample] = *truth;
+    inputs->hostile = write_hostile_files(importer, inputs->samples, arguments.scratch, arguments.quick ? 100 : 600);
+    set_log_listener([](LogLevel, const std::string&) {});  // warnings about damaged files are as they should be
+    use_one_arena();
+    std::vector<std::string> folders = {own_folder(), std::filesystem::canonical(arguments.scratch).string()};
+    for (const std::string& sample : inputs->samples) folders.push_back(std::filesystem::path(sample).parent_path().string());
+    enter_sandbox(WorkerKind::parser, folders, limits_of(kImporterBytes));
+    return import_checks(inputs, arguments.quick);
 }
 
 int run_all(const Arguments& arguments) {
     // The library was loaded by the program before, to read its description; its constructors have run there.
     const PluginRecord record = load_plugin(arguments.library);
-    if (!record.plugin) {
-        worker::send_message(kChannelFd, {MessageKind::failed, 0, 0, record.path + ": " + record.why});
-        return 1;
-    }
-    PluginRecord layout;
-    if (!arguments.layout.empty()) layout = load_plugin(arguments.layout);
-    if (!arguments.layout.empty() && !layout.plugin) {
-        worker::send_message(kChannelFd, {MessageKind::failed, 0, 0, layout.path + ": " + layout.why});
-        return 1;
-    }
-    worker::WorkerLimits limits;
-    const bool builds = arguments.phase == "builds";
-    if (builds) {
-        limits.memory_bytes = limits.most_memory_bytes = kBuilderBytes;
-        use_one_arena();
-    }
-    const std::string self = "/proc/" + std::to_string(getpid());
-    for (const std::string& note :
-         worker::enter_sandbox(builds ? worker::WorkerKind::builder : worker::WorkerKind::driver, {self}, {}, limits))
-        log(LogLevel::debug, "check worker: " + note);
-    for (const Check& check : checks_for(*record.plugin, layout.plugin, arguments))
+    if (!record.plugin) throw Error(Exit::failed, record.why);
+    const std::vector<Check> checks = arguments.phase == "builds" ? builder_checks(record, arguments)
+                                      : arguments.phase == "hits" ? kernel_checks(record, arguments)
+                                                                  : importer_checks(arguments);
+    for (const Check& check : checks)
         if (wanted(check, arguments)) run(check);
     worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
     return 0;

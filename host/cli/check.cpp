@@ -42,15 +42,21 @@ std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std:
     return found;
 }
 
-// The library of the structure that packs and traces a topology; empty: the plugin is no topology.
-std::string layout_of(const PluginRegistry& plugins, const PluginRecord& record) {
-    if (!record.plugin->accel || !record.plugin->accel->layout) return {};
-    const std::string id = record.plugin->accel->layout;
-    for (const PluginRecord& other : plugins.records())
-        if (other.plugin && !other.shadowed && id == other.plugin->id && other.plugin->accel && other.plugin->accel->pack)
-            return other.path;
-    throw Error(Exit::failed, record.path + ": its layout '" + id +
-                                  "' was not found, or packs no trees; `clarity plugins` lists the structures that do");
+// The libraries that the checks of a plugin need: what packs and traces its topology, or the other importers.
+std::vector<std::string> needed_beside(const PluginRegistry& plugins, const PluginRecord& record) {
+    std::vector<std::string> beside;
+    for (const PluginRecord& other : plugins.records()) {
+        if (!other.plugin || other.shadowed || other.path == record.path) continue;
+        const std::string id = other.plugin->id;
+        const bool needed = record.plugin->importer ? other.plugin->importer && id != record.plugin->id
+                                                    : record.plugin->accel->layout && other.plugin->accel &&
+                                                          id == record.plugin->accel->layout && other.plugin->accel->pack;
+        if (needed) beside.push_back(other.path);
+    }
+    if (beside.empty() && record.plugin->accel && record.plugin->accel->layout)
+        throw Error(Exit::failed, record.path + ": its layout '" + record.plugin->accel->layout +
+                                      "' was not found, or packs no trees; `clarity plugins` lists the structures that do");
+    return beside;
 }
 
 const char* kind_text(Outcome::Kind kind) {
@@ -92,7 +98,7 @@ int run_check(const PluginRegistry& plugins, const CheckCommand& command) {
     bool all = true;
     for (const PluginRecord& record : libraries)
         all &= check::check_plugin_library(
-            record, layout_of(plugins, record), command.options, progress, [&](const CheckResult& result) {
+            record, needed_beside(plugins, record), command.options, progress, [&](const CheckResult& result) {
                 if (!command.json) return print(result, command);
                 list.push_back({{"plugin", result.plugin},
                                 {"library", record.path},

@@ -162,6 +162,13 @@ void add_check(CLI::App& app, CheckCommand& command) {
         ->check(CLI::IsMember({1, 4, 8, 16}));
     app.add_flag("--quick", command.options.quick,
                  "Fewer rays, repetitions and compiled variants: seconds instead of a minute");
+    app.add_option("--samples", command.options.samples,
+                   "Of importers: files to read and to damage, or folders with files of its extensions; may be repeated")
+        ->type_name("FILE|DIR")
+        ->allow_extra_args(false);
+    single(app.add_option("--truth", command.options.truth_folder,
+                          "Of importers: a folder of .json files with what other programs read from the samples"))
+        ->type_name("DIR");
     app.add_flag("--json", command.json, "As JSON");
     single(app.add_option("--report", command.options.report_folder, "Write the rays with wrong answers into this folder"))
         ->type_name("DIR");

@@ -7,8 +7,8 @@
 
 #include "base/numbers.hpp"
 #include "check/builds/build_run.hpp"
-#include "check/builds/process_size.hpp"
 #include "check/builds/result_checks.hpp"
+#include "check/process_size.hpp"
 #include "check/scenes.hpp"
 
 namespace clarity::check {
@@ -233,37 +233,10 @@ Outcome memory(Inputs& inputs, const Step& step) {
 
 Outcome leaks(Inputs& inputs, const Step& step, bool quick) {
     const BuildCase& input = inputs.mixed();
-    const int builds = quick ? 40 : 100;
-    const auto repeat = [&](int count) {
-        for (int i = 0; i < count; ++i) {
-            if (i % 10 == 0) step("building " + on(input) + " again and again", kManyLimit_s);
-            inputs.run(input, i % 2 ? Schedule::program : Schedule::forward);
-        }
-        return process_size();
-    };
-    repeat(20);  // caches fill
-    const ProcessSize begin = repeat(builds / 2), middle = repeat(builds / 2), end = repeat(builds / 2);
-    // Memory that grows in both halves is leaked; a cache grows once.
-    const auto grows = [&](uint64_t ProcessSize::*member, uint64_t each) {
-        const uint64_t a = begin.*member, b = middle.*member, c = end.*member, least = each * uint64_t(builds / 2);
-        return b > a && c > b && b - a >= least && c - b >= least;
-    };
-    const auto per_build = [&](uint64_t ProcessSize::*member) {
-        return std::to_string((end.*member - begin.*member) / uint64_t(builds));
-    };
-    // Threads and files first: what belongs to them is on the heap, too.
-    if (end.files > begin.files)
-        return Outcome::failed(std::to_string(end.files - begin.files) + " files or pipes stay open after " +
-                               std::to_string(builds) + " builds");
-    if (end.threads > begin.threads + 4)
-        return Outcome::failed(std::to_string(end.threads - begin.threads) + " threads go on after " + std::to_string(builds) +
-                               " builds");
-    if (grows(&ProcessSize::heap_bytes, 8))
-        return Outcome::failed("each build leaves " + per_build(&ProcessSize::heap_bytes) +
-                               " bytes on the heap: it leaks memory");
-    if (grows(&ProcessSize::mapped_bytes, 4096))
-        return Outcome::failed("each build leaves " + per_build(&ProcessSize::mapped_bytes) + " bytes mapped: it leaks memory");
-    return Outcome::passed("nothing grows over " + std::to_string(builds) + " builds");
+    return find_leaks("build", quick ? 40 : 100, [&](unsigned i) {
+        if (i % 10 == 0) step("building " + on(input) + " again and again", kManyLimit_s);
+        inputs.run(input, i % 2 ? Schedule::program : Schedule::forward);
+    });
 }
 
 // Memory of a finished build is read-only: a thread that still writes is found.
