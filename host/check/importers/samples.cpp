@@ -41,9 +41,8 @@ std::optional<Truth> read_truth(const std::string& path, const nlohmann::json& j
         }
         return truth;
     } catch (const nlohmann::json::exception& e) {
-        throw Error(Exit::usage,
-                    path + ": is no truth of a file: " + e.what() +
-                        "; it needs {\"triangles\": n, \"area\": a, \"bbox\": [[x, y, z], [x, y, z]]}");
+        throw Error(Exit::usage, path + ": is no truth of a file: " + e.what() +
+                                     "; it needs {\"triangles\": n, \"area\": a, \"bbox\": [[x, y, z], [x, y, z]]}");
     }
 }
 

@@ -39,8 +39,4 @@ int32_t run_builder(const rt_plugin& plugin, const rt_host* host, const rt_build
     return plugin.accel->topology(host, input, &table);
 }
 
-bool is_root(const rt_plugin& plugin, rt_u32 node, uint64_t node_count) {
-    return node < node_count || (plugin.accel->topology && node == RT_NONE);
-}
-
 }  // namespace clarity

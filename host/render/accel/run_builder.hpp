@@ -11,7 +11,4 @@ const rt_accel& built_slots(const rt_plugin& plugin);
 // then. On the calling thread; returns the plugin's status.
 int32_t run_builder(const rt_plugin& plugin, const rt_host* host, const rt_build_input* input, const rt_build_output* out);
 
-// Whether a builder may report this root.
-bool is_root(const rt_plugin& plugin, rt_u32 node, uint64_t node_count);
-
 }  // namespace clarity
