@@ -8,8 +8,10 @@
 #include <cstring>
 #include <exception>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <mutex>
+#include <sstream>
 #include <thread>
 
 #include <nlohmann/json.hpp>
@@ -85,7 +87,11 @@ class CheckSupervisor : public worker::Supervisor {
     uint64_t processor_limit_s() const override { return 0; }
     uint64_t memory_limit_bytes() const override { return kMemoryBytes; }
     std::string speaker() const override { return plugin_; }
-    void printed(const std::string& line) override { log(LogLevel::info, plugin_ + " printed: " + printable_line(line)); }
+    void printed(const std::string& line) override {
+        // The OpenCL compiler counts its warnings about our own kernels.
+        if (line.find("warnings generated.") == std::string::npos && line.find("warning generated.") == std::string::npos)
+            log(LogLevel::info, plugin_ + " printed: " + printable_line(line));
+    }
     void ended(const worker::Ending& ending) const override {
         using End = worker::Ending::Kind;
         const std::string during = " while " + step_;
@@ -168,13 +174,20 @@ class Run {
         });
         std::exception_ptr thrown_here;
         try {
-            if (wait_until_sound()) phase("hits");
+            if (wait_until_sound()) kernels();
         } catch (...) {
             thrown_here = std::current_exception();
         }
         builds.join();
         if (thrown) std::rethrow_exception(thrown);
         if (thrown_here) std::rethrow_exception(thrown_here);
+    }
+    // oclgrind is slow and may be missing, so only the long form asks for it.
+    void kernels() {
+        phase("hits");
+        if (options_.quick || failed_) return;
+        scratch_ = std::make_unique<ScratchFolder>(options_.report_folder);
+        phase("accesses");
     }
     // Hits of a builder that fails say nothing: wait for builds.sound.
     bool wait_until_sound() {
@@ -201,8 +214,51 @@ class Run {
         on_result_(result);
     }
 
+    // How a worker is started: by itself, or in oclgrind.
+    struct Launch {
+        std::string program = worker::worker_program(), command = "check-worker";
+        std::vector<std::string> before;  // words before those of the worker
+        std::string log;                  // where oclgrind writes what it finds
+    };
+    // Returns false if oclgrind is not installed.
+    bool prepare_oclgrind(Launch& launch) const {
+        std::error_code error;
+        std::filesystem::path worker = launch.program;
+        if (std::filesystem::is_symlink(worker)) worker = std::filesystem::read_symlink(worker, error);
+        std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
+        for (std::string folder; std::getline(folders, folder, ':');) {
+            const std::string program = folder + "/oclgrind";
+            if (access(program.c_str(), X_OK) != 0) continue;
+            launch.log = scratch_->path() + "/oclgrind.log";
+            launch.before = {"--log", launch.log, worker.string(), "check-worker"};
+            launch.program = program;
+            launch.command = "--data-races";
+            return true;
+        }
+        return false;
+    }
+    void skip_oclgrind(std::vector<std::string>& done) {
+        if (!options_.only.empty()) return;
+        CheckResult result;
+        result.plugin = record_.plugin->id;
+        result.name = "accesses.oclgrind";
+        result.tried = "every access to memory, looked at by oclgrind";
+        result.outcome = Outcome::skipped("oclgrind is not installed: it looks at each access of kernels");
+        take(result, done);
+    }
+    // A result of oclgrind's worker is only as good as what oclgrind wrote.
+    static void judge_log(const std::string& path, CheckResult& result) {
+        std::ifstream file(path);
+        std::string text, line;
+        for (int lines = 0; lines < 6 && std::getline(file, line); ++lines) text += (text.empty() ? "" : " ") + line;
+        if (text.empty() || result.outcome.kind != Outcome::Kind::passed) return;
+        result.outcome = Outcome::failed("oclgrind says: " + printable_line(text));
+    }
+
     void phase(const std::string& name) {
         std::vector<std::string> done;
+        Launch launch;
+        if (name == "accesses" && !prepare_oclgrind(launch)) return skip_oclgrind(done);
         for (unsigned deaths = 0;;) {
             std::vector<std::string> arguments = {"--library", record_.path,
                                                   "--phase",   name,
@@ -217,8 +273,12 @@ class Run {
             for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
             for (const std::string& only : options_.only) arguments.insert(arguments.end(), {"--only", only});
             for (const std::string& other : done) arguments.insert(arguments.end(), {"--done", other});
-            worker::WorkerProcess process(worker::worker_program(), "check-worker", arguments, Exit::failed);
-            const std::function<void(CheckResult)> on_result = [&](const CheckResult& result) { take(result, done); };
+            arguments.insert(arguments.begin(), launch.before.begin(), launch.before.end());
+            worker::WorkerProcess process(launch.program, launch.command, arguments, Exit::failed);
+            const std::function<void(CheckResult)> on_result = [&](CheckResult result) {
+                if (!launch.log.empty()) judge_log(launch.log, result);
+                take(result, done);
+            };
             CheckSupervisor supervisor(process, record_.plugin->id, progress_, on_result);
             try {
                 supervisor.follow();

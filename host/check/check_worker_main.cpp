@@ -28,7 +28,7 @@ namespace {
 using worker::kChannelFd;
 using worker::MessageKind;
 
-constexpr uint64_t kBuilderBytes = uint64_t(3) << 30;   // for scenes of at most 40000 triangles
+constexpr uint64_t kBuilderBytes = uint64_t(1) << 30;   // for scenes of at most 40000 triangles
 constexpr uint64_t kImporterBytes = uint64_t(1) << 30;  // what the program gives to small files
 constexpr size_t kMostText = 3000;
 
@@ -42,8 +42,8 @@ struct Arguments {
     long parent = 0;
 };
 
-// check-worker --library FILE [--beside FILE]... --phase builds|hits|imports [--quick 1] [--device D] [--report DIR] [--lanes
-// N]...
+// check-worker --library FILE [--beside FILE]... --phase builds|hits|accesses|imports [--quick 1] [--device D] [--report DIR]
+// [--lanes N]...
 // [--only NAME]...
 // [--done NAME]... [--sample FILE|DIR]... [--truth DIR] [--scratch DIR]
 bool parse(int argc, char** argv, Arguments& arguments) {
@@ -157,8 +157,9 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
     options.report_folder = arguments.report;
     if (!arguments.lanes.empty()) options.lanes = arguments.lanes;
     const std::string device = arguments.device;
-    return hits_checks(
-        *record.plugin, layout, [device] { return std::make_shared<Device>(choose_device(device)); }, options);
+    const auto open = [device] { return std::make_shared<Device>(choose_device(device)); };
+    if (arguments.phase == "accesses") return access_checks(*record.plugin, layout, open, options);
+    return hits_checks(*record.plugin, layout, open, options);
 }
 
 std::vector<Check> importer_checks(const Arguments& arguments) {
@@ -184,9 +185,9 @@ int run_all(const Arguments& arguments) {
     // The library was loaded by the program before, to read its description; its constructors have run there.
     const PluginRecord record = load_plugin(arguments.library);
     if (!record.plugin) throw Error(Exit::failed, record.why);
-    const std::vector<Check> checks = arguments.phase == "builds" ? builder_checks(record, arguments)
-                                      : arguments.phase == "hits" ? kernel_checks(record, arguments)
-                                                                  : importer_checks(arguments);
+    const std::vector<Check> checks = arguments.phase == "builds"    ? builder_checks(record, arguments)
+                                      : arguments.phase == "imports" ? importer_checks(arguments)
+                                                                     : kernel_checks(record, arguments);
     for (const Check& check : checks)
         if (wanted(check, arguments)) run(check);
     worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});

@@ -1,7 +1,11 @@
 // clarity check: says whether plugins are right, one line a check.
-#include <sys/stat.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -18,12 +22,51 @@ namespace {
 using check::CheckResult;
 using check::Outcome;
 
-// The libraries that a word names: a file, or all plugins of that id.
+// Runs a program that prints for the user. Throws Error(failed) if it fails.
+void run_tool(const std::vector<std::string>& words) {
+    std::vector<char*> argv;
+    for (const std::string& word : words) argv.push_back(const_cast<char*>(word.c_str()));
+    argv.push_back(nullptr);
+    pid_t pid = -1;
+    int status = 0;
+    std::string text;
+    for (const std::string& word : words) text += (text.empty() ? "" : " ") + word;
+    if (const int error = posix_spawnp(&pid, argv[0], nullptr, nullptr, argv.data(), environ))
+        throw Error(Exit::failed, "`" + text + "` cannot be run: " + std::strerror(error));
+    while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
+    }
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        throw Error(Exit::failed, "`" + text + "` failed; its messages are above");
+}
+
+// Builds the plugins of a folder of source, in a folder `build` of it, as its author would.
+std::vector<PluginRecord> build_folder(const std::string& folder) {
+    namespace fs = std::filesystem;
+    if (!fs::exists(fs::path(folder) / "CMakeLists.txt"))
+        throw Error(
+            Exit::usage,
+            folder + ": is a folder without CMakeLists.txt; name a library, or a folder that `clarity new-plugin` made");
+    const fs::path build = fs::path(folder) / "build", prefix = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
+    run_tool(
+        {"cmake", "-S", folder, "-B", build.string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DCMAKE_BUILD_TYPE=Release"});
+    run_tool({"cmake", "--build", build.string()});
+    std::vector<PluginRecord> records;
+    for (const auto& entry : fs::recursive_directory_iterator(build)) {
+        if (entry.path().extension() != ".so") continue;
+        PluginRecord record = load_plugin(entry.path().string());
+        if (!record.plugin) throw Error(Exit::failed, entry.path().string() + ": the library was refused: " + record.why);
+        record.path = fs::absolute(entry.path()).string();
+        records.push_back(std::move(record));
+    }
+    if (records.empty())
+        throw Error(Exit::failed, folder + ": it builds no plugin; its CMakeLists.txt needs clarity_add_plugin(...)");
+    return records;
+}
+
+// The libraries that a word names: a file, those of a folder of source, or all plugins of that id.
 std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std::string& word) {
     std::error_code error;
-    if (std::filesystem::is_directory(word, error))
-        throw Error(Exit::usage, word + ": is a folder; build it (`cmake -S " + word +
-                                     " -B build && cmake --build build`) and name the library");
+    if (std::filesystem::is_directory(word, error)) return build_folder(word);
     if (word.find('/') != std::string::npos || std::filesystem::path(word).extension() == ".so") {
         PluginRecord record = load_plugin(word);
         if (!record.plugin) throw Error(Exit::failed, word + ": the library was refused: " + record.why);

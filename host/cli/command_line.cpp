@@ -148,7 +148,8 @@ void add_rays(CLI::App& app, TraceCommand& command) {
 }
 
 void add_check(CLI::App& app, CheckCommand& command) {
-    app.add_option("plugin", command.what, "Ids as `clarity plugins` lists them, or libraries")
+    app.add_option("plugin", command.what,
+                   "Ids as `clarity plugins` lists them, libraries, or folders of source, which are built first")
         ->type_name("PLUGIN")
         ->required();
     app.add_option("--only", command.options.only,

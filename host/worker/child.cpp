@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <exception>
 #include <new>
 
@@ -87,10 +88,15 @@ void on_crash(int signal, siginfo_t* info, void* context) {
     const uintptr_t distance = address > stack_pointer ? address - stack_pointer : stack_pointer - address;
     char text[250] = "";
     place_of(address, text, sizeof text);
-    if (text[0])
+    if (text[0]) {
         send_short(kChannelFd, MessageKind::death, text);
-    else if (stack_pointer != 0 && distance < (1u << 20))
+    } else if (stack_pointer != 0 && distance < (1u << 20)) {
         send_short(kChannelFd, MessageKind::death, "stack overflow");
+    } else {
+        // Kernels run on many threads. Another one may be about to say more.
+        const timespec moment = {0, 50000000};
+        nanosleep(&moment, nullptr);
+    }
     // After the return the faulty access repeats, now without a handler.
     std::signal(signal, SIG_DFL);
 }

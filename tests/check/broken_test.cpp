@@ -76,7 +76,7 @@ const Defect kDefects[] = {
     // trees that are wrong without a word
     {"root_of_another", "hits.instances", {"wrong"}},
     {"refs_of_another_group", "hits.instances", {"wrong"}},
-    {"leaf_reaches_too_far", "hits.random", {"behind the last leaf"}},
+    {"leaf_reaches_too_far", "hits.instances", {"behind the last leaf"}},
     {"leaf_far_outside", "hits.random", {"crashed (segmentation fault", "while tracing"}},
     {"leaf_off_by_three", "hits.random", {"wrong"}},
     // kernels

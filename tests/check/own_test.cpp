@@ -30,7 +30,7 @@ TEST(Check, SaysWhatIsWrongWithTheWords) {
     EXPECT_NE(only.err.find("no check whose name begins"), std::string::npos) << only.err;
     const ProgramResult folder = run_program({"check", "/tmp"});
     EXPECT_EQ(folder.exit_code, 2);
-    EXPECT_NE(folder.err.find("is a folder"), std::string::npos) << folder.err;
+    EXPECT_NE(folder.err.find("is a folder without CMakeLists.txt"), std::string::npos) << folder.err;
 }
 
 }  // namespace

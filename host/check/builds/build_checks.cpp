@@ -7,6 +7,7 @@
 
 #include "base/numbers.hpp"
 #include "check/builds/build_run.hpp"
+#include "check/builds/pack_checks.hpp"
 #include "check/builds/result_checks.hpp"
 #include "check/process_size.hpp"
 #include "check/scenes.hpp"
@@ -157,34 +158,42 @@ Outcome state(Inputs& inputs, const Step& step) {
     return Outcome::passed("builds do not depend on what was built before or is built beside");
 }
 
-Outcome cancel(Inputs& inputs, const Step& step) {
-    const BuildCase& input = inputs.many();
+// Cancels a build of one scene. Returns what is wrong; empty: nothing. reports: how often the build asks.
+std::string cancel_fault(Inputs& inputs, const BuildCase& input, const Step& step, unsigned& reports) {
     step("building " + on(input), kManyLimit_s);
     const BuildRun whole = inputs.run(input);
-    if (const std::string why = failure_of(whole); !why.empty()) return Outcome::failed(on(input) + ": " + why);
-    if (whole.reports == 0) {
-        if (whole.ms < kPatience_ms)
-            return Outcome::skipped("it never calls host->progress; a build of " + std::to_string(kManyTriangles) +
-                                    " triangles is short enough");
-        return Outcome::failed("a build of " + std::to_string(static_cast<int>(whole.ms)) +
-                               " ms never calls host->progress: nobody can cancel it");
-    }
+    reports = whole.reports;
+    if (const std::string why = failure_of(whole); !why.empty()) return on(input) + ": " + why;
+    if (whole.reports == 0)
+        return whole.ms < kPatience_ms ? ""
+                                       : "a build of " + std::to_string(static_cast<int>(whole.ms)) +
+                                             " ms never calls host->progress: nobody can cancel it";
     for (const unsigned at : {1u, (whole.reports + 1) / 2}) {
         step("cancelling at report " + std::to_string(at) + " of " + on(input), kManyLimit_s);
         const BuildRun run = input.run(inputs.plugin, inputs.params, Schedule::program, at);
         if (run.cancelled) continue;
-        if (!run.why.empty())
-            return Outcome::failed("when it is cancelled, it fails instead of returning RT_CANCELLED: " + run.why);
+        if (!run.why.empty()) return "when it is cancelled, it fails instead of returning RT_CANCELLED: " + run.why;
         // The last report may come after all work.
         if (at < whole.reports)
-            return Outcome::failed("host->progress returned 0 at report " + std::to_string(at) + " of " +
-                                   std::to_string(whole.reports) +
-                                   ", and it went on to the end: it must return RT_CANCELLED soon");
+            return "host->progress returned 0 at report " + std::to_string(at) + " of " + std::to_string(whole.reports) +
+                   ", and it went on to the end: it must return RT_CANCELLED soon";
     }
     step("building " + on(input) + " after a cancel", kManyLimit_s);
     const BuildRun again = inputs.run(input);
-    if (const std::string why = failure_of(again); !why.empty())
-        return Outcome::failed("a build after a cancelled one: " + why);
+    if (const std::string why = failure_of(again); !why.empty()) return "a build after a cancelled one: " + why;
+    return {};
+}
+
+Outcome cancel(Inputs& inputs, const Step& step) {
+    unsigned most = 0;
+    for (const BuildCase* input : {&inputs.many(), &inputs.mixed()}) {
+        unsigned reports = 0;
+        if (const std::string why = cancel_fault(inputs, *input, step, reports); !why.empty()) return Outcome::failed(why);
+        most = std::max(most, reports);
+    }
+    if (most == 0)
+        return Outcome::skipped("it never calls host->progress; a build of " + std::to_string(kManyTriangles) +
+                                " triangles is short enough");
     return Outcome::passed("stops when it is told to, and the next build is sound");
 }
 
@@ -219,6 +228,19 @@ Outcome parameters(Inputs& inputs, const Step& step, bool quick) {
                 return Outcome::failed(what + ": " + why);
         }
     return Outcome::passed(std::to_string(tries.size()) + " sets of values at the ends of their ranges");
+}
+
+// Other builders' trees: of leaves of one primitive, and of leaves that are larger than any layout has.
+Outcome pack(Inputs& inputs, const Step& step) {
+    if (!inputs.plugin.accel->pack) return Outcome::skipped("the plugin has no `pack`");
+    for (const rt_u32 leaf : {1u, 50u})
+        for (const BuildCase& input : inputs.small()) {
+            const std::string what = "a tree of leaves of " + std::to_string(leaf) + " over " + on(input);
+            step("packing " + what, kBuildLimit_s);
+            if (const std::string why = pack_fault(inputs.plugin, input, leaf); !why.empty())
+                return Outcome::failed(what + ": " + why);
+        }
+    return Outcome::passed("trees of other builders keep every primitive and their bounds");
 }
 
 Outcome memory(Inputs& inputs, const Step& step) {
@@ -266,6 +288,7 @@ std::vector<Check> build_checks(const rt_plugin& plugin, bool quick) {
         {"builds.cancel", "a build stops when the user cancels it", [=](const Step& step) { return cancel(*inputs, step); }},
         {"builds.parameters", "builds with all parameters at the ends of their ranges",
          [=](const Step& step) { return parameters(*inputs, step, quick); }},
+        {"builds.pack", "packs trees of other builders", [=](const Step& step) { return pack(*inputs, step); }},
         {"builds.memory", "slots are not larger than what is in them", [=](const Step& step) { return memory(*inputs, step); }},
         {"builds.leaks", "no memory, file or thread is left behind by build after build",
          [=](const Step& step) { return leaks(*inputs, step, quick); }},

@@ -163,11 +163,10 @@ BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, 
                    });
 }
 
-BuildRun BuildCase::pack(const rt_plugin& layout, const BuilderResult& tree) const {
-    const rt_topology topology = topology_of(tree);
+BuildRun BuildCase::pack(const rt_plugin& layout, const rt_topology& tree) const {
     return execute(layout, default_parameters(layout), Schedule::program, 0,
                    [&](const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-                       return layout.accel->pack(host, input, &topology, out);
+                       return layout.accel->pack(host, input, &tree, out);
                    });
 }
 

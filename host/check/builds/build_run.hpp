@@ -41,8 +41,8 @@ class BuildCase {
     }
     // cancel_after: the number of the progress report that is answered with "cancelled"; 0: none.
     BuildRun run(const rt_plugin& plugin, const ParameterValues& params, Schedule schedule, unsigned cancel_after = 0) const;
-    // Packs the tree of a topology's builder. layout: a structure with rt_accel::pack.
-    BuildRun pack(const rt_plugin& layout, const BuilderResult& tree) const;
+    // Packs a tree over this scene. layout: a structure with rt_accel::pack.
+    BuildRun pack(const rt_plugin& layout, const rt_topology& tree) const;
 
  private:
     template <class Call>

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "check/builds/result_checks.hpp"
+#include "render/accel/topology_check.hpp"
 #include "render/queries/query_scene.hpp"
 
 namespace clarity::check {
@@ -42,7 +43,10 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     : scene_(std::make_shared<const Scene>(std::move(scene))), case_("mixed", *scene_), device_(std::move(device)) {
     const ParameterValues params = default_parameters(plugin);
     run_ = case_.run(plugin, params, Schedule::program);
-    if (layout && run_.why.empty() && !run_.cancelled) run_ = case_.pack(*layout, run_.result);
+    if (layout && run_.why.empty() && !run_.cancelled) {
+        const BuildRun tree = std::move(run_);
+        run_ = case_.pack(*layout, topology_of(tree.result));
+    }
     if (run_.cancelled) run_.why = "said that it was cancelled, but nobody had cancelled it";
     if (run_.why.empty()) {
         // A ref that is unknown cannot be packed; one that is missing is worth a run.

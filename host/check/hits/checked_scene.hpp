@@ -26,7 +26,7 @@ struct Traced {
 
 // Numbers of the primitives behind the last leaf. They cut every ray: if one is hit, a traversal has tested a leaf that does
 // not exist. On a CPU an access further behind ends the process.
-constexpr rt_u32 kTrapPrim = 0x7FFFFF00u;
+constexpr rt_u32 kTrapPrim = 0x40000000u;  // an instance adds the first number of its mesh, of at most 28 bits
 
 class CheckedScene {
  public:

@@ -54,7 +54,10 @@ class Bench {
         return at;
     }
     const std::vector<RaySet>& sets(const Step& step) {
-        if (sets_.empty()) sets_ = ray_sets(scene(step).build_scene(), options_.quick ? kQuickRays : kRays);
+        if (sets_.empty())
+            sets_ = ray_sets(scene(step).build_scene(), options_.rays > 0 ? options_.rays
+                                                        : options_.quick  ? kQuickRays
+                                                                          : kRays);
         return sets_;
     }
     const RaySet& set(const std::string& name, const Step& step) {
@@ -206,7 +209,30 @@ Outcome stack(Bench& bench, const Step& step) {
     return Outcome::passed("no stack was full, as far as the traversal asks RT_STACK_OK (" + std::to_string(rays) + " rays)");
 }
 
+Outcome accesses(Bench& bench, const Step& step) {
+    const Variant variant{bench.options().lanes.front(), false, false};
+    size_t rays = 0;
+    for (const RaySet& set : bench.sets(step))
+        for (const bool any_hit : {false, true}) {
+            CheckedScene& scene = bench.compiled(variant, step);
+            step(std::string("tracing ") + set.name + " on a simulated device", kCompileLimit_s);
+            scene.trace(variant, set.rays, any_hit);
+            rays += set.rays.size();
+        }
+    return Outcome::passed("every access of " + std::to_string(rays) + " rays is within its buffer");
+}
+
 }  // namespace
+
+std::vector<Check> access_checks(const rt_plugin& plugin, const rt_plugin* layout,
+                                 const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options) {
+    HitsOptions few = options;
+    few.rays = 16;
+    few.lanes.resize(1);
+    const auto bench = std::make_shared<Bench>(plugin, layout, open, few);
+    return {{"accesses.oclgrind", "every access to memory, looked at by oclgrind",
+             [=](const Step& step) { return accesses(*bench, step); }}};
+}
 
 std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
                                const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options) {

@@ -13,6 +13,7 @@ namespace clarity::check {
 struct HitsOptions {
     bool quick = false;
     std::vector<int> lanes = {1, 4, 8, 16};
+    size_t rays = 0;            // of a set; 0: as `quick` says
     std::string report_folder;  // where wrong rays are written; "": nowhere
 };
 
@@ -20,5 +21,9 @@ struct HitsOptions {
 // opens the device on first use.
 std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
                                const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options);
+
+// One check for a device that looks at each access of kernels (oclgrind): it traces few rays of each kind, and judges nothing.
+std::vector<Check> access_checks(const rt_plugin& plugin, const rt_plugin* layout,
+                                 const std::function<std::shared_ptr<Device>()>& open, const HitsOptions& options);
 
 }  // namespace clarity::check

@@ -1,0 +1,91 @@
+// importer_test.cpp -- `clarity check` of importers: each defect is found by its check, and ours are accused of nothing.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+#include "support/scratch.hpp"
+
+namespace {
+
+using nlohmann::json;
+
+struct Defect {
+    const char* library;
+    const char* check;
+    const char* words;  // of what was found
+};
+void PrintTo(const Defect& defect, std::ostream* out) {
+    *out << defect.library;
+}
+
+class ImporterCheck : public testing::Test {
+ protected:
+    void SetUp() override {
+        std::string text = "40\n";
+        for (int i = 0; i < 40; ++i)
+            text += std::to_string(2 * i) + " 0 0  " + std::to_string(2 * i + 1) + " 0 0  " + std::to_string(2 * i) + " 1 0\n";
+        scratch_.write("row.tri", text);
+        scratch_.write("one.tri", "1\n0 0 0  1 0 0  0 1 0\n");
+        scratch_.write("row.tri.json", R"({"triangles": 40, "area": 20, "bbox": [[0, 0, 0], [79, 1, 0]]})");
+    }
+    json check(const std::string& library, int exit_code, const std::string& only = {}) {
+        std::vector<std::string> words = {
+            "check", std::string(BROKEN_PLUGINS) + "/" + library + ".so", "--quick", "--json", "--samples", scratch_.path("")};
+        if (!only.empty()) words.insert(words.end(), {"--only", only});
+        RunOptions options;
+        options.limit_s = 120;
+        const ProgramResult result = run_program(words, options);
+        EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
+        return json::parse(result.out, nullptr, false);
+    }
+    Scratch scratch_;
+};
+
+class BrokenImporter : public ImporterCheck, public testing::WithParamInterface<Defect> {};
+
+TEST_P(BrokenImporter, IsFound) {
+    const Defect& defect = GetParam();
+    const json results = check(std::string("importer_") + defect.library, 1, defect.check);
+    ASSERT_TRUE(results.is_array() && results.size() == 1) << results.dump(2);
+    EXPECT_EQ(results[0]["status"], "failed");
+    const std::string found = results[0]["found"];
+    EXPECT_NE(found.find(defect.words), std::string::npos) << found;
+}
+
+const Defect kDefects[] = {
+    {"drops_last", "imports.truth", "has 39 triangles, not 40"},
+    {"trusts_count", "imports.hostile", "crashed"},
+    {"crashes", "imports.hostile", "crashed (segmentation fault"},
+    {"endless", "imports.hostile", "did not come to an end within"},
+    {"keeps_state", "imports.state", "keeps state"},
+    {"ignores_cancel", "imports.cancel", "must return RT_CANCELLED soon"},
+    {"leaks", "imports.leaks", "it leaks memory"},
+    {"sure_of_all", "imports.table", "it would take files of other importers"},
+};
+INSTANTIATE_TEST_SUITE_P(Plugins, BrokenImporter, testing::ValuesIn(kDefects),
+                         [](const testing::TestParamInfo<Defect>& info) { return info.param.library; });
+
+TEST_F(ImporterCheck, SoundOnePasses) {
+    const json results = check("importer_none", 0);
+    ASSERT_TRUE(results.is_array());
+    EXPECT_EQ(results.size(), 7u);
+    for (const json& result : results) EXPECT_EQ(result["status"], "passed") << result.dump(2);
+}
+
+TEST_F(ImporterCheck, AccusesNoneOfOurOwn) {
+    const std::string cube =
+        "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+        "f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
+    scratch_.write("cube.obj", cube);
+    scratch_.write("cube.obj.json", R"({"triangles": 12, "area": 6, "bbox": [[0, 0, 0], [1, 1, 1]]})");
+    for (const char* id : {"openmesh", "scene"}) {
+        const std::string samples =
+            std::string(id) == "scene" ? std::string(CLARITY_SOURCE_DIR) + "/scenes" : scratch_.path("");
+        const ProgramResult result = run_program({"check", id, "--quick", "--samples", samples});
+        EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
+        EXPECT_NE(result.out.find("ok  " + std::string(id) + " imports.hostile"), std::string::npos) << result.out;
+    }
+}
+
+}  // namespace
