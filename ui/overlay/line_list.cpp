@@ -5,14 +5,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "ui/session/camera_control.hpp"
+
 namespace clarity::ui {
 namespace {
 
 constexpr float kTwoPi = 6.2831853f;
-
-glm::vec3 vec(const std::array<float, 3>& a) {
-    return {a[0], a[1], a[2]};
-}
 
 }  // namespace
 

@@ -7,14 +7,6 @@
 #include "ui/session/camera_control.hpp"
 
 namespace clarity::ui {
-namespace {
-
-glm::vec3 vec(const Vec3& a) {
-    return {a[0], a[1], a[2]};
-}
-
-}  // namespace
-
 Projection::Projection(const Rect& area, const Camera& camera) : area_(area) {
     const CameraAxes axes = camera_axes(camera);
     eye_ = vec(camera.eye);

@@ -6,14 +6,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "ui/session/camera_control.hpp"
+
 namespace clarity::ui {
 namespace {
 
 constexpr uint32_t kHalo = IM_COL32(0, 0, 0, 150);
-
-glm::vec3 vec(const std::array<float, 3>& a) {
-    return {a[0], a[1], a[2]};
-}
 
 }  // namespace
 

@@ -7,9 +7,6 @@
 namespace clarity::ui {
 namespace {
 
-glm::vec3 vec(const Vec3& a) {
-    return {a[0], a[1], a[2]};
-}
 Vec3 arr(const glm::vec3& a) {
     return {a.x, a.y, a.z};
 }

@@ -1,6 +1,7 @@
 // camera_control.hpp -- motions of a camera and of a light, for keys and mouse. Pure arithmetic, no window.
 #pragma once
 #include <array>
+#include <glm/vec3.hpp>
 
 #include "rt_types.h"
 #include "scene/scene.hpp"
@@ -8,6 +9,9 @@
 namespace clarity::ui {
 
 using Vec3 = std::array<float, 3>;
+inline glm::vec3 vec(const Vec3& a) {
+    return {a[0], a[1], a[2]};
+}
 
 // Orthonormal axes of a camera.
 struct CameraAxes {

@@ -15,7 +15,7 @@
 namespace clarity::bench {
 namespace {
 
-constexpr unsigned kChunk = 1u << 20;  // bytes per read
+constexpr unsigned kReadBytes = 1u << 20;  // bytes per read
 
 // Writes all bytes to the open file `file`. Returns the reason of a failure, "" for success.
 std::string write_all(int file, const char* at, size_t bytes) {
@@ -31,10 +31,10 @@ std::string write_all(int file, const char* at, size_t bytes) {
 
 // Unpacks `from` into the open file `to`. Returns the reason of a failure, "" for success.
 std::string unpack(gzFile from, int to) {
-    std::vector<char> chunk(kChunk);
+    std::vector<char> chunk(kReadBytes);
     for (;;) {
         errno = 0;
-        const int got = gzread(from, chunk.data(), kChunk);
+        const int got = gzread(from, chunk.data(), kReadBytes);
         int error = Z_OK;
         const std::string why = gzerror(from, &error);
         if (got < 0 || (error != Z_OK && error != Z_STREAM_END))

@@ -123,7 +123,7 @@ Outcome read(const ImportInputs& inputs, const Step& step) {
 }
 
 // How a scene differs from the truth; empty: it does not.
-std::string difference(const Scene& scene, const Truth& truth) {
+std::string difference(const Scene& scene, const Contents& truth) {
     const auto triangles = static_cast<double>(scene.placed_triangle_count());
     if (triangles != truth.triangles) return "has " + exact_text(triangles) + " triangles, not " + exact_text(truth.triangles);
     const double area = scene.surface_area();

@@ -16,7 +16,7 @@ struct ImportInputs {
     PluginRegistry plugins;  // the importer first, then those of files that samples load
     const rt_plugin* plugin = nullptr;
     std::vector<std::string> samples;
-    std::map<std::string, Truth> truths;  // by sample
+    std::map<std::string, Contents> truths;  // by sample
     std::vector<HostileFile> hostile;
 };
 

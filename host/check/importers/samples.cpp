@@ -27,12 +27,12 @@ bool has_extension(const rt_importer& importer, const fs::path& path) {
 }
 
 // Nothing where the file holds no triangle: its box is null.
-std::optional<Truth> read_truth(const std::string& path, const nlohmann::json& json) {
+std::optional<Contents> read_truth(const std::string& path, const nlohmann::json& json) {
     try {
         const nlohmann::json& whole = json.contains("truth") ? json.at("truth") : json;
         const nlohmann::json& held = whole.contains("static") ? whole.at("static") : whole;
         if (held.at("triangles") == 0) return std::nullopt;
-        Truth truth{};
+        Contents truth{};
         truth.triangles = held.at("triangles");
         truth.area = held.contains("area") ? held.at("area") : held.at("area_fan");
         for (int k = 0; k < 3; ++k) {
@@ -67,7 +67,7 @@ std::vector<std::string> samples_among(const rt_importer& importer, const std::v
     return samples;
 }
 
-std::optional<Truth> truth_of(const std::string& file, const std::string& folder) {
+std::optional<Contents> truth_of(const std::string& file, const std::string& folder) {
     if (fs::exists(file + ".json"))
         return read_truth(file + ".json", nlohmann::json::parse(read_file(file + ".json", kMostTruthBytes, Exit::usage)));
     if (folder.empty()) return std::nullopt;

@@ -10,7 +10,7 @@
 namespace clarity::check {
 
 // What a file holds, in its own units and axes.
-struct Truth {
+struct Contents {
     double triangles = 0, area = 0;
     double lo[3], hi[3];  // bounding box
 };
@@ -21,7 +21,7 @@ std::vector<std::string> samples_among(const rt_importer& importer, const std::v
 // The truth about a file, if there is one: from FILE.json beside it, or from a .json file in `folder` whose field `file` is the
 // file's folder and name. The numbers are in the object itself, or in `truth`, `static` or both. Throws Error(usage)
 // "FILE.json: why" if they cannot be read.
-std::optional<Truth> truth_of(const std::string& file, const std::string& folder);
+std::optional<Contents> truth_of(const std::string& file, const std::string& folder);
 
 // Damaged copies of samples, as files in a folder. They are written before the sandbox closes.
 struct HostileFile {

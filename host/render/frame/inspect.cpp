@@ -12,8 +12,8 @@
 namespace clarity {
 namespace {
 
-constexpr cl_uint kMostRays = 4096;    // 400 kB; a pixel of a typical picture has fewer than 100
-constexpr unsigned kSummaryWords = 5;  // as inspect.cl writes them
+constexpr cl_uint kMostRecords = 4096;  // 400 kB; a pixel of a typical picture has fewer than 100
+constexpr unsigned kSummaryWords = 5;   // as inspect.cl writes them
 
 std::array<float, 3> three(const rt_f32* v) {
     return {v[0], v[1], v[2]};
@@ -73,7 +73,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
     return wrap_cl_errors(*im.device, "inspecting a pixel", [&] {
         const cl::Context& context = im.device->context();
         im.view.write(im.queue, *prepared.scene, {make_frame(view, settings, layout, *prepared.accel, 0)}, view);
-        const cl::Buffer& records = im.records.fit(context, kMostRays * sizeof(rt_ray_record));
+        const cl::Buffer& records = im.records.fit(context, kMostRecords * sizeof(rt_ray_record));
         const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
         const PixelPlace place = layout.place_of(x, y, width);
         cl::Kernel kernel = program->kernel();
@@ -83,7 +83,7 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
         kernel.setArg(at++, cl_uint(place.packet));
         kernel.setArg(at++, cl_uint(place.pixel));
         kernel.setArg(at++, records);
-        kernel.setArg(at++, kMostRays);
+        kernel.setArg(at++, kMostRecords);
         kernel.setArg(at++, summary);
         kernel.setArg(at++, im.distances.fit(context, layout.rays() * sizeof(float)));
         im.view.bind(*prepared.on_device, kernel, at);
@@ -92,10 +92,10 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
 
         rt_u32 found[kSummaryWords] = {};
         im.queue.enqueueReadBuffer(summary, CL_TRUE, 0, sizeof found, found);
-        std::vector<rt_ray_record> read(std::min<size_t>(found[0], kMostRays));
+        std::vector<rt_ray_record> read(std::min<size_t>(found[0], kMostRecords));
         if (!read.empty()) im.queue.enqueueReadBuffer(records, CL_TRUE, 0, read.size() * sizeof(rt_ray_record), read.data());
         RayTree tree;
-        tree.truncated = found[0] > kMostRays;
+        tree.truncated = found[0] > kMostRecords;
         std::memcpy(tree.color.data(), found + 1, sizeof tree.color);
         tree.overflowed = found[4];
         report_overflows(tree.overflowed, prepared.accel->plugin->id);

@@ -15,7 +15,7 @@ constexpr unsigned kGroupsPerUnit = 16;
 // Queues may take 1 / kShareOfMemory of a device's memory. On a CPU they should stay in its caches.
 constexpr unsigned kShareOfMemory = 8;
 constexpr uint64_t kCpuBytes = 64 << 20;
-constexpr uint64_t kMostRays = 1u << 30;  // a uint counts them, including those that find no room
+constexpr uint64_t kMostCounted = 1u << 30;  // a uint counts them, including those that find no room
 
 // Sets a kernel's arguments one after the other.
 class Arguments {
@@ -51,7 +51,7 @@ Wavefront::Room Wavefront::room_for(const WavefrontFrame& frame) const {
     const DeviceInfo& info = device_->info();
     uint64_t most = (info.cpu ? kCpuBytes : info.global_bytes / kShareOfMemory) / (2 * kRayBytes);
     if (info.max_allocation_bytes) most = std::min(most, info.max_allocation_bytes / kRayBytes);
-    most = std::min(most, kMostRays);
+    most = std::min(most, kMostCounted);
     const auto fitting = static_cast<unsigned>(std::clamp<uint64_t>(most / group_rays, 1, frame.groups));
     return {static_cast<unsigned>(fitting * group_rays), fitting, true};
 }

@@ -7,7 +7,7 @@
 namespace clarity {
 namespace {
 
-constexpr unsigned kGroupSize = 64;          // of kernel trace_short
+constexpr unsigned kShortGroup = 64;         // of kernel trace_short
 constexpr unsigned kLongGroupsPerUnit = 16;  // work-groups that run at the same time on a compute unit, or are ready to
 
 }  // namespace
@@ -43,15 +43,15 @@ LaunchTimes RequeuedRays::trace(const Prepared& prepared, const TraceProgram& pr
         ping_pong_.take([&](cl_uint) { queue.enqueueFillBuffer(list, cl_uint(0), 0, 2 * sizeof(cl_uint)); },
                         [&](cl_uint parity) {
                             first.setArg(8, parity);
-                            queue.enqueueNDRangeKernel(first, cl::NullRange, cl::NDRange(size_t(count) * kGroupSize),
-                                                       cl::NDRange(kGroupSize), nullptr, &piece.first);
+                            queue.enqueueNDRangeKernel(first, cl::NullRange, cl::NDRange(size_t(count) * kShortGroup),
+                                                       cl::NDRange(kShortGroup), nullptr, &piece.first);
                             rest.setArg(5, parity);
                             queue.enqueueNDRangeKernel(rest, cl::NullRange, cl::NDRange(long_items), cl::NDRange(kRequeueItems),
                                                        nullptr, &piece.last);
                         });
         return piece;
     };
-    const unsigned groups = (rays + kGroupSize - 1) / kGroupSize;
+    const unsigned groups = (rays + kShortGroup - 1) / kShortGroup;
     return launcher_.run(queue, groups, groups, enqueue, [] {});
 }
 

@@ -11,10 +11,6 @@
 namespace clarity {
 namespace {
 
-[[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& expected) {
-    throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
-}
-
 std::vector<std::string> split(const std::string& text, char at) {
     std::vector<std::string> parts(1);
     for (const char c : text)
@@ -28,15 +24,16 @@ std::vector<std::string> split(const std::string& text, char at) {
 // Reads `count` numbers with commas between them.
 void read_floats(const std::string& key, const std::string& text, float* values, size_t count, const char* expected) {
     const std::vector<float> numbers = read_numbers<float>(text);
-    if (numbers.size() != count) refuse(key, text, expected);
+    if (numbers.size() != count) refuse_value(key, text, expected);
     std::copy(numbers.begin(), numbers.end(), values);
 }
 
 void read_camera(Camera& camera, const std::string& text) {
     const std::optional<CameraNumbers> numbers = read_camera_numbers(text);
-    if (!numbers || !numbers->up) refuse("camera", text, "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz");
+    if (!numbers || !numbers->up) refuse_value("camera", text, "ex,ey,ez,tx,ty,tz,fov_degrees,ux,uy,uz");
     const double fov_deg = *numbers->fov_deg;
-    if (fov_deg <= 0 || fov_deg >= 180) refuse("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
+    if (fov_deg <= 0 || fov_deg >= 180)
+        refuse_value("camera", text, "a camera: its field of view must be between 0 and 180 degrees");
     camera.eye = numbers->eye;
     camera.target = numbers->target;
     camera.fov_y_rad = static_cast<float>(fov_deg * kRadPerDegree);
@@ -45,7 +42,7 @@ void read_camera(Camera& camera, const std::string& text) {
 
 void read_light(EditedView& edited, const std::string& key, const std::string& value) {
     rt_u32 at = 0;
-    if (!read_number(key.substr(6), at)) refuse(key, value, "for a light: light.N counts from 0");
+    if (!read_number(key.substr(6), at)) refuse_value(key, value, "for a light: light.N counts from 0");
     auto& lights = edited.view.lights;
     if (at > lights.size())
         throw Error(Exit::usage, key + ": the view has " + std::to_string(lights.size()) +
@@ -59,20 +56,20 @@ void read_light(EditedView& edited, const std::string& key, const std::string& v
     const char* expected = "off, point,x,y,z,r,g,b or directional,x,y,z,r,g,b";
     const size_t comma = value.find(',');
     const std::string kind = value.substr(0, comma);
-    if (comma == std::string::npos || (kind != "point" && kind != "directional")) refuse(key, value, expected);
+    if (comma == std::string::npos || (kind != "point" && kind != "directional")) refuse_value(key, value, expected);
     float n[6];
     read_floats(key, value.substr(comma + 1), n, 6, "six numbers after its kind: x,y,z,r,g,b");
     rt_light light{};
     light.kind = kind == "point" ? RT_LIGHT_POINT : RT_LIGHT_DIRECTIONAL;
     if (light.kind == RT_LIGHT_DIRECTIONAL) {
         const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        if (!(length > 0)) refuse(key, value, "a direction: it has no length");
+        if (!(length > 0)) refuse_value(key, value, "a direction: it has no length");
         // A unit vector must stay exactly as it is.
         if (std::fabs(length - 1) > 1e-6f)
             for (int k = 0; k < 3; ++k) n[k] /= length;
     }
     for (int k = 0; k < 3; ++k) {
-        if (n[3 + k] < 0) refuse(key, value, "a light: its colour is negative");
+        if (n[3 + k] < 0) refuse_value(key, value, "a light: its colour is negative");
         light.position[k] = n[k];
         light.color[k] = n[3 + k];
     }
@@ -123,7 +120,7 @@ void read_material(const Scene& scene, EditedView& edited, const std::string& ke
     const float least = std::strcmp(part->name, "ior") == 0 ? 1e-3f : 0.0f;
     for (size_t k = 0; k < part->count; ++k)
         if (n[k] < least || n[k] > part->most)
-            refuse(key, value, "from " + exact_text(least) + " to " + exact_text(part->most));
+            refuse_value(key, value, "from " + exact_text(least) + " to " + exact_text(part->most));
     if (edited.view.materials.empty()) edited.view.materials = scene_materials(scene);
     std::copy(n, n + part->count, part_of(edited.view.materials[at], *part));
 }
@@ -136,7 +133,7 @@ void read_hidden(const Scene& scene, EditedView& edited, const std::string& valu
         rt_u32 first = 0, last = 0;
         if (!read_number(range.substr(0, dash), first) ||
             !read_number(dash == std::string::npos ? range : range.substr(dash + 1), last) || last < first)
-            refuse("hide", value, "a list of instances such as 3,5-9");
+            refuse_value("hide", value, "a list of instances such as 3,5-9");
         if (last >= scene.instances.size())
             throw Error(Exit::usage, "hide: the scene has " + std::to_string(scene.instances.size()) +
                                          " instances, counted from 0; there is no " + std::to_string(last));
@@ -186,7 +183,7 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
         float n[3];
         read_floats(key, value, n, 3, "r,g,b");
         for (int k = 0; k < 3; ++k)
-            if (n[k] < 0) refuse(key, value, "a colour: it is negative");
+            if (n[k] < 0) refuse_value(key, value, "a colour: it is negative");
         std::copy(n, n + 3, (key == "ambient" ? view.ambient : view.background).begin());
     } else if (key == "hide") {
         read_hidden(scene, edited, value);

@@ -7,10 +7,6 @@
 namespace clarity {
 namespace {
 
-[[noreturn]] void refuse(const std::string& key, const std::string& value, const std::string& expected) {
-    throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
-}
-
 // Lets a setting compare and copy its values, which these members hold.
 template <class... Member>
 void hold_in(Setting& s, Member Settings::*... members) {
@@ -26,7 +22,7 @@ Setting integer(std::string key, std::string label, std::string help, double min
     s.set = [=](Settings& settings, const std::string& text) {
         int value = 0;
         if (!read_number(text, value) || value < min || value > max)
-            refuse(key, text, "a whole number from " + exact_text(min) + " to " + exact_text(max));
+            refuse_value(key, text, "a whole number from " + exact_text(min) + " to " + exact_text(max));
         settings.*member = value;
     };
     return s;
@@ -40,7 +36,7 @@ Setting real(std::string key, std::string label, std::string help, double min, d
     s.set = [=](Settings& settings, const std::string& text) {
         double value = 0;
         if (!read_number(text, value) || value < min || value > max)
-            refuse(key, text, "a number from " + exact_text(min) + " to " + exact_text(max));
+            refuse_value(key, text, "a number from " + exact_text(min) + " to " + exact_text(max));
         settings.*member = value;
     };
     return s;
@@ -56,7 +52,7 @@ Setting boolean(std::string key, std::string label, std::string help, Effect eff
         else if (text == "0" || text == "false" || text == "off" || text == "no")
             settings.*member = false;
         else
-            refuse(key, text, "true or false");
+            refuse_value(key, text, "true or false");
     };
     return s;
 }
@@ -75,7 +71,7 @@ Setting choice(std::string key, std::string label, std::string help, std::vector
             }
             known += (known.empty() ? "" : ", ") + c;
         }
-        refuse(key, text, "one of " + known);
+        refuse_value(key, text, "one of " + known);
     };
     return s;
 }
@@ -98,7 +94,7 @@ Setting size(std::string key, std::string label, std::string help, int min, int 
         int w = 0, h = 0;
         if (x == std::string::npos || !read_number(text.substr(0, x), w) || !read_number(text.substr(x + 1), h) || w < min ||
             h < min || w > max || h > max)
-            refuse(key, text, "WIDTHxHEIGHT, each from " + std::to_string(min) + " to " + std::to_string(max));
+            refuse_value(key, text, "WIDTHxHEIGHT, each from " + std::to_string(min) + " to " + std::to_string(max));
         settings.*width = w;
         settings.*height = h;
     };
@@ -118,12 +114,16 @@ Setting lanes_setting() {
                 settings.lanes = text == "auto" ? 0 : std::stoi(text);
                 return;
             }
-        refuse("lanes", text, "auto, 1, 4, 8 or 16");
+        refuse_value("lanes", text, "auto, 1, 4, 8 or 16");
     };
     return s;
 }
 
 }  // namespace
+
+void refuse_value(const std::string& key, const std::string& value, const std::string& expected) {
+    throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
+}
 
 std::vector<std::string> tone_names() {
     return {"linear", "reinhard", "aces", "agx"};

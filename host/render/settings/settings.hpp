@@ -61,4 +61,7 @@ void set_setting(Settings& settings, const std::string& key, const std::string& 
 // Returns the names of the tone curves in the order of their numbers in cl/film.cl.
 std::vector<std::string> tone_names();
 
+// Throws Error(usage) "depth: `x` is not a whole number": key, value, what was expected.
+[[noreturn]] void refuse_value(const std::string& key, const std::string& value, const std::string& expected);
+
 }  // namespace clarity

@@ -22,12 +22,12 @@ bool is_helper(const aiNode& node) {
     return name_of(node).find(kHelperTag) != std::string_view::npos;
 }
 // Returns the part that a helper node stands for, for example "PreRotation"; empty for a node of the file itself.
-std::string_view part_of(const aiNode& node) {
+std::string_view part_name(const aiNode& node) {
     const size_t at = name_of(node).rfind(kHelperTag);
     return at == std::string_view::npos ? std::string_view() : name_of(node).substr(at + kHelperTag.size());
 }
 bool is_inverse(const aiNode& node) {
-    const std::string_view part = part_of(node);
+    const std::string_view part = part_name(node);
     return part.substr(0, 9) == "Geometric" && part.size() > 7 && part.substr(part.size() - 7) == "Inverse";
 }
 
@@ -165,7 +165,7 @@ void FbxMend::mend_rotations() {
             continue;
         }
         for (aiNode* helper : helpers->second) {
-            const std::string_view part = part_of(*helper);
+            const std::string_view part = part_name(*helper);
             if (part == "GeometricRotation") helper->mTransformation = rotation_xyz(model.geometric_rotation);
             if (model.rotation_active) continue;
             if (part == "PreRotation" || part == "PostRotation") helper->mTransformation = aiMatrix4x4();

@@ -13,8 +13,6 @@ namespace {
 
 using Vec = std::array<double, 3>;
 
-constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-
 // The n-th light (or camera) of a name belongs to the n-th node of that name.
 class Placement {
  public:

@@ -11,6 +11,7 @@ namespace assimp_import {
 
 // A 3x4 matrix, row-major, in double precision, so that chains of many small rotations stay exact to float precision.
 using Transform = std::array<double, 12>;
+inline constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 Transform multiply(const Transform& a, const Transform& b);  // applies b first, then a
 std::array<double, 3> transform_point(const Transform& m, const aiVector3D& p);
 std::array<double, 3> transform_vector(const Transform& m, const aiVector3D& v);

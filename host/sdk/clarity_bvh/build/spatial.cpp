@@ -33,13 +33,6 @@ Sum over_chunks(const rt_host* host, const Record* first, const Record* end, con
     return total;
 }
 
-Bounds box_of(const Record& r) {
-    Bounds box;
-    store(box.lo, xyz(load(r.lo)));
-    store(box.neg_hi, load(r.neg_hi));
-    return box;
-}
-
 Bounds common(const Bounds& a, const Bounds& b) {
     Bounds box;
     store(box.lo, max(load(a.lo), load(b.lo)));
@@ -95,7 +88,7 @@ class Cutter {
 
     void place(const Record& r, Side& left, Side& right) {
         const SliceRange in = extent(planes_, split_.axis, r);
-        const Bounds whole = box_of(r);
+        const Bounds whole = bounds_of(r);
         if (in.last < split_.bin) return left.take(r, whole);
         if (in.first >= split_.bin) return right.take(r, whole);
         const float cut = left_area_ * left_count_ + right_area_ * right_count_;

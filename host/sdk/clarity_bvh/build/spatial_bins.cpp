@@ -3,18 +3,18 @@
 namespace clarity::bvh {
 namespace {
 
-Bounds box_of(const Record& record) {
-    Bounds box;
-    store(box.lo, xyz(load(record.lo)));
-    store(box.neg_hi, load(record.neg_hi));
-    return box;
-}
-
 bool can_be_cut(const Record& record) {
     return RT_REF_KIND(record.ref()) == RT_REF_TRIANGLE;
 }
 
 }  // namespace
+
+Bounds bounds_of(const Record& record) {
+    Bounds box;
+    store(box.lo, xyz(load(record.lo)));
+    store(box.neg_hi, load(record.neg_hi));
+    return box;
+}
 
 Planes::Planes(const Bounds& box) {
     for (int a = 0; a < 3; ++a) {
@@ -79,7 +79,7 @@ Bounds clip(const rt_packed_prim& triangle, const Bounds& part, int axis, float 
 
 void SpatialBins::add(const Record* first, const Record* end, const Planes& planes, const rt_geometry& geometry) {
     for (const Record* r = first; r != end; ++r) {
-        const Bounds whole = box_of(*r);
+        const Bounds whole = bounds_of(*r);
         for (int axis = 0; axis < 3; ++axis) {
             const SliceRange in = extent(planes, axis, *r);
             ++enter[in.first][axis];

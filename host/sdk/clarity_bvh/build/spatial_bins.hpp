@@ -7,6 +7,8 @@ namespace clarity::bvh {
 
 constexpr uint32_t kSpatialBins = 16;
 
+Bounds bounds_of(const Record& record);
+
 // Equally spaced planes that cut a box into kSpatialBins slices on each axis.
 class Planes {
  public:
