@@ -146,6 +146,7 @@ bool begin_worker(const char* greeting, long parent, const char* instead) {
     syscall(SYS_close_range, kResultFd + 1, ~0u, 0);
 #endif
     std::signal(SIGPIPE, SIG_IGN);
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what a plugin prints reaches the parent at once, and before a crash
     set_log_level(LogLevel::error);
     set_log_listener(send_log);
     prepare_last_words();
