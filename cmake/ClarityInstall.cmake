@@ -13,7 +13,11 @@ install(FILES host/sdk/rt_plugin.h host/sdk/rt_digest.h host/sdk/rt_plugin.hpp c
 install(DIRECTORY host/sdk/template/ DESTINATION ${CMAKE_INSTALL_DATADIR}/clarity/template COMPONENT sdk)
 file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/clarity)
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/host/sdk/template ${PROJECT_BINARY_DIR}/share/clarity/template SYMBOLIC)
-install(FILES docs/plugins.md docs/clarity_bvh.md cl/CONTRACT.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk OPTIONAL)
+# The pages, and the kernels and structures that they name, lie as in the sources, so that links between them hold.
+install(FILES README.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk)
+install(DIRECTORY docs cl DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk PATTERN "*.sh" EXCLUDE)
+install(DIRECTORY plugins/accel DESTINATION ${CMAKE_INSTALL_DOCDIR}/plugins COMPONENT sdk)
+install(FILES scenes/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT sdk)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/clarity)
 install(EXPORT clarityTargets NAMESPACE clarity:: DESTINATION ${package} COMPONENT sdk)
