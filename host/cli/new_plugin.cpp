@@ -177,6 +177,16 @@ std::string in_shell(const std::string& text) {
     return quoted + "'";
 }
 
+// How a shell finds this program: by its name, if the folder is in PATH.
+std::string program_name() {
+    std::error_code error;
+    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const char* path = std::getenv("PATH");
+    const std::string folders = ":" + std::string(path ? path : "") + ":";
+    const bool found = folders.find(":" + program.parent_path().string() + ":") != std::string::npos;
+    return found ? program.filename().string() : in_shell(program.string());
+}
+
 void print_next_steps(const std::string& folder, const std::string& id) {
     const fs::path prefix = program_prefix();
     std::string found_in;
@@ -185,8 +195,8 @@ void print_next_steps(const std::string& folder, const std::string& id) {
     else if (prefix != "/usr" && prefix != "/usr/local")
         found_in = " -DCMAKE_PREFIX_PATH=" + in_shell(prefix.string());
     print_text("%s is a plugin now. Build it and check it; its README.md continues.\n"
-               "  cd %s\n  cmake -S . -B build%s\n  cmake --build build\n  clarity check ./build/%s.so --quick\n",
-               folder.c_str(), in_shell(folder).c_str(), found_in.c_str(), id.c_str());
+               "  cd %s\n  cmake -S . -B build%s\n  cmake --build build\n  %s check ./build/%s.so --quick\n",
+               folder.c_str(), in_shell(folder).c_str(), found_in.c_str(), program_name().c_str(), id.c_str());
 }
 
 }  // namespace

@@ -131,6 +131,7 @@ struct Texts {
     struct Last {
         std::string path;  // "": embedded
         size_t hash;
+        std::string library;  // which it is embedded in; "": this program
     };
     std::mutex mutex;
     std::map<std::string, Last> last;
@@ -142,10 +143,10 @@ Texts& texts() {
 }
 
 // Records a text. The revision grows if it differs from the last one of that name.
-std::string remember(const std::string& shown_name, const fs::path& path, std::string text) {
+std::string remember(const std::string& shown_name, const fs::path& path, std::string text, const fs::path& library = {}) {
     Texts& all = texts();
     const std::lock_guard<std::mutex> lock(all.mutex);
-    const Texts::Last now{path.string(), std::hash<std::string>()(text)};
+    const Texts::Last now{path.string(), std::hash<std::string>()(text), library.string()};
     const auto [entry, first] = all.last.insert({shown_name, now});
     if (!first && entry->second.hash != now.hash) ++all.revision;
     entry->second = now;
@@ -260,7 +261,7 @@ std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
         used = path;
         result = whole;
     }
-    if (used.empty()) result = remember(shown, {}, file.text ? file.text : "");
+    if (used.empty()) result = remember(shown, {}, file.text ? file.text : "", library_of(accel));
     return with_kernels(result);
 }
 
@@ -269,6 +270,16 @@ std::string kernel_path(const std::string& shown_name) {
     const std::lock_guard<std::mutex> lock(all.mutex);
     const auto found = all.last.find(shown_name);
     return found == all.last.end() ? std::string() : found->second.path;
+}
+
+std::string kernel_place(const std::string& shown_name) {
+    Texts& all = texts();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    const auto found = all.last.find(shown_name);
+    if (found == all.last.end()) return shown_name;
+    const Texts::Last& last = found->second;
+    if (!last.path.empty()) return last.path;
+    return last.library.empty() ? shown_name : fs::path(shown_name).filename().string() + " inside " + last.library;
 }
 
 uint64_t kernel_text_revision() {
