@@ -348,6 +348,7 @@ CommandLine parse_command_line(int argc, char** argv) {
     plugins->add_flag("--json", p.json, "As JSON");
     plugins->callback([&] {
         line.refused_plugin_is_fatal = false;
+        line.lists_plugins = true;
         line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
     });
     for (CLI::App* sub : {view, render, trace, check, fresh, bench, info, devices, plugins}) {

@@ -274,7 +274,7 @@ std::string kind_and_id(const rt_plugin& plugin) {
 
 }  // namespace
 
-PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files) {
+PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files, bool log_refused) {
     Search search;
     for (const std::string& file : plugin_files) search.add_file(file);
     const size_t named = search.paths().size();
@@ -287,7 +287,7 @@ PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_f
     for (const std::string& path : search.paths()) records.push_back(load_plugin(path));
     shadow_later_ones(records);
     link_layouts(records);
-    for (size_t i = 0; i < records.size(); ++i)
+    for (size_t i = 0; log_refused && i < records.size(); ++i)
         if (!records[i].plugin)
             log(i < named ? LogLevel::error : LogLevel::warning, "plugin refused: " + records[i].path + ": " + records[i].why);
     return registry;

@@ -27,7 +27,8 @@ struct PluginRecord {
 // Copies of a registry share one list. Thread-safe.
 class PluginRegistry {
  public:
-    static PluginRegistry discover(const std::vector<std::string>& plugin_files = {});
+    // log_refused: false if the caller tells of refused libraries itself.
+    static PluginRegistry discover(const std::vector<std::string>& plugin_files = {}, bool log_refused = true);
     // Loads exactly these libraries, without a search. A process that has found them passes them on to its import worker.
     static PluginRegistry of(const std::vector<std::string>& plugin_files);
 

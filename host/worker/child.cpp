@@ -147,7 +147,8 @@ bool begin_worker(const char* greeting, long parent, const char* instead) {
 #endif
     std::signal(SIGPIPE, SIG_IGN);
     std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what a plugin prints reaches the parent at once, and before a crash
-    set_log_level(LogLevel::error);
+    // The parent logs every line. On stderr it would come a second time, as something that a plugin printed.
+    set_log_level(static_cast<LogLevel>(static_cast<int>(LogLevel::error) + 1));
     set_log_listener(send_log);
     prepare_last_words();
     send_message(kChannelFd, {MessageKind::greeting, 0, 0, greeting});
