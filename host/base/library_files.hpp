@@ -1,7 +1,7 @@
 // library_files.hpp -- which file a loaded library is in, and which file its user knows it as.
 //
-// Both are the same, except for a library that was rebuilt while the program runs: the dynamic loader knows a file only once, so a
-// private copy of the new file is loaded (plugin/library_watch.hpp). All functions are thread-safe.
+// Both are the same, except for a library that was rebuilt while the program runs: the dynamic loader knows a file only once,
+// so a private copy of the new file is loaded (plugin/library_watch.hpp). All functions are thread-safe.
 #pragma once
 #include <string>
 

@@ -176,9 +176,7 @@ void add_check(CLI::App& app, CheckCommand& command) {
 
 void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
     app.add_option("kind", command.kind, "accel (an acceleration structure) or importer")->type_name("KIND")->required();
-    app.add_option("id", command.id, "Its name: lower-case letters, digits and _, a letter first")
-        ->type_name("ID")
-        ->required();
+    app.add_option("id", command.id, "Its name: lower-case letters, digits and _, a letter first")->type_name("ID")->required();
     app.add_option("folder", command.folder, "The new folder; default: ID in the working folder")->type_name("DIR");
 }
 

@@ -62,7 +62,8 @@ fs::path template_folder(const std::string& kind) {
 
 void check_id(const std::string& id) {
     if (!is_plugin_id(id))
-        throw Error(Exit::usage, "new-plugin: '" + id + "' cannot be an id: take at most 32 lower-case letters, digits and _, a letter first");
+        throw Error(Exit::usage, "new-plugin: '" + id +
+                                     "' cannot be an id: take at most 32 lower-case letters, digits and _, a letter first");
     if (id == "rt" || id.compare(0, 3, "rt_") == 0)
         throw Error(Exit::usage, "new-plugin: '" + id + "' cannot be an id: names with rt_ are the host's; take another one");
 }
@@ -194,9 +195,10 @@ void print_next_steps(const std::string& folder, const std::string& id) {
         found_in = " -DCMAKE_PREFIX_PATH=PREFIX   # once: cmake --install " + in_shell(prefix.string()) + " --prefix PREFIX";
     else if (prefix != "/usr" && prefix != "/usr/local")
         found_in = " -DCMAKE_PREFIX_PATH=" + in_shell(prefix.string());
-    print_text("%s is a plugin now. Build it and check it; its README.md continues.\n"
-               "  cd %s\n  cmake -S . -B build%s\n  cmake --build build\n  %s check ./build/%s.so --quick\n",
-               folder.c_str(), in_shell(folder).c_str(), found_in.c_str(), program_name().c_str(), id.c_str());
+    print_text(
+        "%s is a plugin now. Build it and check it; its README.md continues.\n"
+        "  cd %s\n  cmake -S . -B build%s\n  cmake --build build\n  %s check ./build/%s.so --quick\n",
+        folder.c_str(), in_shell(folder).c_str(), found_in.c_str(), program_name().c_str(), id.c_str());
 }
 
 }  // namespace
@@ -216,8 +218,7 @@ int run_new_plugin(const PluginRegistry& plugins, const NewPluginCommand& comman
         const SignalsWait wait;
         NewFolder made(place);
         for (const fs::path& file : entries_of(from))
-            made.write(renamed(file.filename().string()),
-                       renamed(read_file(file.string(), kMaxTextFileBytes, Exit::failed)));
+            made.write(renamed(file.filename().string()), renamed(read_file(file.string(), kMaxTextFileBytes, Exit::failed)));
         made.move_to_place();
     }
     print_next_steps(folder, command.id);

@@ -167,7 +167,8 @@ class RenderJob {
         }
     }
 
-    // Puts rebuilt plugin libraries into force; files are read again by a rebuilt importer. Returns whether there was a structure.
+    // Puts rebuilt plugin libraries into force; files are read again by a rebuilt importer. Returns whether there was a
+    // structure.
     bool take_libraries(LibraryWatch& libraries) {
         bool structures = false;
         for (const RebuiltLibrary& library : libraries.apply()) {

@@ -70,8 +70,8 @@ fs::path library_of(const rt_plugin& plugin) {
     return original_of(loaded_file_of(plugin.id));
 }
 
-// The folder of the sources that a library was built from. clarity_add_plugin() notes it beside the library, in ID.sources. Empty
-// if there is no note, as for installed plugins.
+// The folder of the sources that a library was built from. clarity_add_plugin() notes it beside the library, in ID.sources.
+// Empty if there is no note, as for installed plugins.
 fs::path source_folder(const rt_plugin& plugin) {
     fs::path note = library_of(plugin);
     if (note.empty()) return {};
@@ -255,8 +255,8 @@ std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
                              " was compiled with, so its structs may: build the plugin again, or set "
                              "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
         if (!as_built && (beside || place.kind == PluginPlace::sources))
-            say_once(LogLevel::info, path, text, path + ": is used; it differs from the text built into " +
-                                                     library_of(accel).string());
+            say_once(LogLevel::info, path, text,
+                     path + ": is used; it differs from the text built into " + library_of(accel).string());
         remember(shown, path, std::move(text));
         used = path;
         result = whole;

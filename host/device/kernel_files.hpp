@@ -36,7 +36,8 @@ std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file);
 // Returns the path of a name in a compiler's message if its text was read from disk; else "".
 std::string kernel_path(const std::string& shown_name);
 
-// What to call it in messages: its path, "my_tree.cl inside /home/me/my_tree.so" for a text that is in a plugin, or the name itself.
+// What to call it in messages: its path, "my_tree.cl inside /home/me/my_tree.so" for a text that is in a plugin, or the name
+// itself.
 std::string kernel_place(const std::string& shown_name);
 
 // A number that grows whenever a text differs from the last one read under that name. Programs made before are then out of

@@ -67,7 +67,8 @@ class ImportSupervisor : public worker::Supervisor {
         worker::send_message(worker_.channel(), {worker::MessageKind::proceed, 0, 0, {}});
     }
     void printed(const std::string& line) override {
-        log(LogLevel::info, (importer_.empty() ? "an importer" : "importer " + importer_) + " printed: " + printable_line(line));
+        log(LogLevel::info,
+            (importer_.empty() ? "an importer" : "importer " + importer_) + " printed: " + printable_line(line));
     }
     double idle_limit_s() const override { return limits_.idle_s(); }
     uint64_t processor_limit_s() const override { return limits_.cpu_s(); }

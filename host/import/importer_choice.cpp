@@ -18,8 +18,7 @@ ImporterParameters parse_importer_choices(const PluginRegistry& plugins, const s
     for (const std::string& text : texts) {
         const PluginChoice choice = parse_plugin_choice(text);
         const rt_plugin* plugin = plugins.importer(choice.id);
-        if (!plugin)
-            throw Error(Exit::usage, "--importer " + text + ": no importer `" + choice.id + "`; " + ids_of(plugins));
+        if (!plugin) throw Error(Exit::usage, "--importer " + text + ": no importer `" + choice.id + "`; " + ids_of(plugins));
         if (choice.settings.empty())
             throw Error(Exit::usage, "--importer " + text +
                                          ": names no parameter, and a file chooses its importer by itself; expected "

@@ -46,8 +46,8 @@ Look look_at(const std::string& path) {
     return {status.st_dev, status.st_ino, status.st_size, status.st_mtim};
 }
 
-// True if a process is known to have the file open for writing, as a linker that maps its output. The kernel grants a read lease
-// only where nobody has. File systems without leases grant none for another reason, which counts as no.
+// True if a process is known to have the file open for writing, as a linker that maps its output. The kernel grants a read
+// lease only where nobody has. File systems without leases grant none for another reason, which counts as no.
 bool is_being_written(const std::string& path) {
     const int file = open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (file < 0) return false;

@@ -1,8 +1,8 @@
 // library_watch.hpp -- notices plugin libraries that are built again while the program runs, and puts them into force.
 //
-// The dynamic loader knows a file only once, so a rebuilt library is copied to a file of its own, which is loaded; workers load the
-// same copy. The library before it is never closed: structures that it built may still be traced. A library that fails its checks
-// leaves the one before in force.
+// The dynamic loader knows a file only once, so a rebuilt library is copied to a file of its own, which is loaded; workers load
+// the same copy. The library before it is never closed: structures that it built may still be traced. A library that fails its
+// checks leaves the one before in force.
 #pragma once
 #include <atomic>
 #include <cstdint>

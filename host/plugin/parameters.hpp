@@ -11,8 +11,8 @@ namespace clarity {
 using ParameterValues = std::vector<double>;
 
 ParameterValues default_parameters(const rt_plugin& plugin);
-// The values, with the default in the place of each that is missing or out of its range. They may come from another build of the
-// plugin.
+// The values, with the default in the place of each that is missing or out of its range. They may come from another build of
+// the plugin.
 ParameterValues fitting_parameters(const rt_plugin& plugin, const ParameterValues& values);
 // Sets the parameter `key`. BOOL takes 0/1/true/false/on/off, ENUM takes the name or index of a choice. Throws Error(usage),
 // which lists the keys, the range or the choices.

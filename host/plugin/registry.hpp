@@ -43,8 +43,8 @@ class PluginRegistry {
     // The importer that is most certain of a file, judged by extension and first bytes; nullptr if no importer accepts it.
     const rt_plugin* importer_for(const std::string& path) const;
 
-    // Puts a rebuilt library into force in the place of the one of the same path; `rebuilt` must be loaded. Returns an empty text,
-    // or why it cannot take that place; the list then stays as it is.
+    // Puts a rebuilt library into force in the place of the one of the same path; `rebuilt` must be loaded. Returns an empty
+    // text, or why it cannot take that place; the list then stays as it is.
     std::string replace(const PluginRecord& rebuilt);
 
  private:

@@ -1,4 +1,5 @@
-// new_plugin_test.cpp -- `clarity new-plugin`: what it makes, and what it refuses without a trace. tests/sdk builds what it makes.
+// new_plugin_test.cpp -- `clarity new-plugin`: what it makes, and what it refuses without a trace. tests/sdk builds what it
+// makes.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -57,8 +58,8 @@ TEST_F(NewPlugin, NeverOverwrites) {
 }
 
 TEST_F(NewPlugin, SaysWhatIsWrong) {
-    for (const char* id : {"Tree", "7tree", "my-tree", "", "../x", "a b", "rt_tree", "rt",
-                           "a_name_that_is_longer_than_any_id_may_be"}) {
+    for (const char* id :
+         {"Tree", "7tree", "my-tree", "", "../x", "a b", "rt_tree", "rt", "a_name_that_is_longer_than_any_id_may_be"}) {
         const ProgramResult result = make("accel", id, "x");
         EXPECT_EQ(result.exit_code, 2) << id;
         EXPECT_NE(result.err.find("id"), std::string::npos) << result.err;

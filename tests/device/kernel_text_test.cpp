@@ -237,7 +237,8 @@ TEST(CompilerMessages, AreReadFromPoclAndClang) {
     EXPECT_EQ(pocl.text, "cl/a.cl:42:7: error: unknown type name 'this'\ncl/a.cl:1:2: warning: odd");
 
     const CompilerLog four_times = read_compiler_log(
-        "cl/a.cl:7:1: error: no\n    x;\n    ^\ncl/a.cl:9:1: error: no\ncl/a.cl:7:1: error: no\n    x;\n    ^\n4 errors generated.\n");
+        "cl/a.cl:7:1: error: no\n    x;\n    ^\ncl/a.cl:9:1: error: no\ncl/a.cl:7:1: error: no\n    x;\n    ^\n4 errors "
+        "generated.\n");
     EXPECT_EQ(four_times.errors, 2u);
     EXPECT_EQ(four_times.text, "cl/a.cl:7:1: error: no\n    x;\n    ^\ncl/a.cl:9:1: error: no");
 

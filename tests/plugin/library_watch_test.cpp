@@ -26,7 +26,8 @@ std::string content(const std::string& path) {
 
 class LibraryWatchTest : public testing::Test {
  protected:
-    LibraryWatchTest() : path_(scratch_.write("sound.so", content(kFolder + "sound.so"))), plugins_(PluginRegistry::of({path_})) {}
+    LibraryWatchTest()
+        : path_(scratch_.write("sound.so", content(kFolder + "sound.so"))), plugins_(PluginRegistry::of({path_})) {}
 
     // As a linker: a new file under the same name.
     void build_again(const std::string& from) const {

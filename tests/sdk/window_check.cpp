@@ -1,5 +1,5 @@
-// window_check.cpp -- part of the test sdk_out_of_tree: the window of the installed program takes a plugin that is built again, and
-// its kernel, while it is open. CLARITY_WORKER: that program. CLARITY_TEST_PLUGIN: the plugin's folder, made by `clarity
+// window_check.cpp -- part of the test sdk_out_of_tree: the window of the installed program takes a plugin that is built again,
+// and its kernel, while it is open. CLARITY_WORKER: that program. CLARITY_TEST_PLUGIN: the plugin's folder, made by `clarity
 // new-plugin accel boxes`, with its build folder.
 #include <gtest/gtest.h>
 

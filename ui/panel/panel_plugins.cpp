@@ -61,7 +61,8 @@ void plugin_rows(const PluginRecord& record) {
         if (!extensions.empty()) dim_text("files:" + extensions);
         if (plugin->reference) dim_text(plugin->reference);
         if (record.replaced > 0)
-            dim_text("built again and replaced " + std::to_string(record.replaced) + (record.replaced == 1 ? " time" : " times"));
+            dim_text("built again and replaced " + std::to_string(record.replaced) +
+                     (record.replaced == 1 ? " time" : " times"));
         if (record.shadowed) wrapped_text("not used: an earlier library has the same id", colors::kAmber);
     } else {
         wrapped_text("refused: " + record.why, colors::kRed);

@@ -124,7 +124,7 @@ void Session::follow_main() {
 }
 
 PrepareRequest Session::desired_request() const {
-    PrepareRequest request{files_, files_revision_, first_camera_, first_light_, desired.main, desired.other,
+    PrepareRequest request{files_, files_revision_,  first_camera_, first_light_, desired.main, desired.other,
                            {},     sources_revision_};
     // Indices of instances are only valid in the scene that they were chosen in.
     if (files_revision_ == viewed_files_revision_) request.hidden = desired.hidden;

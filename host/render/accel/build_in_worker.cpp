@@ -19,7 +19,8 @@
 namespace clarity {
 namespace {
 
-// The file of the library that a plugin is in; empty: it is part of this program. `plugin` is a copy, its texts are the library's.
+// The file of the library that a plugin is in; empty: it is part of this program. `plugin` is a copy, its texts are the
+// library's.
 std::string library_of(const rt_plugin& plugin) {
     std::error_code error;
     const std::filesystem::path library = std::filesystem::canonical(loaded_file_of(plugin.id), error);
