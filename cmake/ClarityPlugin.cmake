@@ -1,11 +1,11 @@
 # clarity_add_plugin(accel|importer ID [LIBRARIES lib...]): builds the current folder as one plugin, which is one shared library.
 #
 # Compiles every .cpp and .c file of the folder. For an accel plugin, ID.cl and ID_types.h are embedded, with the parts
-# that they include, ID_*.cl and ID_*.h. The plugin includes "ID.inc", which has rows of {path, text}. The library is written to lib/clarity/plugins/{importers,accel} beside bin/.
+# that they include, ID_*.cl and ID_*.h. The plugin includes "ID.inc", which has rows of {path, text}.
 # LIBRARIES clarity::bvh links the builders' library (docs/clarity_bvh.md).
-# Outside of clarity's tree (with find_package(clarity)) that folder is in the plugin's build folder: add
-# build/lib/clarity/plugins to CLARITY_PLUGIN_PATH, or run `cmake --install build --prefix ~/.local`, which installs the plugin
-# where clarity looks for it.
+# In clarity's tree the library is written to lib/clarity/plugins/{importers,accel} beside bin/. Elsewhere (with
+# find_package(clarity)) it is ID.so in the build folder: add that folder to CLARITY_PLUGIN_PATH, or run
+# `cmake --install build --prefix ~/.local`, which installs the plugin where clarity looks for it.
 set(CLARITY_PLUGIN_EXPORTS ${CMAKE_CURRENT_LIST_DIR}/rt_plugin.map)
 function(clarity_add_plugin kind id)
   cmake_parse_arguments(arg "" "" "LIBRARIES" ${ARGN})
@@ -23,15 +23,22 @@ function(clarity_add_plugin kind id)
     message(FATAL_ERROR "clarity_add_plugin(${kind} ${id}): no .cpp or .c file in ${CMAKE_CURRENT_SOURCE_DIR}")
   endif()
   set(target ${kind}_${id})
+  if(CLARITY_PLUGINS_STAND_ALONE) # found by find_package(clarity)
+    set(libraries ${CMAKE_BINARY_DIR})
+  else()
+    set(libraries ${CMAKE_BINARY_DIR}/lib/clarity/plugins/${folder})
+  endif()
   add_library(${target} MODULE ${sources})
   set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${id} C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
-    LIBRARY_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/lib/clarity/plugins/${folder} LINK_DEPENDS ${CLARITY_PLUGIN_EXPORTS})
+    LIBRARY_OUTPUT_DIRECTORY ${libraries} LINK_DEPENDS ${CLARITY_PLUGIN_EXPORTS})
   target_compile_features(${target} PRIVATE cxx_std_17)
   target_link_libraries(${target} PRIVATE clarity::sdk ${arg_LIBRARIES})
   # The map also hides the templates of libstdc++, which stay visible in spite of hidden visibility.
   target_link_options(${target} PRIVATE -Wl,--no-undefined "-Wl,--version-script=${CLARITY_PLUGIN_EXPORTS}")
   file(GLOB embedded CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_types.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}.cl)
   if(embedded)
+    # The host watches the kernels there: see host/device/kernel_files.hpp. The note is not installed.
+    file(WRITE ${libraries}/${id}.sources "${CMAKE_CURRENT_SOURCE_DIR}\n")
     file(GLOB parts CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_*.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}_*.cl)
     clarity_embed(${target} NAME ${id} BASE ${CMAKE_CURRENT_SOURCE_DIR} FILES ${embedded} SHOWN plugins/${folder}/${id} PARTS ${parts})
   endif()

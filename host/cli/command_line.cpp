@@ -22,6 +22,7 @@ struct Parsed {
     BenchCommand bench;
     TraceCommand rays;
     CheckCommand check;
+    NewPluginCommand fresh;
     std::string key_map;
     bool json = false;
 };
@@ -44,6 +45,10 @@ CLI::Option* add_scene(CLI::App& app, SceneOptions& scene) {
     app.add_option("--search-path", scene.import.search_paths,
                    "A folder which the scene may read files from, besides its own; may be repeated")
         ->type_name("DIR")
+        ->allow_extra_args(false);
+    app.add_option("--importer", scene.import.importers,
+                   "Parameters of an importer (`clarity plugins` lists them); may be repeated")
+        ->type_name("ID,key=value...")
         ->allow_extra_args(false);
     app.add_flag("--import-in-process", scene.import.in_process,
                  "Run importers in this process, to debug them; a crash then ends the program");
@@ -132,8 +137,8 @@ void add_render(CLI::App& app, RenderOptions& render) {
     single(app.add_option("--stats", render.stats_file, "Write a JSON of times, rays and sizes; - is stdout"))
         ->type_name("FILE");
     app.add_flag("--watch", render.watch,
-                 "Render again whenever a kernel or a scene file named here is saved; Ctrl-C ends, with the exit code of the "
-                 "last attempt");
+                 "Render again whenever a kernel or a scene file named here is saved or a plugin is built again; Ctrl-C ends, "
+                 "with the exit code of the last attempt");
 }
 
 void add_rays(CLI::App& app, TraceCommand& command) {
@@ -175,6 +180,12 @@ void add_check(CLI::App& app, CheckCommand& command) {
         ->type_name("DIR");
     single(app.add_option("--device", command.options.device, "The device that traces, as `clarity devices` lists them"))
         ->type_name("D");
+}
+
+void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
+    app.add_option("kind", command.kind, "accel (an acceleration structure) or importer")->type_name("KIND")->required();
+    app.add_option("id", command.id, "Its name: lower-case letters, digits and _, a letter first")->type_name("ID")->required();
+    app.add_option("folder", command.folder, "The new folder; default: ID in the working folder")->type_name("DIR");
 }
 
 void add_bench(CLI::App& app, BenchCommand& bench) {
@@ -262,6 +273,7 @@ CommandLine parse_command_line(int argc, char** argv) {
     CLI::App* render = app.add_subcommand("render", "Render a scene to a picture file");
     CLI::App* trace = app.add_subcommand("trace", "Trace rays that are given by their numbers");
     CLI::App* check = app.add_subcommand("check", "Say whether a plugin is right, in a process that it may crash");
+    CLI::App* fresh = app.add_subcommand("new-plugin", "Make a folder with a plugin that builds and works, to begin with");
     CLI::App* bench = app.add_subcommand("bench", "Measure: structures, settings, devices and peers on suites or scenes");
     CLI::App* info = app.add_subcommand("info", "Show what the importer read from a file");
     CLI::App* devices = app.add_subcommand("devices", "List OpenCL devices, best first");
@@ -309,6 +321,12 @@ CommandLine parse_command_line(int argc, char** argv) {
     check->callback(
         [&] { line.command = [parsed](const PluginRegistry& registry) { return run_check(registry, parsed->check); }; });
 
+    add_new_plugin(*fresh, p.fresh);
+    fresh->callback([&] {
+        line.refused_plugin_is_fatal = false;
+        line.command = [parsed](const PluginRegistry& registry) { return run_new_plugin(registry, parsed->fresh); };
+    });
+
     add_bench(*bench, p.bench);
     bench->callback([&] {
         for (int i = 0; i < argc; ++i) parsed->bench.text += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "clarity");
@@ -336,9 +354,10 @@ CommandLine parse_command_line(int argc, char** argv) {
     plugins->add_flag("--json", p.json, "As JSON");
     plugins->callback([&] {
         line.refused_plugin_is_fatal = false;
+        line.lists_plugins = true;
         line.command = [parsed](const PluginRegistry& registry) { return run_plugins(registry, parsed->json); };
     });
-    for (CLI::App* sub : {view, render, trace, check, bench, info, devices, plugins}) {
+    for (CLI::App* sub : {view, render, trace, check, fresh, bench, info, devices, plugins}) {
         add_common(*sub, p.common);
         sub->get_formatter()->column_width(34);
         sub->footer(kExitCodes);

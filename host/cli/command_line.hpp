@@ -20,6 +20,7 @@ struct CommandLine {
     // Runs the command and returns the exit code; empty if there is nothing left to do (help, version).
     std::function<int(const PluginRegistry&)> command;
     bool needs_plugins = true;            // plugins must be loaded before the command runs
+    bool lists_plugins = false;           // the command tells of refused libraries itself
     bool refused_plugin_is_fatal = true;  // end the program if a library named by --plugin was refused
 };
 

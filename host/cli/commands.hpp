@@ -44,7 +44,7 @@ struct RenderOptions {
     double time_s = 0;       // time within the scene
     unsigned repeat = 1;     // how often each picture is traced, for timing
     std::string stats_file;  // file for the statistics; "-": stdout; "": none
-    bool watch = false;      // render again after each change of a kernel or scene file
+    bool watch = false;      // render again after each change of a kernel, plugin library or scene file
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);
@@ -74,6 +74,11 @@ struct CheckCommand {
 };
 int run_check(const PluginRegistry& plugins, const CheckCommand& command);
 
+struct NewPluginCommand {
+    std::string kind, id, folder;  // folder "": the id, in the working folder
+};
+int run_new_plugin(const PluginRegistry& plugins, const NewPluginCommand& command);
+
 struct BenchCommand {
     std::vector<std::string> what;    // suites and scene files
     std::string device;               // comma-separated list, or "all"; "": the best device
@@ -101,5 +106,7 @@ int run_plugins(const PluginRegistry& plugins, bool json);
 
 // Throws Error(import_failed) for a file which does not exist or cannot be read, so that this is known before any work.
 void check_scene_files(const std::vector<std::string>& files);
+// The same, and throws Error(usage) for an unknown importer, key or value of --importer.
+void check_scene(const PluginRegistry& plugins, const SceneOptions& options);
 
 }  // namespace clarity

@@ -125,7 +125,7 @@ void print_scene(const Scene& scene, const std::vector<std::string>& files) {
 }  // namespace
 
 int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool json, bool quiet) {
-    check_scene_files(options.files);
+    check_scene(plugins, options);
     ProgressBar progress(quiet);
     const CancelOnSignal cancel(progress);
     import::ImportOptions import = options.import;

@@ -23,7 +23,7 @@ void set_up_log(const CommonOptions& common) {
 }
 
 PluginRegistry find_plugins(const CommandLine& line) {
-    PluginRegistry plugins = PluginRegistry::discover(line.common.plugin_files);
+    PluginRegistry plugins = PluginRegistry::discover(line.common.plugin_files, !line.lists_plugins);
     // A library named by --plugin was refused: do not go on without it.
     for (size_t i = 0; line.refused_plugin_is_fatal && i < plugins.records().size(); ++i)
         for (const std::string& named : line.common.plugin_files)

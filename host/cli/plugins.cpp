@@ -67,7 +67,7 @@ Json param_json(const rt_param& param) {
 }
 
 Json record_json(const PluginRecord& record) {
-    Json json = {{"path", record.path}, {"status", status_name(record)}};
+    Json json = {{"path", record.path}, {"status", status_name(record)}, {"replaced", record.replaced}};
     if (!record.plugin) {
         json["why"] = record.why;
         return json;
@@ -138,6 +138,7 @@ void print_plugin(const PluginRecord& record) {
     print_text("%-9s %s  (%s, %s)%s\n%s%s\n", plugin.accel ? "accel" : "importer", plugin.id, plugin.name, plugin.version,
                record.shadowed ? "  SHADOWED: a library above has the same id, this one is not used" : "", kIndent,
                record.path.c_str());
+    if (record.replaced > 0) print_text("%sbuilt again and replaced %u times\n", kIndent, record.replaced);
     if (plugin.reference) print_text("%sreference: %s\n", kIndent, plugin.reference);
     if (plugin.accel) print_accel(*plugin.accel);
     if (plugin.importer && plugin.importer->extensions[0]) {

@@ -22,6 +22,7 @@
 #include "cli/progress_bar.hpp"
 #include "cli/render_stats.hpp"
 #include "device/kernel_watch.hpp"
+#include "plugin/library_watch.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 
 namespace clarity {
@@ -101,7 +102,7 @@ class RenderJob {
 
     int run() {
         check_options(options_, settings_, range_);
-        check_scene_files(options_.scene.files);
+        check_scene(plugins_, options_.scene);
         const CancelOnSignal cancel(bar_);
         take_devices(open_devices(choose_devices(words_.device)));
         for (const DeviceInfo& info : stats_.devices) log(LogLevel::debug, "device " + info.id() + " " + info.name);
@@ -132,29 +133,58 @@ class RenderJob {
             const std::lock_guard<std::mutex> lock(mutex);
             wake.notify_all();
         };
-        const KernelWatch kernels(plugins_.accels(), changed);
+        auto kernels = std::make_unique<KernelWatch>(plugins_.accels(), changed);
         const FileWatch scenes(options_.scene.files, changed);
-        if (kernels.files().empty())
+        LibraryWatch libraries(plugins_, changed);
+        if (kernels->files().empty())
             log(LogLevel::warning,
                 "--watch: kernels are not watched, because the program uses those built into it; set CLARITY_KERNEL_PATH to a "
                 "folder of kernels to edit");
         for (;;) {
-            const uint64_t kernels_seen = kernels.revision(), scenes_seen = scenes.revision();
-            const auto saved = [&] { return kernels.revision() != kernels_seen || scenes.revision() != scenes_seen; };
+            const uint64_t kernels_seen = kernels->revision(), scenes_seen = scenes.revision(),
+                           libraries_seen = libraries.revision();
+            const auto saved = [&] {
+                return kernels->revision() != kernels_seen || scenes.revision() != scenes_seen ||
+                       libraries.revision() != libraries_seen;
+            };
             const Exit code = guarded_round(saved);
             bar_.clear();
             if (interrupted()) return static_cast<int>(Exit::interrupted);
-            if (!saved()) log(LogLevel::info, "waiting for a change of a kernel or a scene file; Ctrl-C ends");
+            if (!saved()) log(LogLevel::info, "waiting for a change of a kernel, a plugin or a scene file; Ctrl-C ends");
             {
                 // A signal does not notify the condition variable, so that it must be polled.
                 std::unique_lock<std::mutex> lock(mutex);
                 while (!saved() && !interrupted()) wake.wait_for(lock, std::chrono::milliseconds(100));
             }
             if (interrupted()) return static_cast<int>(code);
-            const FileWatch& from = scenes.revision() != scenes_seen ? scenes : kernels;
-            for (const std::string& path : from.last_changed()) log(LogLevel::info, "changed: " + path);
+            if (scenes.revision() != scenes_seen || kernels->revision() != kernels_seen) {
+                const FileWatch& from = scenes.revision() != scenes_seen ? scenes : *kernels;
+                for (const std::string& path : from.last_changed()) log(LogLevel::info, "changed: " + path);
+            }
             if (scenes.revision() != scenes_seen) scene_.reset();
+            // The new library of a structure may have other kernel files.
+            if (take_libraries(libraries)) kernels = std::make_unique<KernelWatch>(plugins_.accels(), changed);
         }
+    }
+
+    // Puts rebuilt plugin libraries into force; files are read again by a rebuilt importer. Returns whether there was a
+    // structure.
+    bool take_libraries(LibraryWatch& libraries) {
+        bool structures = false;
+        for (const RebuiltLibrary& library : libraries.apply()) {
+            if (!library.now) {
+                log(LogLevel::error, library.why);
+            } else if (library.now->importer) {
+                scene_.reset();
+            } else {
+                structures = true;
+                if (library.before && words_.settings.accel == library.now->id)
+                    words_.settings.accel_params =
+                        carried_parameters(*library.before, *library.now, words_.settings.accel_params);
+            }
+        }
+        stats_.settings = settings_;
+        return structures;
     }
 
     // Runs a round. Reports a failure as a message and returns its exit code, so that the watch goes on with the next save.
@@ -333,7 +363,7 @@ class RenderJob {
 
     const RenderOptions& options_;
     const Clock::time_point begin_ = Clock::now();
-    const TraceWords words_;
+    TraceWords words_;
     const Settings& settings_;
     const FrameRange range_;
     const PluginRegistry& plugins_;

@@ -34,7 +34,7 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     const Settings settings = settings_of(plugins, command.trace, device_text);
     const std::vector<rt_ray> rays = read_rays(command.rays_file);
     if (rays.empty()) log(LogLevel::warning, command.rays_file + ": there is no ray in it");
-    check_scene_files(command.scene.files);
+    check_scene(plugins, command.scene);
     ProgressBar progress(command.quiet);
     const CancelOnSignal cancel(progress);
     const auto device = std::make_shared<Device>(choose_device(device_text));

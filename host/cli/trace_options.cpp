@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "cli/commands.hpp"
 #include "import/file_access.hpp"
+#include "import/importer_choice.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/preset.hpp"
 
@@ -33,6 +34,11 @@ TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions&
     if (!options.accel.empty() || options.preset.empty())
         choose_accel(plugins, options.accel.empty() ? default_accel(plugins, words.device) : options.accel, words.settings);
     return words;
+}
+
+void check_scene(const PluginRegistry& plugins, const SceneOptions& options) {
+    import::parse_importer_choices(plugins, options.import.importers);
+    check_scene_files(options.files);
 }
 
 void check_scene_files(const std::vector<std::string>& files) {

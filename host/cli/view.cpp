@@ -25,7 +25,7 @@ bool names_samples(const TraceOptions& options) {
 
 int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
     const TraceWords words = read_trace_options(plugins, command.trace);
-    check_scene_files(command.scene.files);
+    check_scene(plugins, command.scene);
 #ifdef CLARITY_HAVE_UI
     ui::ViewOptions options;
     options.plugins = &plugins;

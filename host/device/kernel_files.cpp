@@ -1,7 +1,5 @@
 #include "device/kernel_files.hpp"
 
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -9,6 +7,8 @@
 #include <mutex>
 
 #include "base/error.hpp"
+#include "base/library_files.hpp"
+#include "base/log.hpp"
 #include "base/read_file.hpp"
 #include "device/kernel_includes.hpp"
 
@@ -65,20 +65,65 @@ Places places() {
     return {folder, false};
 }
 
-fs::path library_folder(const rt_plugin& plugin) {
-    Dl_info info{};
-    if (dladdr(&plugin, &info) == 0 || !info.dli_fname) return {};
-    return fs::absolute(info.dli_fname).lexically_normal().parent_path();
+// The file of a plugin's library, as its user knows it; `plugin` may be the host's copy, whose texts are still the library's.
+fs::path library_of(const rt_plugin& plugin) {
+    return original_of(loaded_file_of(plugin.id));
 }
 
+// The folder of the sources that a library was built from. clarity_add_plugin() notes it beside the library, in ID.sources.
+// Empty if there is no note, as for installed plugins.
+fs::path source_folder(const rt_plugin& plugin) {
+    fs::path note = library_of(plugin);
+    if (note.empty()) return {};
+    std::string folder;
+    try {
+        if (!read_if_present(note.replace_extension(".sources"), folder)) return {};
+    } catch (const Error&) {
+        return {};
+    }
+    return folder.substr(0, folder.find('\n'));
+}
+
+// A place where a plugin's file may be.
+struct PluginPlace {
+    enum Kind { named, sources, checkout, beside } kind;
+    fs::path path;
+};
+
 // Returns where a plugin's file may be, in order of precedence.
-std::vector<fs::path> plugin_places(const rt_plugin& plugin, const char* name) {
-    std::vector<fs::path> all;
+std::vector<PluginPlace> plugin_places(const rt_plugin& plugin, const char* name) {
+    std::vector<PluginPlace> all;
     const Places where = places();
-    if (!where.kernels.empty()) all.push_back(where.plugin(plugin.id) / name);
-    if (where.beside_libraries)
-        if (const fs::path folder = library_folder(plugin); !folder.empty()) all.push_back(folder / name);
+    if (!where.beside_libraries) {  // CLARITY_KERNEL_PATH
+        if (!where.kernels.empty()) all.push_back({PluginPlace::named, where.plugin(plugin.id) / name});
+        return all;
+    }
+    if (const fs::path folder = source_folder(plugin); !folder.empty()) all.push_back({PluginPlace::sources, folder / name});
+    if (!where.kernels.empty()) all.push_back({PluginPlace::checkout, where.plugin(plugin.id) / name});
+    if (const fs::path library = library_of(plugin); !library.empty())
+        all.push_back({PluginPlace::beside, library.parent_path() / name});
     return all;
+}
+
+// True for a file that was saved after the plugin's library was built.
+bool is_newer_than_library(const fs::path& path, const rt_plugin& plugin) {
+    std::error_code error;
+    const auto built = fs::last_write_time(library_of(plugin), error);
+    if (error) return true;
+    const auto saved = fs::last_write_time(path, error);
+    return !error && saved >= built;
+}
+
+// Logs a message once for each text of a file.
+void say_once(LogLevel level, const fs::path& path, const std::string& text, const std::string& message) {
+    static std::mutex mutex;
+    static auto& said = *new std::map<std::string, size_t>;
+    const size_t hash = std::hash<std::string>()(text + message);
+    const std::lock_guard<std::mutex> lock(mutex);
+    const auto [entry, first] = said.insert({path.string(), hash});
+    if (!first && entry->second == hash) return;
+    entry->second = hash;
+    log(level, message);
 }
 
 // The last text of each file, by the name that the compiler sees.
@@ -86,6 +131,7 @@ struct Texts {
     struct Last {
         std::string path;  // "": embedded
         size_t hash;
+        std::string library;  // which it is embedded in; "": this program
     };
     std::mutex mutex;
     std::map<std::string, Last> last;
@@ -97,10 +143,10 @@ Texts& texts() {
 }
 
 // Records a text. The revision grows if it differs from the last one of that name.
-std::string remember(const std::string& shown_name, const fs::path& path, std::string text) {
+std::string remember(const std::string& shown_name, const fs::path& path, std::string text, const fs::path& library = {}) {
     Texts& all = texts();
     const std::lock_guard<std::mutex> lock(all.mutex);
-    const Texts::Last now{path.string(), std::hash<std::string>()(text)};
+    const Texts::Last now{path.string(), std::hash<std::string>()(text), library.string()};
     const auto [entry, first] = all.last.insert({shown_name, now});
     if (!first && entry->second.hash != now.hash) ++all.revision;
     entry->second = now;
@@ -181,20 +227,42 @@ std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
         return expand_includes(text, shown, IncludeKind::kernel,
                                [](const std::string& name) { return kernel_text(name.substr(std::string("cl/").size())); });
     };
-    std::string text;
-    if (file.name)
-        for (const fs::path& path : plugin_places(accel, file.name)) {
-            if (!read_if_present(path, text)) continue;
-            const std::string whole = with_parts(text, shown, path);
-            if (&file == &accel.accel->types && file.text)
-                require_same(path, whole, file.text,
-                             std::string("plugin ") + accel.id +
-                                 " was compiled with, so its structs may: build the plugin again and restart, or set "
-                                 "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
-            remember(shown, path, std::move(text));
-            return with_kernels(whole);
+    const bool is_types = &file == &accel.accel->types;
+    std::string used;  // the path of the file in force
+    std::string result;
+    for (const PluginPlace& place : file.name ? plugin_places(accel, file.name) : std::vector<PluginPlace>()) {
+        const std::string path = place.path.string();
+        std::string text;
+        if (path == used || !read_if_present(path, text)) continue;
+        const bool beside = place.kind == PluginPlace::beside;
+        if (!used.empty() && !beside) continue;
+        const std::string whole = with_parts(text, shown, path);
+        const bool as_built = file.text && whole == file.text;
+        if (!used.empty()) {
+            if (whole != result)
+                say_once(LogLevel::warning, path, text, path + ": is not used, because " + used + " comes first; delete it");
+            continue;
         }
-    return with_kernels(remember(shown, {}, file.text ? file.text : ""));
+        if (beside && !as_built && !is_newer_than_library(path, accel)) {
+            say_once(LogLevel::warning, path, text,
+                     path + ": is not used, because it is older than " + library_of(accel).string() +
+                         ", which has another text built in; delete it, or save it again to use it");
+            continue;
+        }
+        if (is_types && file.text)
+            require_same(path, whole, file.text,
+                         std::string("plugin ") + accel.id +
+                             " was compiled with, so its structs may: build the plugin again, or set "
+                             "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
+        if (!as_built && (beside || place.kind == PluginPlace::sources))
+            say_once(LogLevel::info, path, text,
+                     path + ": is used; it differs from the text built into " + library_of(accel).string());
+        remember(shown, path, std::move(text));
+        used = path;
+        result = whole;
+    }
+    if (used.empty()) result = remember(shown, {}, file.text ? file.text : "", library_of(accel));
+    return with_kernels(result);
 }
 
 std::string kernel_path(const std::string& shown_name) {
@@ -202,6 +270,16 @@ std::string kernel_path(const std::string& shown_name) {
     const std::lock_guard<std::mutex> lock(all.mutex);
     const auto found = all.last.find(shown_name);
     return found == all.last.end() ? std::string() : found->second.path;
+}
+
+std::string kernel_place(const std::string& shown_name) {
+    Texts& all = texts();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    const auto found = all.last.find(shown_name);
+    if (found == all.last.end()) return shown_name;
+    const Texts::Last& last = found->second;
+    if (!last.path.empty()) return last.path;
+    return last.library.empty() ? shown_name : fs::path(shown_name).filename().string() + " inside " + last.library;
 }
 
 uint64_t kernel_text_revision() {
@@ -218,9 +296,9 @@ std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& 
     for (const rt_plugin* plugin : accels)
         for (const rt_cl_file* file : {&plugin->accel->types, &plugin->accel->traverse})
             if (file->name)
-                for (const fs::path& path : plugin_places(*plugin, file->name)) {
-                    all.push_back(path.string());
-                    add_parts(path, all);
+                for (const PluginPlace& place : plugin_places(*plugin, file->name)) {
+                    all.push_back(place.path.string());
+                    add_parts(place.path, all);
                 }
     return all;
 }

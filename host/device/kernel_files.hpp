@@ -1,12 +1,14 @@
 // kernel_files.hpp -- where the text of kernels comes from.
 //
 // The first of these places that has a file of that name is used:
-//   1. CLARITY_KERNEL_PATH: a folder with the layout of cl/, with plugins/accel/<id>/ beside it. If it is set, places 2 and 3
-//      are not used. The value "embedded" means place 4.
-//   2. the checkout, if the program is in a build folder inside it (<checkout>/build/bin, <checkout>/build/release/bin), so
-//      that an edit takes effect without a build
-//   3. for a plugin's file: the folder of the plugin's library
-//   4. the text inside the program or plugin
+//   1. CLARITY_KERNEL_PATH: a folder with the layout of cl/, with plugins/accel/<id>/ beside it. If it is set, places 2 to 4
+//      are not used. The value "embedded" means place 5.
+//   2. for a plugin's file: the sources that its library was built from, if they are still there. Note: <library>.sources
+//   3. the checkout, if the program is in a build folder inside it (<checkout>/build/bin, <checkout>/build/release/bin)
+//   4. for a plugin's file: the folder of the plugin's library. A file that is older than the library and differs from the text
+//      in it is not used; a warning says so
+//   5. the text inside the program or plugin
+// So an edit takes effect without a build. A text of place 2 or 4 that differs from the one in the library is logged.
 // A header that host and kernels share must be equal to the one that the program was compiled with. If it is not, this is an
 // error, because kernels would read wrong structs.
 //
@@ -33,6 +35,10 @@ std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file);
 
 // Returns the path of a name in a compiler's message if its text was read from disk; else "".
 std::string kernel_path(const std::string& shown_name);
+
+// What to call it in messages: its path, "my_tree.cl inside /home/me/my_tree.so" for a text that is in a plugin, or the name
+// itself.
+std::string kernel_place(const std::string& shown_name);
 
 // A number that grows whenever a text differs from the last one read under that name. Programs made before are then out of
 // date.

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "base/elapsed.hpp"
@@ -30,9 +31,7 @@ bool read_diagnostic(const std::string& line, Diagnostic& found) {
     std::smatch part;
     if (line.size() > 2000) return false;  // std::regex recurses for every character
     if (std::regex_match(line, part, placed) && (part[1].matched || part[5].matched)) {
-        const std::string path = kernel_path(part[2]);
-        found = {part[1].matched ? part[1] : part[5], path.empty() ? part[2].str() : path, part[6], number(part[3]),
-                 number(part[4])};
+        found = {part[1].matched ? part[1] : part[5], kernel_place(part[2]), part[6], number(part[3]), number(part[4])};
         return true;
     }
     if (!std::regex_match(line, part, bare)) return false;
@@ -52,15 +51,22 @@ CompilerLog read_compiler_log(const std::string& log) {
     CompilerLog result;
     std::istringstream lines(log);
     std::string line, fallback;
+    std::set<std::string> said;
+    bool repeated = false;  // the lines below a diagnostic that was there before: the source line, the caret
     while (std::getline(lines, line)) {
         if (!line.empty() && line.back() == '\r') line.pop_back();
         Diagnostic found;
         if (line.size() < 200 && std::regex_match(line, noise)) continue;
         if (read_diagnostic(line, found)) {
+            // A traversal is included up to four times, and each time the compiler finds the same.
+            repeated = !said.insert(place(found.file, found.line, found.column) + found.severity + found.message).second;
+            if (repeated) continue;
             const bool error = found.severity.find("error") != std::string::npos;
             if (error && result.errors++ == 0) result.first = {found.file, found.line, found.column, found.message};
             line =
                 (found.file.empty() ? "" : place(found.file, found.line, found.column)) + found.severity + ": " + found.message;
+        } else if (repeated) {
+            continue;
         } else if (fallback.empty()) {
             fallback = line;
         }

@@ -12,7 +12,7 @@ namespace {
 Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                         Progress& progress) {
     const FileAccess access(files, options.search_paths);
-    SceneBuilder builder(plugins, access, progress);
+    SceneBuilder builder(plugins, parse_importer_choices(plugins, options.importers), access, progress);
     for (const std::string& file : files) builder.add_root(file);
     return builder.take();
 }

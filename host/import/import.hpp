@@ -15,6 +15,7 @@ struct ImportOptions {
     double time_limit_s = 600;              // seconds of CPU time, and of wall-clock time without progress
     uint64_t memory_limit_bytes = 0;        // of the worker's address space; 0: chosen by the file's size
     std::vector<std::string> search_paths;  // folders that it may read from, besides the folder of each file
+    std::vector<std::string> importers;     // "ID,key=value...": parameters of importers; see importer_choice.hpp
     bool log_warnings = true;               // false: the caller shows Scene::warnings itself
     std::string worker;                     // program that runs as the worker; empty: CLARITY_WORKER, or this program
 };

@@ -8,6 +8,8 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
+#include "base/printable.hpp"
 #include "import/wire.hpp"
 #include "worker/child.hpp"
 #include "worker/supervisor.hpp"
@@ -64,6 +66,10 @@ class ImportSupervisor : public worker::Supervisor {
         worker_.raise_memory_limit(limits_.memory_bytes() - before);
         worker::send_message(worker_.channel(), {worker::MessageKind::proceed, 0, 0, {}});
     }
+    void printed(const std::string& line) override {
+        log(LogLevel::info,
+            (importer_.empty() ? "an importer" : "importer " + importer_) + " printed: " + printable_line(line));
+    }
     double idle_limit_s() const override { return limits_.idle_s(); }
     uint64_t processor_limit_s() const override { return limits_.cpu_s(); }
     uint64_t memory_limit_bytes() const override { return limits_.memory_bytes(); }
@@ -116,9 +122,10 @@ Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::str
     for (const auto& [key, value] : numbers) arguments.insert(arguments.end(), {key, std::to_string(value)});
     for (const PluginRecord& record : plugins.records()) {
         if (!record.plugin || record.shadowed || !record.plugin->importer) continue;
-        arguments.insert(arguments.end(), {"--plugin", record.path});
+        arguments.insert(arguments.end(), {"--plugin", record.loaded});
     }
     for (const std::string& folder : options.search_paths) arguments.insert(arguments.end(), {"--search", folder});
+    for (const std::string& importer : options.importers) arguments.insert(arguments.end(), {"--importer", importer});
     arguments.push_back("--");
     arguments.insert(arguments.end(), files.begin(), files.end());
 

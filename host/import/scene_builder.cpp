@@ -48,9 +48,9 @@ std::string without_path(const std::string& why, const std::string& path) {
 
 }  // namespace
 
-SceneBuilder::SceneBuilder(const PluginRegistry& plugins, const FileAccess& access, Progress& progress,
-                           ImportObserver* observer)
-    : plugins_(plugins), access_(access), progress_(progress), observer_(observer) {
+SceneBuilder::SceneBuilder(const PluginRegistry& plugins, ImporterParameters parameters, const FileAccess& access,
+                           Progress& progress, ImportObserver* observer)
+    : plugins_(plugins), parameters_(std::move(parameters)), access_(access), progress_(progress), observer_(observer) {
     scene_.materials.push_back({"default", default_material()});
 }
 
@@ -110,7 +110,8 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     HostServices services(path, progress_);
     SceneSink sink(*this, services, path, *content);
     try {
-        const ParameterValues parameters = default_parameters(*plugin);
+        const auto chosen = parameters_.find(plugin->id);
+        const ParameterValues parameters = chosen != parameters_.end() ? chosen->second : default_parameters(*plugin);
         services.check(static_cast<int>(Exit::import_failed),
                        [&] { return plugin->importer->load(services.host(), path.c_str(), parameters.data(), sink.sink()); });
     } catch (const Cancelled&) {

@@ -7,6 +7,7 @@
 
 #include "base/progress.hpp"
 #include "import/file_access.hpp"
+#include "import/importer_choice.hpp"
 #include "plugin/registry.hpp"
 #include "scene/scene.hpp"
 #include "scene/triangulate.hpp"
@@ -45,7 +46,7 @@ class ImportObserver {
 
 class SceneBuilder {
  public:
-    SceneBuilder(const PluginRegistry& plugins, const FileAccess& access, Progress& progress,
+    SceneBuilder(const PluginRegistry& plugins, ImporterParameters parameters, const FileAccess& access, Progress& progress,
                  ImportObserver* observer = nullptr);
 
     // Adds a file that the user named, with everything that it loads. Throws Error(import_failed) "FILE: why".
@@ -72,6 +73,7 @@ class SceneBuilder {
     void bake_flattened_instances();
 
     const PluginRegistry& plugins_;
+    const ImporterParameters parameters_;
     const FileAccess& access_;
     Progress& progress_;
     ImportObserver* observer_;

@@ -39,12 +39,12 @@ class ImportProgress : public worker::ChannelProgress, public ImportObserver {
 
 struct Arguments {
     worker::WorkerLimits limits;
-    std::vector<std::string> plugins, search_paths, files;
+    std::vector<std::string> plugins, search_paths, importers, files;
     long parent = 0;
 };
 
 // import-worker [--memory BYTES] [--most-memory BYTES] [--cpu SECONDS] [--parent PID] [--plugin FILE]... [--search FOLDER]...
-// -- FILE...
+// [--importer ID,key=value]... -- FILE...
 bool parse(int argc, char** argv, Arguments& arguments) {
     int i = 1;
     if (i < argc && std::strcmp(argv[i], "import-worker") == 0) ++i;
@@ -60,6 +60,8 @@ bool parse(int argc, char** argv, Arguments& arguments) {
             arguments.parent = std::strtol(value.c_str(), nullptr, 10);
         } else if (key == "--plugin") {
             arguments.plugins.push_back(value);
+        } else if (key == "--importer") {
+            arguments.importers.push_back(value);
         } else if (key == "--search") {
             arguments.search_paths.push_back(value);
         } else {
@@ -74,13 +76,14 @@ bool parse(int argc, char** argv, Arguments& arguments) {
 std::string import_files(const Arguments& arguments, ImportProgress& progress) {
     const FileAccess access(arguments.files, arguments.search_paths);
     const PluginRegistry plugins = PluginRegistry::of(arguments.plugins);
+    const ImporterParameters parameters = parse_importer_choices(plugins, arguments.importers);
     // A file that the user named may be a link to another folder. Only the target itself may be read, not the files beside it.
     std::vector<std::string> named;
     for (const std::string& file : arguments.files) named.push_back(std::filesystem::canonical(file).string());
     for (const std::string& note : enter_sandbox(worker::WorkerKind::parser, access.folders(), named, arguments.limits)) {
         log(LogLevel::debug, "import worker: " + note);
     }
-    SceneBuilder builder(plugins, access, progress, &progress);
+    SceneBuilder builder(plugins, parameters, access, progress, &progress);
     for (const std::string& file : arguments.files) builder.add_root(file);
     const Scene scene = builder.take();
     worker::allow_writing_result();
@@ -98,6 +101,7 @@ int run(const Arguments& arguments) {
     } catch (const std::exception& e) {
         why = e.what();
     }
+    std::fflush(nullptr);  // what importers printed comes before the end
     if (why.empty()) {
         worker::send_message(worker::kChannelFd, {MessageKind::done, 0, 0, {}});
     } else {

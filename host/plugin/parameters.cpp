@@ -85,6 +85,16 @@ ParameterValues default_parameters(const rt_plugin& plugin) {
     return values;
 }
 
+ParameterValues fitting_parameters(const rt_plugin& plugin, const ParameterValues& values) {
+    ParameterValues fitting = default_parameters(plugin);
+    for (rt_u32 i = 0; i < plugin.param_count && i < values.size(); ++i) {
+        const rt_param& param = plugin.params[i];
+        const bool whole = param.kind == RT_PARAM_FLOAT || values[i] == std::floor(values[i]);
+        if (whole && values[i] >= param.min && values[i] <= param.max) fitting[i] = values[i];
+    }
+    return fitting;
+}
+
 void set_parameter(const rt_plugin& plugin, ParameterValues& values, const std::string& key, const std::string& value) {
     for (rt_u32 i = 0; i < plugin.param_count; ++i) {
         const rt_param& param = plugin.params[i];

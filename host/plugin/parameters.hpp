@@ -11,6 +11,9 @@ namespace clarity {
 using ParameterValues = std::vector<double>;
 
 ParameterValues default_parameters(const rt_plugin& plugin);
+// The values, with the default in the place of each that is missing or out of its range. They may come from another build of
+// the plugin.
+ParameterValues fitting_parameters(const rt_plugin& plugin, const ParameterValues& values);
 // Sets the parameter `key`. BOOL takes 0/1/true/false/on/off, ENUM takes the name or index of a choice. Throws Error(usage),
 // which lists the keys, the range or the choices.
 void set_parameter(const rt_plugin& plugin, ParameterValues& values, const std::string& key, const std::string& value);

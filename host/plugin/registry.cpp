@@ -33,7 +33,7 @@ std::string dlopen_advice(const std::string& error) {
 
 PluginRecord load_checked(const std::string& path) {
     PluginRecord record;
-    record.path = path;
+    record.path = record.loaded = path;
     // Read the version from the file first: dlopen would run the library's constructors before the check.
     ElfSymbol symbol;
     record.why = read_elf_symbol(path, kSymbol, symbol);
@@ -227,25 +227,54 @@ bool is_own_library(const std::string& path) {
     return false;
 }
 
+namespace {
+
+const rt_plugin* find(const std::vector<PluginRecord>& records, std::string_view id, bool accel) {
+    for (const PluginRecord& record : records)
+        if (record.plugin && !record.shadowed && (record.plugin->accel != nullptr) == accel && id == record.plugin->id)
+            return record.plugin;
+    return nullptr;
+}
+
+std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, bool accel) {
+    std::vector<const rt_plugin*> list;
+    for (const PluginRecord& record : records)
+        if (record.plugin && !record.shadowed && (record.plugin->accel != nullptr) == accel) list.push_back(record.plugin);
+    std::sort(list.begin(), list.end(), [](const rt_plugin* a, const rt_plugin* b) { return std::strcmp(a->id, b->id) < 0; });
+    return list;
+}
+
+// Of several libraries with one id the first counts.
+void shadow_later_ones(std::vector<PluginRecord>& records) {
+    std::set<std::string> taken;
+    for (PluginRecord& record : records) record.shadowed = record.plugin && !taken.insert(key_of(*record.plugin)).second;
+}
+
 // Refuses topologies without a layout that packs them, so that nobody can choose a structure that cannot be traced.
-void PluginRegistry::link_layouts() {
-    for (PluginRecord& record : records_) {
+void link_layouts(std::vector<PluginRecord>& records) {
+    for (PluginRecord& record : records) {
         if (!record.plugin || !record.plugin->accel || !record.plugin->accel->layout) continue;
         const char* const id = record.plugin->accel->layout;
-        const rt_plugin* const layout = accel(id);
+        const rt_plugin* const layout = find(records, id, true);
         if (layout && layout->accel->pack) continue;
         record.plugin = nullptr;
         record.why = std::string("its layout '") + id + "' " +
                      (layout ? "has no `pack`, so it cannot take a tree of another plugin: name one of "
                              : "was not found: load that plugin, or name one of ");
         std::string packs;
-        for (const rt_plugin* other : accels())
+        for (const rt_plugin* other : usable(records, true))
             if (other->accel->pack) packs += (packs.empty() ? "" : ", ") + std::string(other->id);
         record.why += packs.empty() ? "those with `pack` (there are none)" : packs;
     }
 }
 
-PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files) {
+std::string kind_and_id(const rt_plugin& plugin) {
+    return std::string(plugin.accel ? "structure '" : "importer '") + plugin.id + "'";
+}
+
+}  // namespace
+
+PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_files, bool log_refused) {
     Search search;
     for (const std::string& file : plugin_files) search.add_file(file);
     const size_t named = search.paths().size();
@@ -254,34 +283,58 @@ PluginRegistry PluginRegistry::discover(const std::vector<std::string>& plugin_f
     search_own_folders(search);
 
     PluginRegistry registry;
-    std::set<std::string> taken;
-    for (const std::string& path : search.paths()) {
-        PluginRecord record = load_plugin(path);
-        if (record.plugin) record.shadowed = !taken.insert(key_of(*record.plugin)).second;
-        registry.records_.push_back(std::move(record));
-    }
-    registry.link_layouts();
-    for (size_t i = 0; i < registry.records_.size(); ++i) {
-        const PluginRecord& record = registry.records_[i];
-        if (!record.plugin)
-            log(i < named ? LogLevel::error : LogLevel::warning, "plugin refused: " + record.path + ": " + record.why);
-    }
+    std::vector<PluginRecord>& records = registry.list_->records;
+    for (const std::string& path : search.paths()) records.push_back(load_plugin(path));
+    shadow_later_ones(records);
+    link_layouts(records);
+    for (size_t i = 0; log_refused && i < records.size(); ++i)
+        if (!records[i].plugin)
+            log(i < named ? LogLevel::error : LogLevel::warning, "plugin refused: " + records[i].path + ": " + records[i].why);
     return registry;
 }
 
 PluginRegistry PluginRegistry::of(const std::vector<std::string>& plugin_files) {
     PluginRegistry registry;
-    for (const std::string& file : plugin_files) registry.records_.push_back(load_plugin(file));
-    registry.link_layouts();
-    for (const PluginRecord& record : registry.records_)
+    std::vector<PluginRecord>& records = registry.list_->records;
+    for (const std::string& file : plugin_files) records.push_back(load_plugin(file));
+    link_layouts(records);
+    for (const PluginRecord& record : records)
         if (!record.plugin) log(LogLevel::warning, "plugin refused: " + record.path + ": " + record.why);
     return registry;
 }
 
+std::string PluginRegistry::replace(const PluginRecord& rebuilt) {
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    std::vector<PluginRecord> next = list_->records;
+    const auto place =
+        std::find_if(next.begin(), next.end(), [&](const PluginRecord& record) { return record.path == rebuilt.path; });
+    if (place == next.end()) return "no library of this path was found when the program started; start it again";
+    if (place->plugin && key_of(*place->plugin) != key_of(*rebuilt.plugin))
+        return "it was the " + kind_and_id(*place->plugin) + " and is the " + kind_and_id(*rebuilt.plugin) +
+               " now; start the program again to use it";
+    const unsigned replaced = place->replaced + 1;
+    *place = rebuilt;
+    place->replaced = replaced;
+    const size_t at = size_t(place - next.begin());
+    shadow_later_ones(next);
+    link_layouts(next);
+    for (size_t i = 0; i < next.size(); ++i) {
+        if (next[i].plugin || (i != at && !list_->records[i].plugin)) continue;
+        if (i == at) return next[i].why;
+        return "it packs no trees any more, and " + next[i].path + " needs that: give it its `pack` back";
+    }
+    list_->records = std::move(next);
+    return {};
+}
+
+std::vector<PluginRecord> PluginRegistry::records() const {
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return list_->records;
+}
+
 const rt_plugin* PluginRegistry::accel(std::string_view id) const {
-    for (const PluginRecord& record : records_)
-        if (record.plugin && !record.shadowed && record.plugin->accel && id == record.plugin->id) return record.plugin;
-    return nullptr;
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return find(list_->records, id, true);
 }
 
 const rt_plugin& PluginRegistry::layout_of(const rt_plugin& plugin) const {
@@ -290,24 +343,17 @@ const rt_plugin& PluginRegistry::layout_of(const rt_plugin& plugin) const {
 }
 
 const rt_plugin* PluginRegistry::importer(std::string_view id) const {
-    for (const PluginRecord& record : records_)
-        if (record.plugin && !record.shadowed && record.plugin->importer && id == record.plugin->id) return record.plugin;
-    return nullptr;
-}
-
-static std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, bool accel) {
-    std::vector<const rt_plugin*> list;
-    for (const PluginRecord& record : records)
-        if (record.plugin && !record.shadowed && (record.plugin->accel != nullptr) == accel) list.push_back(record.plugin);
-    std::sort(list.begin(), list.end(), [](const rt_plugin* a, const rt_plugin* b) { return std::strcmp(a->id, b->id) < 0; });
-    return list;
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return find(list_->records, id, false);
 }
 
 std::vector<const rt_plugin*> PluginRegistry::accels() const {
-    return usable(records_, true);
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return usable(list_->records, true);
 }
 std::vector<const rt_plugin*> PluginRegistry::importers() const {
-    return usable(records_, false);
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return usable(list_->records, false);
 }
 
 const rt_plugin* PluginRegistry::importer_for(const std::string& path) const {
@@ -315,7 +361,7 @@ const rt_plugin* PluginRegistry::importer_for(const std::string& path) const {
     const std::vector<uint8_t> head = read_head(path);
     const rt_plugin* best = nullptr;
     int best_certainty = 0;
-    for (const PluginRecord& record : records_) {
+    for (const PluginRecord& record : records()) {
         if (!record.plugin || record.shadowed || !record.plugin->importer) continue;
         const int sure = certainty(*record.plugin->importer, extension, head);
         if (sure > best_certainty) {

@@ -152,7 +152,9 @@ bool begin_worker(const char* greeting, long parent, const char* instead) {
     syscall(SYS_close_range, kResultFd + 1, ~0u, 0);
 #endif
     std::signal(SIGPIPE, SIG_IGN);
-    set_log_level(LogLevel::error);
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // what a plugin prints reaches the parent at once, and before a crash
+    // The parent logs every line. On stderr it would come a second time, as something that a plugin printed.
+    set_log_level(static_cast<LogLevel>(static_cast<int>(LogLevel::error) + 1));
     set_log_listener(send_log);
     prepare_last_words();
     send_message(kChannelFd, {MessageKind::greeting, 0, 0, greeting});

@@ -39,11 +39,12 @@ void Supervisor::follow() {
         if (progress_.cancelled()) stop_on_cancel();
         if (!alive && !done_) {
             const int status = worker_.wait();
-            forward_output();
+            forward_last_output();
             explain_death(status);
         }
         if (!done_) watch();
     }
+    forward_last_output();
 }
 
 // Returns false once the worker has closed its end, which happens when it dies.
@@ -93,6 +94,7 @@ void Supervisor::take(const Message& message) {
             break;
         case MessageKind::failed:
             if (progress_.cancelled()) throw Cancelled();
+            forward_last_output();
             throw Error(kind_.code, message.text);
         case MessageKind::cancelled:
             throw Cancelled();
@@ -117,6 +119,13 @@ void Supervisor::forward_output() {
         }
         if (output_lines_ > kMaxOutputLines) break;  // read once per round only, so that a flood cannot hold us up
     }
+}
+
+// The rest, at the end of the worker: its last line may have no newline.
+void Supervisor::forward_last_output() {
+    forward_output();
+    if (!line_.empty() && ++output_lines_ <= kMaxOutputLines) printed(line_);
+    line_.clear();
 }
 
 void Supervisor::made_progress() {

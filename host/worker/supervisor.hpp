@@ -59,6 +59,7 @@ class Supervisor {
     bool read_messages();
     void take(const Message& message);
     void forward_output();
+    void forward_last_output();
     [[noreturn]] void stop_on_cancel();
     void watch();
     void explain_death(int status) const;

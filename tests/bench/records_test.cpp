@@ -140,7 +140,14 @@ TEST(Json, RefusedRecordsHaveNoFigures) {
     EXPECT_EQ(refused["why"], "spreads over 40 %");
     EXPECT_FALSE(refused["time_ms"].contains("median"));
     EXPECT_TRUE(refused["time_ms"].contains("spread"));
-    for (const char* key : {"fps", "mrays_per_s", "rays", "analysis", "hits"}) EXPECT_TRUE(refused[key].is_null()) << key;
+    for (const char* key : {"fps", "mrays_per_s", "build_ms", "kernels_ms"}) EXPECT_TRUE(refused[key].is_null()) << key;
+    // Counts do not depend on time.
+    for (const char* key : {"rays", "analysis", "hits", "nodes"}) EXPECT_FALSE(refused[key].is_null()) << key;
+    EXPECT_EQ(refused["hits"], 400000);
+    BenchReport failed = sample();
+    failed.records[4].status = RowStatus::failed;
+    for (const char* key : {"rays", "analysis", "hits", "nodes"})
+        EXPECT_TRUE(Json::parse(bench_json(failed))[4][key].is_null()) << key;
 }
 
 TEST(Json, BadFilesAreRefusedAndTheRecordIsNamed) {

@@ -152,3 +152,26 @@ TEST_F(Watch, ASaveCancelsTheCurrentRender) {
     EXPECT_EQ(watcher.interrupt(), 130) << watcher.said();
     EXPECT_TRUE(fs::exists(picture())) << "the accumulated samples must be written: " << watcher.said();
 }
+
+#ifdef TEST_PLUGINS
+TEST_F(Watch, RendersAgainWithAPluginThatIsBuiltAgain) {
+    const std::string folder = std::string(TEST_PLUGINS) + "/", library = scratch_.path("sound.so");
+    const auto build = [&](const char* from) {  // as a linker: a new file under the same name
+        fs::remove(library);
+        fs::copy_file(folder + from, library);
+    };
+    build("sound.so");
+    std::vector<std::string> all = words();
+    all.insert(all.end(), {"--plugin", library});
+    Watcher watcher(all, scratch_.path("cl"), scratch_.path("said"));
+    ASSERT_TRUE(watcher.says(kWaiting)) << watcher.said();
+    build("sound_again.so");
+    ASSERT_TRUE(watcher.says("sound.so: was built again and is in force now")) << watcher.said();
+    ASSERT_TRUE(watcher.says(kWaiting, 2)) << watcher.said();
+    build("wrong_abi.so");
+    ASSERT_TRUE(watcher.says("sound.so: was built again and is refused: ABI version")) << watcher.said();
+    ASSERT_TRUE(watcher.says("stays in force")) << watcher.said();
+    ASSERT_TRUE(watcher.says(kWaiting, 3)) << watcher.said();
+    EXPECT_EQ(watcher.interrupt(), 0) << watcher.said();
+}
+#endif

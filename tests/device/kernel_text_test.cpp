@@ -5,6 +5,7 @@
 #include <functional>
 
 #include "base/error.hpp"
+#include "base/log.hpp"
 #include "device/kernel_files.hpp"
 #include "device/kernel_includes.hpp"
 #include "device/program.hpp"
@@ -143,6 +144,70 @@ TEST_F(KernelText, IncludesThatCannotBeFollowedAreSaid) {
     EXPECT_NE(said.find("in a circle"), std::string::npos) << said;
 }
 
+// Files beside the library of a plugin outside of a checkout, which is this test program.
+class BesideLibrary : public KernelText {
+ protected:
+    void SetUp() override {
+        environment_.set("CLARITY_KERNEL_PATH", "");
+        set_log_listener([this](LogLevel level, const std::string& line) {
+            (level == LogLevel::warning ? warnings_ : notes_).push_back(line);
+        });
+    }
+    void TearDown() override {
+        set_log_listener({});
+        fs::remove(note_);
+        fs::remove(beside_);
+    }
+    static void write(const fs::path& path, const std::string& text) { std::ofstream(path) << text; }
+    static bool says(const std::vector<std::string>& lines, const std::string& part) {
+        return std::any_of(lines.begin(), lines.end(), [&](const auto& line) { return line.find(part) != std::string::npos; });
+    }
+    static std::string text() { return plugin_kernel_text(kPlugin, kAccel.traverse); }
+    const fs::path library_ = fs::read_symlink("/proc/self/exe");
+    const fs::path note_ = fs::path(library_).replace_extension(".sources"), beside_ = library_.parent_path() / "watched.cl";
+    std::vector<std::string> warnings_, notes_;
+};
+
+TEST_F(BesideLibrary, ItsSourcesComeFirstAndAreWatched) {
+    EXPECT_EQ(text(), "compiled");
+    EXPECT_EQ(kernel_place("plugins/accel/watched/watched.cl"), "watched.cl inside " + library_.string());
+    const std::string source = scratch_.write("sources/watched.cl", "edited");
+    write(note_, scratch_.path("sources") + "\n");
+    EXPECT_EQ(text(), "edited");
+    EXPECT_EQ(kernel_place("plugins/accel/watched/watched.cl"), source);
+    EXPECT_TRUE(says(notes_, source + ": is used; it differs from the text built into " + library_.string()));
+    EXPECT_EQ(std::count(notes_.begin(), notes_.end(), notes_.back()), 1);
+    text();
+    EXPECT_EQ(std::count(notes_.begin(), notes_.end(), notes_.back()), 1) << "said once for each text";
+    const std::vector<std::string> watched = kernel_candidates({&kPlugin});
+    EXPECT_EQ(std::count(watched.begin(), watched.end(), source), 1);
+    EXPECT_EQ(std::count(watched.begin(), watched.end(), beside_.string()), 1);
+
+    write(beside_, "copy");
+    EXPECT_EQ(text(), "edited");
+    EXPECT_TRUE(says(warnings_, beside_.string() + ": is not used, because " + source + " comes first"));
+    fs::remove(source);
+    EXPECT_EQ(text(), "copy");
+}
+
+TEST_F(BesideLibrary, AnOldCopyIsReportedAndNotUsed) {
+    write(beside_, "old copy");
+    const auto built = fs::last_write_time(library_);
+    fs::last_write_time(beside_, built - std::chrono::hours(1));
+    EXPECT_EQ(text(), "compiled");
+    EXPECT_TRUE(says(warnings_, beside_.string() + ": is not used, because it is older than " + library_.string()));
+    fs::last_write_time(beside_, built + std::chrono::hours(1));
+    EXPECT_EQ(text(), "old copy");
+    EXPECT_TRUE(says(notes_, beside_.string() + ": is used; it differs"));
+    // An equal copy is no news, however old.
+    notes_.clear(), warnings_.clear();
+    write(beside_, "compiled");
+    fs::last_write_time(beside_, built - std::chrono::hours(1));
+    EXPECT_EQ(text(), "compiled");
+    EXPECT_EQ(kernel_place("plugins/accel/watched/watched.cl"), beside_.string());
+    EXPECT_TRUE(notes_.empty() && warnings_.empty());
+}
+
 TEST(KernelIncludes, OnlyWholeLinesCount) {
     const auto read = [](const std::string& name) { return "<" + name + ">\n"; };
     const std::string text =
@@ -170,6 +235,12 @@ TEST(CompilerMessages, AreReadFromPoclAndClang) {
     EXPECT_EQ(pocl.first.message, "unknown type name 'this'");
     EXPECT_EQ(pocl.errors, 1u);
     EXPECT_EQ(pocl.text, "cl/a.cl:42:7: error: unknown type name 'this'\ncl/a.cl:1:2: warning: odd");
+
+    const CompilerLog four_times = read_compiler_log(
+        "cl/a.cl:7:1: error: no\n    x;\n    ^\ncl/a.cl:9:1: error: no\ncl/a.cl:7:1: error: no\n    x;\n    ^\n4 errors "
+        "generated.\n");
+    EXPECT_EQ(four_times.errors, 2u);
+    EXPECT_EQ(four_times.text, "cl/a.cl:7:1: error: no\n    x;\n    ^\ncl/a.cl:9:1: error: no");
 
     const CompilerLog clang = read_compiler_log(
         "cl/b.h:3:9: warning: unused: x\ncl/b.h:4:1: fatal error: no such: thing\n    x;\n"

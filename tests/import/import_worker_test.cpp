@@ -9,6 +9,7 @@
 #include <sstream>
 #include <thread>
 
+#include "import/importer_choice.hpp"
 #include "import_case.hpp"
 
 namespace clarity {
@@ -98,6 +99,45 @@ TEST_F(Worker, progress_is_forwarded) {
     ASSERT_GE(recorder.fractions.size(), 2u);
     EXPECT_TRUE(std::is_sorted(recorder.fractions.begin(), recorder.fractions.end()));
     EXPECT_GT(recorder.fractions.back(), 0.3f);
+}
+
+TEST_F(Worker, what_an_importer_prints_is_shown) {
+    import_text("say the file is odd\ntriangles good 1");
+    const std::vector<std::string> all = logged();
+    EXPECT_EQ(std::count(all.begin(), all.end(), "importer cltest printed: the file is odd"), 1);
+    failure_of_text("say farewell\nnonsense");
+    const std::vector<std::string> more = logged();
+    EXPECT_EQ(std::count(more.begin(), more.end(), "importer cltest printed: farewell"), 1);
+}
+
+TEST_F(Worker, importers_get_the_parameters_that_were_chosen) {
+    for (const bool in_process : {false, true}) {
+        options_.in_process = in_process;
+        options_.importers.clear();
+        EXPECT_NO_THROW(import_text("number 3\ntriangles good 1")) << "the default";
+        options_.importers = {"cltest,number=7"};
+        EXPECT_NO_THROW(import_text("number 7\ntriangles good 1"));
+        options_.importers = {"cltest,number=7", "cltest,number=2"};
+        EXPECT_NO_THROW(import_text("number 2\ntriangles good 1")) << "the last counts";
+    }
+}
+
+TEST_F(Worker, choices_of_parameters_that_make_no_sense_are_said) {
+    const PluginRegistry plugins = PluginRegistry::of({CLARITY_TEST_IMPORTER});
+    const auto why = [&](const std::string& text) -> std::string {
+        try {
+            parse_importer_choices(plugins, {text});
+        } catch (const Error& error) {
+            EXPECT_EQ(error.code(), Exit::usage);
+            return error.what();
+        }
+        return "nothing was thrown";
+    };
+    EXPECT_TRUE(contains(why("nobody,number=1"), "no importer `nobody`; there are cltest"));
+    EXPECT_TRUE(contains(why("cltest"), "names no parameter"));
+    EXPECT_TRUE(contains(why("cltest,count=1"), "has no parameter 'count'; it has: number"));
+    EXPECT_TRUE(contains(why("cltest,number=10"), "a whole number from 1 to 9"));
+    EXPECT_TRUE(contains(why("cltest,number"), "is no key=value"));
 }
 
 TEST_F(Worker, cancel_answers_at_once) {

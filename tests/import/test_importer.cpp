@@ -27,6 +27,7 @@ T sized() {
 struct Run {
     const rt_host& host;
     const rt_scene_sink& sink;
+    const double* params;
     std::vector<rt_u32> materials;
 
     int32_t fail(const std::string& why) const { return host.fail(host.ctx, why.c_str()); }
@@ -227,6 +228,14 @@ struct Run {
         if (what == "warn") return sink.warn(sink.ctx, argument.c_str()), RT_OK;
         if (what == "work") return work(std::atoi(argument.c_str()), false);
         if (what == "stuck") return work(std::atoi(argument.c_str()), true);
+        if (what == "say") {  // as a parser's last words: without a newline, and not flushed
+            std::fputs(argument.c_str(), stdout);
+            return RT_OK;
+        }
+        if (what == "number") {  // the parameter's value
+            if (params[0] == std::stod(argument)) return RT_OK;
+            return fail("the number is " + std::to_string(int(params[0])));
+        }
         if (what == "print") {
             for (int i = 0; i < 5000; ++i) std::puts(argument.c_str());
             std::fflush(stdout);
@@ -249,8 +258,8 @@ struct Run {
     }
 };
 
-int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    Run run{*host, *sink, {}};
+int32_t load(const rt_host* host, const char* path, const double* params, const rt_scene_sink* sink) {
+    Run run{*host, *sink, params, {}};
     std::ifstream file(path);
     for (std::string line; std::getline(file, line);) {
         const int32_t status = run.command(line);
@@ -260,10 +269,11 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
 }
 
 const char* const kExtensions[] = {"cltest", nullptr};
+constexpr rt_param kParams[] = {rt::int_param("number", "Number", "what the command `number` expects", 1, 9, 3)};
 const rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, load};
 
 }  // namespace
 }  // namespace test_importer
 
 extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 =
-    rt::importer_plugin("cltest", "Test importer", "1.0", nullptr, test_importer::kImporter);
+    rt::importer_plugin("cltest", "Test importer", "1.0", nullptr, test_importer::kParams, test_importer::kImporter);

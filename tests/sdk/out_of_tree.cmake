@@ -1,6 +1,7 @@
-# Installs the program and the SDK, moves the tree to a path with a blank, makes a plugin of each kind from the templates and one of
-# docs/clarity_bvh.md, builds them against the moved tree with warnings as errors, and uses them with the moved program.
-# cmake -DBUILD=build folder -DSOURCE=clarity's sources -DC= -DCXX= -DFLAGS= -P out_of_tree.cmake
+# Installs the program and the SDK, moves the tree to a path with a blank, makes a plugin of each kind with `clarity new-plugin` and one
+# of docs/clarity_bvh.md, builds them against the moved tree with warnings as errors, and uses them with the moved program: `clarity
+# check`, pictures, and a window in which a plugin is built again.
+# cmake -DBUILD=build folder -DSOURCE=clarity's sources -DC= -DCXX= -DFLAGS= [-DWINDOW_CHECK=program] -P out_of_tree.cmake
 cmake_minimum_required(VERSION 3.22)
 set(root ${BUILD}/tests/sdk/out_of_tree)
 set(prefix "${root}/moved here")
@@ -69,13 +70,46 @@ function(build_plugin id)
 endfunction()
 
 # Makes two plugins outside of the tree.
-file(GLOB_RECURSE template "${prefix}/*/new_plugin.cmake")
+file(MAKE_DIRECTORY ${mine})
 foreach(kind accel importer)
   set(id_accel boxes)
   set(id_importer tri_text)
   set(id ${id_${kind}})
-  run("new ${kind}" ignored ${CMAKE_COMMAND} -DKIND=${kind} -DID=${id} -DINTO=${mine} -P ${template})
+  run("new ${kind}" told ${clarity} new-plugin ${kind} ${id} ${mine}/${id})
+  string(FIND "${told}" "-DCMAKE_PREFIX_PATH='${prefix}'" at)
+  if(at EQUAL -1)
+    message(FATAL_ERROR "new-plugin does not say where CMake finds Clarity:\n${told}")
+  endif()
   build_plugin(${id})
+endforeach()
+
+# Links of the installed pages, and the names of files in those for authors of plugins, lead somewhere.
+file(GLOB_RECURSE pages "${prefix}/share/doc/*.md" "${mine}/*.md")
+if(NOT pages MATCHES "/docs/plugins.md" OR NOT pages MATCHES "/cl/CONTRACT.md")
+  message(FATAL_ERROR "the pages are not installed: ${pages}")
+endif()
+file(GLOB_RECURSE installed "${prefix}/share/doc/*" "${prefix}/include/*")
+foreach(page IN LISTS pages)
+  get_filename_component(folder ${page} DIRECTORY)
+  file(READ ${page} text)
+  string(REPLACE ";" "," text "${text}")
+  string(REGEX MATCHALL "\\]\\([^ )#]+" links "${text}")
+  foreach(link IN LISTS links)
+    string(SUBSTRING "${link}" 2 -1 link)
+    if(NOT link MATCHES "^https?:" AND NOT EXISTS "${folder}/${link}")
+      message(SEND_ERROR "${page}: the link ${link} leads nowhere")
+    endif()
+  endforeach()
+  if(NOT page MATCHES "/(plugins|CONTRACT|clarity_bvh|check|debugging)[.]md$")
+    continue()
+  endif()
+  string(REGEX MATCHALL "`[A-Za-z0-9_/]+[.](h|hpp|cl|md)`" names "${text}")
+  foreach(name IN LISTS names)
+    string(REPLACE "`" "" name "${name}")
+    if(NOT name MATCHES "^(my_|halves)" AND NOT "${installed};" MATCHES "/${name};")
+      message(SEND_ERROR "${page}: ${name} is not installed")
+    endif()
+  endforeach()
 endforeach()
 
 # A builder of its own, as docs/clarity_bvh.md shows it, against the installed library; and bvh2's own folder, which is a plugin like
@@ -109,7 +143,7 @@ endforeach()
 
 # The plugins are found through the variable, and then as installed for the user.
 set(ids boxes tri_text halves again)
-string(REPLACE ";" "/build/lib/clarity/plugins:${mine}/" path "${mine}/${ids}/build/lib/clarity/plugins")
+string(REPLACE ";" "/build:${mine}/" path "${mine}/${ids}/build")
 set(ENV{CLARITY_PLUGIN_PATH} "${path}")
 run("clarity plugins" json ${clarity} plugins --json)
 foreach(id IN LISTS ids)
@@ -134,6 +168,9 @@ file(WRITE ${tri} "# a triangle a line\n0 0 0  1 0 0  0 1 0\n1 0 0  1 1 0  0 1 0
 run("clarity info" json ${clarity} info ${tri} --json)
 string(JSON triangles GET "${json}" triangles)
 expect("triangles of ${tri}" ${triangles} 3)
+run("clarity info" json ${clarity} info ${tri} --importer tri_text,scale=2 --json)
+string(JSON right GET "${json}" bounds max 0)
+expect("right end of ${tri}, twice as large" ${right} 4)
 file(WRITE ${root}/bad.tri "0 0 0  1 0 0  0 1 0\n0 0 zero\n")
 execute_process(COMMAND ${clarity} info ${root}/bad.tri RESULT_VARIABLE code OUTPUT_QUIET ERROR_VARIABLE errors)
 expect("exit code for a bad file" ${code} 4)
@@ -157,4 +194,18 @@ foreach(scene ${tri} ${SOURCE}/scenes/models/spot.obj)
     expect("distances of ${scene} by ${accel} and by linear" ${sum} ${reference})
   endforeach()
 endforeach()
+
+# The checker finds nothing wrong with what the templates make.
+run("clarity check boxes" said ${clarity} check ${mine}/boxes/build/boxes.so --quick --lanes 4)
+if(NOT said MATCHES "ok  boxes hits.random")
+  message(FATAL_ERROR "clarity check: ${said}")
+endif()
+
+# The window.
+if(WINDOW_CHECK)
+  set(ENV{CLARITY_PLUGIN_PATH} "${mine}/boxes/build")
+  set(ENV{CLARITY_TEST_PLUGIN} "${mine}/boxes")
+  set(ENV{CLARITY_WORKER} "${clarity}")
+  run("the window" ignored ${WINDOW_CHECK})
+endif()
 file(REMOVE_RECURSE ${root})

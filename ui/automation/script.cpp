@@ -288,7 +288,7 @@ std::string Script::state_text(ScriptedWindow& window) const {
     json["hidden"] = session.desired.hidden;
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();
-    json["kernel_revision"] = session.kernels().revision();
+    json["kernel_revision"] = session.sources_revision();
     json["comparing"] = session.desired.other.has_value();
     json["bookmarks"] = window.state.bookmarks.size();
     json["keys_open"] = window.state.keys_open;

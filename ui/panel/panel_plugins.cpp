@@ -60,6 +60,9 @@ void plugin_rows(const PluginRecord& record) {
             for (const char* const* e = plugin->importer->extensions; e && *e; ++e) extensions += std::string(" .") + *e;
         if (!extensions.empty()) dim_text("files:" + extensions);
         if (plugin->reference) dim_text(plugin->reference);
+        if (record.replaced > 0)
+            dim_text("built again and replaced " + std::to_string(record.replaced) +
+                     (record.replaced == 1 ? " time" : " times"));
         if (record.shadowed) wrapped_text("not used: an earlier library has the same id", colors::kAmber);
     } else {
         wrapped_text("refused: " + record.why, colors::kRed);
@@ -84,7 +87,7 @@ void kernel_rows(const Session& session) {
 void draw_plugins_tab(Session& session) {
     section("DEVICES");
     device_list(session);
-    const auto& records = session.plugins().records();
+    const std::vector<PluginRecord> records = session.plugins().records();
     size_t refused = 0;
     for (const PluginRecord& record : records) refused += record.plugin == nullptr;
     if (refused > 0) section("REFUSED LIBRARIES");

@@ -36,7 +36,9 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_light_(options.light),
       first_edits_(options.edits),
       log_(wake),
-      kernels_(plugins_.accels(), wake),
+      wake_(wake),
+      kernels_(std::make_unique<KernelWatch>(plugins_.accels(), wake)),
+      libraries_(plugins_, wake),
       frames_(wake),
       inspector_(wake),
       worker_(plugins_, options.import,
@@ -122,8 +124,8 @@ void Session::follow_main() {
 }
 
 PrepareRequest Session::desired_request() const {
-    PrepareRequest request{files_, files_revision_, first_camera_, first_light_, desired.main, desired.other,
-                           {},     seen_kernels_};
+    PrepareRequest request{files_, files_revision_,  first_camera_, first_light_, desired.main, desired.other,
+                           {},     sources_revision_};
     // Indices of instances are only valid in the scene that they were chosen in.
     if (files_revision_ == viewed_files_revision_) request.hidden = desired.hidden;
     return request;
@@ -172,10 +174,8 @@ void Session::post_frame() {
 
 void Session::update(bool gesture) {
     take_outcomes();
-    if (const uint64_t revision = kernels_.revision(); revision != seen_kernels_) {
-        seen_kernels_ = revision;
-        for (const std::string& path : kernels_.last_changed()) log(LogLevel::info, "changed: " + path);
-    }
+    take_kernels();
+    take_libraries();
     if (auto why = frames_.take_failure(); !why.empty()) report(why);
     sequence_.update(*this);
     follow_main();
@@ -212,12 +212,50 @@ void Session::take_outcomes() {
     }
 }
 
+void Session::take_kernels() {
+    const uint64_t revision = kernels_->revision();
+    if (revision == seen_kernels_) return;
+    seen_kernels_ = revision;
+    ++sources_revision_;
+    for (const std::string& path : kernels_->last_changed()) log(LogLevel::info, "changed: " + path);
+}
+
+// Puts rebuilt plugin libraries into force: structures are built anew, files are read anew. A refused one is only reported.
+void Session::take_libraries() {
+    bool structures = false, importers = false;
+    for (const RebuiltLibrary& library : libraries_.apply()) {
+        if (!library.now) {
+            report(library.why);
+            continue;
+        }
+        ++sources_revision_;
+        (library.now->importer ? importers : structures) = true;
+        if (!library.before) continue;
+        for (Side* side : {&desired.main, desired.other ? &*desired.other : nullptr})
+            if (side && library.now->accel && side->settings.accel == library.now->id)
+                side->settings.accel_params = carried_parameters(*library.before, *library.now, side->settings.accel_params);
+        // Earlier steps hold values of parameters in the order of the library before.
+        if (library.before->param_count != library.now->param_count) history_.forget();
+    }
+    if (structures) {  // the new library may have other kernel files
+        kernels_ = std::make_unique<KernelWatch>(plugins_.accels(), wake_);
+        seen_kernels_ = 0;
+    }
+    if (importers && !files_.empty()) {
+        open(files_);
+        reread_files_revision_ = files_revision_;
+    }
+}
+
 void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     ready_ = ready;
     if (viewed_files_revision_ == ready->loaded->files_revision) return;
+    const bool same_files = viewed_files_revision_ != 0 && ready->loaded->files_revision == reread_files_revision_;
     viewed_files_revision_ = ready->loaded->files_revision;
     selection = {};
+    const Camera camera = desired.camera;
     reset_view();
+    if (same_files) desired.camera = camera;
     if (!ready->loaded->view_error.empty()) report(ready->loaded->view_error);
     first_camera_.clear();
     first_light_.clear();

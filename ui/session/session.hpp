@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "device/kernel_watch.hpp"
+#include "plugin/library_watch.hpp"
 #include "render/settings/preset.hpp"
 #include "ui/session/history.hpp"
 #include "ui/session/log_buffer.hpp"
@@ -107,7 +108,9 @@ class Session {
     // Whether the camera or a light moved a moment ago, so that pictures may have fewer pixels.
     bool moving() const { return moving_; }
     // Watches the kernel files. A saved change is compiled and used at once.
-    const KernelWatch& kernels() const { return kernels_; }
+    const KernelWatch& kernels() const { return *kernels_; }
+    // Grows when a saved kernel or a rebuilt plugin is taken into force.
+    uint64_t sources_revision() const { return sources_revision_; }
     // Whether the window needs the distances of pictures from now on.
     void want_distance(bool wanted) { frames_.want_distance(wanted); }
     // Whether nothing is being prepared or traced and the newest picture has arrived.
@@ -127,6 +130,8 @@ class Session {
 
  private:
     void take_outcomes();
+    void take_kernels();
+    void take_libraries();
     void adopt(const std::shared_ptr<const Ready>& ready);
     void post_request();
     void post_frame();
@@ -144,6 +149,7 @@ class Session {
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
     std::optional<PrepareRequest> posted_request_;  // none: the next request is posted in any case
     uint64_t viewed_files_revision_ = 0;            // the scene that gave `desired` its camera and lights
+    uint64_t reread_files_revision_ = 0;            // the same files read by a rebuilt importer: the camera stays
     std::shared_ptr<const Ready> ready_;
     std::shared_ptr<const Picture> picture_;
     FrameJob posted_job_;
@@ -155,8 +161,10 @@ class Session {
     double moved_at_s_ = -1e9;
     uint64_t pick_request_ = 0, picked_request_ = 0;
     LogBuffer log_;
-    KernelWatch kernels_;
-    uint64_t seen_kernels_ = 0;
+    const std::function<void()> wake_;
+    std::unique_ptr<KernelWatch> kernels_;
+    LibraryWatch libraries_;
+    uint64_t seen_kernels_ = 0, sources_revision_ = 0;
     FrameThread frames_;
     InspectThread inspector_;
     PrepareWorker worker_;  // after the threads that it asks to release the devices

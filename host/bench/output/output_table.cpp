@@ -22,6 +22,11 @@ bool shown(const BenchRecord& r) {
     return r.status == RowStatus::ok && r.time_ms.n > 0;
 }
 
+bool unsteady(const BenchReport& report, const BenchRecord& r) {
+    const double most = report.run_of(r).max_spread;
+    return r.status == RowStatus::refused && std::max(r.time_ms.spread(), r.wall_ms.spread()) > most;
+}
+
 const BenchRecord* find(const std::vector<const BenchRecord*>& group, const std::string& measure) {
     for (const BenchRecord* r : group)
         if (r->measure == measure) return r;
@@ -174,7 +179,8 @@ std::string analysis_table(const BenchReport& report) {
         if (field.look.column) head.push_back(field.look.column);
     TextTable table(head, 3);
     for (const BenchRecord& r : report.records) {
-        if (!r.analysis.present || r.status != RowStatus::ok) continue;
+        // Counts hold in spite of unsteady times.
+        if (!r.analysis.present || (r.status != RowStatus::ok && !unsteady(report, r))) continue;
         std::vector<std::string> cells = {r.scene, r.measure, r.name()};
         for (const Field<Analysis>& field : analysis_fields())
             if (field.look.column) cells.push_back(shown_text(field, r.analysis));
@@ -194,11 +200,6 @@ std::string dropped_table(const BenchReport& report) {
                    all > 0 ? percent(double(r.rays_dropped) / all) : ""});
     }
     return table.empty() ? std::string() : "rays dropped because a pixel's array was full, 4 steps\n" + table.text() + "\n";
-}
-
-bool unsteady(const BenchReport& report, const BenchRecord& r) {
-    const double most = report.run_of(r).max_spread;
-    return r.status == RowStatus::refused && std::max(r.time_ms.spread(), r.wall_ms.spread()) > most;
 }
 
 // Joins the parts with commas, and breaks lines to fit a terminal of 120 columns.

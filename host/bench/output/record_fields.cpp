@@ -35,6 +35,15 @@ Field<BenchRecord> times(const char* key, Summary BenchRecord::*member) {
             [=](const Json& json, BenchRecord& r) { r.*member = read_summary(json); }};
 }
 
+// A count, which does not depend on time: a row that is refused because its times are unsteady has it, too.
+Field<BenchRecord> count_of(Field<BenchRecord> field) {
+    field.figure = false;
+    field.write = [write = field.write](const BenchRecord& r) {
+        return r.status == RowStatus::ok || r.status == RowStatus::refused ? write(r) : Json();
+    };
+    return field;
+}
+
 // A size as "4x2"; null for 0x0.
 Field<BenchRecord> size(const char* key, int BenchRecord::*w, int BenchRecord::*h) {
     return {key,
@@ -204,24 +213,24 @@ const Fields<BenchRecord>& record_fields() {
         times("wall_ms", &R::wall_ms),
         {"frame_ms", [](const R& r) { return r.measure == "frame" ? summary_json(r, r.time_ms) : Json(); }, {}},
         figure_of(unless_empty("fps", &R::fps, {"fps", "fps"})),
-        figure_of<R>({"rays",
-                      [](const R& r) { return write_fields(rays_fields(), r); },
-                      [](const Json& json, R& r) { read_fields(json, rays_fields(), r); },
-                      {"rays", "rays"},
-                      [](const R& r) { return double(r.rays()); }}),
-        figure_of(plain("dropped_rays", &R::rays_dropped)),
-        figure_of(plain("hits", &R::hits)),
+        count_of({"rays",
+                  [](const R& r) { return write_fields(rays_fields(), r); },
+                  [](const Json& json, R& r) { read_fields(json, rays_fields(), r); },
+                  {"rays", "rays"},
+                  [](const R& r) { return double(r.rays()); }}),
+        count_of(plain("dropped_rays", &R::rays_dropped)),
+        count_of(plain("hits", &R::hits)),
         figure_of(unless_empty("mrays_per_s", &R::mrays_per_s, {"Mrays/s", "Mrays/s"})),
         figure_of(unless_empty("build_ms", &R::build_ms)),
         figure_of(unless_empty("pack_ms", &R::pack_ms)),
         figure_of(unless_empty("compile_ms", &R::compile_ms)),
         figure_of(unless_empty("mtris_per_s", &R::mtris_per_s, {"Mtri/s", "Mtri/s"})),
-        figure_of(unless_empty("bytes_per_triangle", &R::bytes_per_triangle, {"B/tri", "bytes/triangle"})),
-        figure_of(unless_empty("accel_bytes", &R::accel_bytes)),
-        figure_of(unless_empty("nodes", &R::nodes, {"nodes", "nodes"})),
-        figure_of(unless_empty("sah_cost", &R::sah_cost, {"SAH", "SAH cost"})),
+        count_of(unless_empty("bytes_per_triangle", &R::bytes_per_triangle, {"B/tri", "bytes/triangle"})),
+        count_of(unless_empty("accel_bytes", &R::accel_bytes)),
+        count_of(unless_empty("nodes", &R::nodes, {"nodes", "nodes"})),
+        count_of(unless_empty("sah_cost", &R::sah_cost, {"SAH", "SAH cost"})),
         nested<Speedup>("versus", &R::speedup, versus_fields, [](const Speedup& v) { return !v.baseline.empty(); }),
-        nested<Analysis>("analysis", &R::analysis, analysis_fields, [](const Analysis& a) { return a.present; }),
+        count_of(nested<Analysis>("analysis", &R::analysis, analysis_fields, [](const Analysis& a) { return a.present; })),
         parts("parts_ms", &R::parts_ms),
         parts("within_ms", &R::within_ms),
         figure_of<R>({"parts_error_ms", [](const R& r) { return r.parts_ms.empty() ? Json() : number_json(r.parts_error_ms); },

@@ -1,6 +1,5 @@
 #include "render/accel/build_in_worker.hpp"
 
-#include <dlfcn.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -8,6 +7,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/library_files.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "plugin/known_libraries.hpp"
@@ -19,12 +19,11 @@
 namespace clarity {
 namespace {
 
-// The file of the library that a plugin is in; empty: it is part of this program.
+// The file of the library that a plugin is in; empty: it is part of this program. `plugin` is a copy, its texts are the
+// library's.
 std::string library_of(const rt_plugin& plugin) {
-    Dl_info info{};
-    if (dladdr(&plugin, &info) == 0 || !info.dli_fname) return {};
     std::error_code error;
-    const std::filesystem::path library = std::filesystem::canonical(info.dli_fname, error);
+    const std::filesystem::path library = std::filesystem::canonical(loaded_file_of(plugin.id), error);
     if (error || library == std::filesystem::read_symlink("/proc/self/exe", error)) return {};
     return library.string();
 }

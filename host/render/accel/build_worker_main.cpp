@@ -104,6 +104,7 @@ int build_worker_main(int argc, char** argv) {
         const std::string who = "builder: ";  // the parent says which
         if (last.text.compare(0, who.size(), who) == 0) last.text.erase(0, who.size());
     }
+    std::fflush(nullptr);  // what the builder printed comes before the end
     worker::send_message(worker::kChannelFd, last);
     _exit(last.kind == MessageKind::done ? 0 : 1);
 }

@@ -140,11 +140,13 @@ std::shared_ptr<const AccelData> Preparer::build(const std::shared_ptr<const Sce
 std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                          Progress& progress) {
     const rt_plugin& plugin = *plugins_.accel(settings.accel);
-    const ParameterValues params = settings.accel_params.empty() ? default_parameters(plugin) : settings.accel_params;
-    if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->params == params)
+    const rt_plugin& layout = plugins_.layout_of(plugin);
+    // The library may have been replaced since the values were chosen.
+    const ParameterValues params = fitting_parameters(plugin, settings.accel_params);
+    if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->layout == &layout &&
+        last_->accel->params == params)
         return last_->accel;
     const SceneCounts counts = count_scene(*scene);
-    const rt_plugin& layout = plugins_.layout_of(plugin);
     const unsigned lanes = settings.lanes > 0 ? static_cast<unsigned>(settings.lanes) : info_.preferred_lanes();
     check_fits(plan_memory(counts, *scene, *layout.accel), info_,
                std::to_string(counts.references) + " primitives in " + plugin.id);

@@ -8,7 +8,10 @@
 
 namespace {
 
-int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
+enum Param { kScale };
+constexpr rt_param kParams[] = {rt::float_param("scale", "Scale", "factor of all positions", 0.001, 1000, 1)};
+
+int32_t load(const rt_host* host, const char* path, const double* params, const rt_scene_sink* sink) {
     std::ifstream file(path);
     if (!file) throw rt::fail(host, "cannot be opened");
     std::vector<float> positions;
@@ -20,7 +23,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
             float value = 0;
             if (!(words >> value))
                 throw rt::fail(host, "line " + std::to_string(number) + ": expected nine numbers: '" + line + "'");
-            positions.push_back(value);
+            positions.push_back(value * float(params[kScale]));
         }
         if (number % 4096 == 0) rt::progress(host, 0.5f);  // throws if the user has cancelled
     }
@@ -47,4 +50,4 @@ constexpr rt_importer kImporter = {sizeof(rt_importer), kExtensions, nullptr, rt
 
 }  // namespace
 
-const rt_plugin rt_plugin_v1 = rt::importer_plugin("my_importer", "Triangles as text", "0.1.0", nullptr, kImporter);
+const rt_plugin rt_plugin_v1 = rt::importer_plugin("my_importer", "Triangles as text", "0.1.0", nullptr, kParams, kImporter);
