@@ -47,11 +47,16 @@ fs::path checkout_kernels() {
     return {};
 }
 
+// A plugin's folder below that of the sources.
+std::string folder_of(const rt_plugin& plugin) {
+    return std::string(plugin.primitive ? "plugins/primitives/" : "plugins/accel/") + plugin.id;
+}
+
 // Where kernel files may be on disk.
 struct Places {
     fs::path kernels;  // a folder with the layout of cl/; empty: use the embedded text
     bool beside_libraries = true;
-    fs::path plugin(const std::string& id) const { return kernels.parent_path() / "plugins" / "accel" / id; }
+    fs::path plugin(const rt_plugin& plugin) const { return kernels.parent_path() / folder_of(plugin); }
 };
 
 Places places() {
@@ -75,7 +80,7 @@ fs::path library_folder(const rt_plugin& plugin) {
 std::vector<fs::path> plugin_places(const rt_plugin& plugin, const char* name) {
     std::vector<fs::path> all;
     const Places where = places();
-    if (!where.kernels.empty()) all.push_back(where.plugin(plugin.id) / name);
+    if (!where.kernels.empty()) all.push_back(where.plugin(plugin) / name);
     if (where.beside_libraries)
         if (const fs::path folder = library_folder(plugin); !folder.empty()) all.push_back(folder / name);
     return all;
@@ -141,6 +146,12 @@ void add_parts(const fs::path& path, std::vector<std::string>& all) {
     }
 }
 
+std::vector<const rt_cl_file*> kernels_of(const rt_plugin& plugin) {
+    if (plugin.primitive) return {&plugin.primitive->kernels};
+    if (plugin.accel) return {&plugin.accel->types, &plugin.accel->traverse};
+    return {};
+}
+
 const char* embedded_text(const std::string& name) {
     for (const Embedded& file : kEmbedded)
         if (name == file.name) return file.text;
@@ -159,7 +170,7 @@ std::string kernel_text(const std::string& name) {
     const char* embedded = embedded_text(name);
     std::string text;
     if (!where.kernels.empty() && read_if_present(where.kernels / name, text)) {
-        if ((name == "rt_types.h" || name == "rt_shared.h") && embedded)
+        if ((name == "rt_types.h" || name == "rt_shared.h" || name == "rt_shape.h") && embedded)
             require_same(where.kernels / name, text, embedded,
                          "this program was compiled with, so its structs may: build the program again, or set "
                          "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
@@ -171,24 +182,24 @@ std::string kernel_text(const std::string& name) {
                                                ": build the program again");
 }
 
-std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file) {
-    return file.name ? std::string("plugins/accel/") + accel.id + "/" + file.name : "";
+std::string plugin_kernel_name(const rt_plugin& plugin, const rt_cl_file& file) {
+    return file.name ? folder_of(plugin) + "/" + file.name : "";
 }
 
-std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
-    const std::string shown = plugin_kernel_name(accel, file);
+std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file) {
+    const std::string shown = plugin_kernel_name(plugin, file);
     const auto with_kernels = [&](const std::string& text) {
         return expand_includes(text, shown, IncludeKind::kernel,
                                [](const std::string& name) { return kernel_text(name.substr(std::string("cl/").size())); });
     };
     std::string text;
     if (file.name)
-        for (const fs::path& path : plugin_places(accel, file.name)) {
+        for (const fs::path& path : plugin_places(plugin, file.name)) {
             if (!read_if_present(path, text)) continue;
             const std::string whole = with_parts(text, shown, path);
-            if (&file == &accel.accel->types && file.text)
+            if (plugin.accel && &file == &plugin.accel->types && file.text)
                 require_same(path, whole, file.text,
-                             std::string("plugin ") + accel.id +
+                             std::string("plugin ") + plugin.id +
                                  " was compiled with, so its structs may: build the plugin again and restart, or set "
                                  "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
             remember(shown, path, std::move(text));
@@ -210,13 +221,13 @@ uint64_t kernel_text_revision() {
     return all.revision;
 }
 
-std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& accels) {
+std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& plugins) {
     std::vector<std::string> all;
     const fs::path kernels = places().kernels;
     if (!kernels.empty())
         for (const Embedded& file : kEmbedded) all.push_back((kernels / file.name).string());
-    for (const rt_plugin* plugin : accels)
-        for (const rt_cl_file* file : {&plugin->accel->types, &plugin->accel->traverse})
+    for (const rt_plugin* plugin : plugins)
+        for (const rt_cl_file* file : kernels_of(*plugin))
             if (file->name)
                 for (const fs::path& path : plugin_places(*plugin, file->name)) {
                     all.push_back(path.string());
