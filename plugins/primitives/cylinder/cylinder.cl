@@ -11,20 +11,21 @@ RT_INLINE vfloat cylinder_hit(const global float *numbers, const global float *m
     const vfloat from_z = rt_dot(from, axis), dz = rt_dot(ray->direction, axis);
     const rt_vec from_axis = rt_along(-from_z, axis, from), d = rt_along(-dz, axis, ray->direction);
 
-    const vfloat a = rt_max(rt_dot(d, d), rt_vfloat(1e-30f)), closest = -rt_dot(from_axis, d) / a;
-    const rt_vec least = rt_along(closest, d, from_axis);
-    const vfloat room = radius2 - rt_dot(least, least), half_way = sqrt(rt_max(room, zero) / a);
-    const vfloat side_in = closest - half_way, side_out = closest + half_way;
+    const vfloat a = rt_max(rt_dot(d, d), rt_vfloat(1e-30f)), b = -rt_dot(from_axis, d);
+    const rt_vec least = rt_along(b / a, d, from_axis);
+    const vfloat room = radius2 - rt_dot(least, least), root = sqrt(rt_max(room, zero) * a);
+    const vfloat q = b + copysign(root, b), c = rt_dot(from_axis, from_axis) - radius2;
+    const vfloat t_a = q / a, t_b = rt_select(RT_MASK(q != zero), c / q, zero);
+    const vfloat side_in = rt_min(t_a, t_b), side_out = rt_max(t_a, t_b);
 
     const vfloat inverse = rt_safe_reciprocal(dz), at_from = -from_z * inverse, at_to = (length - from_z) * inverse;
     const vfloat caps_in = rt_min(at_from, at_to), caps_out = rt_max(at_from, at_to);
     const vmask hits = RT_MASK(room >= zero) & RT_MASK(rt_max(side_in, caps_in) <= rt_min(side_out, caps_out));
     vfloat in = rt_max(side_in, caps_in), out = rt_min(side_out, caps_out);
-    vmask in_side = RT_MASK(side_in >= caps_in), out_side = RT_MASK(side_out <= caps_out);
+    const vmask in_side = RT_MASK(side_in >= caps_in), out_side = RT_MASK(side_out <= caps_out);
     if (numbers[8] == 0.0f) {
         in = rt_select(in_side, in, RT_INFINITY);
         out = rt_select(out_side, out, RT_INFINITY);
-        in = rt_select(RT_MASK(in >= ray->t_min), in, RT_INFINITY);
     }
     const vmask first = RT_MASK(in >= ray->t_min) & RT_MASK(in < RT_INFINITY);
     const vfloat t = rt_select(first, in, out);
