@@ -132,7 +132,7 @@ class RenderJob {
             const std::lock_guard<std::mutex> lock(mutex);
             wake.notify_all();
         };
-        const KernelWatch kernels(plugins_.accels(), changed);
+        const KernelWatch kernels(plugins_.with_kernels(), changed);
         const FileWatch scenes(options_.scene.files, changed);
         if (kernels.files().empty())
             log(LogLevel::warning,

@@ -336,6 +336,11 @@ std::vector<const rt_plugin*> PluginRegistry::importers() const {
 std::vector<const rt_plugin*> PluginRegistry::primitives() const {
     return sorted(records_, &rt_plugin::primitive);
 }
+std::vector<const rt_plugin*> PluginRegistry::with_kernels() const {
+    std::vector<const rt_plugin*> list = accels();
+    for (const rt_plugin* plugin : primitives()) list.push_back(plugin);
+    return list;
+}
 
 const rt_plugin* PluginRegistry::importer_for(const std::string& path) const {
     const std::string extension = lower_extension(path);

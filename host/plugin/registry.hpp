@@ -35,7 +35,8 @@ class PluginRegistry {
     const rt_plugin& layout_of(const rt_plugin& accel) const;
     std::vector<const rt_plugin*> accels() const;     // usable ones, sorted by id
     std::vector<const rt_plugin*> importers() const;  // usable ones, sorted by id
-    std::vector<const rt_plugin*> primitives() const; // usable ones, sorted by id
+    std::vector<const rt_plugin*> primitives() const;  // usable ones, sorted by id
+    std::vector<const rt_plugin*> with_kernels() const;  // accels and primitives
     // The importer that is most certain of a file, judged by extension and first bytes; nullptr if no importer accepts it.
     const rt_plugin* importer_for(const std::string& path) const;
 

@@ -36,7 +36,7 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_light_(options.light),
       first_edits_(options.edits),
       log_(wake),
-      kernels_(plugins_.accels(), wake),
+      kernels_(plugins_.with_kernels(), wake),
       frames_(wake),
       inspector_(wake),
       worker_(plugins_, options.import,
