@@ -214,8 +214,8 @@ bool check_plugin_library(const PluginRecord& record, const std::string& layout,
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
     if (!record.plugin->accel)
-        throw Error(Exit::usage, std::string(record.plugin->id) + " is no structure (its kind is " + plugin_kind(*record.plugin) +
-                                     "): only structures can be checked yet");
+        throw Error(Exit::usage, std::string(record.plugin->id) + " is no structure (its kind is " +
+                                     plugin_kind(*record.plugin) + "): only structures can be checked yet");
     return Run(record, layout, options, progress, on_result).all();
 }
 

@@ -18,8 +18,8 @@ struct PluginRecord {
 
 // All libraries that were found, in this order: --plugin files, the folders in CLARITY_PLUGIN_PATH (separated by colons),
 // $XDG_DATA_HOME/clarity/plugins, then the program's own plugins (in the library folder of the installation, or
-// ../lib/clarity/plugins/{importers,accel,primitives} relative to the executable in a build folder). The working directory is never
-// searched. Libraries are loaded with RTLD_NOW|RTLD_LOCAL and never closed.
+// ../lib/clarity/plugins/{importers,accel,primitives} relative to the executable in a build folder). The working directory is
+// never searched. Libraries are loaded with RTLD_NOW|RTLD_LOCAL and never closed.
 class PluginRegistry {
  public:
     static PluginRegistry discover(const std::vector<std::string>& plugin_files = {});
@@ -33,9 +33,9 @@ class PluginRegistry {
     const rt_plugin* primitive(std::string_view id) const;
     // The structure whose nodes and kernels a structure uses: for a topology its layout, else the structure itself.
     const rt_plugin& layout_of(const rt_plugin& accel) const;
-    std::vector<const rt_plugin*> accels() const;     // usable ones, sorted by id
-    std::vector<const rt_plugin*> importers() const;  // usable ones, sorted by id
-    std::vector<const rt_plugin*> primitives() const;  // usable ones, sorted by id
+    std::vector<const rt_plugin*> accels() const;        // usable ones, sorted by id
+    std::vector<const rt_plugin*> importers() const;     // usable ones, sorted by id
+    std::vector<const rt_plugin*> primitives() const;    // usable ones, sorted by id
     std::vector<const rt_plugin*> with_kernels() const;  // accels and primitives
     // The importer that is most certain of a file, judged by extension and first bytes; nullptr if no importer accepts it.
     const rt_plugin* importer_for(const std::string& path) const;

@@ -121,8 +121,8 @@ struct Scene {
     double surface_area() const;
 };
 
-// The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres, polygons,
-// planes and shapes.
+// The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres,
+// polygons, planes and shapes.
 struct PrimPlace {
     enum class Kind { none, triangle, sphere, polygon, plane, shape } kind = Kind::none;
     rt_u32 index = 0;           // within its kind; a triangle's index counts in Scene::triangles

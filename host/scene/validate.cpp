@@ -41,7 +41,8 @@ std::string check_arrays(const Scene& s) {
     if (s.triangle_materials.size() != s.triangles.size() / 3) return "triangle materials: not one per triangle";
     if (s.polygon_corners.size() % 3 != 0) return "polygon corners: not 3 numbers per corner";
     // A ref stores the index within its kind in 28 bits.
-    for (const size_t count : {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size(), s.shape_parts.size()}) {
+    for (const size_t count :
+         {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size(), s.shape_parts.size()}) {
         if (count > RT_REF_INDEX_MAX) return std::to_string(count) + " primitives of one kind are more than a ref can name";
     }
     const std::pair<const char*, const std::vector<float>*> numbers[] = {

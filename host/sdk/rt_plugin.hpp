@@ -321,9 +321,21 @@ namespace detail {
 constexpr rt_plugin plugin(const char* id, const char* name, const char* version, const char* reference, const rt_param* params,
                            rt_u32 param_count, const rt_accel* accel, const rt_importer* importer,
                            const rt_primitive* primitive = nullptr) {
-    return {RT_ABI_VERSION,   sizeof(rt_plugin),    RT_TYPES_DIGEST, param_count, id,       name,
-            version,          reference,            params,          accel,       importer, nullptr,
-            sizeof(rt_param), sizeof(rt_extension), primitive};
+    return {RT_ABI_VERSION,
+            sizeof(rt_plugin),
+            RT_TYPES_DIGEST,
+            param_count,
+            id,
+            name,
+            version,
+            reference,
+            params,
+            accel,
+            importer,
+            nullptr,
+            sizeof(rt_param),
+            sizeof(rt_extension),
+            primitive};
 }
 }  // namespace detail
 

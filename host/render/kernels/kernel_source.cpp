@@ -84,8 +84,8 @@ KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const Ac
     source.row = &row;
     source.what = std::string(row.what) + " with accel " + accel.id;
     // Exception: with instances, polygons or shapes more registers would be spilled, which costs more than the limit gains.
-    source.limit_registers = row.has(kLimitRegisters) && !layout.cpu && !features.instances && !features.polygons &&
-                             !features.shapes;
+    source.limit_registers =
+        row.has(kLimitRegisters) && !layout.cpu && !features.instances && !features.polygons && !features.shapes;
 
     SourceWriter out;
     write_layout(out, layout);

@@ -20,7 +20,8 @@ nurbs::Surface read(const rt_host* host, const rt_key_values* values) {
         throw rt::fail(host, std::to_string(points) + " `points` are no full rows of `columns` " + std::to_string(columns));
     const std::vector<double> weights = numbers_of(values[kWeights]);
     if (!weights.empty() && weights.size() != points)
-        throw rt::fail(host, std::to_string(weights.size()) + " `weights`; expected one for each of " + std::to_string(points) + " points");
+        throw rt::fail(host, std::to_string(weights.size()) + " `weights`; expected one for each of " + std::to_string(points) +
+                                 " points");
     for (size_t i = 0; i < points; ++i) {
         const double w = weights.empty() ? 1 : weights[i];
         if (!(w > 0)) throw rt::fail(host, "weight " + std::to_string(i + 1) + " is not above 0");
@@ -28,7 +29,8 @@ nurbs::Surface read(const rt_host* host, const rt_key_values* values) {
         surface.points.push_back({p[0] * w, p[1] * w, p[2] * w, w});
     }
     surface.u = {static_cast<int>(values[kDegreeU].numbers[0]), static_cast<int>(columns), numbers_of(values[kKnotsU])};
-    surface.v = {static_cast<int>(values[kDegreeV].numbers[0]), static_cast<int>(points / columns), numbers_of(values[kKnotsV])};
+    surface.v = {static_cast<int>(values[kDegreeV].numbers[0]), static_cast<int>(points / columns),
+                 numbers_of(values[kKnotsV])};
     for (const std::string& why : {surface.u.complete('u'), surface.v.complete('v')})
         if (!why.empty()) throw rt::fail(host, why);
     return surface;
@@ -84,5 +86,6 @@ constexpr rt_primitive primitive =
 
 }  // namespace
 
-extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::primitive_plugin(
-    "nurbs", "NURBS surface", "1.0.0", "Nishita, Sederberg, Kakimoto 1990, Ray Tracing Trimmed Rational Surface Patches", primitive);
+extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 =
+    rt::primitive_plugin("nurbs", "NURBS surface", "1.0.0",
+                         "Nishita, Sederberg, Kakimoto 1990, Ray Tracing Trimmed Rational Surface Patches", primitive);

@@ -1,6 +1,6 @@
-// Polar forms (Ramshaw 1989, "Blossoms are Polar Forms"): the Bezier points of a spline of degree p between two parameters a and b
-// are the values of its polar form at p - k times a and k times b. De Boor's algorithm computes it, with another parameter in
-// each of its steps.
+// Polar forms (Ramshaw 1989, "Blossoms are Polar Forms"): the Bezier points of a spline of degree p between two parameters a
+// and b are the values of its polar form at p - k times a and k times b. De Boor's algorithm computes it, with another
+// parameter in each of its steps.
 #include "spline.hpp"
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 namespace nurbs {
 namespace {
 
-constexpr double kBend = 0.5;       // radians that the control polygon of a patch may turn
-constexpr int kMostPieces = 16;     // between two knots
+constexpr double kBend = 0.5;    // radians that the control polygon of a patch may turn
+constexpr int kMostPieces = 16;  // between two knots
 
 Homogeneous mix(const Homogeneous& a, const Homogeneous& b, double share) {
     Homogeneous m;
@@ -95,9 +95,12 @@ std::string Direction::complete(char name) {
     if (knots.empty())
         for (size_t i = 0; i < count; ++i) knots.push_back(std::clamp(int(i) - degree, 0, points - degree));
     if (knots.size() != count)
-        return std::to_string(knots.size()) + " numbers for " + which + "; expected points + degree + 1 = " + std::to_string(count);
-    if (!std::is_sorted(knots.begin(), knots.end())) return which + " do not ascend; expected each knot at least as large as the one before";
-    if (!(knots[size_t(points)] > knots[size_t(degree)])) return which + " span nothing; expected a range between the outer knots";
+        return std::to_string(knots.size()) + " numbers for " + which +
+               "; expected points + degree + 1 = " + std::to_string(count);
+    if (!std::is_sorted(knots.begin(), knots.end()))
+        return which + " do not ascend; expected each knot at least as large as the one before";
+    if (!(knots[size_t(points)] > knots[size_t(degree)]))
+        return which + " span nothing; expected a range between the outer knots";
     for (size_t i = 1; i + size_t(degree) + 1 < count; ++i)
         if (i > size_t(degree) && i < size_t(points) && knots[i] == knots[i + size_t(degree)])
             return which + " has one number more than `degree` times inside of its range, which tears the surface";

@@ -44,7 +44,8 @@ std::vector<float> picture(const ScenePtr& scene, const View& view, const char* 
 
 // Whether a pixel of `found` agrees with the same one of `expected`, or with a neighbour.
 template <class Agree>
-bool agrees_within_a_pixel(const std::vector<float>& found, const std::vector<float>& expected, int x, int y, const Agree& agree) {
+bool agrees_within_a_pixel(const std::vector<float>& found, const std::vector<float>& expected, int x, int y,
+                           const Agree& agree) {
     const int size = kSize;
     const float value = found[static_cast<size_t>(y * size + x)];
     for (int v = std::max(y - 1, 0); v <= std::min(y + 1, size - 1); ++v)

@@ -95,8 +95,11 @@ ShapeCase disc_case() {
 ShapeCase cone_case(const std::string& word, const std::string& keys, const Vec& from, const Vec& to, double radius, double top,
                     bool caps) {
     const Axis axis(from, to);
-    ShapeCase c{word + (caps ? "" : ", open"), word + " from" + text(from) + " to" + text(to) + keys + (caps ? "" : " caps 0"),
-                2, {}, {}};
+    ShapeCase c{word + (caps ? "" : ", open"),
+                word + " from" + text(from) + " to" + text(to) + keys + (caps ? "" : " caps 0"),
+                2,
+                {},
+                {}};
     const auto radius_at = [=](const Vec& p) { return radius + (top - radius) * axis.z(p) / axis.length; };
     const auto between = [=](const Vec& p) { return axis.z(p) >= 0 && axis.z(p) <= axis.length; };
     if (caps)
@@ -116,11 +119,9 @@ ShapeCase cone_case(const std::string& word, const std::string& keys, const Vec&
 
 ShapeCase torus_case(const std::string& name, const std::string& statement, const Axis& axis, double ring, double tube) {
     ShapeCase c{name, statement, 1.7, {}, {}};
-    c.sheets.push_back(
-        {[=](const Vec& p) { return std::hypot(axis.away(p) - ring, axis.z(p)) - tube; }, everywhere});
-    c.faces.push_back([=](double u, double v) {
-        return axis.point(ring + tube * std::cos(2 * kPi * v), u, tube * std::sin(2 * kPi * v));
-    });
+    c.sheets.push_back({[=](const Vec& p) { return std::hypot(axis.away(p) - ring, axis.z(p)) - tube; }, everywhere});
+    c.faces.push_back(
+        [=](double u, double v) { return axis.point(ring + tube * std::cos(2 * kPi * v), u, tube * std::sin(2 * kPi * v)); });
     return c;
 }
 
@@ -235,8 +236,8 @@ const std::vector<ShapeCase>& shape_cases() {
         cone_case("cone", " radius .8", {0.2, -0.9, 0.1}, {-0.4, 0.9, -0.2}, 0.8, 0, true),
         cone_case("cone", " radius .9 top .3", {0.1, -0.7, 0.3}, {0.2, 0.6, -0.4}, 0.9, 0.3, true),
         cone_case("cone", " radius .4 top .9", {0.1, -0.7, 0.3}, {0.2, 0.6, -0.4}, 0.4, 0.9, false),
-        torus_case("torus", "torus center .1 -.2 .1 normal 1 2 .5 radius 1.1 tube .3",
-                   Axis({0.1, -0.2, 0.1}, {1.1, 1.8, 0.6}), 1.1, 0.3),
+        torus_case("torus", "torus center .1 -.2 .1 normal 1 2 .5 radius 1.1 tube .3", Axis({0.1, -0.2, 0.1}, {1.1, 1.8, 0.6}),
+                   1.1, 0.3),
         torus_case("torus, thin", "torus radius 1.5 tube .02", Axis({0, 0, 0}, {0, 1, 0}), 1.5, 0.02),
         torus_case("nurbs, torus", nurbs_torus(1, 0.4), Axis({0, 0, 0}, {0, 0, 1}), 1, 0.4),
         hills_case(),
@@ -254,8 +255,8 @@ const std::vector<PlacedShape>& placed_shapes() {
             const double degrees = i == 0 ? 0 : 40.0 * double(i);
             const std::array<double, 12> world = placement(translate, axis, degrees, scale);
             list.push_back({&cases[i % cases.size()],
-                            " translate" + text(translate) + " rotate" + text(axis) + text(degrees) + " scale" + text(scale), world,
-                            inverse(world)});
+                            " translate" + text(translate) + " rotate" + text(axis) + text(degrees) + " scale" + text(scale),
+                            world, inverse(world)});
         }
         return list;
     }();
@@ -313,8 +314,8 @@ ScenePtr imported_shapes() {
             main += "load \"" + name + "\"" + placed.placement + "\n";
         }
         Progress progress;
-        return std::make_shared<const Scene>(import::import_scene(Workbench::get().plugins(), {scratch.write("main.scene", main)},
-                                                                  import::ImportOptions(), progress));
+        return std::make_shared<const Scene>(import::import_scene(
+            Workbench::get().plugins(), {scratch.write("main.scene", main)}, import::ImportOptions(), progress));
     }();
     return scene;
 }

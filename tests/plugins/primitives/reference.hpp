@@ -30,7 +30,7 @@ const std::vector<ShapeCase>& shape_cases();
 // A case that a text scene loads with a transform.
 struct PlacedShape {
     const ShapeCase* shape;
-    std::string placement;             // keys of `load`
+    std::string placement;               // keys of `load`
     std::array<double, 12> world, back;  // world from shape, and back
 };
 // All cases side by side, turned and scaled, and a few of them several times.

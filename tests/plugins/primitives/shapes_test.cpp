@@ -22,7 +22,8 @@ rt_ray ray_at(const PlacedShape& placed, std::mt19937& random, size_t number) {
         for (double& x : v) x *= radius / length;
         return v;
     };
-    const Vec from = transformed(placed.world, around(away)), to = transformed(placed.world, around(0.8 * reach * std::fabs(within(random))));
+    const Vec from = transformed(placed.world, around(away)),
+              to = transformed(placed.world, around(0.8 * reach * std::fabs(within(random))));
     rt_ray ray{};
     ray.t_max = INFINITY;
     double direction[3], length2 = 0;
@@ -84,7 +85,8 @@ const Cases& cases(bool again) {
     return again ? second : first;
 }
 
-std::vector<rt_hit> trace(const std::string& accel, const std::string& lanes, const std::vector<rt_ray>& rays, bool any_hit = false) {
+std::vector<rt_hit> trace(const std::string& accel, const std::string& lanes, const std::vector<rt_ray>& rays,
+                          bool any_hit = false) {
     return Workbench::get().rays(imported_shapes(), make_settings({{"accel", accel}, {"lanes", lanes}}), rays, any_hit);
 }
 
@@ -100,13 +102,13 @@ TEST_P(Shapes, AreHitWhereTheReferenceSays) {
         ++certain;
         const double expected = all.truths[i].t;
         hit += std::isfinite(expected);
-        const bool agrees = std::isfinite(expected) ? std::fabs(hits[i].t - expected) <= 1e-4 * expected : !std::isfinite(hits[i].t);
+        const bool agrees =
+            std::isfinite(expected) ? std::fabs(hits[i].t - expected) <= 1e-4 * expected : !std::isfinite(hits[i].t);
         if (std::isfinite(expected) && agrees) worst = std::fmax(worst, std::fabs(hits[i].t - expected) / expected);
         const rt_ray& r = all.rays[i];
-        EXPECT_TRUE(agrees) << all.names[i] << ", ray " << i << ": expected "
-                            << expected << ", found " << hits[i].t << ", from " << r.origin[0] << ' ' << r.origin[1] << ' '
-                            << r.origin[2] << " along " << r.direction[0] << ' ' << r.direction[1] << ' ' << r.direction[2]
-                            << " t_min " << r.t_min;
+        EXPECT_TRUE(agrees) << all.names[i] << ", ray " << i << ": expected " << expected << ", found " << hits[i].t
+                            << ", from " << r.origin[0] << ' ' << r.origin[1] << ' ' << r.origin[2] << " along "
+                            << r.direction[0] << ' ' << r.direction[1] << ' ' << r.direction[2] << " t_min " << r.t_min;
     }
     RecordProperty("worst_relative_error", std::to_string(worst));
     std::printf("%zu rays, %zu certain, %zu hits, largest relative error %.2g\n", hits.size(), certain, hit, worst);

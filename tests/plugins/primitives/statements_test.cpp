@@ -62,15 +62,16 @@ TEST_P(Places, AStatementBecomesAShape) {
     EXPECT_EQ(place_of_prim(scene, 1).kind, PrimPlace::Kind::shape);
     EXPECT_EQ(place_of_prim(scene, 1).index, 1u);
 }
-INSTANTIATE_TEST_SUITE_P(All, Places, testing::Bool(),
-                         [](const auto& info) { return info.param ? "InProcess" : "InWorker"; });
+INSTANTIATE_TEST_SUITE_P(All, Places, testing::Bool(), [](const auto& info) { return info.param ? "InProcess" : "InWorker"; });
 
 TEST(ShapeStatements, PlacedFilesShareTheirParts) {
     const Scratch scratch;
-    scratch.write("part.scene", "nurbs points 0 0 0  1 0 0  2 0 1  3 0 0  0 1 0  1 1 2  2 1 0  3 1 0  0 2 0  1 2 0  2 2 0  3 2 0  "
-                                "0 3 0  1 3 0  2 3 -1  3 3 0\n");
-    const Scene scene = import_text(scratch, "material red color 1 0 0\nload \"part.scene\"\n"
-                                             "load \"part.scene\" translate 5 0 0 material red\n");
+    scratch.write("part.scene",
+                  "nurbs points 0 0 0  1 0 0  2 0 1  3 0 0  0 1 0  1 1 2  2 1 0  3 1 0  0 2 0  1 2 0  2 2 0  3 2 0  "
+                  "0 3 0  1 3 0  2 3 -1  3 3 0\n");
+    const Scene scene = import_text(scratch,
+                                    "material red color 1 0 0\nload \"part.scene\"\n"
+                                    "load \"part.scene\" translate 5 0 0 material red\n");
     ASSERT_EQ(scene.shapes.size(), 2u);
     EXPECT_EQ(scene.shapes[0].first_part, scene.shapes[1].first_part);
     EXPECT_GT(scene.shapes[0].part_count, 1u);
@@ -91,11 +92,13 @@ TEST(ShapeStatements, ErrorsNameThePlace) {
               "a.scene:1:37: `-1` is out of range; expected `radius` (distance of the side from the axis) of 1e-12 at least");
     EXPECT_EQ(error_of("cylinder from 0 0 0 to 0 1 0 radius 1 caps .5"),
               "a.scene:1:44: expected a whole number for `caps` (1: with discs at both ends, 0: open)");
-    EXPECT_EQ(error_of("disc normal 0 0 0"),
-              "a.scene:1:13: the zero vector has no direction; expected another for `normal` (x y z of the direction that it faces)");
+    EXPECT_EQ(
+        error_of("disc normal 0 0 0"),
+        "a.scene:1:13: the zero vector has no direction; expected another for `normal` (x y z of the direction that it faces)");
     EXPECT_EQ(error_of("box from 0 0 to 1 1 1"),
               "a.scene:1:14: `to` is no number; expected number 3 of 3 for `from` (x y z of a corner)");
-    EXPECT_EQ(error_of("box from 0 0 0 to 1 1 1 material red"), "a.scene:1:34: unknown material `red` (defined in this file: none)");
+    EXPECT_EQ(error_of("box from 0 0 0 to 1 1 1 material red"),
+              "a.scene:1:34: unknown material `red` (defined in this file: none)");
     EXPECT_EQ(error_of("nurbs points 0 0 0 1 1"),
               "a.scene:1:23: 5 numbers for `points` (x y z of all points, row after row along u); expected 3 for each point");
 }
@@ -104,7 +107,8 @@ TEST(ShapeStatements, ErrorsNameThePlace) {
 TEST(ShapeStatements, PluginsRefuseValues) {
     EXPECT_EQ(error_of("plane normal 0 1 0\ncylinder from 1 1 1 to 1 1 1 radius 1"),
               "a.scene:2:1: cylinder: `from` and `to` are the same point; expected the two ends of its axis");
-    EXPECT_EQ(error_of("torus radius 1 tube 2"), "a.scene:1:1: torus: `tube` is not below `radius`; expected a ring with a hole");
+    EXPECT_EQ(error_of("torus radius 1 tube 2"),
+              "a.scene:1:1: torus: `tube` is not below `radius`; expected a ring with a hole");
     EXPECT_EQ(error_of("nurbs points 0 0 0 1 0 0 0 1 0"), "a.scene:1:1: nurbs: 3 `points` are no full rows of `columns` 4");
     EXPECT_EQ(error_of("nurbs columns 2 degree_u 1 degree_v 1 points 0 0 0 1 0 0 0 1 0 1 1 0 knots_u 0 1 0 1"),
               "a.scene:1:1: nurbs: `knots_u` do not ascend; expected each knot at least as large as the one before");
