@@ -22,6 +22,7 @@ typedef float rt_f32;
 #define RT_REF_SPHERE 0x10000000u
 #define RT_REF_POLYGON 0x20000000u
 #define RT_REF_INSTANCE 0x30000000u
+#define RT_REF_SHAPE 0x40000000u
 #define RT_REF_KIND(r) ((r)&0xF0000000u)
 #define RT_REF_INDEX(r) ((r)&0x0FFFFFFFu)
 #define RT_REF_INDEX_MAX 0x0FFFFFFFu
@@ -30,7 +31,8 @@ typedef float rt_f32;
  *   triangle   a, b, c = corners in the group's space
  *   sphere     a = centre, b[0] = radius
  *   polygon    a = unit normal, b = a point of its plane; corners in rt_polygon
- *   instance   a, b = lower and upper bounds in the world */
+ *   instance   a, b = lower and upper bounds in the world
+ *   shape      a, b = lower and upper bounds in the world; the rest is in the host's rt_shape */
 typedef struct rt_packed_prim {
     rt_f32 a[3];
     rt_u32 ref;

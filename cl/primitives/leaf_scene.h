@@ -63,6 +63,12 @@ RT_INLINE void RT_FN(rt_leaf_scene_test)(const rt_ctx *ctx, uint at, const rt_ra
         return;
     }
 #endif
+#if RT_HAS_SHAPES
+    if (RT_REF_KIND(leaf->ref) == RT_REF_SHAPE) {
+        RT_FN(rt_hit_shape)(ctx, leaf, at, ray, hit);
+        return;
+    }
+#endif
     RT_FN(rt_hit_triangle)(leaf, at, ray, hit);
 }
 
@@ -85,7 +91,7 @@ RT_INLINE void RT_FN(rt_leaf_scene)(const rt_ctx *ctx, uint at, const rt_rays *r
 RT_INLINE uint RT_FN(rt_leaf_scene_candidate)(const rt_ctx *ctx, uint at, const rt_rays *ray, rt_hits *hit)
 {
     RT_FN(rt_count_leaf_scene)(ctx, at, hit);
-#if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_INSTANCES
+#if RT_HAS_SPHERES || RT_HAS_POLYGONS || RT_HAS_SHAPES || RT_HAS_INSTANCES
     if (RT_REF_KIND(ctx->leaves[at].ref) != RT_REF_TRIANGLE) return 1u;
 #endif
     return RT_FN(rt_maybe_triangle)(ctx->leaves + at, ray, hit);

@@ -54,7 +54,7 @@ typedef struct rt_surface {
     vint material;
 } rt_surface;
 
-#if RT_HAS_INSTANCES
+#if RT_HAS_INSTANCES || RT_HAS_SHAPES
 /* Transforms a normal to the world by the transpose of m = object_from_world. The result is not of unit length. */
 RT_INLINE rt_vec rt_world_normal(const global float *m, rt_vec n)
 {
@@ -72,6 +72,29 @@ RT_INLINE vfloat rt_place_row(const global float *row, rt_vec p, vfloat *magnitu
 
 /* sum |a_k| |b_k| */
 RT_INLINE vfloat rt_absolute_dot(rt_vec a, rt_vec b) { return fma(fabs(a.x), fabs(b.x), fma(fabs(a.y), fabs(b.y), fabs(a.z * b.z))); }
+
+#if RT_HAS_SHAPES
+/* The surface of a shape at the points `at` of the world. The normal is that of the world and not of unit length; height and error
+ * are multiples of its length. */
+RT_INLINE rt_shape_surface rt_resolve_shape(const rt_ctx *ctx, const global rt_shape *shape, rt_vec at, const rt_hits *hit, uint bits,
+                                            int wants_uv)
+{
+    rt_vec placed, magnitude;
+    placed.x = rt_place_row(shape->object_from_world, at, &magnitude.x);
+    placed.y = rt_place_row(shape->object_from_world + 4, at, &magnitude.y);
+    placed.z = rt_place_row(shape->object_from_world + 8, at, &magnitude.z);
+    rt_shape_surface s;
+    s.error = rt_vfloat(shape->error);
+    s.height = s.tex_u = s.tex_v = rt_vfloat(0.0f);
+    s.normal = rt_splat(1.0f, 0.0f, 0.0f);
+    s.wants_uv = wants_uv;
+    rt_shape_surface_at(ctx, shape, placed, hit->u, hit->v, bits, &s);
+    s.normal = rt_normalize(s.normal);
+    s.error += RT_PLACED_ERROR * rt_absolute_dot(s.normal, magnitude);
+    s.normal = rt_world_normal(shape->object_from_world, s.normal);
+    return s;
+}
+#endif
 
 /* Returns the surfaces at the hits of the lanes in `bits`. Lanes that hit the same primitive are handled together: neighbours
  * mostly do where triangles are large. */
@@ -98,6 +121,10 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
 #if RT_HAS_SPHERES
     vfloat radius = zero;
+#endif
+#if RT_HAS_SHAPES
+    vmask shaped = rt_vint(0);
+    vfloat shape_height = zero, shape_error = zero, shape_u = zero, shape_v = zero;
 #endif
 #if RT_HAS_NORMALS
     rt_vec normal[3] = {{zero, zero, zero}, {zero, zero, zero}, {zero, zero, zero}}; /* of each corner */
@@ -135,6 +162,18 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
 #endif
         const global rt_packed_prim *leaf = ctx->leaves + at;
         const uint kind = RT_REF_KIND(leaf->ref);
+#if RT_HAS_SHAPES
+        if (kind == RT_REF_SHAPE) {
+            const global rt_shape *shape = ctx->shapes + RT_REF_INDEX(leaf->ref);
+            const rt_shape_surface found = rt_resolve_shape(ctx, shape, s.at, hit, rt_bits(mine) & bits, RT_USES_UV(ctx, leaf->material));
+            shaped |= mine;
+            shape_height = rt_select(mine, found.height, shape_height);
+            shape_error = rt_select(mine, found.error, shape_error);
+            shape_u = rt_select(mine, found.tex_u, shape_u);
+            shape_v = rt_select(mine, found.tex_v, shape_v);
+            s.geometric = rt_choose(mine, found.normal, s.geometric);
+        }
+#endif
         s.material = rt_select(mine, rt_vint((int)leaf->material), s.material);
 #if RT_HAS_POLYGONS
         anchor = rt_choose(mine, rt_spread(kind == RT_REF_POLYGON ? leaf->b : leaf->a), anchor);
@@ -210,11 +249,20 @@ RT_INLINE rt_surface rt_resolve(const rt_ctx *ctx, const rt_rays *ray, const rt_
     }
 #endif
 
+#if RT_HAS_SHAPES
+    s.tex_u = rt_select(shaped, shape_u, s.tex_u);
+    s.tex_v = rt_select(shaped, shape_v, s.tex_v);
+#endif
+
     rt_vec from_anchor = rt_sub(s.at, anchor);
     s.height = rt_dot(s.geometric, from_anchor);
     s.error = RT_HEIGHT_ERROR * rt_absolute_dot(s.geometric, from_anchor);
 #if RT_HAS_PLANES
     s.height -= plane_offset;
+#endif
+#if RT_HAS_SHAPES
+    s.height = rt_select(shaped, shape_height, s.height);
+    s.error = rt_select(shaped, shape_error, s.error);
 #endif
 
 #if RT_HAS_INSTANCES

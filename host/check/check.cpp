@@ -313,6 +313,9 @@ bool check_plugin_library(const PluginRecord& record, const std::vector<std::str
     if (std::getenv(worker::kWorkerVariable))
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
+    if (record.plugin->primitive)
+        throw Error(Exit::usage,
+                    std::string(record.plugin->id) + " is a shape: only structures and importers can be checked yet");
     return Run(record, beside, options, progress, on_result).all();
 }
 

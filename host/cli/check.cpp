@@ -85,13 +85,13 @@ std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std:
     return found;
 }
 
-// The libraries that the checks of a plugin need: what packs and traces its topology, or the other importers.
+// The libraries that the checks of a plugin need: what packs and traces its topology, or other importers and shapes.
 std::vector<std::string> needed_beside(const PluginRegistry& plugins, const PluginRecord& record) {
     std::vector<std::string> beside;
     for (const PluginRecord& other : plugins.records()) {
         if (!other.plugin || other.shadowed || other.path == record.path) continue;
         const std::string id = other.plugin->id;
-        const bool needed = record.plugin->importer ? other.plugin->importer && id != record.plugin->id
+        const bool needed = record.plugin->importer ? !other.plugin->accel && id != record.plugin->id
                                                     : record.plugin->accel->layout && other.plugin->accel &&
                                                           id == record.plugin->accel->layout && other.plugin->accel->pack;
         if (needed) beside.push_back(other.path);

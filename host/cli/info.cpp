@@ -1,6 +1,7 @@
 // clarity info: shows what the importer read from a file, in the file's units and axes.
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -27,6 +28,13 @@ uint64_t face_count(const Scene& scene) {
     return count;
 }
 
+// How many shapes of each kind there are.
+std::map<std::string, uint64_t> shape_counts(const Scene& scene) {
+    std::map<std::string, uint64_t> counts;
+    for (const Shape& shape : scene.shapes) ++counts[scene.shape_kinds[shape.kind].id];
+    return counts;
+}
+
 Json camera_json(const Camera& camera) {
     return {{"name", camera.name},
             {"eye", vector_json(camera.eye)},
@@ -47,6 +55,8 @@ Json scene_json(const Scene& scene, const std::vector<std::string>& files) {
     json["polygons"] = scene.polygons.size();
     json["spheres"] = scene.spheres.size();
     json["planes"] = scene.planes.size();
+    json["shapes"] = Json::object();
+    for (const auto& [id, count] : shape_counts(scene)) json["shapes"][id] = count;
     json["materials"] = scene.materials.size();
     json["textures"] = scene.textures.size();
     json["lights"] = scene.lights.size();
@@ -97,6 +107,9 @@ void print_scene(const Scene& scene, const std::vector<std::string>& files) {
     count_row("spheres", scene.spheres.size());
     count_row("planes", scene.planes.size());
     count_row("polygons", scene.polygons.size());
+    std::string kinds;
+    for (const auto& [id, count] : shape_counts(scene)) kinds += ", " + grouped(count) + ' ' + id;
+    count_row("shapes", scene.shapes.size(), kinds);
     count_row("materials", scene.materials.size());
     count_row("textures", scene.textures.size());
     count_row("lights", scene.lights.size());

@@ -66,6 +66,23 @@ Json param_json(const rt_param& param) {
     return json;
 }
 
+const char* key_kind_name(const rt_key& key) {
+    constexpr const char* names[] = {"number", "whole", "point", "vector", "numbers", "points"};
+    return key.kind <= RT_KEY_POINTS ? names[key.kind] : "unknown";
+}
+
+Json keys_json(const rt_primitive& primitive) {
+    Json list = Json::array();
+    for (rt_u32 i = 0; i < primitive.key_count; ++i) {
+        const rt_key& key = primitive.keys[i];
+        list.push_back({{"key", key.name},
+                        {"kind", key_kind_name(key)},
+                        {"help", key.help},
+                        {"required", (key.flags & RT_KEY_REQUIRED) != 0}});
+    }
+    return list;
+}
+
 Json record_json(const PluginRecord& record) {
     Json json = {{"path", record.path}, {"status", status_name(record)}, {"replaced", record.replaced}};
     if (!record.plugin) {
@@ -73,7 +90,7 @@ Json record_json(const PluginRecord& record) {
         return json;
     }
     const rt_plugin& plugin = *record.plugin;
-    json["kind"] = plugin.accel ? "accel" : "importer";
+    json["kind"] = plugin_kind(plugin);
     json["id"] = plugin.id;
     json["name"] = plugin.name;
     json["version"] = plugin.version;
@@ -94,6 +111,7 @@ Json record_json(const PluginRecord& record) {
         json["extensions"] = Json::array();
         for (const char* const* e = plugin.importer->extensions; *e; ++e) json["extensions"].push_back(*e);
     }
+    if (plugin.primitive) json["keys"] = keys_json(*plugin.primitive);
     json["abi_extensions"] = Json::array();
     for (const rt_extension* e = plugin.extensions; e && e->name; ++e)
         json["abi_extensions"].push_back({{"name", e->name}, {"version", e->version}});
@@ -133,14 +151,31 @@ void print_accel(const rt_accel& accel) {
                merit_text(accel.merit_gpu, "GPU").c_str(), ray_cost_name(accel));
 }
 
+// The keys of the shape's statement in text scenes.
+void print_keys(const rt_primitive& primitive) {
+    for (rt_u32 i = 0; i < primitive.key_count; ++i) {
+        const rt_key& key = primitive.keys[i];
+        std::string usual = "required";
+        if (!(key.flags & RT_KEY_REQUIRED)) {
+            char text[96] = "none";
+            if (key.kind == RT_KEY_NUMBER || key.kind == RT_KEY_WHOLE) std::snprintf(text, sizeof text, "%g", key.def[0]);
+            if (key.kind == RT_KEY_POINT || key.kind == RT_KEY_VECTOR)
+                std::snprintf(text, sizeof text, "%g %g %g", key.def[0], key.def[1], key.def[2]);
+            usual = std::string("default ") + text;
+        }
+        print_text("%s%-20s %s (%s; %s)\n", kIndent, key.name, key.help, key_kind_name(key), usual.c_str());
+    }
+}
+
 void print_plugin(const PluginRecord& record) {
     const rt_plugin& plugin = *record.plugin;
-    print_text("%-9s %s  (%s, %s)%s\n%s%s\n", plugin.accel ? "accel" : "importer", plugin.id, plugin.name, plugin.version,
+    print_text("%-9s %s  (%s, %s)%s\n%s%s\n", plugin_kind(plugin), plugin.id, plugin.name, plugin.version,
                record.shadowed ? "  SHADOWED: a library above has the same id, this one is not used" : "", kIndent,
                record.path.c_str());
     if (record.replaced > 0) print_text("%sbuilt again and replaced %u times\n", kIndent, record.replaced);
     if (plugin.reference) print_text("%sreference: %s\n", kIndent, plugin.reference);
     if (plugin.accel) print_accel(*plugin.accel);
+    if (plugin.primitive) print_keys(*plugin.primitive);
     if (plugin.importer && plugin.importer->extensions[0]) {
         print_text("%sfiles:", kIndent);
         for (const char* const* e = plugin.importer->extensions; *e; ++e) print_text(" .%s", *e);

@@ -133,7 +133,7 @@ class RenderJob {
             const std::lock_guard<std::mutex> lock(mutex);
             wake.notify_all();
         };
-        auto kernels = std::make_unique<KernelWatch>(plugins_.accels(), changed);
+        auto kernels = std::make_unique<KernelWatch>(plugins_.with_kernels(), changed);
         const FileWatch scenes(options_.scene.files, changed);
         LibraryWatch libraries(plugins_, changed);
         if (kernels->files().empty())

@@ -47,11 +47,16 @@ fs::path checkout_kernels() {
     return {};
 }
 
+// A plugin's folder below that of the sources.
+std::string folder_of(const rt_plugin& plugin) {
+    return std::string(plugin.primitive ? "plugins/primitives/" : "plugins/accel/") + plugin.id;
+}
+
 // Where kernel files may be on disk.
 struct Places {
     fs::path kernels;  // a folder with the layout of cl/; empty: use the embedded text
     bool beside_libraries = true;
-    fs::path plugin(const std::string& id) const { return kernels.parent_path() / "plugins" / "accel" / id; }
+    fs::path plugin(const rt_plugin& plugin) const { return kernels.parent_path() / folder_of(plugin); }
 };
 
 Places places() {
@@ -95,11 +100,11 @@ std::vector<PluginPlace> plugin_places(const rt_plugin& plugin, const char* name
     std::vector<PluginPlace> all;
     const Places where = places();
     if (!where.beside_libraries) {  // CLARITY_KERNEL_PATH
-        if (!where.kernels.empty()) all.push_back({PluginPlace::named, where.plugin(plugin.id) / name});
+        if (!where.kernels.empty()) all.push_back({PluginPlace::named, where.plugin(plugin) / name});
         return all;
     }
     if (const fs::path folder = source_folder(plugin); !folder.empty()) all.push_back({PluginPlace::sources, folder / name});
-    if (!where.kernels.empty()) all.push_back({PluginPlace::checkout, where.plugin(plugin.id) / name});
+    if (!where.kernels.empty()) all.push_back({PluginPlace::checkout, where.plugin(plugin) / name});
     if (const fs::path library = library_of(plugin); !library.empty())
         all.push_back({PluginPlace::beside, library.parent_path() / name});
     return all;
@@ -187,6 +192,12 @@ void add_parts(const fs::path& path, std::vector<std::string>& all) {
     }
 }
 
+std::vector<const rt_cl_file*> kernels_of(const rt_plugin& plugin) {
+    if (plugin.primitive) return {&plugin.primitive->kernels};
+    if (plugin.accel) return {&plugin.accel->types, &plugin.accel->traverse};
+    return {};
+}
+
 const char* embedded_text(const std::string& name) {
     for (const Embedded& file : kEmbedded)
         if (name == file.name) return file.text;
@@ -205,7 +216,7 @@ std::string kernel_text(const std::string& name) {
     const char* embedded = embedded_text(name);
     std::string text;
     if (!where.kernels.empty() && read_if_present(where.kernels / name, text)) {
-        if ((name == "rt_types.h" || name == "rt_shared.h") && embedded)
+        if ((name == "rt_types.h" || name == "rt_shared.h" || name == "rt_shape.h") && embedded)
             require_same(where.kernels / name, text, embedded,
                          "this program was compiled with, so its structs may: build the program again, or set "
                          "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
@@ -217,20 +228,20 @@ std::string kernel_text(const std::string& name) {
                                                ": build the program again");
 }
 
-std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file) {
-    return file.name ? std::string("plugins/accel/") + accel.id + "/" + file.name : "";
+std::string plugin_kernel_name(const rt_plugin& plugin, const rt_cl_file& file) {
+    return file.name ? folder_of(plugin) + "/" + file.name : "";
 }
 
-std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
-    const std::string shown = plugin_kernel_name(accel, file);
+std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file) {
+    const std::string shown = plugin_kernel_name(plugin, file);
     const auto with_kernels = [&](const std::string& text) {
         return expand_includes(text, shown, IncludeKind::kernel,
                                [](const std::string& name) { return kernel_text(name.substr(std::string("cl/").size())); });
     };
-    const bool is_types = &file == &accel.accel->types;
+    const bool is_types = plugin.accel && &file == &plugin.accel->types;
     std::string used;  // the path of the file in force
     std::string result;
-    for (const PluginPlace& place : file.name ? plugin_places(accel, file.name) : std::vector<PluginPlace>()) {
+    for (const PluginPlace& place : file.name ? plugin_places(plugin, file.name) : std::vector<PluginPlace>()) {
         const std::string path = place.path.string();
         std::string text;
         if (path == used || !read_if_present(path, text)) continue;
@@ -243,25 +254,25 @@ std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file) {
                 say_once(LogLevel::warning, path, text, path + ": is not used, because " + used + " comes first; delete it");
             continue;
         }
-        if (beside && !as_built && !is_newer_than_library(path, accel)) {
+        if (beside && !as_built && !is_newer_than_library(path, plugin)) {
             say_once(LogLevel::warning, path, text,
-                     path + ": is not used, because it is older than " + library_of(accel).string() +
+                     path + ": is not used, because it is older than " + library_of(plugin).string() +
                          ", which has another text built in; delete it, or save it again to use it");
             continue;
         }
         if (is_types && file.text)
             require_same(path, whole, file.text,
-                         std::string("plugin ") + accel.id +
+                         std::string("plugin ") + plugin.id +
                              " was compiled with, so its structs may: build the plugin again, or set "
                              "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
         if (!as_built && (beside || place.kind == PluginPlace::sources))
             say_once(LogLevel::info, path, text,
-                     path + ": is used; it differs from the text built into " + library_of(accel).string());
+                     path + ": is used; it differs from the text built into " + library_of(plugin).string());
         remember(shown, path, std::move(text));
         used = path;
         result = whole;
     }
-    if (used.empty()) result = remember(shown, {}, file.text ? file.text : "", library_of(accel));
+    if (used.empty()) result = remember(shown, {}, file.text ? file.text : "", library_of(plugin));
     return with_kernels(result);
 }
 
@@ -288,13 +299,13 @@ uint64_t kernel_text_revision() {
     return all.revision;
 }
 
-std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& accels) {
+std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& plugins) {
     std::vector<std::string> all;
     const fs::path kernels = places().kernels;
     if (!kernels.empty())
         for (const Embedded& file : kEmbedded) all.push_back((kernels / file.name).string());
-    for (const rt_plugin* plugin : accels)
-        for (const rt_cl_file* file : {&plugin->accel->types, &plugin->accel->traverse})
+    for (const rt_plugin* plugin : plugins)
+        for (const rt_cl_file* file : kernels_of(*plugin))
             if (file->name)
                 for (const PluginPlace& place : plugin_places(*plugin, file->name)) {
                     all.push_back(place.path.string());

@@ -1,8 +1,8 @@
 // kernel_files.hpp -- where the text of kernels comes from.
 //
 // The first of these places that has a file of that name is used:
-//   1. CLARITY_KERNEL_PATH: a folder with the layout of cl/, with plugins/accel/<id>/ beside it. If it is set, places 2 to 4
-//      are not used. The value "embedded" means place 5.
+//   1. CLARITY_KERNEL_PATH: a folder with the layout of cl/, with plugins/accel/<id>/ and plugins/primitives/<id>/
+//      beside it. If it is set, places 2 to 4 are not used. The value "embedded" means place 5.
 //   2. for a plugin's file: the sources that its library was built from, if they are still there. Note: <library>.sources
 //   3. the checkout, if the program is in a build folder inside it (<checkout>/build/bin, <checkout>/build/release/bin)
 //   4. for a plugin's file: the folder of the plugin's library. A file that is older than the library and differs from the text
@@ -29,9 +29,9 @@ std::string kernel_text(const std::string& name);
 
 // Returns the text of a plugin's file, with the files that it includes (kernel_includes.hpp). Throws Error(kernel_build_failed)
 // if its types on disk differ from those that it was compiled with, or if a file that it includes cannot be read.
-std::string plugin_kernel_text(const rt_plugin& accel, const rt_cl_file& file);
+std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file);
 // What the compiler is told that file is called.
-std::string plugin_kernel_name(const rt_plugin& accel, const rt_cl_file& file);
+std::string plugin_kernel_name(const rt_plugin& plugin, const rt_cl_file& file);
 
 // Returns the path of a name in a compiler's message if its text was read from disk; else "".
 std::string kernel_path(const std::string& shown_name);
@@ -46,6 +46,6 @@ uint64_t kernel_text_revision();
 
 // Returns every path that provides a text now, or would if the file existed; for FileWatch. Empty if only embedded text counts.
 // The parts of a plugin are those that its files include at the time of the call.
-std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& accels);
+std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& plugins);
 
 }  // namespace clarity

@@ -12,9 +12,9 @@ namespace clarity {
 // Calls `changed` after a change: see FileWatch.
 class KernelWatch : public FileWatch {
  public:
-    // accels: plugins; their files are watched in addition to cl/. No file is watched if only embedded text counts.
-    KernelWatch(const std::vector<const rt_plugin*>& accels, std::function<void()> changed)
-        : FileWatch(kernel_candidates(accels), std::move(changed)) {}
+    // plugins: their files are watched in addition to cl/. No file is watched if only embedded text counts.
+    KernelWatch(const std::vector<const rt_plugin*>& plugins, std::function<void()> changed)
+        : FileWatch(kernel_candidates(plugins), std::move(changed)) {}
 };
 
 }  // namespace clarity

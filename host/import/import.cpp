@@ -25,6 +25,11 @@ Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>
     for (const std::string& file : files) check_model_file(file);
     Scene scene = options.in_process ? import_in_process(plugins, files, options, progress)
                                      : import_in_worker(plugins, files, options, progress);
+    for (ShapeKind& kind : scene.shape_kinds) {
+        kind.plugin = plugins.primitive(kind.id);
+        if (!kind.plugin)
+            throw Error(Exit::import_failed, files.front() + ": the imported scene has shapes of the unknown kind " + kind.id);
+    }
     const std::string why = validate(scene);
     if (!why.empty()) throw Error(Exit::import_failed, files.front() + ": the imported scene is not sound: " + why);
     for (const std::string& warning : scene.warnings)

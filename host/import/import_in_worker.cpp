@@ -121,7 +121,7 @@ Scene import_in_worker(const PluginRegistry& plugins, const std::vector<std::str
                                                         {"--parent", static_cast<uint64_t>(getpid())}};
     for (const auto& [key, value] : numbers) arguments.insert(arguments.end(), {key, std::to_string(value)});
     for (const PluginRecord& record : plugins.records()) {
-        if (!record.plugin || record.shadowed || !record.plugin->importer) continue;
+        if (!record.plugin || record.shadowed || record.plugin->accel) continue;
         arguments.insert(arguments.end(), {"--plugin", record.loaded});
     }
     for (const std::string& folder : options.search_paths) arguments.insert(arguments.end(), {"--search", folder});

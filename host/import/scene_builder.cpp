@@ -71,7 +71,7 @@ void SceneBuilder::add_root(const std::string& path) {
     place(path, content, {}, world_);
     const bool hollow = std::all_of(content.instances.begin(), content.instances.end(),
                                     [&](const Instance& i) { return scene_.meshes[i.mesh].triangle_count == 0; });
-    if (hollow && content.spheres.empty() && content.planes.empty() && content.polygons.empty()) {
+    if (hollow && content.spheres.empty() && content.planes.empty() && content.polygons.empty() && content.shapes.empty()) {
         warn(path, "holds no surface that could be rendered");
     }
 }
@@ -152,6 +152,7 @@ std::string SceneBuilder::include(const std::string& from, const std::string& pa
         check_model_file(shown);
         const FileContent& content = content_of(shown, found.path);
         placed_ += content.instances.size() + content.spheres.size() + content.planes.size() + content.polygons.size();
+        for (const Shape& shape : content.shapes) placed_ += shape.part_count;
         if (placed_ > kMaxPlaced)
             return what + "more than " + std::to_string(kMaxPlaced) + " objects of loaded files are placed";
         place(shown, content, placement, into);
@@ -162,6 +163,14 @@ std::string SceneBuilder::include(const std::string& from, const std::string& pa
         return what + without_path(e.what(), shown);
     }
     return {};
+}
+
+rt_u32 SceneBuilder::shape_kind(const std::string& id) {
+    std::vector<ShapeKind>& kinds = scene_.shape_kinds;
+    for (size_t i = 0; i < kinds.size(); ++i)
+        if (kinds[i].id == id) return static_cast<rt_u32>(i);
+    kinds.push_back({id, nullptr});
+    return static_cast<rt_u32>(kinds.size() - 1);
 }
 
 rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string& path) {
@@ -278,6 +287,16 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
             ++lost;
         }
     }
+    for (Shape shape : content.shapes) {
+        shape.material = material_of(shape.material);
+        shape.world_from_object = multiply(m, shape.world_from_object);
+        Affine back;
+        if (usable(shape.world_from_object) && invert(shape.world_from_object, back)) {
+            into.shapes.push_back(shape);
+        } else {
+            ++lost;
+        }
+    }
     const bool is_root = &into == &world_;
     for (const auto* list : {&content.lights, &content.included_lights}) {
         for (Light light : *list) {
@@ -344,6 +363,7 @@ Scene SceneBuilder::take() {
     scene_.instances = std::move(world_.instances);
     scene_.spheres = std::move(world_.spheres);
     scene_.planes = std::move(world_.planes);
+    scene_.shapes = std::move(world_.shapes);
     scene_.lights = std::move(world_.lights);
     scene_.cameras = std::move(world_.cameras);
     for (const FileContent::PolygonCorners& polygon : world_.polygons) {

@@ -25,6 +25,7 @@ struct FileContent {
     std::vector<Sphere> spheres;
     std::vector<Plane> planes;
     std::vector<PolygonCorners> polygons;
+    std::vector<Shape> shapes;
     // included: those of files that this file loads. They are kept apart so that the first camera is the file's own.
     std::vector<Light> lights, included_lights;
     std::vector<Camera> cameras, included_cameras;
@@ -57,6 +58,10 @@ class SceneBuilder {
     // ---- for SceneSink
     Scene& scene() { return scene_; }
     Triangulator& triangulator() { return triangulator_; }
+    const PluginRegistry& plugins() const { return plugins_; }
+    Progress& progress() { return progress_; }
+    // Number of a kind of shapes in the scene, which it gets on first use.
+    rt_u32 shape_kind(const std::string& id);
     const FileAccess& access() const { return access_; }
     void warn(const std::string& file, const std::string& text);
     // Background, axes and units come from the first file that states them.

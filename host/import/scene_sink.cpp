@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
+#include "import/shape_parts.hpp"
 #include "import/texture.hpp"
 #include "plugin/abi_struct.hpp"
 
@@ -155,6 +156,17 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     };
     sink_.load = [](void* ctx, const rt_load* d) {
         return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.load(taken(d, "rt_load")); });
+    };
+    for (const rt_plugin* plugin : builder.plugins().primitives()) {
+        const rt_primitive& primitive = *plugin->primitive;
+        kinds_.push_back({sizeof(rt_primitive_kind), primitive.key_count, plugin->id, primitive.keys, sizeof(rt_key), 0});
+    }
+    sink_.primitive_kind = [](void* ctx, rt_u32 number) {
+        const auto& kinds = static_cast<const SceneSink*>(ctx)->kinds_;
+        return number < kinds.size() ? &kinds[number] : nullptr;
+    };
+    sink_.primitive = [](void* ctx, const rt_primitive_desc* d) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) { return s.primitive(taken(d, "rt_primitive_desc")); });
     };
 }
 
@@ -345,6 +357,18 @@ int32_t SceneSink::load(const rt_load& d) {
     if (why.empty()) return RT_OK;
     fail(d.where ? std::string(d.where) + ": " + why : why);
     return RT_FAILED;
+}
+
+rt_u32 SceneSink::primitive(const rt_primitive_desc& d) {
+    const std::string kind = clean_name(d.kind), speaker = (d.where ? std::string(d.where) + ": " : "") + kind;
+    const rt_plugin* plugin = builder_.plugins().primitive(kind);
+    if (!plugin) return fail(speaker + ": no plugin of this kind of shapes is loaded; `clarity plugins` lists those that are");
+    Shape shape;
+    if (!scene_material(d.material, speaker.c_str(), 0, shape.material)) return kFailed;
+    shape.kind = builder_.shape_kind(kind);
+    add_shape_parts(*plugin->primitive, d, speaker, builder_.progress(), builder_.scene(), shape);
+    content_.shapes.push_back(shape);
+    return static_cast<rt_u32>(content_.shapes.size() - 1);
 }
 
 std::string SceneSink::finish() {

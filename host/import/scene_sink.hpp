@@ -41,6 +41,7 @@ class SceneSink {
     rt_u32 camera(const rt_camera& desc);
     void info(const rt_scene_info& info);
     int32_t load(const rt_load& load);
+    rt_u32 primitive(const rt_primitive_desc& desc);
 
     rt_u32 fail(const std::string& why);
     // Finds the scene material of an id. If the plugin never received this id, records an error and returns false.
@@ -54,6 +55,7 @@ class SceneSink {
     FileContent& content_;
     rt_scene_sink sink_{};
     std::vector<rt_u32> materials_, meshes_, textures_;  // scene indices by id
+    std::vector<rt_primitive_kind> kinds_;
     FaceCount faces_;
     uint64_t kept_faces_before_ = 0, lost_instances_ = 0, lost_views_ = 0;
     bool cancelled_ = false;

@@ -19,7 +19,7 @@ namespace clarity::import {
 namespace {
 
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
-constexpr uint32_t kSectionCount = 19;
+constexpr uint32_t kSectionCount = 23;
 constexpr uint64_t kAlignment = 64;
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
 
@@ -64,7 +64,7 @@ struct Converted {
     std::vector<WireMaterial> materials;
     std::vector<WireLight> lights;
     std::vector<WireCamera> cameras;
-    std::vector<uint32_t> warnings;  // length of each text in `names`, in bytes
+    std::vector<uint32_t> shape_kinds, warnings;  // length of each text in `names`, in bytes
     std::vector<char> names;
 };
 
@@ -72,7 +72,8 @@ struct Converted {
 template <class S, class C, class Visitor>
 void visit(S& s, C& c, Visitor&& v) {
     v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.triangles), v(s.triangle_materials), v(c.meshes), v(c.instances);
-    v(s.spheres), v(s.planes), v(s.polygons), v(s.polygon_corners), v(c.materials), v(s.textures), v(s.texels), v(c.lights);
+    v(s.spheres), v(s.planes), v(s.polygons), v(s.polygon_corners), v(c.shape_kinds), v(s.shapes), v(s.shape_parts);
+    v(s.shape_numbers), v(c.materials), v(s.textures), v(s.texels), v(c.lights);
     v(c.cameras), v(c.warnings), v(c.names);
 }
 
@@ -87,6 +88,7 @@ Converted convert(const Scene& s) {
         c.meshes.push_back({name(m.name), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
     }
     for (const Instance& i : s.instances) c.instances.push_back({name(i.name), i.mesh, i.material, i.world_from_object});
+    for (const ShapeKind& kind : s.shape_kinds) c.shape_kinds.push_back(name(kind.id));
     for (const Material& m : s.materials) c.materials.push_back({name(m.name), m.values});
     for (const Light& l : s.lights) c.lights.push_back({name(l.name), l.values});
     for (const Camera& k : s.cameras) c.cameras.push_back({name(k.name), k.eye, k.target, k.up, k.fov_y_rad});
@@ -116,6 +118,7 @@ bool convert_back(const Converted& c, Scene& s) {
     }
     for (const WireInstance& i : c.instances)
         s.instances.push_back({name(i.name_bytes), i.mesh, i.material, i.world_from_object});
+    for (const uint32_t bytes : c.shape_kinds) s.shape_kinds.push_back({name(bytes), nullptr});
     for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values});
     for (const WireLight& l : c.lights) s.lights.push_back({name(l.name_bytes), l.values});
     for (const WireCamera& k : c.cameras) s.cameras.push_back({name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad});

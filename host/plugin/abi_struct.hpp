@@ -45,6 +45,14 @@ inline constexpr uint32_t kLeastBytes<rt_load> = 88;
 template <>
 inline constexpr uint32_t kLeastBytes<rt_scene_info> = 32;
 
+// Shapes came after the first release, in these sizes.
+template <>
+inline constexpr uint32_t kLeastBytes<rt_primitive> = 64;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_key> = 64;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_primitive_desc> = 40;
+
 // More than any struct of the ABI will have, and far less than a random word is likely to hold.
 inline constexpr uint32_t kMostBytes = 4096;
 

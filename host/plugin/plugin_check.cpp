@@ -20,6 +20,8 @@ std::string hex(uint32_t word) {
     return text;
 }
 
+}  // namespace
+
 // Texts are shown on terminals and in the window, so they must be one line without control characters.
 std::string check_text(const char* what, const char* text, bool required) {
     if (!text) return required ? std::string(what) + " is missing (NULL)" : "";
@@ -30,6 +32,8 @@ std::string check_text(const char* what, const char* text, bool required) {
         return std::string(what) + " holds control characters";
     return {};
 }
+
+namespace {
 
 // A type is one or more identifiers with single blanks between them: "uint", "float4", "bvh2_node", "unsigned int".
 bool is_type_name(const char* text) {
@@ -237,14 +241,14 @@ std::string check_plugin(const rt_plugin& plugin) {
     if (std::string why = check_text("name", plugin.name, true); !why.empty()) return why;
     if (std::string why = check_text("version", plugin.version, true); !why.empty()) return why;
     if (std::string why = check_text("reference", plugin.reference, false); !why.empty()) return why;
-    if (plugin.accel && plugin.importer)
-        return "it is both an accel and an importer, expected exactly one: make two libraries of it";
-    if (!plugin.accel && !plugin.importer)
-        return "it is neither an accel nor an importer, expected exactly one: set one of the two; a plugin of another kind "
-               "needs a "
-               "later clarity";
+    const int kinds = (plugin.accel != nullptr) + (plugin.importer != nullptr) + (plugin.primitive != nullptr);
+    if (kinds > 1) return "it is more than one of accel, importer and primitive, expected exactly one: make libraries of it";
+    if (kinds == 0)
+        return "it is neither an accel nor an importer nor a primitive, expected exactly one: set one of them; a plugin of "
+               "another kind needs a later clarity";
     if (std::string why = check_params(plugin); !why.empty()) return why;
     if (std::string why = check_extensions(plugin); !why.empty()) return why;
+    if (plugin.primitive) return check_primitive(*plugin.primitive);
     return plugin.accel ? check_accel(*plugin.accel) : check_importer(*plugin.importer);
 }
 

@@ -9,7 +9,7 @@
 namespace clarity {
 
 // Far more than any plugin needs, and far less than a random word is likely to hold.
-inline constexpr uint32_t kMaxParams = 64, kMaxSlots = 16, kMaxExtensions = 64;
+inline constexpr uint32_t kMaxParams = 64, kMaxSlots = 16, kMaxExtensions = 64, kMaxKeys = 24;
 
 // True for [a-z][a-z0-9_]*, at most 32 bytes.
 bool is_plugin_id(std::string_view text);
@@ -22,6 +22,12 @@ bool is_identifier(const char* text);
 // exported symbol, which struct_bytes must not exceed. Returns an empty text if this host can read the rest, otherwise what was
 // found, what was expected and what to do.
 std::string check_plugin_head(const uint32_t head[4], uint64_t object_bytes);
+
+// Empty if the text is one line that can be shown, otherwise what is wrong with it. what: what it is, "help".
+std::string check_text(const char* what, const char* text, bool required);
+
+// Checks the description of a shape.
+std::string check_primitive(const rt_primitive& primitive);
 
 // Checks everything after the head: names, parameters, tables, required functions. `plugin` has structs of this host's size
 // (copy_plugin). Returns an empty text if it is sound.

@@ -15,8 +15,10 @@ struct Copy {
     rt_plugin plugin{};
     rt_accel accel{};
     rt_importer importer{};
+    rt_primitive primitive{};
     std::vector<rt_param> params;
     std::vector<rt_slot> slots;
+    std::vector<rt_key> keys;
     std::vector<rt_extension> extensions;  // with the one that ends them
 };
 
@@ -69,6 +71,19 @@ std::string fill(Copy& copy, const rt_plugin& from) {
         if (!why.empty()) return why;
         copy.importer = copied<rt_importer>(plugin.importer, plugin.importer->struct_bytes);
         plugin.importer = &copy.importer;
+    }
+    if (plugin.primitive) {
+        why = check_bytes<rt_primitive>("rt_primitive", plugin.primitive->struct_bytes);
+        if (!why.empty()) return why;
+        rt_primitive& primitive = copy.primitive;
+        primitive = copied<rt_primitive>(plugin.primitive, plugin.primitive->struct_bytes);
+        plugin.primitive = &primitive;
+        if (primitive.key_count > 0 && primitive.key_count <= kMaxKeys && primitive.keys) {
+            why = check_bytes<rt_key>("rt_key", primitive.key_bytes, "key_bytes");
+            if (!why.empty()) return why;
+            primitive.keys = copy_array(primitive.keys, primitive.key_count, primitive.key_bytes, copy.keys);
+            primitive.key_bytes = sizeof(rt_key);
+        }
     }
     return copy_extensions(plugin, copy.extensions);
 }

@@ -24,6 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSymbol = "rt_plugin_v1";
+constexpr const char* kKindFolders[] = {"importers", "accel", "primitives"};
 
 std::string dlopen_advice(const std::string& error) {
     if (error.find("undefined symbol") != std::string::npos) return "; link it with -Wl,--no-undefined to see what is missing";
@@ -109,10 +110,10 @@ class Search {
         const fs::path real = fs::canonical(path, error);
         if (seen_.insert(error ? path : real.string()).second) paths_.push_back(path);
     }
-    // A folder may also have the layout of the build folder, with libraries in importers/ and accel/ below it.
+    // A folder may also have the layout of the build folder, with libraries in a folder for each kind below it.
     void add_folder(const fs::path& folder, bool missing_ok) {
         for (const std::string& path : libraries_in(folder, missing_ok)) add_file(path);
-        for (const char* kind : {"importers", "accel"})
+        for (const char* kind : kKindFolders)
             for (const std::string& path : libraries_in(folder / kind, true)) add_file(path);
     }
     const std::vector<std::string>& paths() const { return paths_; }
@@ -158,7 +159,7 @@ void search_own_folders(Search& search) {
 }
 
 std::string key_of(const rt_plugin& plugin) {
-    return std::string(plugin.accel ? "accel " : "importer ") + plugin.id;
+    return std::string(plugin_kind(plugin)) + ' ' + plugin.id;
 }
 
 std::string lower_extension(const std::string& path) {
@@ -221,25 +222,35 @@ bool is_own_library(const std::string& path) {
     std::vector<fs::path> folders = folders_of(executable_folder());
     if (const std::string worker = environment("CLARITY_WORKER"); !worker.empty())
         for (fs::path& folder : folders_of(fs::canonical(worker, error).parent_path())) folders.push_back(std::move(folder));
-    for (const fs::path& folder : folders)
-        for (const char* kind : {"", "importers", "accel"})
+    for (const fs::path& folder : folders) {
+        if (library.parent_path() == fs::canonical(folder, error) && !error) return true;
+        for (const char* kind : kKindFolders)
             if (library.parent_path() == fs::canonical(folder / kind, error) && !error) return true;
+    }
     return false;
 }
 
 namespace {
 
-const rt_plugin* find(const std::vector<PluginRecord>& records, std::string_view id, bool accel) {
+// The usable plugins that have this table, in the order in which they were found.
+template <class Table>
+std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, Table rt_plugin::*table) {
+    std::vector<const rt_plugin*> list;
     for (const PluginRecord& record : records)
-        if (record.plugin && !record.shadowed && (record.plugin->accel != nullptr) == accel && id == record.plugin->id)
-            return record.plugin;
+        if (record.plugin && !record.shadowed && record.plugin->*table) list.push_back(record.plugin);
+    return list;
+}
+
+template <class Table>
+const rt_plugin* find(const std::vector<PluginRecord>& records, Table rt_plugin::*table, std::string_view id) {
+    for (const rt_plugin* plugin : usable(records, table))
+        if (id == plugin->id) return plugin;
     return nullptr;
 }
 
-std::vector<const rt_plugin*> usable(const std::vector<PluginRecord>& records, bool accel) {
-    std::vector<const rt_plugin*> list;
-    for (const PluginRecord& record : records)
-        if (record.plugin && !record.shadowed && (record.plugin->accel != nullptr) == accel) list.push_back(record.plugin);
+template <class Table>
+std::vector<const rt_plugin*> sorted(const std::vector<PluginRecord>& records, Table rt_plugin::*table) {
+    std::vector<const rt_plugin*> list = usable(records, table);
     std::sort(list.begin(), list.end(), [](const rt_plugin* a, const rt_plugin* b) { return std::strcmp(a->id, b->id) < 0; });
     return list;
 }
@@ -255,21 +266,21 @@ void link_layouts(std::vector<PluginRecord>& records) {
     for (PluginRecord& record : records) {
         if (!record.plugin || !record.plugin->accel || !record.plugin->accel->layout) continue;
         const char* const id = record.plugin->accel->layout;
-        const rt_plugin* const layout = find(records, id, true);
+        const rt_plugin* const layout = find(records, &rt_plugin::accel, id);
         if (layout && layout->accel->pack) continue;
         record.plugin = nullptr;
         record.why = std::string("its layout '") + id + "' " +
                      (layout ? "has no `pack`, so it cannot take a tree of another plugin: name one of "
                              : "was not found: load that plugin, or name one of ");
         std::string packs;
-        for (const rt_plugin* other : usable(records, true))
+        for (const rt_plugin* other : sorted(records, &rt_plugin::accel))
             if (other->accel->pack) packs += (packs.empty() ? "" : ", ") + std::string(other->id);
         record.why += packs.empty() ? "those with `pack` (there are none)" : packs;
     }
 }
 
 std::string kind_and_id(const rt_plugin& plugin) {
-    return std::string(plugin.accel ? "structure '" : "importer '") + plugin.id + "'";
+    return std::string(plugin_kind(plugin)) + " '" + plugin.id + "'";
 }
 
 }  // namespace
@@ -332,9 +343,21 @@ std::vector<PluginRecord> PluginRegistry::records() const {
     return list_->records;
 }
 
+const char* plugin_kind(const rt_plugin& plugin) {
+    return plugin.accel ? "accel" : plugin.importer ? "importer" : "primitive";
+}
+
 const rt_plugin* PluginRegistry::accel(std::string_view id) const {
     const std::lock_guard<std::mutex> lock(list_->mutex);
-    return find(list_->records, id, true);
+    return find(list_->records, &rt_plugin::accel, id);
+}
+const rt_plugin* PluginRegistry::importer(std::string_view id) const {
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return find(list_->records, &rt_plugin::importer, id);
+}
+const rt_plugin* PluginRegistry::primitive(std::string_view id) const {
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return find(list_->records, &rt_plugin::primitive, id);
 }
 
 const rt_plugin& PluginRegistry::layout_of(const rt_plugin& plugin) const {
@@ -342,18 +365,22 @@ const rt_plugin& PluginRegistry::layout_of(const rt_plugin& plugin) const {
     return layout ? *layout : plugin;
 }
 
-const rt_plugin* PluginRegistry::importer(std::string_view id) const {
-    const std::lock_guard<std::mutex> lock(list_->mutex);
-    return find(list_->records, id, false);
-}
-
 std::vector<const rt_plugin*> PluginRegistry::accels() const {
     const std::lock_guard<std::mutex> lock(list_->mutex);
-    return usable(list_->records, true);
+    return sorted(list_->records, &rt_plugin::accel);
 }
 std::vector<const rt_plugin*> PluginRegistry::importers() const {
     const std::lock_guard<std::mutex> lock(list_->mutex);
-    return usable(list_->records, false);
+    return sorted(list_->records, &rt_plugin::importer);
+}
+std::vector<const rt_plugin*> PluginRegistry::primitives() const {
+    const std::lock_guard<std::mutex> lock(list_->mutex);
+    return sorted(list_->records, &rt_plugin::primitive);
+}
+std::vector<const rt_plugin*> PluginRegistry::with_kernels() const {
+    std::vector<const rt_plugin*> list = accels();
+    for (const rt_plugin* plugin : primitives()) list.push_back(plugin);
+    return list;
 }
 
 const rt_plugin* PluginRegistry::importer_for(const std::string& path) const {

@@ -22,24 +22,27 @@ struct PluginRecord {
 
 // All libraries that were found, in this order: --plugin files, the folders in CLARITY_PLUGIN_PATH (separated by colons),
 // $XDG_DATA_HOME/clarity/plugins, then the program's own plugins (in the library folder of the installation, or
-// ../lib/clarity/plugins/{importers,accel} relative to the executable in a build folder). The working directory is never
+// ../lib/clarity/plugins/{importers,accel,primitives} relative to the executable in a build folder). The working directory is never
 // searched. Libraries are loaded with RTLD_NOW|RTLD_LOCAL and never closed, so a plugin stays valid even after replace().
 // Copies of a registry share one list. Thread-safe.
 class PluginRegistry {
  public:
     // log_refused: false if the caller tells of refused libraries itself.
     static PluginRegistry discover(const std::vector<std::string>& plugin_files = {}, bool log_refused = true);
-    // Loads exactly these libraries, without a search. A process that has found them passes them on to its import worker.
+    // Loads exactly these libraries, without a search. A process that has found them passes them on to its workers.
     static PluginRegistry of(const std::vector<std::string>& plugin_files);
 
     std::vector<PluginRecord> records() const;
     // Return nullptr if there is no usable plugin of that id.
     const rt_plugin* accel(std::string_view id) const;
     const rt_plugin* importer(std::string_view id) const;
+    const rt_plugin* primitive(std::string_view id) const;
     // The structure whose nodes and kernels a structure uses: for a topology its layout, else the structure itself.
     const rt_plugin& layout_of(const rt_plugin& accel) const;
-    std::vector<const rt_plugin*> accels() const;     // usable ones, sorted by id
-    std::vector<const rt_plugin*> importers() const;  // usable ones, sorted by id
+    std::vector<const rt_plugin*> accels() const;        // usable ones, sorted by id
+    std::vector<const rt_plugin*> importers() const;     // usable ones, sorted by id
+    std::vector<const rt_plugin*> primitives() const;    // usable ones, sorted by id
+    std::vector<const rt_plugin*> with_kernels() const;  // accels and primitives
     // The importer that is most certain of a file, judged by extension and first bytes; nullptr if no importer accepts it.
     const rt_plugin* importer_for(const std::string& path) const;
 
@@ -54,6 +57,9 @@ class PluginRegistry {
     };
     std::shared_ptr<List> list_ = std::make_shared<List>();
 };
+
+// "accel", "importer" or "primitive".
+const char* plugin_kind(const rt_plugin& plugin);
 
 // Loads and checks one library; never throws and calls none of its functions. If it is refused, plugin is nullptr and `why`
 // tells the reason.

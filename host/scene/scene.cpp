@@ -117,6 +117,14 @@ Bounds Scene::bounds() const {
             box.add(p.data());
         }
     }
+    for (const Shape& shape : shapes) {
+        const Bounds own = shape_bounds(*this, shape);
+        for (int corner = 0; corner < 8 && !own.empty; ++corner) {
+            const float p[3] = {(corner & 1 ? own.max : own.min)[0], (corner & 2 ? own.max : own.min)[1],
+                                (corner & 4 ? own.max : own.min)[2]};
+            box.add(transform_point(shape.world_from_object, p).data());
+        }
+    }
     return box;
 }
 
@@ -172,7 +180,7 @@ PrimPlace place_of_prim(const Scene& scene, rt_i32 prim) {
     };
     PrimPlace place;
     among(scene.spheres, PrimPlace::Kind::sphere, place) || among(scene.polygons, PrimPlace::Kind::polygon, place) ||
-        among(scene.planes, PrimPlace::Kind::plane, place);
+        among(scene.planes, PrimPlace::Kind::plane, place) || among(scene.shapes, PrimPlace::Kind::shape, place);
     return place;
 }
 
@@ -183,6 +191,15 @@ Bounds instance_bounds(const Scene& scene, rt_u32 index) {
     for (size_t i = 0; i < 3 * size_t(mesh.triangle_count); ++i) {
         const rt_u32 vertex = scene.triangles[3 * size_t(mesh.first_triangle) + i];
         box.add(transform_point(instance.world_from_object, &scene.positions[3 * size_t(vertex)]).data());
+    }
+    return box;
+}
+
+Bounds shape_bounds(const Scene& scene, const Shape& shape) {
+    Bounds box;
+    for (rt_u32 i = 0; i < shape.part_count; ++i) {
+        box.add(scene.shape_parts[size_t(shape.first_part) + i].min.data());
+        box.add(scene.shape_parts[size_t(shape.first_part) + i].max.data());
     }
     return box;
 }

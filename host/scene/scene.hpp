@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "rt_plugin.h"
 #include "rt_types.h"
 
 namespace clarity {
@@ -50,6 +51,24 @@ struct Polygon {
     rt_u32 first_corner = 0, corner_count = 0;  // range in Scene::polygon_corners, counted in corners
     rt_u32 material = 0;
 };
+// A kind of shapes that the scene has, made by a plugin.
+struct ShapeKind {
+    std::string id;
+    const rt_plugin* plugin = nullptr;  // has `primitive`; set in a scene that import_scene() returned
+};
+// A placed shape. Its parts may belong to several placements.
+struct Shape {
+    rt_u32 kind = 0;  // index in Scene::shape_kinds
+    rt_u32 first_part = 0, part_count = 0;
+    rt_u32 material = 0;
+    Affine world_from_object = kIdentity;
+};
+// What acceleration structures and kernels know of a shape, in its own space.
+struct ShapePart {
+    std::array<float, 3> min{}, max{};
+    std::array<float, RT_SHAPE_NUMBERS> numbers{};
+    rt_u32 first_more = 0, more_count = 0;  // range in Scene::shape_numbers
+};
 struct Material {
     std::string name;
     rt_material values{};
@@ -78,6 +97,10 @@ struct Scene {
     std::vector<Plane> planes;
     std::vector<Polygon> polygons;
     std::vector<float> polygon_corners;  // 3 per corner
+    std::vector<ShapeKind> shape_kinds;
+    std::vector<Shape> shapes;
+    std::vector<ShapePart> shape_parts;
+    std::vector<float> shape_numbers;
     std::vector<Material> materials;
     std::vector<rt_texture> textures;
     std::vector<uint32_t> texels;  // RGBA8, R in the low byte
@@ -94,14 +117,14 @@ struct Scene {
     uint64_t placed_triangle_count() const;
     // World-space box of everything finite; planes are left out.
     Bounds bounds() const;
-    // World-space area of the triangles of all instances, the polygons and the spheres.
+    // World-space area of the triangles of all instances, the polygons and the spheres. That of shapes is not known.
     double surface_area() const;
 };
 
-// The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres, polygons
-// and planes.
+// The object to which a number of `prim` belongs. Numbers count the triangles of all instances in order, then spheres,
+// polygons, planes and shapes.
 struct PrimPlace {
-    enum class Kind { none, triangle, sphere, polygon, plane } kind = Kind::none;
+    enum class Kind { none, triangle, sphere, polygon, plane, shape } kind = Kind::none;
     rt_u32 index = 0;           // within its kind; a triangle's index counts in Scene::triangles
     rt_u32 instance = RT_NONE;  // of a triangle; RT_NONE for other kinds
     rt_u32 material = RT_NONE;
@@ -110,6 +133,8 @@ PrimPlace place_of_prim(const Scene& scene, rt_i32 prim);
 
 // World-space box of one instance's vertices.
 Bounds instance_bounds(const Scene& scene, rt_u32 instance);
+// Box of a shape's parts in its own space.
+Bounds shape_bounds(const Scene& scene, const Shape& shape);
 
 rt_material default_material();
 

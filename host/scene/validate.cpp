@@ -41,7 +41,8 @@ std::string check_arrays(const Scene& s) {
     if (s.triangle_materials.size() != s.triangles.size() / 3) return "triangle materials: not one per triangle";
     if (s.polygon_corners.size() % 3 != 0) return "polygon corners: not 3 numbers per corner";
     // A ref stores the index within its kind in 28 bits.
-    for (const size_t count : {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size()}) {
+    for (const size_t count :
+         {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size(), s.shape_parts.size()}) {
         if (count > RT_REF_INDEX_MAX) return std::to_string(count) + " primitives of one kind are more than a ref can name";
     }
     const std::pair<const char*, const std::vector<float>*> numbers[] = {
@@ -122,6 +123,31 @@ std::string check_analytic(const Scene& s) {
     return {};
 }
 
+std::string check_shapes(const Scene& s) {
+    for (size_t i = 0; i < s.shape_parts.size(); ++i) {
+        const ShapePart& part = s.shape_parts[i];
+        if (!all_finite(part.min) || !all_finite(part.max) || !all_finite(part.numbers))
+            return text("part of a shape", i, "not a finite number");
+        for (int k = 0; k < 3; ++k)
+            if (part.min[k] > part.max[k]) return text("part of a shape", i, "its box is inside out");
+        if (uint64_t(part.first_more) + part.more_count > s.shape_numbers.size())
+            return text("part of a shape", i, "numbers past the last one");
+    }
+    if (!all_finite(s.shape_numbers)) return "numbers of shapes: not a finite number";
+    uint64_t placed = 0;
+    for (size_t i = 0; i < s.shapes.size(); ++i) {
+        const Shape& shape = s.shapes[i];
+        if (shape.kind >= s.shape_kinds.size()) return text("shape", i, "kind " + of(shape.kind, s.shape_kinds.size()));
+        if (uint64_t(shape.first_part) + shape.part_count > s.shape_parts.size())
+            return text("shape", i, "parts past the last one");
+        if (shape.material >= s.materials.size()) return text("shape", i, "material " + of(shape.material, s.materials.size()));
+        if (!all_finite(shape.world_from_object)) return text("shape", i, "its transform is not finite");
+        placed += shape.part_count;
+    }
+    if (placed > RT_REF_INDEX_MAX) return std::to_string(placed) + " parts of shapes are more than a ref can name";
+    return {};
+}
+
 std::string check_looks(const Scene& s) {
     if (s.materials.empty()) return "materials: the default material is missing";
     for (size_t i = 0; i < s.materials.size(); ++i) {
@@ -171,7 +197,7 @@ std::string check_view(const Scene& s) {
 }  // namespace
 
 std::string validate(const Scene& scene) {
-    for (const auto check : {check_arrays, check_meshes, check_analytic, check_looks, check_view}) {
+    for (const auto check : {check_arrays, check_meshes, check_analytic, check_shapes, check_looks, check_view}) {
         std::string why = check(scene);
         if (!why.empty()) return why;
     }

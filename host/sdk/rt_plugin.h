@@ -15,13 +15,14 @@
  *   is there, if that field is younger than version 2. All other fields of this file are always there.
  * - Enums get further values and bit masks further bits. A host refuses a kind that it does not know, and ignores other bits.
  * - Anything larger is an rt_extension: it has a name and a version of its own.
- * The other structs (rt_packed_prim, rt_prim, rt_group, rt_topology_node, rt_cl_file) never change: data beside theirs would come in
+ * The other structs (rt_packed_prim, rt_prim, rt_group, rt_topology_node, rt_cl_file, rt_key_values) never change: data beside theirs would come in
  * arrays of their own. Kernels have a version of their own, RT_KERNEL_CONTRACT. Any other change increases RT_ABI_VERSION.
  *
  * Version history:
  *   1  First release. Hosts of later versions do not load it.
  *   2  Structs and arrays that can grow. What a structure can do is data. The kernel contract has a number. Materials and lights
- *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin. */
+ *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
+ *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink). */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -235,6 +236,59 @@ typedef struct rt_accel {
     rt_u32 ray_cost;            /* RT_RAY_COST_LOGARITHMIC or RT_RAY_COST_LINEAR */
 } rt_accel;
 
+/* ---- shapes --------------------------------------------------------------------------------------------------------------- */
+
+enum {
+    RT_KEY_NUMBER, /* one number */
+    RT_KEY_WHOLE,  /* one whole number; 0 or 1 for yes and no */
+    RT_KEY_POINT,  /* x y z */
+    RT_KEY_VECTOR, /* x y z, not all of them 0 */
+    RT_KEY_NUMBERS, /* numbers, as many as the file has */
+    RT_KEY_POINTS   /* x y z of each point, as many as the file has */
+};
+#define RT_KEY_REQUIRED 1u /* the statement must have this key; otherwise numbers default to def, and lists are empty */
+/* A key of the shape's statement in text scenes, `radius .5`. It is data: importers read the values and write the messages.
+ * rt_primitive::key_bytes tells the size of an element. */
+typedef struct rt_key {
+    const char *name, *help; /* "radius", "distance from the axis": [a-z][a-z0-9_]*, not `material` */
+    rt_u32 kind, flags;      /* RT_KEY_NUMBER, ..., RT_KEY_REQUIRED */
+    double min, max;         /* of each number */
+    double def[3];
+} rt_key;
+/* The values of one key. 16 B; it never grows. */
+typedef struct rt_key_values {
+    const float *numbers;
+    rt_u32 count;
+    rt_u32 given; /* 0: the file does not have the key, so these are its defaults */
+} rt_key_values;
+
+#define RT_SHAPE_NUMBERS 12u /* of each part of a shape, 48 B, for its kernels */
+/* Receives the parts of a shape: each becomes one primitive of the acceleration structure. All have the same number `prim`. */
+typedef struct rt_shape_output {
+    rt_u32 struct_bytes;
+    void *ctx;
+    /* lo, hi: box of the part. numbers: RT_SHAPE_NUMBERS at most. more: further numbers for the part's kernels, or NULL. The host
+     * copies all of it. */
+    int32_t (*part)(void *ctx, const float lo[3], const float hi[3], const float *numbers, rt_u32 count, const float *more,
+                    uint64_t more_count); /* RT_OK, or RT_FAILED with the error recorded */
+} rt_shape_output;
+
+#define RT_SHAPE_SINGLE_RAY 1u /* its kernels take one ray at a time: `float`, where others have `vfloat` */
+/* A shape, in its own space: the host transforms rays, points and normals. At least one of bounds and prepare is not NULL. Both run
+ * in the worker process in which the importer runs. values[i] belongs to keys[i], and is within the key's range. */
+typedef struct rt_primitive {
+    rt_u32 struct_bytes;
+    rt_u32 kernel_contract; /* RT_KERNEL_CONTRACT */
+    rt_u32 key_count, key_bytes; /* key_bytes: sizeof(rt_key) */
+    const rt_key *keys;
+    rt_cl_file kernels; /* <id>_hit and <id>_surface: see CONTRACT.md */
+    /* The box of the shape. Without `prepare`, the numbers of all keys in their order are those of its kernels. */
+    int32_t (*bounds)(const rt_host *, const rt_key_values *values, float lo[3], float hi[3]);
+    int32_t (*prepare)(const rt_host *, const rt_key_values *values, const rt_shape_output *); /* or NULL */
+    rt_u32 flags;                                                                              /* RT_SHAPE_... */
+    rt_u32 pad;                                                                                /* 0 */
+} rt_primitive;
+
 /* ---- importers ------------------------------------------------------------------------------------------------------------ */
 
 /* Strides are in bytes. The host copies all data before the call returns. Faces may have any number of corners. The host
@@ -323,6 +377,21 @@ typedef struct rt_scene_info {
     const float *ambient;    /* linear RGB, or NULL */
 } rt_scene_info;
 
+/* A kind of shapes that the sink takes: the plugin's id, and its keys. */
+typedef struct rt_primitive_kind {
+    rt_u32 struct_bytes, key_count;
+    const char *id;
+    const rt_key *keys;
+    rt_u32 key_bytes, pad;
+} rt_primitive_kind;
+typedef struct rt_primitive_desc {
+    rt_u32 struct_bytes, material;
+    const char *kind;            /* id of a kind */
+    const rt_key_values *values; /* one for each of its keys, in their order */
+    rt_u32 value_count, pad;
+    const char *where; /* place that has the shape, for error messages: "main.scene:3:1"; or NULL */
+} rt_primitive_desc;
+
 /* Calls that return an id copy their arguments. RT_NONE means that they failed and recorded the error: then return RT_FAILED. */
 typedef struct rt_scene_sink {
     rt_u32 struct_bytes;
@@ -339,6 +408,9 @@ typedef struct rt_scene_sink {
     void (*info)(void *ctx, const rt_scene_info *);
     void (*warn)(void *ctx, const char *text);         /* shown to the user, in `info` as warnings[] */
     int32_t (*load)(void *ctx, const rt_load *);       /* imports another file; RT_OK, or RT_FAILED with the error recorded */
+    /* Appended: ask RT_HAS first. The kinds are numbered from 0; NULL: there is no such number. */
+    const rt_primitive_kind *(*primitive_kind)(void *ctx, rt_u32 number);
+    rt_u32 (*primitive)(void *ctx, const rt_primitive_desc *);
 } rt_scene_sink;
 
 typedef struct rt_importer {
@@ -364,10 +436,11 @@ typedef struct rt_plugin {
     rt_u32 abi_version, struct_bytes, types_digest, param_count; /* first in every version */
     const char *id, *name, *version, *reference; /* id: [a-z][a-z0-9_]*, also the prefix of its CL names; reference: paper, or NULL */
     const rt_param *params;
-    const rt_accel *accel; /* exactly one of the two is not NULL */
+    const rt_accel *accel; /* exactly one of accel, importer and primitive is not NULL */
     const rt_importer *importer;
     const rt_extension *extensions; /* or NULL */
     rt_u32 param_bytes, extension_bytes; /* sizeof(rt_param), sizeof(rt_extension) */
+    const rt_primitive *primitive;       /* appended */
 } rt_plugin;
 
 RT_EXPORT extern const rt_plugin rt_plugin_v1; /* the only exported symbol; data, not code */

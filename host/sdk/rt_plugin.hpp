@@ -259,6 +259,44 @@ inline void root(const rt_topology_output* out, rt_u32 group, rt_u32 node) {
 inline void stat(const rt_topology_output* out, const char* label, double value) {
     out->stat(out->ctx, label, value);
 }
+// ---- shapes -----------------------------------------------------------------------------------------------------------------
+
+// The keys of a shape. Without a default, a key is required.
+constexpr rt_key number_key(const char* name, const char* help, double min, double max) {
+    return {name, help, RT_KEY_NUMBER, RT_KEY_REQUIRED, min, max, {}};
+}
+constexpr rt_key number_key(const char* name, const char* help, double min, double max, double def) {
+    return {name, help, RT_KEY_NUMBER, 0, min, max, {def, 0, 0}};
+}
+constexpr rt_key whole_key(const char* name, const char* help, int min, int max, int def) {
+    return {name, help, RT_KEY_WHOLE, 0, double(min), double(max), {double(def), 0, 0}};
+}
+// kind: RT_KEY_POINT, RT_KEY_VECTOR, RT_KEY_NUMBERS or RT_KEY_POINTS.
+constexpr rt_key key(rt_u32 kind, const char* name, const char* help) {
+    return {name, help, kind, RT_KEY_REQUIRED, -1e15, 1e15, {}};
+}
+constexpr rt_key key(rt_u32 kind, const char* name, const char* help, double x, double y, double z) {
+    return {name, help, kind, 0, -1e15, 1e15, {x, y, z}};
+}
+// A list that may be left out.
+constexpr rt_key list_key(rt_u32 kind, const char* name, const char* help) {
+    return {name, help, kind, 0, -1e15, 1e15, {}};
+}
+
+using ShapeBounds = int32_t (*)(const rt_host*, const rt_key_values*, float lo[3], float hi[3]);
+using ShapePrepare = int32_t (*)(const rt_host*, const rt_key_values*, const rt_shape_output*);
+// The description of a shape. flags: RT_SHAPE_SINGLE_RAY or 0.
+template <size_t N>
+constexpr rt_primitive primitive(const rt_key (&keys)[N], const rt_cl_file& kernels, ShapeBounds bounds, ShapePrepare prepare,
+                                 rt_u32 flags = 0) {
+    return {sizeof(rt_primitive), RT_KERNEL_CONTRACT, N, sizeof(rt_key), keys, kernels, bounds, prepare, flags, 0};
+}
+// Hands over one part of a shape. Throws Stopped if the host refuses it.
+inline void part(const rt_shape_output* out, const float lo[3], const float hi[3], const float* numbers, rt_u32 count,
+                 const float* more = nullptr, uint64_t more_count = 0) {
+    if (out->part(out->ctx, lo, hi, numbers, count, more, more_count) != RT_OK) throw Stopped();
+}
+
 // ---- importers --------------------------------------------------------------------------------------------------------------
 
 // A material of the values that the host gives to objects without one.
@@ -281,10 +319,23 @@ inline rt_u32 id(rt_u32 answer) {
 
 namespace detail {
 constexpr rt_plugin plugin(const char* id, const char* name, const char* version, const char* reference, const rt_param* params,
-                           rt_u32 param_count, const rt_accel* accel, const rt_importer* importer) {
-    return {RT_ABI_VERSION,   sizeof(rt_plugin),   RT_TYPES_DIGEST, param_count, id,       name,
-            version,          reference,           params,          accel,       importer, nullptr,
-            sizeof(rt_param), sizeof(rt_extension)};
+                           rt_u32 param_count, const rt_accel* accel, const rt_importer* importer,
+                           const rt_primitive* primitive = nullptr) {
+    return {RT_ABI_VERSION,
+            sizeof(rt_plugin),
+            RT_TYPES_DIGEST,
+            param_count,
+            id,
+            name,
+            version,
+            reference,
+            params,
+            accel,
+            importer,
+            nullptr,
+            sizeof(rt_param),
+            sizeof(rt_extension),
+            primitive};
 }
 }  // namespace detail
 
@@ -305,6 +356,10 @@ constexpr rt_plugin importer_plugin(const char* id, const char* name, const char
 constexpr rt_plugin importer_plugin(const char* id, const char* name, const char* version, const char* reference,
                                     const rt_importer& importer) {
     return detail::plugin(id, name, version, reference, nullptr, 0, nullptr, &importer);
+}
+constexpr rt_plugin primitive_plugin(const char* id, const char* name, const char* version, const char* reference,
+                                     const rt_primitive& primitive) {
+    return detail::plugin(id, name, version, reference, nullptr, 0, nullptr, nullptr, &primitive);
 }
 // The same plugin with extensions: a static array that ends with {nullptr, 0, 0, nullptr}.
 template <size_t N>

@@ -39,6 +39,10 @@ std::optional<Corners> selection_box(const Scene& scene, const Selection& select
         for (rt_u32 i = 0; i < polygon.corner_count; ++i)
             bounds.add(&scene.polygon_corners[size_t{3} * (polygon.first_corner + i)]);
     }
+    if (place.kind == PrimPlace::Kind::shape) {
+        const Shape& shape = scene.shapes[place.index];
+        return corners_of(shape_bounds(scene, shape), shape.world_from_object);
+    }
     if (bounds.empty) return std::nullopt;
     return corners_of(bounds, kIdentity);
 }

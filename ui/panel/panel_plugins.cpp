@@ -53,7 +53,8 @@ void device_list(Session& session) {
 void plugin_rows(const PluginRecord& record) {
     const rt_plugin* plugin = record.plugin;
     if (plugin) {
-        name_text(plugin->id, std::string(plugin->accel ? "acceleration structure" : "importer") + "  " + plugin->version);
+        const char* kind = plugin->accel ? "acceleration structure" : plugin->importer ? "importer" : "shape";
+        name_text(plugin->id, std::string(kind) + "  " + plugin->version);
         wrapped_text(plugin->name);
         std::string extensions;
         if (plugin->importer)

@@ -45,6 +45,7 @@ void fact_rows(const Ready& ready) {
     if (analytic > 0)
         row_text("Analytic", plural(scene.spheres.size(), "sphere") + ", " + plural(scene.polygons.size(), "polygon") + ", " +
                                  plural(scene.planes.size(), "plane"));
+    if (!scene.shapes.empty()) row_text("Shapes", std::to_string(scene.shapes.size()), "made by plugins: cylinders, ...");
     row_text("Materials", std::to_string(scene.materials.size()) + ", " + plural(scene.textures.size(), "texture"));
     row_text("Up axis", std::string(1, "XYZ"[scene.up_axis % 3]), "as the file states it; the scene is not rotated");
     row_text("Unit", scene.unit_scale > 0 ? number_text(scene.unit_scale) + " m" : "not said", "metres per unit of the file");

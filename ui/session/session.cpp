@@ -37,7 +37,7 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_edits_(options.edits),
       log_(wake),
       wake_(wake),
-      kernels_(std::make_unique<KernelWatch>(plugins_.accels(), wake)),
+      kernels_(std::make_unique<KernelWatch>(plugins_.with_kernels(), wake)),
       libraries_(plugins_, wake),
       frames_(wake),
       inspector_(wake),

@@ -23,6 +23,8 @@ std::string what_it_hit(const RayRecord& ray, const Scene& scene) {
             return row_name(scene, RowKind::polygon, place.index);
         case PrimPlace::Kind::plane:
             return row_name(scene, RowKind::plane, place.index);
+        case PrimPlace::Kind::shape:
+            return scene.shape_kinds[scene.shapes[place.index].kind].id + ' ' + std::to_string(place.index);
         case PrimPlace::Kind::none:
             break;
     }

@@ -7,7 +7,7 @@ namespace clarity::bench {
 
 void describe(BenchRecord& row, const Scene& scene) {
     row.triangles = scene.placed_triangle_count();
-    row.primitives = row.triangles + scene.spheres.size() + scene.polygons.size() + scene.planes.size();
+    row.primitives = row.triangles + scene.spheres.size() + scene.polygons.size() + scene.planes.size() + scene.shapes.size();
 }
 
 void describe(BenchRecord& row, const DeviceInfo& device) {

@@ -55,6 +55,9 @@ std::string pack_leaves(const AlignedBytes& refs_in_order, AccelData& data) {
                 case RT_REF_POLYGON:
                     leaves[i] = data.scene.polygons[index];
                     break;
+                case RT_REF_SHAPE:
+                    leaves[i] = data.scene.shape_leaves[index];
+                    break;
                 default:
                     leaves[i] = data.scene.instance_leaves[index];
             }

@@ -176,22 +176,17 @@ float round_up(double value) {
     return -round_down(-value);
 }
 
-// Returns the world-space box of a mesh's group as kernels see it.
+// Returns the world-space box of what lies in `box`, in its own space, as kernels see it.
 //
 // Kernels transform each ray with object_from_world, in float. Where large coordinates cancel, this rounding seems to move the
-// triangles. So the box grows by a bound on the rounding (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section
+// surface. So the box grows by a bound on the rounding (Pharr, Jakob, Humphreys 2016, Physically Based Rendering, section
 // 3.9): gamma(n) = n u / (1 - n u) times the sum of the absolute terms, with u = 2^-24 and n = 8. There is one rounding in the
 // inverse, three in the origin, three in the direction, and one in the difference of corner and origin. The terms are those of
 // a ray that starts no farther from the world's origin than the box reaches. A ray that starts at a larger distance d has an
 // error of a few u d, which is no more than the rounding of its direction.
-rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, const Affine& object_from_world,
-                      rt_u32 index) {
+rt_prim placed_box(const rt_prim& box, const Affine& world, const Affine& object_from_world) {
     constexpr double kRounding = 8 * 0x1p-24, kGamma = kRounding / (1 - kRounding);
-    rt_prim box = empty_prim(0, 0), prim = empty_prim(RT_REF_INSTANCE | index, index);
-    for (rt_u32 i = 0; i < scene.groups[group].count; ++i) {
-        grow(box, scene.prims[scene.groups[group].first + i].lo);
-        grow(box, scene.prims[scene.groups[group].first + i].hi);
-    }
+    rt_prim prim = empty_prim(box.ref, box.mesh);
     double lo[3], hi[3], farthest[3];
     for (int k = 0; k < 3; ++k) {
         lo[k] = hi[k] = world[4 * k + 3];
@@ -219,6 +214,56 @@ rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world
     return prim;
 }
 
+// The box of a placed mesh.
+rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, const Affine& object_from_world,
+                      rt_u32 index) {
+    rt_prim box = empty_prim(RT_REF_INSTANCE | index, index);
+    for (rt_u32 i = 0; i < scene.groups[group].count; ++i) {
+        grow(box, scene.prims[scene.groups[group].first + i].lo);
+        grow(box, scene.prims[scene.groups[group].first + i].hi);
+    }
+    return placed_box(box, world, object_from_world);
+}
+
+// Kernels of shapes compute a point's height above the surface with about this many roundings of numbers of the shape's size.
+constexpr float kShapeRoundings = 16;
+
+void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at, BuildScene& out) {
+    for (const Shape& placed : scene.shapes) {
+        Affine inverse;
+        if (!invert(placed.world_from_object, inverse)) throw Error(Exit::failed, "a shape is placed without volume");
+        for (rt_u32 i = 0; i < placed.part_count; ++i) {
+            const ShapePart& part = scene.shape_parts[size_t(placed.first_part) + i];
+            rt_prim box = empty_prim(RT_REF_SHAPE | static_cast<rt_u32>(out.shapes.size()), run);
+            grow(box, part.min.data());
+            grow(box, part.max.data());
+            rt_shape shape{};
+            std::copy(inverse.begin(), inverse.end(), shape.object_from_world);
+            std::copy(part.numbers.begin(), part.numbers.end(), shape.numbers);
+            shape.kind = placed.kind;
+            shape.first_more = part.first_more;
+            const float size = std::hypot(part.max[0] - part.min[0], part.max[1] - part.min[1], part.max[2] - part.min[2]);
+            shape.error = kShapeRoundings * 0x1p-24f * size;
+            for (int k = 0; k < 3; ++k) {  // plugins compute boxes in float, too
+                box.lo[k] -= 4 * shape.error;
+                box.hi[k] += 4 * shape.error;
+            }
+            const rt_prim prim = placed_box(box, placed.world_from_object, inverse);
+            rt_packed_prim leaf{};
+            std::copy_n(prim.lo, 3, leaf.a);
+            std::copy_n(prim.hi, 3, leaf.b);
+            leaf.ref = prim.ref;
+            leaf.material = placed.material;
+            leaf.prim = next_prim;
+            grow(out.bounds, prim);
+            out.shape_leaves.push_back(leaf);
+            out.shapes.push_back(shape);
+            out.prims[at++] = prim;
+        }
+        ++next_prim;
+    }
+}
+
 // How each mesh is placed. A mesh that is placed once is flattened into the world, because rays would only take longer
 // through a tree of its own. A reflected mesh is not flattened, because that would turn its triangles inside out.
 struct Placement {
@@ -237,6 +282,7 @@ Placement place(const Scene& scene) {
     out.flat.resize(scene.instances.size());
     out.group_of_mesh.assign(scene.meshes.size(), 0);
     out.world_prims = scene.spheres.size() + scene.polygons.size();
+    for (const Shape& shape : scene.shapes) out.world_prims += shape.part_count;
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
@@ -357,6 +403,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
         p.prim = next_prim++;
         out.planes.push_back(p);
     }
+    add_shapes(scene, runs + 2, next_prim, at, out);
     return out;
 }
 

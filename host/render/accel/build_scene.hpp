@@ -6,6 +6,7 @@
 #include "base/aligned_bytes.hpp"
 #include "base/progress.hpp"
 #include "rt_plugin.h"
+#include "rt_shape.h"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -21,7 +22,8 @@ struct BuildScene {
     std::vector<Affine> world_from_object;             // for each instance
     UninitializedVector<uint32_t> attribute_triangle;  // from a triangle's ref to its number in the Scene
     std::vector<uint32_t> flattened;  // instances of the Scene; their triangles were transformed into the world's group
-    std::vector<rt_packed_prim> instance_leaves, spheres, polygons;  // by ref index
+    std::vector<rt_packed_prim> instance_leaves, spheres, polygons, shape_leaves;  // by ref index
+    std::vector<rt_shape> shapes;                                                  // parts of all placed shapes, by ref index
     std::vector<rt_polygon> polygon_table;
     std::vector<float> polygon_corners;  // 3 floats a corner
     std::vector<rt_plane> planes;
@@ -37,6 +39,8 @@ inline bool is_known_ref(rt_u32 ref, const BuildScene& scene) {
             return index < scene.spheres.size();
         case RT_REF_POLYGON:
             return index < scene.polygons.size();
+        case RT_REF_SHAPE:
+            return index < scene.shapes.size();
         case RT_REF_INSTANCE:
             return index < scene.instances.size();
     }

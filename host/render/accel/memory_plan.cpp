@@ -25,6 +25,7 @@ std::vector<MemoryPiece> plan_memory(const SceneCounts& counts, const Scene& sce
     if (!scene.normals.empty() || !scene.uvs.empty()) pieces.push_back({"triangles", counts.triangles * sizeof(rt_triangle)});
     pieces.push_back({"normals", scene.normals.size() * sizeof(float)});
     pieces.push_back({"texture coordinates", scene.uvs.size() * sizeof(float)});
+    pieces.push_back({"numbers of shapes", scene.shape_numbers.size() * sizeof(float)});
     pieces.push_back({"textures", scene.texels.size() * sizeof(uint32_t)});
     return pieces;
 }

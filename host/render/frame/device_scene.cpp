@@ -122,6 +122,10 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     };
     materials_at_ = 5;
     const size_t before_lights = contents.size();
+    if (!build.shapes.empty()) {
+        contents.push_back(content("shapes", build.shapes));
+        contents.push_back(content("numbers of shapes", scene_->shape_numbers));
+    }
     const rt_accel& table = *accel_->layout->accel;
     for (rt_u32 s = 0; s < table.slot_count; ++s)
         if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))

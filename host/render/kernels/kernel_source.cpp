@@ -4,6 +4,7 @@
 
 #include "plugin/capabilities.hpp"
 #include "render/kernels/layout.hpp"
+#include "render/kernels/shape_source.hpp"
 #include "render/kernels/traversal_source.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/settings.hpp"
@@ -37,10 +38,12 @@ void write_features(SourceWriter& out, const SceneFeatures& features, const Kern
     out.define_int("RT_HAS_UVS", uvs);
     out.define_int("RT_HAS_ATTRIBUTES", features.normals || uvs);
     out.define_int("RT_HAS_TEXTURES", features.textures);
+    if (features.shapes) out.define_int("RT_HAS_SHAPES", 1);
 }
 
-// Writes the beginning of every kernel: types, lanes, the structure's types, and the buffers.
-void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel) {
+// Writes the beginning of every kernel: types, lanes, the structure's types, the buffers, and shapes.
+void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& accel, const Scene& scene,
+                    const SceneFeatures& features) {
     for (const char* name : {"rt_shared.h", "rt_types.h", "lanes/lanes.h"}) out.include(name);
     if (!layout.cpu) out.include("lanes/subgroup.h");
     for (const char* name : {"lanes/rays.h", "lanes/ray_space.h", "primitives/loaded_prim.h"}) out.include(name);
@@ -48,7 +51,9 @@ void write_preamble(SourceWriter& out, const Layout& layout, const rt_plugin& ac
         for (const char* name : {"lanes/single_ray.h", "primitives/triangle_row.h"}) out.include(name);
     if (accel.accel->types.text) out.include(accel, accel.accel->types);
     out.include("lanes/packet_stream.h");
-    write_context(out, *accel.accel);
+    if (features.shapes) out.include("rt_shape.h");
+    write_context(out, *accel.accel, features);
+    if (features.shapes) write_shapes(out, scene);
 }
 
 void write_queries(SourceWriter& out, const KernelRow& row, const KernelChoice& choice, const SceneFeatures& features,
@@ -78,8 +83,9 @@ KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const Ac
     KernelSource source;
     source.row = &row;
     source.what = std::string(row.what) + " with accel " + accel.id;
-    // Exception: with instances or polygons more registers would be spilled, which costs more than the limit gains.
-    source.limit_registers = row.has(kLimitRegisters) && !layout.cpu && !features.instances && !features.polygons;
+    // Exception: with instances, polygons or shapes more registers would be spilled, which costs more than the limit gains.
+    source.limit_registers =
+        row.has(kLimitRegisters) && !layout.cpu && !features.instances && !features.polygons && !features.shapes;
 
     SourceWriter out;
     write_layout(out, layout);
@@ -96,7 +102,7 @@ KernelSource kernel_for(const KernelChoice& choice, const Scene& scene, const Ac
         if (accel.accel->capabilities & capability.bit) out.line(std::string("#define ") + capability.define);
     for (const auto& [name, value] : data.defines) out.define_uint(name, value);
 
-    write_preamble(out, layout, accel);
+    write_preamble(out, layout, accel, scene, features);
     write_queries(out, row, choice, features, accel);
     for (const char* name : {"lanes/vec.h", "shading/surface.h", "tracers/camera.h"}) out.include(name);
     for (const char* name : row.headers) out.include(name);

@@ -5,7 +5,8 @@
 namespace clarity {
 
 struct SceneFeatures {
-    bool instances = false, spheres = false, polygons = false, planes = false, normals = false, uvs = false, textures = false;
+    bool instances = false, spheres = false, polygons = false, planes = false, normals = false, uvs = false, textures = false,
+         shapes = false;
 };
 SceneFeatures features_of(const Scene& scene, const BuildScene& build);
 

@@ -19,8 +19,8 @@ class SourceWriter {
     // Appends a file of cl/: in development from disk, else the embedded text.
     void include(const std::string& name) { part("cl/" + name, kernel_text(name)); }
     // Appends a plugin's file likewise.
-    void include(const rt_plugin& accel, const rt_cl_file& file) {
-        part(plugin_kernel_name(accel, file), plugin_kernel_text(accel, file));
+    void include(const rt_plugin& plugin, const rt_cl_file& file) {
+        part(plugin_kernel_name(plugin, file), plugin_kernel_text(plugin, file));
     }
     std::string text() const { return out_.str(); }
 

@@ -14,6 +14,8 @@ constexpr Member kMembers[] = {
     {"rt_texture", "textures"},   {"uint", "texels"},           {"rt_light", "lights"},
 };
 
+constexpr Member kShapeMembers[] = {{"rt_shape", "shapes"}, {"float", "shape_numbers"}};  // of scenes with shapes
+
 // Macros by which a traversal calls leaf tests. The names of the functions are rt_leaf_mesh or rt_leaf_scene plus the suffix.
 struct LeafStep {
     const char *macro, *suffix;
@@ -87,7 +89,7 @@ void write_traversal(SourceWriter& out, const TraversalTemplate& traversal, cons
 
 }  // namespace
 
-void write_context(SourceWriter& out, const rt_accel& accel) {
+void write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features) {
     out.line("#line 1 \"generated context\"\ntypedef struct rt_ctx {");
     std::string params, init;
     const auto add = [&](const std::string& type, const std::string& name) {
@@ -96,6 +98,8 @@ void write_context(SourceWriter& out, const rt_accel& accel) {
         init += " ctx." + name + " = ctx_" + name + ";";
     };
     for (const Member& member : kMembers) add(member.type, member.name);
+    if (features.shapes)
+        for (const Member& member : kShapeMembers) add(member.type, member.name);
     for (rt_u32 s = 0; s < accel.slot_count; ++s)
         if (!(accel.slots[s].flags & RT_SLOT_HOST_ONLY)) add(accel.slots[s].cl_type, accel.slots[s].name);
     out.line("} rt_ctx;");
@@ -108,6 +112,7 @@ void write_context(SourceWriter& out, const rt_accel& accel) {
     check("rt_instance", "rt_instance", sizeof(rt_instance));
     check("rt_material", "rt_material", sizeof(rt_material));
     check("rt_frame", "rt_frame", sizeof(rt_frame));
+    if (features.shapes) check("rt_shape", "rt_shape", sizeof(rt_shape));
     for (rt_u32 s = 0; s < accel.slot_count; ++s)
         if (!(accel.slots[s].flags & RT_SLOT_HOST_ONLY))
             check(accel.slots[s].cl_type, std::string("slot_") + accel.slots[s].name, accel.slots[s].elem_bytes);
@@ -124,12 +129,13 @@ void write_query(SourceWriter& out, const TraversalTemplate& traversal, const Sc
     if (features.spheres) out.include("primitives/sphere.h");
     if (features.polygons) out.include("primitives/polygon.h");
     if (features.planes) out.include("primitives/plane.h");
+    if (features.shapes) out.include("primitives/leaf_shape.h");
     if (features.instances) {
         out.include("primitives/leaf_mesh.h");
         write_traversal(out, traversal, {"rt_mesh", "rt_leaf_mesh", false, false});
     }
     out.include("primitives/leaf_scene.h");
-    const bool mixed = features.spheres || features.polygons || features.instances;
+    const bool mixed = features.spheres || features.polygons || features.shapes || features.instances;
     write_traversal(out, traversal, {"rt_scene", "rt_leaf_scene", mixed, features.instances});
     out.include("primitives/query.h");
     out.undef("RT_ANY_HIT");

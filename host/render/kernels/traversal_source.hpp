@@ -7,7 +7,7 @@
 namespace clarity {
 
 // Writes rt_ctx: the scene's buffers and the structure's slots, as a struct, as kernel arguments, and as initialisation.
-void write_context(SourceWriter& out, const rt_accel& accel);
+void write_context(SourceWriter& out, const rt_accel& accel, const SceneFeatures& features);
 
 // A plugin's traversal as a template. The text is read once; the flags apply to all instances.
 struct TraversalTemplate {

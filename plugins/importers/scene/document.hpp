@@ -57,7 +57,18 @@ struct Load {
     Name material;
 };
 
-enum class ItemKind : uint8_t { sphere, plane, polygon, triangle, load };
+// A shape that a plugin makes.
+struct Shape {
+    struct Values {
+        std::vector<float> numbers;
+        bool given = false;
+    };
+    std::string kind;
+    std::vector<Values> values;  // one for each key of the kind
+    Name material;
+};
+
+enum class ItemKind : uint8_t { sphere, plane, polygon, triangle, shape, load };
 struct Item {
     ItemKind kind;
     uint32_t index;  // index in the array of its kind
@@ -72,6 +83,7 @@ struct Document {
     std::vector<Plane> planes;
     std::vector<Polygon> polygons;
     std::vector<Triangle> triangles;
+    std::vector<Shape> shapes;
     std::vector<Load> loads;
     std::vector<Item> items;  // all geometry in the order of the file; this order numbers the primitives
     std::vector<Name> animated;

@@ -34,7 +34,9 @@ class Emitter {
  private:
     rt_u32 material(const Name& use) const { return use.text.empty() ? RT_NONE : material_ids_.at(use.text); }
     bool triangles(size_t first, size_t count);
+    bool shape(const Shape& shape);
     bool load(const Load& load);
+    std::string where() const { return file_ + ":" + std::to_string(position_.line) + ":" + std::to_string(position_.column); }
 
     const Document& document_;
     const std::string file_;
@@ -122,6 +124,20 @@ bool Emitter::triangles(size_t first, size_t count) {
     return sink_.instance(sink_.ctx, &instance) != RT_NONE;
 }
 
+bool Emitter::shape(const Shape& shape) {
+    std::vector<rt_key_values> values;
+    for (const Shape::Values& v : shape.values)
+        values.push_back({v.numbers.data(), static_cast<rt_u32>(v.numbers.size()), v.given ? 1u : 0u});
+    auto desc = sized<rt_primitive_desc>();
+    desc.kind = shape.kind.c_str();
+    desc.values = values.data();
+    desc.value_count = static_cast<rt_u32>(values.size());
+    desc.material = material(shape.material);
+    const std::string place = where();
+    desc.where = place.c_str();
+    return sink_.primitive(sink_.ctx, &desc) != RT_NONE;
+}
+
 bool Emitter::load(const Load& load) {
     position_ = load.position;
     auto desc = sized<rt_load>();
@@ -129,8 +145,8 @@ bool Emitter::load(const Load& load) {
     desc.name = name_or_null(load.name.text);
     std::copy(load.world_from_object.begin(), load.world_from_object.end(), desc.world_from_object);
     desc.material = material(load.material);
-    const std::string where = file_ + ":" + std::to_string(load.position.line) + ":" + std::to_string(load.position.column);
-    desc.where = where.c_str();
+    const std::string place = where();
+    desc.where = place.c_str();
     return sink_.load(sink_.ctx, &desc) == RT_OK;
 }
 
@@ -156,6 +172,8 @@ bool Emitter::item(size_t& at) {
             while (at < document_.items.size() && document_.items[at].kind == ItemKind::triangle) ++at;
             return triangles(item.index, at - first);
         }
+        case ItemKind::shape:
+            return shape(document_.shapes[item.index]);
         case ItemKind::load:
             return load(document_.loads[item.index]);
     }
@@ -167,11 +185,12 @@ bool Emitter::item(size_t& at) {
 int32_t emit(const Document& document, std::string_view file, const rt_host& host, const rt_scene_sink& sink) {
     Emitter emitter(document, file, sink);
     emitter.info();
-    bool ok = emitter.materials() && emitter.lights_and_cameras(), is_load = false;
+    bool ok = emitter.materials() && emitter.lights_and_cameras(), names_place = false;
     constexpr size_t items_between_reports = 1024;
     for (size_t at = 0, reported = 0; ok && at < document.items.size();) {
-        is_load = document.items[at].kind == ItemKind::load;
-        if (is_load || at >= reported) {
+        const ItemKind kind = document.items[at].kind;
+        names_place = kind == ItemKind::load || kind == ItemKind::shape;
+        if (kind == ItemKind::load || at >= reported) {
             const float fraction = 0.5f + 0.5f * static_cast<float>(at) / static_cast<float>(document.items.size());
             if (host.progress(host.ctx, fraction) == 0) return RT_CANCELLED;
             reported = at + items_between_reports;
@@ -179,7 +198,7 @@ int32_t emit(const Document& document, std::string_view file, const rt_host& hos
         ok = emitter.item(at);
     }
     if (ok) return RT_OK;
-    if (!is_load) {  // the error of a load names its place already
+    if (!names_place) {  // otherwise the error does already
         const std::string where = located(file, {emitter.position(), "the import stopped at this statement"});
         host.log(host.ctx, RT_LOG_WARNING, where.c_str());
     }

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lexer.hpp"
+#include "shapes.hpp"
 #include "statements.hpp"
 
 namespace scene_format {
@@ -13,7 +14,8 @@ namespace {
 
 constexpr uint32_t kLinesBetweenReports = 4096;
 
-void read_statement(Statement& statement, const Token& first, Document& document, Diagnostics& diagnostics) {
+void read_statement(Statement& statement, const Token& first, const ShapeKinds& kinds, Document& document,
+                    Diagnostics& diagnostics) {
     std::vector<std::string_view> words;
     if (first.is_quoted) {
         throw StatementError{first.position,
@@ -26,6 +28,14 @@ void read_statement(Statement& statement, const Token& first, Document& document
             return;
         }
         words.push_back(word);
+    }
+    for (const rt_primitive_kind* kind : kinds) {
+        if (kind->id == first.text) {
+            read_shape(statement, *kind, document);
+            ++document.statement_count;
+            return;
+        }
+        words.push_back(kind->id);
     }
     throw StatementError{first.position, "unknown statement " + in_quotes(first.text) + suggestion(first.text, words) +
                                              " (statements: " + listed(words) + ")"};
@@ -73,13 +83,15 @@ void check_names(const Document& document, Diagnostics& diagnostics) {
     check_materials(document.planes);
     check_materials(document.polygons);
     check_materials(document.triangles);
+    check_materials(document.shapes);
     check_materials(document.loads);
     for (const Name& target : document.animated) check_use(target, loads, "name", diagnostics);
 }
 
 }  // namespace
 
-bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, const std::function<bool(float)>& proceed) {
+bool parse(std::string_view text, const ShapeKinds& kinds, Document& document, Diagnostics& diagnostics,
+           const std::function<bool(float)>& proceed) {
     Lexer lexer(text);
     std::vector<Token> tokens;
     uint32_t lines = 0;
@@ -89,7 +101,7 @@ bool parse(std::string_view text, Document& document, Diagnostics& diagnostics, 
         try {
             if (!lexer.next_line(tokens)) break;
             Statement statement(tokens, lexer.line_end());
-            read_statement(statement, tokens[0], document, diagnostics);
+            read_statement(statement, tokens[0], kinds, document, diagnostics);
         } catch (const StatementError& error) {
             diagnostics.error(error);
             is_complete = !error.ends_reading;

@@ -9,6 +9,7 @@
 #include "lexer.hpp"
 #include "parser.hpp"
 #include "rt_plugin.hpp"
+#include "shapes.hpp"
 
 namespace scene_format {
 namespace {
@@ -56,7 +57,7 @@ int32_t load_file(const rt_host& host, const char* path, const rt_scene_sink& si
     Document document;
     Diagnostics diagnostics;
     const auto proceed = [&](float fraction) { return host.progress(host.ctx, 0.5f * fraction) != 0; };
-    if (!parse(text, document, diagnostics, proceed)) return RT_CANCELLED;
+    if (!parse(text, shape_kinds(sink), document, diagnostics, proceed)) return RT_CANCELLED;
     if (diagnostics.failed()) return report(diagnostics, path, host);
     for (const Diagnostic& warning : diagnostics.warnings()) sink.warn(sink.ctx, located(path, warning).c_str());
     return emit(document, path, host, sink);

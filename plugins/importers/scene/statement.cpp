@@ -140,11 +140,26 @@ float Statement::number(std::string_view what, size_t index, size_t count) {
 
 float Statement::number_between(std::string_view what, float least, float most) {
     const float value = number(what);
-    if (value < least || value > most) {
-        fail_at_last(in_quotes(tokens_[at_ - 1].text) + " is out of range; expected " + std::string(what) + " between " +
-                     short_number(least) + " and " + short_number(most));
-    }
+    check_range(what, value, least, most);
     return value;
+}
+
+void Statement::check_range(std::string_view what, float value, float least, float most) const {
+    if (value >= least && value <= most) return;
+    const std::string range = most < kMaxNumber ? " between " + short_number(least) + " and " + short_number(most)
+                                                : " of " + short_number(least) + " at least";
+    fail_at_last(in_quotes(tokens_[at_ - 1].text) + " is out of range; expected " + std::string(what) + range);
+}
+
+std::vector<float> Statement::numbers(std::string_view what, size_t group, float least, float most) {
+    std::vector<float> all;
+    while (!done() && !at_key()) {
+        all.push_back(number(what, all.size() % group, group));
+        check_range(what, all.back(), least, most);
+    }
+    if (!all.empty() && all.size() % group == 0) return all;
+    throw StatementError{next(), std::to_string(all.size()) + " numbers for " + std::string(what) + "; expected " +
+                                     (group > 1 ? std::to_string(group) + " for each point" : "one or more")};
 }
 
 Vec3 Statement::vector(std::string_view what) {

@@ -23,6 +23,8 @@ class Statement {
 
     std::string_view word() const { return tokens_[0].text; }
     Position position() const { return tokens_[0].position; }
+    // The position of the next word, or of the line's end.
+    Position next() const { return done() ? end_ : tokens_[at_].position; }
     // The position of the last word that was read.
     Position last() const { return tokens_[at_ - 1].position; }
     bool done() const { return at_ == tokens_.size(); }
@@ -47,12 +49,15 @@ class Statement {
     Vec3 color(std::string_view what, float most);     // 3 numbers, or one for grey; each 0..most
     Vec3 scale(std::string_view what);                 // 3 numbers, or one for all axes; none may be zero
     std::vector<float> points(std::string_view what);  // 3 numbers per point, up to the next key
+    // Numbers up to the next key, at least `group` and a multiple of it.
+    std::vector<float> numbers(std::string_view what, size_t group, float least, float most);
 
     void expect_end();
     [[noreturn]] void fail_at_last(const std::string& message) const { throw StatementError{last(), message}; }
 
  private:
     const Token& take(const std::string& expected);
+    void check_range(std::string_view what, float value, float least, float most) const;
     bool at_key() const;
     std::string text(std::string_view what, size_t most_bytes);
     std::vector<std::string_view> key_names() const;

@@ -1,0 +1,34 @@
+/* leaf_shape.h -- ray/shape test on lanes: takes the rays to the shape's space and calls its plugin's function. A template, see
+ * CONTRACT.md.
+ *
+ * Only lanes that enter the shape's box in the world matter. The plugin gets rays that start where they enter it: there, far rays
+ * have the precision of near ones. */
+RT_INLINE void RT_FN(rt_hit_shape)(const rt_ctx *ctx, const global rt_packed_prim *leaf, uint at, const rt_rays *r, rt_hits *h)
+{
+    vfloat entry;
+    const vmask enters = rt_enter_bounds(rt_vfloat(leaf->a[0]), rt_vfloat(leaf->a[1]), rt_vfloat(leaf->a[2]), rt_vfloat(leaf->b[0]),
+                                         rt_vfloat(leaf->b[1]), rt_vfloat(leaf->b[2]), r, h, &entry) &
+                         RT_MASK(h->t >= rt_vfloat(0.0f));
+    const uint active = rt_bits(enters);
+    if (active == 0u) return;
+    const global rt_shape *shape = ctx->shapes + RT_REF_INDEX(leaf->ref);
+    const global float *m = shape->object_from_world;
+    entry = rt_select(enters, entry, rt_vfloat(0.0f));
+    const vfloat x = fma(entry, r->dx, r->ox), y = fma(entry, r->dy, r->oy), z = fma(entry, r->dz, r->oz);
+    rt_shape_rays inner;
+    inner.origin = rt_vec_of(fma(rt_vfloat(m[0]), x, fma(rt_vfloat(m[1]), y, fma(rt_vfloat(m[2]), z, rt_vfloat(m[3])))),
+                             fma(rt_vfloat(m[4]), x, fma(rt_vfloat(m[5]), y, fma(rt_vfloat(m[6]), z, rt_vfloat(m[7])))),
+                             fma(rt_vfloat(m[8]), x, fma(rt_vfloat(m[9]), y, fma(rt_vfloat(m[10]), z, rt_vfloat(m[11])))));
+    inner.direction = rt_vec_of(fma(rt_vfloat(m[0]), r->dx, fma(rt_vfloat(m[1]), r->dy, rt_vfloat(m[2]) * r->dz)),
+                                fma(rt_vfloat(m[4]), r->dx, fma(rt_vfloat(m[5]), r->dy, rt_vfloat(m[6]) * r->dz)),
+                                fma(rt_vfloat(m[8]), r->dx, fma(rt_vfloat(m[9]), r->dy, rt_vfloat(m[10]) * r->dz)));
+    inner.t_min = r->t_min - entry; /* the direction keeps its length, so distances mean the same in both spaces */
+    inner.t_max = h->t - entry;
+    vfloat u = rt_vfloat(0.0f), v = u;
+    const vfloat inside = rt_shape_hit(ctx, shape, &inner, active, &u, &v);
+    const vfloat t = rt_max(inside + entry, r->t_min);
+    const vmask closer = enters & RT_MASK(inside >= inner.t_min) & RT_MASK(inside < RT_INFINITY) & rt_closer(r, h, t, leaf->prim);
+    if (!rt_any(closer)) return;
+    const vfloat zero = rt_vfloat(0.0f);
+    RT_FN(rt_record)(h, closer, t, u, v, zero, zero, zero, (int)at, leaf->prim);
+}

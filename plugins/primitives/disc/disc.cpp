@@ -1,0 +1,42 @@
+// disc: a flat disc, or a ring.
+#include <cmath>
+
+#include "rt_plugin.hpp"
+
+namespace {
+
+enum { kCenter, kNormal, kRadius, kInner };
+
+int32_t prepare(const rt_host* host, const rt_key_values* values, const rt_shape_output* out) {
+    const float *center = values[kCenter].numbers, *normal = values[kNormal].numbers;
+    const float radius = values[kRadius].numbers[0], inner = values[kInner].numbers[0];
+    if (inner >= radius) throw rt::fail(host, "`inner` is not below `radius`; expected the radius of a hole in the disc");
+    const double length = std::hypot(double(normal[0]), double(normal[1]), double(normal[2]));
+    float lo[3], hi[3], numbers[8];
+    for (int k = 0; k < 3; ++k) {
+        const double n = normal[k] / length, reach = radius * std::sqrt(std::fmax(0.0, 1 - n * n));
+        lo[k] = static_cast<float>(center[k] - reach);
+        hi[k] = static_cast<float>(center[k] + reach);
+        numbers[k] = center[k];
+        numbers[3 + k] = static_cast<float>(n);
+    }
+    numbers[6] = radius;
+    numbers[7] = inner;
+    rt::part(out, lo, hi, numbers, 8);
+    return RT_OK;
+}
+
+constexpr rt_key keys[] = {
+    rt::key(RT_KEY_POINT, "center", "x y z", 0, 0, 0),
+    rt::key(RT_KEY_VECTOR, "normal", "x y z of the direction that it faces", 0, 1, 0),
+    rt::number_key("radius", "of its rim", 1e-12, 1e15, 1),
+    rt::number_key("inner", "radius of a hole", 0, 1e15, 0),
+};
+constexpr rt_cl_file files[] = {
+#include "disc.inc"
+};
+constexpr rt_primitive primitive = rt::primitive(keys, rt::file(files, "disc.cl"), nullptr, rt::guarded<prepare>);
+
+}  // namespace
+
+extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::primitive_plugin("disc", "Disc", "1.0.0", nullptr, primitive);
