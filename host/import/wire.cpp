@@ -20,7 +20,7 @@ namespace {
 
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
 constexpr uint32_t kSectionCount = 23;
-constexpr uint64_t kAlignment = 64;
+constexpr uint64_t kPieceAlignment = 64;
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
 
 struct Section {
@@ -173,14 +173,14 @@ class Mapping {
 
 std::string write_scene(int fd, const Scene& scene) {
     const Converted converted = convert(scene);
-    static const char zeros[kAlignment] = {};
+    static const char zeros[kPieceAlignment] = {};
     Header header{};
     header.magic = kMagic;
     std::vector<iovec> pieces = {{&header, sizeof header}};
     uint64_t offset = sizeof header;
     uint32_t section = 0;
     const auto pad = [&] {
-        const uint64_t padding = (kAlignment - offset % kAlignment) % kAlignment;
+        const uint64_t padding = (kPieceAlignment - offset % kPieceAlignment) % kPieceAlignment;
         pieces.push_back({const_cast<char*>(zeros), padding});
         offset += padding;
     };
@@ -220,7 +220,7 @@ std::string read_scene(int fd, Scene& scene) {
     visit(scene, converted, [&](auto& array) {
         using Element = typename std::decay_t<decltype(array)>::value_type;
         const Section& s = header.sections[section++];
-        if (s.offset % kAlignment != 0 || s.offset > size || s.bytes > size - s.offset || s.bytes % sizeof(Element) != 0) {
+        if (s.offset % kPieceAlignment != 0 || s.offset > size || s.bytes > size - s.offset || s.bytes % sizeof(Element) != 0) {
             why = "section " + std::to_string(section - 1) + " of the shared memory is out of range";
         }
         if (!why.empty()) return;

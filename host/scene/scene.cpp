@@ -3,21 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include "scene/vec.hpp"
 
 namespace clarity {
 namespace {
 
-using Vec = std::array<double, 3>;
-
-Vec operator-(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 double length(const Vec& a) {
     return std::sqrt(dot(a, a));
 }

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include "scene/vec.hpp"
 
 namespace clarity {
 namespace {
-
-using Vec = std::array<double, 3>;
 
 constexpr rt_u32 kShaped = 64;  // up to this number of corners ears are chosen by shape, which takes quadratic time
 
@@ -14,16 +13,6 @@ Vec corner_at(const float* positions, rt_u32 vertex) {
     const float* p = positions + 3 * size_t(vertex);
     return {p[0], p[1], p[2]};
 }
-Vec cross(const Vec& a, const Vec& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-Vec minus(const Vec& a, const Vec& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 void fan(const rt_u32* corners, rt_u32 count, std::vector<rt_u32>& out) {
     for (rt_u32 i = 2; i < count; ++i) {
         for (const rt_u32 corner : {corners[0], corners[i - 1], corners[i]}) out.push_back(corner);
@@ -35,14 +24,14 @@ void fan(const rt_u32* corners, rt_u32 count, std::vector<rt_u32>& out) {
 void split_quad(const float* positions, const rt_u32* corners, std::vector<rt_u32>& out) {
     Vec p[4];
     for (int i = 0; i < 4; ++i) p[i] = corner_at(positions, corners[i]);
-    const Vec a = minus(p[2], p[0]), b = minus(p[3], p[1]);
+    const Vec a = (p[2] - p[0]), b = (p[3] - p[1]);
     // Cosine of the angle between the two triangles' normals; 0 if one of them has no area.
     const auto agreement = [](const Vec& m, const Vec& n) {
         const double lengths = std::sqrt(dot(m, m) * dot(n, n));
         return lengths > 0 ? dot(m, n) / lengths : 0;
     };
-    const double agree_a = agreement(cross(minus(p[1], p[0]), a), cross(a, minus(p[3], p[0])));
-    const double agree_b = agreement(cross(minus(p[2], p[1]), b), cross(b, minus(p[0], p[1])));
+    const double agree_a = agreement(cross((p[1] - p[0]), a), cross(a, (p[3] - p[0])));
+    const double agree_b = agreement(cross((p[2] - p[1]), b), cross(b, (p[0] - p[1])));
     const bool along_a = agree_a < 0 || agree_b < 0 ? agree_a >= agree_b : dot(a, a) <= dot(b, b);
     const int order[2][6] = {{0, 1, 3, 1, 2, 3}, {0, 1, 2, 0, 2, 3}};
     for (const int i : order[along_a]) out.push_back(corners[i]);
@@ -66,10 +55,10 @@ void Triangulator::add(const float* positions, const rt_u32* corners, rt_u32 cor
 bool Triangulator::fan_is_flat(const float* positions, const rt_u32* corners, rt_u32 count) const {
     constexpr double kBend = 1e-4;  // relative
     const Vec origin = corner_at(positions, corners[0]);
-    Vec before = minus(corner_at(positions, corners[1]), origin), sum{};
+    Vec before = (corner_at(positions, corners[1]) - origin), sum{};
     double area = 0;
     for (rt_u32 i = 2; i < count; ++i) {
-        const Vec p = minus(corner_at(positions, corners[i]), origin), n = cross(before, p);
+        const Vec p = (corner_at(positions, corners[i]) - origin), n = cross(before, p);
         area += std::sqrt(dot(n, n));
         for (int k = 0; k < 3; ++k) sum[k] += n[k];
         before = p;
@@ -85,7 +74,7 @@ bool Triangulator::project(const float* positions, const rt_u32* corners, rt_u32
     Vec before{};  // relative to the first corner, which keeps precision far from the world's origin
     for (rt_u32 i = 1; i < count; ++i) {
         const Vec absolute = corner_at(positions, corners[i]);
-        const Vec p = minus(absolute, origin), n = cross(before, p);
+        const Vec p = (absolute - origin), n = cross(before, p);
         for (int k = 0; k < 3; ++k) {
             normal[k] += n[k];
             largest = std::max(largest, std::max(std::abs(absolute[k]), std::abs(origin[k])));
@@ -111,7 +100,7 @@ bool Triangulator::project(const float* positions, const rt_u32* corners, rt_u32
     const Vec v = cross(normal, u);
     points_.resize(count);
     for (rt_u32 i = 0; i < count; ++i) {
-        const Vec p = minus(corner_at(positions, corners[i]), origin);
+        const Vec p = (corner_at(positions, corners[i]) - origin);
         points_[i] = {dot(p, u), dot(p, v)};
     }
     return true;

@@ -19,8 +19,8 @@
 namespace clarity::bench {
 namespace {
 
-constexpr float kMayDiffer = 0.02f;        // tolerance of a pixel if the devices are of different kinds
-constexpr double kPixelsMayDiffer = 0.01;  // share of pixels which may exceed it
+constexpr float kSmallDifference = 0.02f;        // tolerance of a pixel if the devices are of different kinds
+constexpr double kDifferentPixels = 0.01;  // share of pixels which may exceed it
 
 // The first devices of a run, with their renderer and their row.
 struct Team {
@@ -72,8 +72,8 @@ void note_times(Team& team, const FrameStats& stats) {
 }
 
 void check_picture(Team& team, const FloatImage& truth, const FloatImage& picture) {
-    const double differ = differing_pixels(picture, truth, team.alike ? 0.0f : kMayDiffer);
-    if (differ <= (team.alike ? 0.0 : kPixelsMayDiffer)) return;
+    const double differ = differing_pixels(picture, truth, team.alike ? 0.0f : kSmallDifference);
+    if (differ <= (team.alike ? 0.0 : kDifferentPixels)) return;
     char why[160];
     std::snprintf(why, sizeof why, "%.3g %% of its pixels differ from the picture of one device: one of the two is wrong",
                   100 * differ);

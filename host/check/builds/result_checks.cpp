@@ -201,8 +201,8 @@ std::string loose_bounds(const rt_plugin& plugin, const BuildScene& scene, Build
 
 std::string wasted_memory(const rt_accel& accel, const BuildCase& input, const BuilderResult& result) {
     constexpr uint64_t kFree = 64u << 10;
-    // The nodes of a topology, which has no traversal, are freed as soon as they are packed. Its builder may ask for as many as it
-    // might need.
+    // The nodes of a topology, which has no traversal, are freed as soon as they are packed. Its builder may ask for as many as
+    // it might need.
     const bool is_kept = accel.traverse.name != nullptr;
     uint64_t bytes = 0;
     for (size_t s = 0; s < result.slots.size(); ++s) {

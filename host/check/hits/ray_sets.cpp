@@ -8,7 +8,7 @@
 namespace clarity::check {
 namespace {
 
-constexpr float kInf = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kFar = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
 
 class RayMaker {
  public:
@@ -31,7 +31,7 @@ class RayMaker {
         return p;
     }
     static rt_ray from_to(const Point& from, const Point& to) {
-        rt_ray ray{{from[0], from[1], from[2]}, 0, {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, kInf};
+        rt_ray ray{{from[0], from[1], from[2]}, 0, {to[0] - from[0], to[1] - from[1], to[2] - from[2]}, kFar};
         const float length = std::sqrt(ray.direction[0] * ray.direction[0] + ray.direction[1] * ray.direction[1] +
                                        ray.direction[2] * ray.direction[2]);
         if (length > 0)
@@ -119,7 +119,7 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
                 d[i % 3] = i & 8 ? 1.0f : -1.0f;
                 if (i % 2) d[(i + 1) % 3] = make.any() - 0.5f;
                 from[i % 3] -= 2 * at.radius * d[i % 3];
-                rays.push_back({{from[0], from[1], from[2]}, 0, {d[0], d[1], d[2]}, kInf});
+                rays.push_back({{from[0], from[1], from[2]}, 0, {d[0], d[1], d[2]}, kFar});
             }
         });
     add("hits.grazing", "rays through corners and along edges of triangles", [&](std::vector<rt_ray>& rays) {
@@ -190,7 +190,7 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
                 rt_ray ray = make.into(at, 2);
                 const float a = 4 * at.radius * make.any(), b = 4 * at.radius * make.any();
                 if (i % 2) ray.t_min = std::min(a, b);
-                ray.t_max = i % 4 == 3 ? kInf : std::max(a, b);
+                ray.t_max = i % 4 == 3 ? kFar : std::max(a, b);
                 rays.push_back(ray);
             }
         });
@@ -207,18 +207,18 @@ std::vector<RaySet> ray_sets(const BuildScene& scene, size_t count) {
         [&](std::vector<rt_ray>& rays) {
             const float tiny = 1e-40f;
             const rt_ray strange[] = {
-                {{0, 0, 5}, 0, {0, 0, 0}, kInf},
-                {{0, 0, 5}, 0, {kNan, 0, -1}, kInf},
-                {{0, 0, 5}, 0, {kNan, kNan, kNan}, kInf},
-                {{kNan, 0, 5}, 0, {0, 0, -1}, kInf},
-                {{kInf, 0, 5}, 0, {0, 0, -1}, kInf},
-                {{0, 0, 5}, 0, {kInf, 0, -1}, kInf},
-                {{0, 0, 5}, 0, {0, -kInf, kInf}, kInf},
-                {{0, 0, 5}, 0, {1e30f, -1e30f, 1e30f}, kInf},
-                {{0, 0, 5}, 0, {tiny, -tiny, -1}, kInf},
-                {{0, 0, 5}, 0, {tiny, tiny, tiny}, kInf},
-                {{1e30f, 1e30f, -1e30f}, 0, {-1, -1, 1}, kInf},
-                {{0, 0, 5}, kNan, {0, 0, -1}, kInf},
+                {{0, 0, 5}, 0, {0, 0, 0}, kFar},
+                {{0, 0, 5}, 0, {kNan, 0, -1}, kFar},
+                {{0, 0, 5}, 0, {kNan, kNan, kNan}, kFar},
+                {{kNan, 0, 5}, 0, {0, 0, -1}, kFar},
+                {{kFar, 0, 5}, 0, {0, 0, -1}, kFar},
+                {{0, 0, 5}, 0, {kFar, 0, -1}, kFar},
+                {{0, 0, 5}, 0, {0, -kFar, kFar}, kFar},
+                {{0, 0, 5}, 0, {1e30f, -1e30f, 1e30f}, kFar},
+                {{0, 0, 5}, 0, {tiny, -tiny, -1}, kFar},
+                {{0, 0, 5}, 0, {tiny, tiny, tiny}, kFar},
+                {{1e30f, 1e30f, -1e30f}, 0, {-1, -1, 1}, kFar},
+                {{0, 0, 5}, kNan, {0, 0, -1}, kFar},
                 {{0, 0, 5}, 0, {0, 0, -1}, kNan},
                 {{0, 0, 5}, 10, {0, 0, -1}, 1},
                 {{0, 0, 5}, 0, {0, 0, -1}, -1},

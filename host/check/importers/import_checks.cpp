@@ -62,7 +62,7 @@ Import import_file(const ImportInputs& inputs, const std::string& path, unsigned
     Watch watch(cancel_at);
     try {
         const import::FileAccess access({path}, {});
-        import::SceneBuilder builder(inputs.plugins, access, watch, &watch);
+        import::SceneBuilder builder(inputs.plugins, {}, access, watch, &watch);
         builder.add_root(path);
         result.scene = builder.take();
     } catch (const Cancelled&) {

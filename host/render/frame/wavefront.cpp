@@ -12,8 +12,8 @@ constexpr size_t kRayBytes = 48, kShareBytes = 24;
 constexpr size_t kControlBytes = 17 * 2 * sizeof(cl_uint);
 // Work-groups that a compute unit of a GPU runs or keeps ready: 32 warps of 32.
 constexpr unsigned kGroupsPerUnit = 16;
-// Queues may take 1 / kShareOfMemory of a device's memory. On a CPU they should stay in its caches.
-constexpr unsigned kShareOfMemory = 8;
+// Queues may take 1 / kQueueShare of a device's memory. On a CPU they should stay in its caches.
+constexpr unsigned kQueueShare = 8;
 constexpr uint64_t kCpuBytes = 64 << 20;
 constexpr uint64_t kMostCounted = 1u << 30;  // a uint counts them, including those that find no room
 
@@ -49,7 +49,7 @@ Wavefront::Room Wavefront::room_for(const WavefrontFrame& frame) const {
     const uint64_t group_rays = uint64_t(layout.group_packets()) * layout.packet_w * layout.packet_h *
                                 static_cast<unsigned>(frame.prepared.settings.ray_slots);
     const DeviceInfo& info = device_->info();
-    uint64_t most = (info.cpu ? kCpuBytes : info.global_bytes / kShareOfMemory) / (2 * kRayBytes);
+    uint64_t most = (info.cpu ? kCpuBytes : info.global_bytes / kQueueShare) / (2 * kRayBytes);
     if (info.max_allocation_bytes) most = std::min(most, info.max_allocation_bytes / kRayBytes);
     most = std::min(most, kMostCounted);
     const auto fitting = static_cast<unsigned>(std::clamp<uint64_t>(most / group_rays, 1, frame.groups));

@@ -7,6 +7,7 @@
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "render/settings/camera_text.hpp"
+#include "render/settings/settings.hpp"
 
 namespace clarity {
 namespace {
