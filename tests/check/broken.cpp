@@ -124,6 +124,7 @@ class Builder {
 
 volatile int sink = 0;
 int recurse(int n) {
+    if (sink == -1) return 0;  // never
     char room[4096];
     std::memset(room, n, sizeof room);
     sink += room[n & 1023];

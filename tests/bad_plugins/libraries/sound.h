@@ -98,5 +98,5 @@ const void* const sound_parts[] = {choices, no_choices, &accel, &importer, param
 
 #define PLUGIN \
     const rt_plugin rt_plugin_v1 = {ABI,  PLUGIN_BYTES, DIGEST, PARAM_COUNT, ID,       NAME,       "1.0", \
-                                    NULL, params,       ACCEL,  IMPORTER,    EXTENSIONS, PARAM_BYTES, EXTENSION_BYTES};
+                                    NULL, params,       ACCEL,  IMPORTER,    EXTENSIONS, PARAM_BYTES, EXTENSION_BYTES, NULL};
 #endif

@@ -36,7 +36,14 @@ struct Boxes {
     rt_build_input input() const {
         static const rt_geometry geometry{sizeof(rt_geometry), nullptr, 0};
         static const double params[1] = {};
-        return {sizeof(rt_build_input), static_cast<rt_u32>(groups.size()), prims.data(), groups.data(), &geometry, params};
+        rt_build_input input{};
+        input.struct_bytes = sizeof input;
+        input.group_count = static_cast<rt_u32>(groups.size());
+        input.prims = prims.data();
+        input.groups = groups.data();
+        input.geometry = &geometry;
+        input.params = params;
+        return input;
     }
 };
 
