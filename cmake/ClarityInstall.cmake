@@ -16,7 +16,7 @@ file(CREATE_LINK ${PROJECT_SOURCE_DIR}/host/sdk/template ${PROJECT_BINARY_DIR}/s
 # The pages, and the kernels and structures that they name, lie as in the sources, so that links between them hold.
 install(FILES README.md CONTRIBUTING.md DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk)
 install(DIRECTORY docs cl DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT sdk PATTERN "*.sh" EXCLUDE)
-install(DIRECTORY plugins/accel DESTINATION ${CMAKE_INSTALL_DOCDIR}/plugins COMPONENT sdk)
+install(DIRECTORY plugins/accel plugins/primitives DESTINATION ${CMAKE_INSTALL_DOCDIR}/plugins COMPONENT sdk)
 install(FILES scenes/README.md DESTINATION ${CMAKE_INSTALL_DOCDIR}/scenes COMPONENT sdk)
 
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/clarity)

@@ -22,8 +22,8 @@ struct PluginRecord {
 
 // All libraries that were found, in this order: --plugin files, the folders in CLARITY_PLUGIN_PATH (separated by colons),
 // $XDG_DATA_HOME/clarity/plugins, then the program's own plugins (in the library folder of the installation, or
-// ../lib/clarity/plugins/{importers,accel,primitives} relative to the executable in a build folder). The working directory is never
-// searched. Libraries are loaded with RTLD_NOW|RTLD_LOCAL and never closed, so a plugin stays valid even after replace().
+// ../lib/clarity/plugins/{importers,accel,primitives} relative to the executable in a build folder). The working directory is
+// never searched. Libraries are loaded with RTLD_NOW|RTLD_LOCAL and never closed, so a plugin stays valid even after replace().
 // Copies of a registry share one list. Thread-safe.
 class PluginRegistry {
  public:

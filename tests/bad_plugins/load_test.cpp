@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"hidden_symbol", {"no symbol rt_plugin_v1"}}, Refusal{"function_symbol", {"as a function", "expected data"}},
         Refusal{"undefined_function", {"cannot be loaded", "sound_function_that_nobody_has", "--no-undefined"}},
         Refusal{"bad_id", {"'Sound-1'", "[a-z][a-z0-9_]*"}}, Refusal{"null_id", {"id", "[a-z][a-z0-9_]*"}},
-        Refusal{"control_characters", {"name holds control characters"}}, Refusal{"both_kinds", {"both", "exactly one"}},
+        Refusal{"control_characters", {"name holds control characters"}}, Refusal{"both_kinds", {"more than one of accel, importer and primitive", "exactly one"}},
         Refusal{"neither_kind", {"neither", "exactly one"}},
         Refusal{"small_accel", {"rt_accel has struct_bytes 104", "ABI version 2 has 112", "rebuild"}},
         Refusal{"small_importer", {"rt_importer has struct_bytes 8", "has 32"}}, Refusal{"no_build", {"build is NULL"}},

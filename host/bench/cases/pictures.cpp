@@ -19,7 +19,7 @@
 namespace clarity::bench {
 namespace {
 
-constexpr float kSmallDifference = 0.02f;        // tolerance of a pixel if the devices are of different kinds
+constexpr float kSmallDifference = 0.02f;  // tolerance of a pixel if the devices are of different kinds
 constexpr double kDifferentPixels = 0.01;  // share of pixels which may exceed it
 
 // The first devices of a run, with their renderer and their row.

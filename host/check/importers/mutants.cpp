@@ -78,7 +78,8 @@ Mutant change_block(const std::string& bytes, Random& random) {
 
 // Replaces the number of a text that stands at or after a random place; binary files have few, and any will do.
 Mutant change_number(const std::string& bytes, Random& random) {
-    size_t begin = below(random, bytes.size());
+    // Counts stand at the head of a file, so every other number is one of there.
+    size_t begin = below(random, random() % 2 ? bytes.size() : std::min<size_t>(bytes.size(), 64));
     while (begin < bytes.size() && !(bytes[begin] >= '0' && bytes[begin] <= '9')) ++begin;
     if (begin == bytes.size()) return change_byte(bytes, random);
     while (begin > 0 && in_number(bytes[begin - 1])) --begin;

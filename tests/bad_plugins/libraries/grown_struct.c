@@ -32,5 +32,5 @@ static const struct grown_accel grown_accel = {
 RT_EXPORT extern const struct grown grown_plugin __asm__("rt_plugin_v1");
 const struct grown grown_plugin = {{ABI, sizeof(struct grown), DIGEST, 2, "grown", NAME, "1.0", NULL, &grown_params[0].known,
                                     &grown_accel.known, NULL, &grown_extensions[0].known, sizeof(struct grown_param),
-                                    sizeof(struct grown_extension)},
+                                    sizeof(struct grown_extension), NULL},
                                    "later"};
