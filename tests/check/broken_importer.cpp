@@ -18,6 +18,7 @@ bool is(const char* defect) {
 }
 
 volatile int sink = 0;
+char* volatile memory = nullptr;  // volatile: otherwise the compiler sees that nobody reads it
 int imports = 0;
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink_of) {
@@ -31,7 +32,10 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     }
     if (count < 1) throw rt::fail(host, std::string(path) + ":1: expected a number of triangles of at least 1");
     std::vector<float> positions;
-    if (is("trusts_count")) std::memset(std::malloc(static_cast<size_t>(count) * 36), 0, static_cast<size_t>(count) * 36);
+    if (is("trusts_count")) {
+        memory = static_cast<char*>(std::malloc(static_cast<size_t>(count) * 36));
+        for (long long i = 0; i < count * 36; i += 4096) memory[i] = 1;
+    }
     for (long long i = 0; i < count; ++i) {
         for (int k = 0; k < 9; ++k) {
             float value = 0;
