@@ -76,23 +76,29 @@ Mutant change_block(const std::string& bytes, Random& random) {
     return mutant;
 }
 
-// Replaces the number of a text that stands at or after a random place; binary files have few, and any will do.
-Mutant change_number(const std::string& bytes, Random& random) {
-    // Counts stand at the head of a file, so every other number is one of there.
-    size_t begin = below(random, random() % 2 ? bytes.size() : std::min<size_t>(bytes.size(), 64));
+constexpr const char* kNumbers[] = {"4294967295",           "-1", "1e999",      "nan",   "inf",
+                                    "99999999999999999999", "0",  "2147483648", "1e-60", ""};
+
+// Replaces the number of a text that stands at or after a place. `place` becomes the end of the new one, or that of the file if
+// there is none.
+Mutant change_number(const std::string& bytes, size_t& place, const char* number) {
+    size_t begin = place;
     while (begin < bytes.size() && !(bytes[begin] >= '0' && bytes[begin] <= '9')) ++begin;
-    if (begin == bytes.size()) return change_byte(bytes, random);
-    while (begin > 0 && in_number(bytes[begin - 1])) --begin;
+    while (begin > place && in_number(bytes[begin - 1])) --begin;
     size_t end = begin;
     while (end < bytes.size() && in_number(bytes[end])) ++end;
-    constexpr const char* kNumbers[] = {"4294967295",           "-1", "1e999",      "nan",   "inf",
-                                        "99999999999999999999", "0",  "2147483648", "1e-60", ""};
-    const char* number = kNumbers[below(random, std::size(kNumbers))];
+    place = end;
     Mutant mutant{{}, bytes};
     mutant.bytes.replace(begin, end - begin, number);
     mutant.what = "'" + bytes.substr(begin, std::min<size_t>(end - begin, 40)) + "' at byte " + std::to_string(begin) +
                   " is '" + number + "'";
     return mutant;
+}
+
+Mutant change_any_number(const std::string& bytes, Random& random) {
+    size_t place = below(random, bytes.size());
+    Mutant mutant = change_number(bytes, place, kNumbers[below(random, std::size(kNumbers))]);
+    return mutant.bytes == bytes ? change_byte(bytes, random) : mutant;
 }
 
 }  // namespace
@@ -101,7 +107,11 @@ std::vector<Mutant> mutants_of(const std::string& bytes, unsigned count) {
     std::vector<Mutant> mutants;
     if (bytes.empty()) return mutants;
     Random random(static_cast<unsigned>(bytes.size()));
-    constexpr Mutant (*kWays[])(const std::string&, Random&) = {cut, change_byte, change_word, change_block, change_number};
+    constexpr Mutant (*kWays[])(const std::string&, Random&) = {cut, change_byte, change_word, change_block, change_any_number};
+    // Counts stand at the head of a file: its first numbers get every impossible value.
+    for (const char* number : kNumbers)
+        for (size_t n = 0, place = 0; n < 3 && place < std::min<size_t>(bytes.size(), 4096); ++n)
+            mutants.push_back(change_number(bytes, place, number));
     for (unsigned i = 0; i < count; ++i) mutants.push_back(kWays[i % std::size(kWays)](bytes, random));
     return mutants;
 }
