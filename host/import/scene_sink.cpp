@@ -119,7 +119,7 @@ Result SceneSink::guarded(void* ctx, Result failed, const Body& body) {
 
 SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string path, FileContent& content)
     : builder_(builder), services_(services), path_(std::move(path)), content_(content) {
-    sink_.struct_bytes = sizeof(rt_scene_sink);
+    sink_.struct_bytes = offsetof(rt_scene_sink, node);
     sink_.ctx = this;
     sink_.texture = [](void* ctx, const rt_texture_desc* d) {
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.texture(taken(d, "rt_texture_desc")); });
