@@ -1,8 +1,7 @@
-// assimp.cpp -- the importer plugin for FBX, glTF, COLLADA, 3DS and other formats that the Open Asset Import Library reads.
+// assimp.cpp -- the importer plugin for glTF, COLLADA, 3DS and other formats that the Open Asset Import Library reads.
 //
 // The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. A mesh is imported once,
 // no matter how many nodes show it.
-// nodes show it.
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
@@ -15,7 +14,6 @@
 #include <vector>
 
 #include "complaints.hpp"
-#include "fbx_mend.hpp"
 #include "file_kind.hpp"
 #include "lights_cameras.hpp"
 #include "materials.hpp"
@@ -62,7 +60,6 @@ std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
 }
 
 Format format_of(const std::string& extension) {
-    if (extension == "fbx") return Format::fbx;
     return extension == "gltf" || extension == "glb" || extension == "vrm" ? Format::gltf : Format::other;
 }
 
@@ -76,11 +73,6 @@ Units units_of(aiScene& scene, Format format, const std::string& extension, cons
     Units units;
     if (format == Format::gltf) {
         units.unit_scale = 1;
-    } else if (format == Format::fbx && scene.mMetaData) {
-        int up = 1;
-        float centimetres = 0;
-        if (scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) units.up_axis = static_cast<rt_u32>(up);
-        if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) units.unit_scale = 0.01 * centimetres;
     } else if (extension == "dae" && scene.mRootNode) {
         // assimp scales the root node to metres. Undo that, and report the unit instead.
         const std::string text(head.begin(), head.end());
@@ -100,26 +92,24 @@ void warn(const rt_scene_sink& sink, const std::string& text) {
     sink.warn(sink.ctx, text.c_str());
 }
 
-// Adds one instance for each node with polygons. `mend` is set for FBX only.
-void add_instances(const NodeTree& tree, const FbxMend* mend, MeshTable& meshes, const rt_host* host,
-                   const rt_scene_sink& sink) {
+// Adds one instance for each node with polygons.
+void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host, const rt_scene_sink& sink) {
     size_t done = 0, strayed = 0;
     for (const PlacedNode& placed : tree.nodes()) {
         rt::progress(host, kReadShare + (1 - kReadShare) * float(++done) / float(tree.nodes().size()));
         if (placed.node->mNumMeshes == 0) continue;
-        if (!is_finite(placed.world_geometry)) {
+        if (!is_finite(placed.world)) {
             ++strayed;
             continue;
         }
-        const MeshTable::Placed shown =
-            meshes.place(*placed.node, mend ? mend->materials(*placed.node) : std::vector<unsigned>());
-        if (shown.mesh == RT_NONE) continue;
+        const rt_u32 mesh = meshes.id(*placed.node);
+        if (mesh == RT_NONE) continue;
         rt_instance_desc out{};
         out.struct_bytes = sizeof out;
         out.name = placed.node->mName.C_Str();
-        out.mesh = shown.mesh;
-        out.material = shown.material;
-        std::transform(placed.world_geometry.begin(), placed.world_geometry.end(), out.world_from_object,
+        out.mesh = mesh;
+        out.material = RT_NONE;
+        std::transform(placed.world.begin(), placed.world.end(), out.world_from_object,
                        [](double x) { return static_cast<float>(x); });
         rt::id(sink.instance(sink.ctx, &out));
     }
@@ -153,19 +143,10 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     const std::vector<uint8_t> head = read_head(host, path);
     const std::string extension = lower_extension(path);
     const Format format = format_of(extension);
-    if (format == Format::fbx) {
-        const std::string refusal = fbx_refusal(head.data(), head.size());
-        if (!refusal.empty()) throw rt::fail(host, refusal);
-        if (fbx_version(head.data(), head.size()) >= 8000)
-            warn(*sink, "the file's FBX version is newer than 7.7, the newest known");
-    }
 
     Assimp::Importer importer;
     HostProgress* progress = new HostProgress(*host);  // the importer deletes it
     importer.SetProgressHandler(progress);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, false);
     importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
     const Complaints complaints;
     importer.ReadFile(path, 0);
@@ -178,11 +159,10 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     }
 
     const Units units = units_of(*scene, format, extension, head);
-    const std::unique_ptr<FbxMend> mend = format == Format::fbx ? std::make_unique<FbxMend>(*scene, path) : nullptr;
-    const NodeTree tree(*scene, format == Format::fbx);
+    const NodeTree tree(*scene);
     MaterialTable materials(*scene, format, path, *sink);
     MeshTable meshes(*scene, materials, *sink);
-    add_instances(tree, mend.get(), meshes, host, *sink);
+    add_instances(tree, meshes, host, *sink);
     report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
     add_cameras(*scene, tree, format, *sink);
@@ -199,12 +179,12 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 // The formats that users expect. assimp reads more; many of those are rare, unsafe or not meshes.
-constexpr const char* extensions[] = {"fbx",  "gltf", "glb",     "dae",  "3ds", "blend",   "ac",  "ase", "b3d",
-                                      "bvh",  "dxf",  "hmp",     "ifc",  "irr", "irrmesh", "lwo", "lws", "lxo",
-                                      "md2",  "md3",  "md5mesh", "ms3d", "nff", "q3o",     "smd", "ter", "vrm",
-                                      "x",    "x3d",  "xgl",     "zgl",  "3mf", "amf",     "cob", "scn",
+constexpr const char* extensions[] = {"gltf", "glb",     "dae",  "3ds", "blend",   "ac",  "ase", "b3d", "bvh",
+                                      "dxf",  "hmp",     "ifc",  "irr", "irrmesh", "lwo", "lws", "lxo", "md2",
+                                      "md3",  "md5mesh", "ms3d", "nff", "q3o",     "smd", "ter", "vrm", "x",
+                                      "x3d",  "xgl",     "zgl",  "3mf", "amf",     "cob", "scn",
 #ifdef ASSIMP_TAKES_MESH_FORMATS
-                                      "obj",  "ply",  "stl",     "off",
+                                      "obj",  "ply",     "stl",  "off",
 #endif
                                       nullptr};
 constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>};
@@ -213,4 +193,4 @@ constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::gu
 }  // namespace assimp_import
 
 extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::importer_plugin(
-    "assimp", "FBX, glTF, COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);
+    "assimp", "glTF, COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapped_file.hpp"
+#include "../common/mapped_file.hpp"
 #include "readers.hpp"
 #include "rt_plugin.hpp"
 #include "text.hpp"
@@ -119,7 +119,7 @@ void emit(const Source& source, const FlatImporter& mesh, rt_u32 material) {
 }
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    const MappedFile file(path);
+    const importers::MappedFile file(path);
     if (file.bytes().empty()) throw std::runtime_error("the file is empty");
     if (const char* kind = picture_kind(file.bytes())) throw std::runtime_error(std::string("it is ") + kind);
     const auto report = [&](float fraction) { rt::progress(host, kReadShare * std::min(1.0f, std::max(0.0f, fraction))); };
