@@ -1,8 +1,7 @@
-// assimp.cpp -- the importer plugin for FBX, glTF, COLLADA, 3DS and other formats that the Open Asset Import Library reads.
+// assimp.cpp -- the importer plugin for FBX, COLLADA, 3DS and other formats that the Open Asset Import Library reads.
 //
 // The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. A mesh is imported once,
 // no matter how many nodes show it.
-// nodes show it.
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
@@ -62,8 +61,7 @@ std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
 }
 
 Format format_of(const std::string& extension) {
-    if (extension == "fbx") return Format::fbx;
-    return extension == "gltf" || extension == "glb" || extension == "vrm" ? Format::gltf : Format::other;
+    return extension == "fbx" ? Format::fbx : Format::other;
 }
 
 // The axes and the unit that the file declares.
@@ -74,9 +72,7 @@ struct Units {
 
 Units units_of(aiScene& scene, Format format, const std::string& extension, const std::vector<uint8_t>& head) {
     Units units;
-    if (format == Format::gltf) {
-        units.unit_scale = 1;
-    } else if (format == Format::fbx && scene.mMetaData) {
+    if (format == Format::fbx && scene.mMetaData) {
         int up = 1;
         float centimetres = 0;
         if (scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) units.up_axis = static_cast<rt_u32>(up);
@@ -185,7 +181,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     add_instances(tree, mend.get(), meshes, host, *sink);
     report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
-    add_cameras(*scene, tree, format, *sink);
+    add_cameras(*scene, tree, *sink);
     rt_scene_info info{};
     info.struct_bytes = sizeof info;
     info.up_axis = units.up_axis;
@@ -199,12 +195,11 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 // The formats that users expect. assimp reads more; many of those are rare, unsafe or not meshes.
-constexpr const char* extensions[] = {"fbx",  "gltf", "glb",     "dae",  "3ds", "blend",   "ac",  "ase", "b3d",
-                                      "bvh",  "dxf",  "hmp",     "ifc",  "irr", "irrmesh", "lwo", "lws", "lxo",
-                                      "md2",  "md3",  "md5mesh", "ms3d", "nff", "q3o",     "smd", "ter", "vrm",
-                                      "x",    "x3d",  "xgl",     "zgl",  "3mf", "amf",     "cob", "scn",
+constexpr const char* extensions[] = {"fbx",  "dae",     "3ds", "blend", "ac",  "ase", "b3d", "bvh",     "dxf",  "hmp", "ifc",
+                                      "irr",  "irrmesh", "lwo", "lws",   "lxo", "md2", "md3", "md5mesh", "ms3d", "nff", "q3o",
+                                      "smd",  "ter",     "x",   "x3d",   "xgl", "zgl", "3mf", "amf",     "cob",  "scn",
 #ifdef ASSIMP_TAKES_MESH_FORMATS
-                                      "obj",  "ply",  "stl",     "off",
+                                      "obj",  "ply",     "stl", "off",
 #endif
                                       nullptr};
 constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>};
@@ -213,4 +208,4 @@ constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::gu
 }  // namespace assimp_import
 
 extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::importer_plugin(
-    "assimp", "FBX, glTF, COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);
+    "assimp", "FBX, COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);

@@ -65,10 +65,9 @@ std::string version_text(int version) {
 
 int certainty(const uint8_t* head, size_t bytes) {
     const std::string_view text = text_of(head, bytes);
-    if (starts_with(text, kFbxMagic) || starts_with(text, "glTF")) return 100;
+    if (starts_with(text, kFbxMagic)) return 100;
     if (is_ascii_fbx(text)) return 95;
     if (text.substr(0, 1024).find("<COLLADA") != text.npos) return 90;
-    if (starts_with(trimmed(text), "{") && text.find("\"asset\"") != text.npos) return 60;
     return 0;
 }
 

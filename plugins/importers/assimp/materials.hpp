@@ -17,7 +17,7 @@ struct TextureMapping {
     aiUVTransform transform;
 };
 
-enum class Format { fbx, gltf, other };
+enum class Format { fbx, other };
 
 // Converts materials and passes each to the sink when it is first used.
 class MaterialTable {
