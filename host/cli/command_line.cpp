@@ -158,7 +158,7 @@ void add_check(CLI::App& app, CheckCommand& command) {
         ->type_name("PLUGIN")
         ->required();
     app.add_option("--only", command.options.only,
-                   "Only checks whose name begins so, such as hits or builds.refs; may be repeated")
+                   "Only checks whose name begins so, such as hits, builds.refs or keys; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
     app.add_option("--lanes", command.options.lanes,
@@ -183,7 +183,7 @@ void add_check(CLI::App& app, CheckCommand& command) {
 }
 
 void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
-    app.add_option("kind", command.kind, "accel (an acceleration structure) or importer")->type_name("KIND")->required();
+    app.add_option("kind", command.kind, "accel (an acceleration structure), importer or primitive (a shape)")->type_name("KIND")->required();
     app.add_option("id", command.id, "Its name: lower-case letters, digits and _, a letter first")->type_name("ID")->required();
     app.add_option("folder", command.folder, "The new folder; default: ID in the working folder")->type_name("DIR");
 }
