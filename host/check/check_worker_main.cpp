@@ -82,14 +82,6 @@ bool parse(int argc, char** argv, Arguments& arguments) {
     return !arguments.library.empty() && !arguments.phase.empty();
 }
 
-bool wanted(const Check& check, const Arguments& arguments) {
-    if (arguments.done.count(check.name)) return false;
-    if (arguments.only.empty()) return true;
-    for (const std::string& only : arguments.only)
-        if (check.name.compare(0, only.size(), only) == 0) return true;
-    return false;
-}
-
 std::string shortened(std::string text) {
     if (text.size() > kMostText) text = text.substr(0, kMostText) + " ...";
     return text;
@@ -189,7 +181,7 @@ int run_all(const Arguments& arguments) {
                                       : arguments.phase == "imports" ? importer_checks(arguments)
                                                                      : kernel_checks(record, arguments);
     for (const Check& check : checks)
-        if (wanted(check, arguments)) run(check);
+        if (!arguments.done.count(check.name) && is_wanted(check.name, arguments.only)) run(check);
     worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
     return 0;
 }

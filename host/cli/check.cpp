@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/library_files.hpp"
 #include "base/printable.hpp"
 #include "check/check.hpp"
 #include "cli/commands.hpp"
@@ -46,7 +47,7 @@ std::vector<PluginRecord> build_folder(const std::string& folder) {
         throw Error(
             Exit::usage,
             folder + ": is a folder without CMakeLists.txt; name a library, or a folder that `clarity new-plugin` made");
-    const fs::path build = fs::path(folder) / "build", prefix = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
+    const fs::path build = fs::path(folder) / "build", prefix = program_file().parent_path().parent_path();
     run_tool(
         {"cmake", "-S", folder, "-B", build.string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DCMAKE_BUILD_TYPE=Release"});
     run_tool({"cmake", "--build", build.string()});

@@ -10,6 +10,7 @@
 #include "check/hits/checked_scene.hpp"
 #include "check/hits/judge.hpp"
 #include "check/hits/ray_sets.hpp"
+#include "check/oclgrind.hpp"
 #include "check/scenes.hpp"
 #include "render/queries/ray_text.hpp"
 
@@ -230,7 +231,7 @@ std::vector<Check> access_checks(const rt_plugin& plugin, const rt_plugin* layou
     few.rays = 16;
     few.lanes.resize(1);
     const auto bench = std::make_shared<Bench>(plugin, layout, open, few);
-    return {{"accesses.oclgrind", "every access to memory, looked at by oclgrind",
+    return {{kAccessCheck, kAccessTried,
              [=](const Step& step) { return accesses(*bench, step); }}};
 }
 
