@@ -324,7 +324,8 @@ TEST(SceneRows, SpheresPolygonsPlanesAndShapesAreThePrimitivesThatRaysHit) {
     std::array<bool, kRowKinds> open{};
     open[static_cast<size_t>(RowKind::shape)] = true;
     const auto all = rows.update(scene, "", open);
-    EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const SceneRow& r) { return r.kind == RowKind::shape && r.index >= 0; }), 3);
+    EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const SceneRow& r) { return r.kind == RowKind::shape && r.index >= 0; }),
+              3);
 }
 
 TEST(Keys, TheListShowsEveryBinding) {

@@ -27,8 +27,8 @@ const std::string& own_name(const Scene& scene, RowKind kind, size_t index) {
 }  // namespace
 
 const char* kind_title(RowKind kind) {
-    static const char* const titles[kRowKinds] = {"Instances", "Spheres", "Polygons",  "Planes", "Shapes",
-                                                  "Meshes",    "Materials", "Lights", "Cameras"};
+    static const char* const titles[kRowKinds] = {"Instances", "Spheres",   "Polygons", "Planes", "Shapes",
+                                                  "Meshes",    "Materials", "Lights",   "Cameras"};
     return titles[static_cast<int>(kind)];
 }
 
@@ -40,8 +40,8 @@ size_t row_count(const Scene& scene, RowKind kind) {
 }
 
 std::string row_name(const Scene& scene, RowKind kind, size_t index) {
-    static const char* const nouns[kRowKinds] = {"instance", "sphere", "polygon",  "plane", "shape",
-                                                 "mesh",     "material", "light", "camera"};
+    static const char* const nouns[kRowKinds] = {"instance", "sphere",   "polygon", "plane", "shape",
+                                                 "mesh",     "material", "light",   "camera"};
     if (kind == RowKind::shape)  // "torus 3"; shapes of all kinds are counted together
         return scene.shape_kinds[scene.shapes[index].kind].id + " " + std::to_string(index);
     const std::string& name = own_name(scene, kind, index);
