@@ -126,6 +126,9 @@ class Run {
     bool all() {
         if (record_.plugin->importer) {
             phase("imports");
+        } else if (record_.plugin->primitive) {
+            // Kernels of a shape whose host part fails say nothing.
+            if (phase("keys")) kernels("shape");
         } else {
             structure();
         }
@@ -150,7 +153,7 @@ class Run {
         });
         std::exception_ptr thrown_here;
         try {
-            if (wait_until_sound()) kernels();
+            if (wait_until_sound()) kernels("hits");
         } catch (...) {
             thrown_here = std::current_exception();
         }
@@ -159,11 +162,14 @@ class Run {
         if (thrown_here) std::rethrow_exception(thrown_here);
     }
     // oclgrind is slow and may be missing, so only the long form asks for it.
-    void kernels() {
-        if (!phase("hits") || options_.quick || !is_wanted(kAccessCheck, options_.only)) return;
+    void kernels(const std::string& name) {
+        if (!phase(name) || options_.quick || !is_wanted(kAccessCheck, options_.only)) return;
         const std::string log = folder() + "/oclgrind.log";
-        const Launch launch = in_oclgrind(
-            {worker::worker_program() == worker::kThisProgram ? program_file().string() : worker::worker_program(), kWorker, {}}, log);
+        const Launch launch =
+            in_oclgrind({worker::worker_program() == worker::kThisProgram ? program_file().string() : worker::worker_program(),
+                         kWorker,
+                         {}},
+                        log);
         if (!launch.program.empty()) {
             phase("accesses", launch, log);
             return;
@@ -206,9 +212,10 @@ class Run {
         on_result_(result);
     }
 
-    // Runs the checks of one phase, each until its end or its worker's death. log: of oclgrind; empty: the worker runs by itself.
-    // Returns whether none failed.
-    bool phase(const std::string& name, const Launch& launch = {worker::worker_program(), kWorker, {}}, const std::string& log = {}) {
+    // Runs the checks of one phase, each until its end or its worker's death. log: of oclgrind; empty: the worker runs by
+    // itself. Returns whether none failed.
+    bool phase(const std::string& name, const Launch& launch = {worker::worker_program(), kWorker, {}},
+               const std::string& log = {}) {
         std::vector<std::string> done;
         bool passed = true;
         const auto finish = [&](const CheckResult& result) {
@@ -224,7 +231,7 @@ class Run {
             for (const std::string& other : beside_) arguments.insert(arguments.end(), {"--beside", other});
             for (const std::string& sample : options_.samples) arguments.insert(arguments.end(), {"--sample", sample});
             if (!options_.truth_folder.empty()) arguments.insert(arguments.end(), {"--truth", options_.truth_folder});
-            if (name == "imports") arguments.insert(arguments.end(), {"--scratch", folder()});
+            if (name == "imports" || name == "keys") arguments.insert(arguments.end(), {"--scratch", folder()});
             if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
             if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
             for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
@@ -266,7 +273,8 @@ class Run {
 }  // namespace
 
 bool is_wanted(const std::string& check, const std::vector<std::string>& only) {
-    return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& begin) { return check.compare(0, begin.size(), begin) == 0; });
+    return only.empty() || std::any_of(only.begin(), only.end(),
+                                       [&](const std::string& begin) { return check.compare(0, begin.size(), begin) == 0; });
 }
 
 bool check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
@@ -274,9 +282,6 @@ bool check_plugin_library(const PluginRecord& record, const std::vector<std::str
     if (std::getenv(worker::kWorkerVariable))
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
-    if (record.plugin->primitive)
-        throw Error(Exit::usage,
-                    std::string(record.plugin->id) + " is a shape: only structures and importers can be checked yet");
     return Run(record, beside, options, progress, on_result).all();
 }
 

@@ -228,6 +228,11 @@ if(NOT said MATCHES "ok  boxes hits.random")
   message(FATAL_ERROR "clarity check: ${said}")
 endif()
 
+run("clarity check egg" said ${clarity} check ${mine}/egg --quick --lanes 4)
+if(NOT said MATCHES "ok  egg keys.text" OR NOT said MATCHES "ok  egg hits.placed")
+  message(FATAL_ERROR "clarity check: ${said}")
+endif()
+
 # The window.
 if(WINDOW_CHECK)
   set(ENV{CLARITY_PLUGIN_PATH} "${mine}/boxes/build")
