@@ -126,6 +126,9 @@ class Run {
     bool all() {
         if (record_.plugin->importer) {
             phase("imports");
+        } else if (record_.plugin->primitive) {
+            // Kernels of a shape whose host part fails say nothing.
+            if (phase("keys")) kernels("shape");
         } else {
             structure();
         }
@@ -150,7 +153,7 @@ class Run {
         });
         std::exception_ptr thrown_here;
         try {
-            if (wait_until_sound()) kernels();
+            if (wait_until_sound()) kernels("hits");
         } catch (...) {
             thrown_here = std::current_exception();
         }
@@ -159,8 +162,8 @@ class Run {
         if (thrown_here) std::rethrow_exception(thrown_here);
     }
     // oclgrind is slow and may be missing, so only the long form asks for it.
-    void kernels() {
-        if (!phase("hits") || options_.quick || !is_wanted(kAccessCheck, options_.only)) return;
+    void kernels(const std::string& name) {
+        if (!phase(name) || options_.quick || !is_wanted(kAccessCheck, options_.only)) return;
         const std::string log = folder() + "/oclgrind.log";
         const Launch launch =
             in_oclgrind({worker::worker_program() == worker::kThisProgram ? program_file().string() : worker::worker_program(),
@@ -228,7 +231,7 @@ class Run {
             for (const std::string& other : beside_) arguments.insert(arguments.end(), {"--beside", other});
             for (const std::string& sample : options_.samples) arguments.insert(arguments.end(), {"--sample", sample});
             if (!options_.truth_folder.empty()) arguments.insert(arguments.end(), {"--truth", options_.truth_folder});
-            if (name == "imports") arguments.insert(arguments.end(), {"--scratch", folder()});
+            if (name == "imports" || name == "keys") arguments.insert(arguments.end(), {"--scratch", folder()});
             if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
             if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
             for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
@@ -279,9 +282,6 @@ bool check_plugin_library(const PluginRecord& record, const std::vector<std::str
     if (std::getenv(worker::kWorkerVariable))
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
-    if (record.plugin->primitive)
-        throw Error(Exit::usage,
-                    std::string(record.plugin->id) + " is a shape: only structures and importers can be checked yet");
     return Run(record, beside, options, progress, on_result).all();
 }
 

@@ -86,9 +86,25 @@ std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std:
     return found;
 }
 
-// The libraries that the checks of a plugin need: what packs and traces its topology, or other importers and shapes.
+// The libraries that the checks of a plugin need: what packs and traces its topology, other importers and shapes, or, of a
+// shape, importers and a structure.
 std::vector<std::string> needed_beside(const PluginRegistry& plugins, const PluginRecord& record) {
     std::vector<std::string> beside;
+    if (record.plugin->primitive) {
+        // The structure of least effort: its kernels are compiled for scenes with the shape.
+        const rt_plugin* structure = nullptr;
+        std::string path;
+        for (const PluginRecord& other : plugins.records()) {
+            if (!other.plugin || other.shadowed) continue;
+            if (other.plugin->importer) beside.push_back(other.path);
+            if (!other.plugin->accel || !other.plugin->accel->build) continue;
+            if (structure && other.plugin->accel->ray_cost <= structure->accel->ray_cost) continue;
+            structure = other.plugin;
+            path = other.path;
+        }
+        if (structure) beside.push_back(path);
+        return beside;
+    }
     for (const PluginRecord& other : plugins.records()) {
         if (!other.plugin || other.shadowed || other.path == record.path) continue;
         const std::string id = other.plugin->id;

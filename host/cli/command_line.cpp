@@ -167,7 +167,7 @@ void add_check(CLI::App& app, CheckCommand& command) {
         ->type_name("PLUGIN")
         ->required();
     app.add_option("--only", command.options.only,
-                   "Only checks whose name begins so, such as hits or builds.refs; may be repeated")
+                   "Only checks whose name begins so, such as hits, builds.refs or keys; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
     app.add_option("--lanes", command.options.lanes,
@@ -185,14 +185,17 @@ void add_check(CLI::App& app, CheckCommand& command) {
                           "Of importers: a folder of .json files with what other programs read from the samples"))
         ->type_name("DIR");
     app.add_flag("--json", command.json, "As JSON");
-    single(app.add_option("--report", command.options.report_folder, "Write the rays with wrong answers into this folder"))
+    single(app.add_option("--report", command.options.report_folder,
+                          "Write the rays with wrong answers into this folder, and a picture of the pixels that differ"))
         ->type_name("DIR");
     single(app.add_option("--device", command.options.device, "The device that traces, as `clarity devices` lists them"))
         ->type_name("D");
 }
 
 void add_new_plugin(CLI::App& app, NewPluginCommand& command) {
-    app.add_option("kind", command.kind, "accel (an acceleration structure) or importer")->type_name("KIND")->required();
+    app.add_option("kind", command.kind, "accel (an acceleration structure), importer or primitive (a shape)")
+        ->type_name("KIND")
+        ->required();
     app.add_option("id", command.id, "Its name: lower-case letters, digits and _, a letter first")->type_name("ID")->required();
     app.add_option("folder", command.folder, "The new folder; default: ID in the working folder")->type_name("DIR");
 }
