@@ -1,4 +1,4 @@
-// assimp.cpp -- the importer plugin for glTF, COLLADA, 3DS and other formats that the Open Asset Import Library reads.
+// assimp.cpp -- the importer plugin for COLLADA, 3DS and other formats that the Open Asset Import Library reads.
 //
 // The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. A mesh is imported once,
 // no matter how many nodes show it.
@@ -59,21 +59,15 @@ std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
     return head;
 }
 
-Format format_of(const std::string& extension) {
-    return extension == "gltf" || extension == "glb" || extension == "vrm" ? Format::gltf : Format::other;
-}
-
 // The axes and the unit that the file declares.
 struct Units {
     rt_u32 up_axis = 1;
     double unit_scale = 0;
 };
 
-Units units_of(aiScene& scene, Format format, const std::string& extension, const std::vector<uint8_t>& head) {
+Units units_of(aiScene& scene, const std::string& extension, const std::vector<uint8_t>& head) {
     Units units;
-    if (format == Format::gltf) {
-        units.unit_scale = 1;
-    } else if (extension == "dae" && scene.mRootNode) {
+    if (extension == "dae" && scene.mRootNode) {
         // assimp scales the root node to metres. Undo that, and report the unit instead.
         const std::string text(head.begin(), head.end());
         if (text.find("Z_UP") != text.npos) units.up_axis = 2;
@@ -142,7 +136,6 @@ void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes,
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
     const std::vector<uint8_t> head = read_head(host, path);
     const std::string extension = lower_extension(path);
-    const Format format = format_of(extension);
 
     Assimp::Importer importer;
     HostProgress* progress = new HostProgress(*host);  // the importer deletes it
@@ -158,14 +151,14 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
         throw rt::fail(host, why.empty() ? "assimp cannot read it and does not say why" : "assimp cannot read it: " + why);
     }
 
-    const Units units = units_of(*scene, format, extension, head);
+    const Units units = units_of(*scene, extension, head);
     const NodeTree tree(*scene);
-    MaterialTable materials(*scene, format, path, *sink);
+    MaterialTable materials(*scene, path, *sink);
     MeshTable meshes(*scene, materials, *sink);
     add_instances(tree, meshes, host, *sink);
     report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
-    add_cameras(*scene, tree, format, *sink);
+    add_cameras(*scene, tree, *sink);
     rt_scene_info info{};
     info.struct_bytes = sizeof info;
     info.up_axis = units.up_axis;
@@ -179,12 +172,11 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 // The formats that users expect. assimp reads more; many of those are rare, unsafe or not meshes.
-constexpr const char* extensions[] = {"gltf", "glb",     "dae",  "3ds", "blend",   "ac",  "ase", "b3d", "bvh",
-                                      "dxf",  "hmp",     "ifc",  "irr", "irrmesh", "lwo", "lws", "lxo", "md2",
-                                      "md3",  "md5mesh", "ms3d", "nff", "q3o",     "smd", "ter", "vrm", "x",
-                                      "x3d",  "xgl",     "zgl",  "3mf", "amf",     "cob", "scn",
+constexpr const char* extensions[] = {"dae",     "3ds", "blend", "ac",  "ase", "b3d", "bvh",     "dxf",  "hmp", "ifc", "irr",
+                                      "irrmesh", "lwo", "lws",   "lxo", "md2", "md3", "md5mesh", "ms3d", "nff", "q3o", "smd",
+                                      "ter",     "x",   "x3d",   "xgl", "zgl", "3mf", "amf",     "cob",  "scn",
 #ifdef ASSIMP_TAKES_MESH_FORMATS
-                                      "obj",  "ply",     "stl",  "off",
+                                      "obj",     "ply", "stl",   "off",
 #endif
                                       nullptr};
 constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>};
@@ -193,4 +185,4 @@ constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::gu
 }  // namespace assimp_import
 
 extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::importer_plugin(
-    "assimp", "glTF, COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);
+    "assimp", "COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);
