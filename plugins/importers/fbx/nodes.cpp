@@ -90,12 +90,11 @@ std::vector<SceneNode> read_nodes(const Context& context) {
         node.parent = at.parent;
         node.transform = transform_of(context, at.model);
         const SceneNode* parent = at.parent == kNoObject ? nullptr : &nodes[at.parent];
-        node.world = place(node.transform, parent ? &parent->world : nullptr);
         const Properties p = context.properties(at.model);
         node.hidden =
             p.number("Visibility", 1) < 0.5 || (parent && parent->hidden && p.number("Visibility Inheritance", 1) != 0);
+        node.id = pass(context, node, nodes);
         nodes.push_back(node);
-        if (context.has_motion) nodes.back().id = pass(context, nodes.back(), nodes);
         const uint32_t index = static_cast<uint32_t>(nodes.size() - 1);
         const std::vector<const Link*> below = objects.below(at.model);
         for (auto link = below.rbegin(); link != below.rend(); ++link) {
@@ -108,10 +107,6 @@ std::vector<SceneNode> read_nodes(const Context& context) {
         if (objects[i].kind == "Model" && !is_done[i]) fail(i, "hangs from itself: the nodes form a circle; expected a tree");
     }
     return nodes;
-}
-
-Transform base_of(const Context& context, const SceneNode& node) {
-    return context.has_motion ? kIdentity : node.world.matrix;
 }
 
 }  // namespace fbx_import

@@ -117,33 +117,4 @@ NodeTransform node_transform(const Properties& p) {
     return out;
 }
 
-// The global rotation and scale of the three modes: R S r s, R r S s, and R r (S without the parent's own scale) s. The
-// translation is where the parent's matrix takes the node's own. Source: FBX SDK help, "Computing transformation matrices".
-World place(const NodeTransform& node, const World* parent) {
-    const Transform turn =
-        multiply(multiply(node.before_rotation, rotation(node.rotation, node.rotation_order)), node.after_rotation);
-    const Transform own =
-        multiply(multiply(translation(node.translation), turn), multiply(scaling(node.scale), node.after_scale));
-    World out;
-    out.own_scale = node.scale;
-    if (!parent || node.inherit == RT_INHERIT_RSRS) {
-        out.matrix = parent ? multiply(parent->matrix, own) : own;
-    }
-    Transform linear = turn;
-    for (const int k : {3, 7, 11}) linear[k] = 0;
-    out.rotation = parent ? multiply(parent->rotation, linear) : linear;
-    Transform above = parent ? parent->scale : kIdentity;
-    if (parent && node.inherit == RT_INHERIT_RRS) above = multiply(above, inverse(scaling(parent->own_scale)));
-    if (parent && node.inherit != RT_INHERIT_RSRS) {
-        out.matrix = multiply(out.rotation, multiply(above, scaling(node.scale)));
-        const Vec3 at = transform_point(parent->matrix, {own[3], own[7], own[11]});
-        for (int k = 0; k < 3; ++k) out.matrix[4 * k + 3] = at[k];
-    }
-    // What is left of the matrix without its rotation.
-    Transform scale = multiply(inverse(out.rotation), out.matrix);
-    for (const int k : {3, 7, 11}) scale[k] = 0;
-    out.scale = scale;
-    return out;
-}
-
 }  // namespace fbx_import

@@ -31,12 +31,4 @@ struct NodeTransform {
 };
 NodeTransform node_transform(const Properties& properties);
 
-// Where a node is. `parent` is its parent's world, nullptr: none.
-struct World {
-    Transform matrix = kIdentity;
-    Transform rotation = kIdentity, scale = kIdentity;  // the parts that the inherit modes need
-    Vec3 own_scale{1, 1, 1};
-};
-World place(const NodeTransform& node, const World* parent);
-
 }  // namespace fbx_import
