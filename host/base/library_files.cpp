@@ -17,6 +17,12 @@ std::map<std::string, std::string>& copies() {
 
 }  // namespace
 
+std::filesystem::path program_file() {
+    std::error_code error;
+    const std::filesystem::path file = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? std::filesystem::path() : file;
+}
+
 std::string loaded_file_of(const void* address) {
     Dl_info info{};
     return dladdr(address, &info) != 0 && info.dli_fname ? info.dli_fname : "";

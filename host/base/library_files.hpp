@@ -3,9 +3,13 @@
 // Both are the same, except for a library that was rebuilt while the program runs: the dynamic loader knows a file only once,
 // so a private copy of the new file is loaded (plugin/library_watch.hpp). All functions are thread-safe.
 #pragma once
+#include <filesystem>
 #include <string>
 
 namespace clarity {
+
+// This program's own file; empty if /proc is not mounted.
+std::filesystem::path program_file();
 
 // Path of the library or program that this constant or function is in, as it was loaded. Empty if no file has it, as for memory
 // of the heap.

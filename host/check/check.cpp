@@ -2,23 +2,22 @@
 
 #include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <condition_variable>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
-#include <filesystem>
-#include <fstream>
-#include <memory>
 #include <mutex>
-#include <sstream>
+#include <optional>
 #include <thread>
 
 #include <nlohmann/json.hpp>
 
 #include "base/elapsed.hpp"
+#include "base/library_files.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
+#include "base/temporary_folder.hpp"
+#include "check/oclgrind.hpp"
 #include "worker/child.hpp"
 #include "worker/supervisor.hpp"
 
@@ -26,6 +25,7 @@ namespace clarity::check {
 namespace {
 
 constexpr uint64_t kMemoryBytes = uint64_t(4) << 30;  // of a worker; the scenes are small
+constexpr const char* kWorker = "check-worker";
 // After so many deaths of its worker a phase ends: each endless loop costs its time limit.
 constexpr unsigned kMostDeaths = 3;
 
@@ -116,29 +116,6 @@ class CheckSupervisor : public worker::Supervisor {
     std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 
-// Where damaged files are written: a folder that goes with this object, or the one of the report.
-class ScratchFolder {
- public:
-    explicit ScratchFolder(const std::string& report) : path_(report), keep_(!report.empty()) {
-        if (keep_) return;
-        path_ = (std::filesystem::temp_directory_path() / "clarity-check-XXXXXX").string();
-        if (!mkdtemp(path_.data()))
-            throw Error(Exit::failed, path_ + ": cannot make a folder for damaged files: " + std::strerror(errno) +
-                                          "; name one with --report DIR");
-    }
-    ~ScratchFolder() {
-        std::error_code error;
-        if (!keep_) std::filesystem::remove_all(path_, error);
-    }
-    ScratchFolder(const ScratchFolder&) = delete;
-    ScratchFolder& operator=(const ScratchFolder&) = delete;
-    const std::string& path() const { return path_; }
-
- private:
-    std::string path_;
-    const bool keep_;
-};
-
 // All checks of one library. Phases run side by side, each in workers of its own.
 class Run {
  public:
@@ -148,8 +125,10 @@ class Run {
 
     bool all() {
         if (record_.plugin->importer) {
-            scratch_ = std::make_unique<ScratchFolder>(options_.report_folder);
             phase("imports");
+        } else if (record_.plugin->primitive) {
+            // Kernels of a shape whose host part fails say nothing.
+            if (phase("keys")) kernels("shape");
         } else {
             structure();
         }
@@ -174,7 +153,7 @@ class Run {
         });
         std::exception_ptr thrown_here;
         try {
-            if (wait_until_sound()) kernels();
+            if (wait_until_sound()) kernels("hits");
         } catch (...) {
             thrown_here = std::current_exception();
         }
@@ -183,11 +162,24 @@ class Run {
         if (thrown_here) std::rethrow_exception(thrown_here);
     }
     // oclgrind is slow and may be missing, so only the long form asks for it.
-    void kernels() {
-        phase("hits");
-        if (options_.quick || failed_) return;
-        scratch_ = std::make_unique<ScratchFolder>(options_.report_folder);
-        phase("accesses");
+    void kernels(const std::string& name) {
+        if (!phase(name) || options_.quick || !is_wanted(kAccessCheck, options_.only)) return;
+        const std::string log = folder() + "/oclgrind.log";
+        const Launch launch =
+            in_oclgrind({worker::worker_program() == worker::kThisProgram ? program_file().string() : worker::worker_program(),
+                         kWorker,
+                         {}},
+                        log);
+        if (!launch.program.empty()) {
+            phase("accesses", launch, log);
+            return;
+        }
+        CheckResult result;
+        result.plugin = record_.plugin->id;
+        result.name = kAccessCheck;
+        result.tried = kAccessTried;
+        result.outcome = Outcome::skipped("oclgrind is not installed");
+        take(result);
     }
     // Hits of a builder that fails say nothing: wait for builds.sound.
     bool wait_until_sound() {
@@ -201,8 +193,14 @@ class Run {
         sound_known_.notify_all();
     }
 
-    void take(const CheckResult& result, std::vector<std::string>& done) {
-        done.push_back(result.name);
+    // Where damaged files and logs are written: the folder of the report, or one that goes with this object.
+    const std::string& folder() {
+        if (!options_.report_folder.empty()) return options_.report_folder;
+        if (!temporary_) temporary_.emplace("clarity-check");
+        return temporary_->path();
+    }
+
+    void take(const CheckResult& result) {
         const std::lock_guard<std::mutex> lock(mutex_);
         ++count_;
         if (result.outcome.kind == Outcome::Kind::failed) failed_ = true;
@@ -214,51 +212,17 @@ class Run {
         on_result_(result);
     }
 
-    // How a worker is started: by itself, or in oclgrind.
-    struct Launch {
-        std::string program = worker::worker_program(), command = "check-worker";
-        std::vector<std::string> before;  // words before those of the worker
-        std::string log;                  // where oclgrind writes what it finds
-    };
-    // Returns false if oclgrind is not installed.
-    bool prepare_oclgrind(Launch& launch) const {
-        std::error_code error;
-        std::filesystem::path worker = launch.program;
-        if (std::filesystem::is_symlink(worker)) worker = std::filesystem::read_symlink(worker, error);
-        std::istringstream folders(std::getenv("PATH") ? std::getenv("PATH") : "");
-        for (std::string folder; std::getline(folders, folder, ':');) {
-            const std::string program = folder + "/oclgrind";
-            if (access(program.c_str(), X_OK) != 0) continue;
-            launch.log = scratch_->path() + "/oclgrind.log";
-            launch.before = {"--log", launch.log, worker.string(), "check-worker"};
-            launch.program = program;
-            launch.command = "--data-races";
-            return true;
-        }
-        return false;
-    }
-    void skip_oclgrind(std::vector<std::string>& done) {
-        if (!options_.only.empty()) return;
-        CheckResult result;
-        result.plugin = record_.plugin->id;
-        result.name = "accesses.oclgrind";
-        result.tried = "every access to memory, looked at by oclgrind";
-        result.outcome = Outcome::skipped("oclgrind is not installed: it looks at each access of kernels");
-        take(result, done);
-    }
-    // A result of oclgrind's worker is only as good as what oclgrind wrote.
-    static void judge_log(const std::string& path, CheckResult& result) {
-        std::ifstream file(path);
-        std::string text, line;
-        for (int lines = 0; lines < 6 && std::getline(file, line); ++lines) text += (text.empty() ? "" : " ") + line;
-        if (text.empty() || result.outcome.kind != Outcome::Kind::passed) return;
-        result.outcome = Outcome::failed("oclgrind says: " + printable_line(text));
-    }
-
-    void phase(const std::string& name) {
+    // Runs the checks of one phase, each until its end or its worker's death. log: of oclgrind; empty: the worker runs by
+    // itself. Returns whether none failed.
+    bool phase(const std::string& name, const Launch& launch = {worker::worker_program(), kWorker, {}},
+               const std::string& log = {}) {
         std::vector<std::string> done;
-        Launch launch;
-        if (name == "accesses" && !prepare_oclgrind(launch)) return skip_oclgrind(done);
+        bool passed = true;
+        const auto finish = [&](const CheckResult& result) {
+            done.push_back(result.name);
+            if (result.outcome.kind == Outcome::Kind::failed) passed = false;
+            take(result);
+        };
         for (unsigned deaths = 0;;) {
             std::vector<std::string> arguments = {"--library", record_.path,
                                                   "--phase",   name,
@@ -267,7 +231,7 @@ class Run {
             for (const std::string& other : beside_) arguments.insert(arguments.end(), {"--beside", other});
             for (const std::string& sample : options_.samples) arguments.insert(arguments.end(), {"--sample", sample});
             if (!options_.truth_folder.empty()) arguments.insert(arguments.end(), {"--truth", options_.truth_folder});
-            if (name == "imports") arguments.insert(arguments.end(), {"--scratch", scratch_->path()});
+            if (name == "imports" || name == "keys") arguments.insert(arguments.end(), {"--scratch", folder()});
             if (!options_.device.empty()) arguments.insert(arguments.end(), {"--device", options_.device});
             if (!options_.report_folder.empty()) arguments.insert(arguments.end(), {"--report", options_.report_folder});
             for (const int lanes : options_.lanes) arguments.insert(arguments.end(), {"--lanes", std::to_string(lanes)});
@@ -276,20 +240,20 @@ class Run {
             arguments.insert(arguments.begin(), launch.before.begin(), launch.before.end());
             worker::WorkerProcess process(launch.program, launch.command, arguments, Exit::failed);
             const std::function<void(CheckResult)> on_result = [&](CheckResult result) {
-                if (!launch.log.empty()) judge_log(launch.log, result);
-                take(result, done);
+                if (!log.empty()) result.outcome = with_findings(result.outcome, log);
+                finish(result);
             };
             CheckSupervisor supervisor(process, record_.plugin->id, progress_, on_result);
             try {
                 supervisor.follow();
-                return;
+                return passed;
             } catch (const Died& died) {
                 CheckResult result = supervisor.current();
                 if (result.name.empty()) result.name = name + ".start";
                 result.outcome = Outcome::failed(died.how);
-                take(result, done);
+                finish(result);
                 if (died.endless || ++deaths >= kMostDeaths || result.name == "builds.sound" || result.name == name + ".start")
-                    return;
+                    return passed;
             }
         }
     }
@@ -297,7 +261,7 @@ class Run {
     const PluginRecord& record_;
     const std::vector<std::string>& beside_;
     const CheckOptions& options_;
-    std::unique_ptr<ScratchFolder> scratch_;
+    std::optional<TemporaryFolder> temporary_;
     Progress& progress_;
     const std::function<void(const CheckResult&)>& on_result_;
     std::mutex mutex_;
@@ -308,14 +272,16 @@ class Run {
 
 }  // namespace
 
+bool is_wanted(const std::string& check, const std::vector<std::string>& only) {
+    return only.empty() || std::any_of(only.begin(), only.end(),
+                                       [&](const std::string& begin) { return check.compare(0, begin.size(), begin) == 0; });
+}
+
 bool check_plugin_library(const PluginRecord& record, const std::vector<std::string>& beside, const CheckOptions& options,
                           Progress& progress, const std::function<void(const CheckResult&)>& on_result) {
     if (std::getenv(worker::kWorkerVariable))
         throw Error(Exit::failed,
                     "this process is a worker itself and starts no other; set CLARITY_WORKER to the program `clarity`");
-    if (record.plugin->primitive)
-        throw Error(Exit::usage,
-                    std::string(record.plugin->id) + " is a shape: only structures and importers can be checked yet");
     return Run(record, beside, options, progress, on_result).all();
 }
 

@@ -26,7 +26,10 @@ struct CheckResult {
     double seconds = 0;
 };
 
-// Checks one library, whose plugin the host has accepted. beside: the libraries that it needs: the one that packs and traces
+// Whether the names, or beginnings of names, in `only` name a check; all do if there is none.
+bool is_wanted(const std::string& check, const std::vector<std::string>& only);
+
+// Checks one library. The host has accepted its plugin. beside: the libraries that it needs: the one that packs and traces
 // its topology, or importers of files that samples load. on_result is called from several threads, one at a time, in the order
 // in which checks end. Returns whether all passed. Throws Cancelled, and Error if no worker can be started or `only` names
 // nothing.

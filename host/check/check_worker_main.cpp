@@ -18,6 +18,8 @@
 #include "check/hits/hits_checks.hpp"
 #include "check/importers/import_checks.hpp"
 #include "check/process_size.hpp"
+#include "check/shapes/key_checks.hpp"
+#include "check/shapes/shape_checks.hpp"
 #include "device/device.hpp"
 #include "worker/child.hpp"
 #include "worker/sandbox.hpp"
@@ -42,7 +44,8 @@ struct Arguments {
     long parent = 0;
 };
 
-// check-worker --library FILE [--beside FILE]... --phase builds|hits|accesses|imports [--quick 1] [--device D] [--report DIR]
+// check-worker --library FILE [--beside FILE]... --phase builds|hits|keys|shape|accesses|imports [--quick 1] [--device D]
+// [--report DIR]
 // [--lanes N]...
 // [--only NAME]...
 // [--done NAME]... [--sample FILE|DIR]... [--truth DIR] [--scratch DIR]
@@ -80,14 +83,6 @@ bool parse(int argc, char** argv, Arguments& arguments) {
         }
     }
     return !arguments.library.empty() && !arguments.phase.empty();
-}
-
-bool wanted(const Check& check, const Arguments& arguments) {
-    if (arguments.done.count(check.name)) return false;
-    if (arguments.only.empty()) return true;
-    for (const std::string& only : arguments.only)
-        if (check.name.compare(0, only.size(), only) == 0) return true;
-    return false;
 }
 
 std::string shortened(std::string text) {
@@ -144,9 +139,18 @@ std::vector<Check> builder_checks(const PluginRecord& record, const Arguments& a
     return build_checks(*record.plugin, arguments.quick);
 }
 
+// The first structure among the libraries beside a shape; nullptr: none.
+const rt_plugin* structure_beside(const Arguments& arguments) {
+    for (const std::string& library : arguments.beside)
+        if (const PluginRecord beside = load_plugin(library); beside.plugin && beside.plugin->accel) return beside.plugin;
+    return nullptr;
+}
+
 std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& arguments) {
     const rt_plugin* layout = nullptr;
+    if (record.plugin->primitive) layout = structure_beside(arguments);
     for (const std::string& library : arguments.beside) {
+        if (record.plugin->primitive) break;
         const PluginRecord beside = load_plugin(library);
         if (!beside.plugin) throw Error(Exit::failed, beside.path + ": " + beside.why);
         layout = beside.plugin;
@@ -158,8 +162,26 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
     if (!arguments.lanes.empty()) options.lanes = arguments.lanes;
     const std::string device = arguments.device;
     const auto open = [device] { return std::make_shared<Device>(choose_device(device)); };
+    if (record.plugin->primitive && arguments.lanes.empty() && arguments.quick) options.lanes = {1, 16};
+    if (record.plugin->primitive)
+        return arguments.phase == "accesses" ? shape_access_checks(*record.plugin, open, options)
+                                             : shape_checks(*record.plugin, layout, open, options);
     if (arguments.phase == "accesses") return access_checks(*record.plugin, layout, open, options);
     return hits_checks(*record.plugin, layout, open, options);
+}
+
+std::vector<Check> key_value_checks(const Arguments& arguments) {
+    const auto inputs = std::make_shared<KeyInputs>();
+    std::vector<std::string> libraries = {arguments.library};
+    libraries.insert(libraries.end(), arguments.beside.begin(), arguments.beside.end());
+    inputs->plugins = PluginRegistry::of(libraries);
+    inputs->plugin = inputs->plugins.records().front().plugin;
+    inputs->statements = write_statements(*inputs->plugin, arguments.scratch);
+    set_log_listener([](LogLevel, const std::string&) {});  // warnings about wrong statements are as they should be
+    use_one_arena();
+    enter_sandbox(WorkerKind::parser, {own_folder(), std::filesystem::canonical(arguments.scratch).string()},
+                  limits_of(kImporterBytes));
+    return key_checks(inputs, arguments.quick);
 }
 
 std::vector<Check> importer_checks(const Arguments& arguments) {
@@ -187,9 +209,10 @@ int run_all(const Arguments& arguments) {
     if (!record.plugin) throw Error(Exit::failed, record.why);
     const std::vector<Check> checks = arguments.phase == "builds"    ? builder_checks(record, arguments)
                                       : arguments.phase == "imports" ? importer_checks(arguments)
+                                      : arguments.phase == "keys"    ? key_value_checks(arguments)
                                                                      : kernel_checks(record, arguments);
     for (const Check& check : checks)
-        if (wanted(check, arguments)) run(check);
+        if (!arguments.done.count(check.name) && is_wanted(check.name, arguments.only)) run(check);
     worker::send_message(kChannelFd, {MessageKind::done, 0, 0, {}});
     return 0;
 }

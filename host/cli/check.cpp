@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/library_files.hpp"
 #include "base/printable.hpp"
 #include "check/check.hpp"
 #include "cli/commands.hpp"
@@ -46,7 +47,7 @@ std::vector<PluginRecord> build_folder(const std::string& folder) {
         throw Error(
             Exit::usage,
             folder + ": is a folder without CMakeLists.txt; name a library, or a folder that `clarity new-plugin` made");
-    const fs::path build = fs::path(folder) / "build", prefix = fs::read_symlink("/proc/self/exe").parent_path().parent_path();
+    const fs::path build = fs::path(folder) / "build", prefix = program_file().parent_path().parent_path();
     run_tool(
         {"cmake", "-S", folder, "-B", build.string(), "-DCMAKE_PREFIX_PATH=" + prefix.string(), "-DCMAKE_BUILD_TYPE=Release"});
     run_tool({"cmake", "--build", build.string()});
@@ -85,9 +86,25 @@ std::vector<PluginRecord> libraries_of(const PluginRegistry& plugins, const std:
     return found;
 }
 
-// The libraries that the checks of a plugin need: what packs and traces its topology, or other importers and shapes.
+// The libraries that the checks of a plugin need: what packs and traces its topology, other importers and shapes, or, of a
+// shape, importers and a structure.
 std::vector<std::string> needed_beside(const PluginRegistry& plugins, const PluginRecord& record) {
     std::vector<std::string> beside;
+    if (record.plugin->primitive) {
+        // The structure of least effort: its kernels are compiled for scenes with the shape.
+        const rt_plugin* structure = nullptr;
+        std::string path;
+        for (const PluginRecord& other : plugins.records()) {
+            if (!other.plugin || other.shadowed) continue;
+            if (other.plugin->importer) beside.push_back(other.path);
+            if (!other.plugin->accel || !other.plugin->accel->build) continue;
+            if (structure && other.plugin->accel->ray_cost <= structure->accel->ray_cost) continue;
+            structure = other.plugin;
+            path = other.path;
+        }
+        if (structure) beside.push_back(path);
+        return beside;
+    }
     for (const PluginRecord& other : plugins.records()) {
         if (!other.plugin || other.shadowed || other.path == record.path) continue;
         const std::string id = other.plugin->id;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/error.hpp"
+#include "base/library_files.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "base/read_file.hpp"
@@ -30,8 +31,7 @@ namespace fs = std::filesystem;
 
 // The folder that the program is installed into; of a program in a build folder, that folder.
 fs::path program_prefix() {
-    std::error_code error;
-    return fs::read_symlink("/proc/self/exe", error).parent_path().parent_path();
+    return program_file().parent_path().parent_path();
 }
 
 bool is_installed() {
@@ -180,8 +180,7 @@ std::string in_shell(const std::string& text) {
 
 // How a shell finds this program: by its name, if the folder is in PATH.
 std::string program_name() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
+    const fs::path program = program_file();
     const char* path = std::getenv("PATH");
     const std::string folders = ":" + std::string(path ? path : "") + ":";
     const bool found = folders.find(":" + program.parent_path().string() + ":") != std::string::npos;

@@ -36,9 +36,8 @@ bool read_if_present(const fs::path& path, std::string& text) {
 // CMakeCache.txt, the folder of an installed program does not.
 fs::path checkout_kernels() {
     std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    const fs::path build = program.parent_path().parent_path();
-    if (error || !fs::exists(build / "CMakeCache.txt", error)) return {};
+    const fs::path build = program_file().parent_path().parent_path();
+    if (build.empty() || !fs::exists(build / "CMakeCache.txt", error)) return {};
     fs::path folder = build;
     for (int up = 0; up < 2; ++up) {
         folder = folder.parent_path();

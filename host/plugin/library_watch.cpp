@@ -8,8 +8,6 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
-#include <cstring>
 #include <filesystem>
 #include <thread>
 
@@ -17,6 +15,7 @@
 #include "base/library_files.hpp"
 #include "base/log.hpp"
 #include "base/read_file.hpp"
+#include "base/temporary_folder.hpp"
 
 namespace clarity {
 namespace {
@@ -57,31 +56,11 @@ bool is_being_written(const std::string& path) {
     return refused;
 }
 
-// The folder for this process's copies. It is removed when the process ends.
-class CopyFolder {
- public:
-    CopyFolder() {
-        std::error_code error;
-        const fs::path parent = fs::temp_directory_path(error);
-        std::string name = ((error ? fs::path("/tmp") : parent) / "clarity-plugins-XXXXXX").string();
-        if (!mkdtemp(name.data())) throw Error(Exit::failed, name + ": " + std::strerror(errno) + "; set TMPDIR to a folder");
-        path_ = name;
-    }
-    ~CopyFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    const fs::path& path() const { return path_; }
-
- private:
-    fs::path path_;
-};
-
 // Copies a library to a new name: my_tree.2.so.
 std::string private_copy(const std::string& path) {
-    static const CopyFolder folder;
+    static const TemporaryFolder folder("clarity-plugins");  // of this process
     static std::atomic<unsigned> number{1};
-    const fs::path copy = folder.path() / (fs::path(path).stem().string() + "." + std::to_string(++number) + ".so");
+    const fs::path copy = fs::path(folder.path()) / (fs::path(path).stem().string() + "." + std::to_string(++number) + ".so");
     std::error_code error;
     if (!fs::copy_file(path, copy, error))
         throw Error(Exit::failed, "cannot be copied to " + copy.string() + ": " + error.message() +

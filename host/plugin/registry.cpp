@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <set>
 
+#include "base/library_files.hpp"
 #include "base/log.hpp"
 #include "base/lower.hpp"
 #include "plugin/elf_file.hpp"
@@ -79,9 +80,7 @@ std::string environment(const char* name) {
 }
 
 std::string executable_folder() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    return error ? "" : program.parent_path().string();
+    return program_file().parent_path().string();
 }
 
 // The libraries in one folder, sorted by name. `missing_ok`: the folder is only a usual place for plugins; the user did not

@@ -413,7 +413,8 @@ enum {
     RT_INHERIT_RRSS, /* R r S s: the parent's scale acts along the node's own axes */
     RT_INHERIT_RRS   /* R r (S without p) s: the parent's own scale is left out */
 };
-#define RT_NODE_HIDDEN 1u /* what it moves is not seen, unless a channel says otherwise; its child nodes may be */
+#define RT_NODE_HIDDEN 1u         /* what it and its child nodes move is not seen, unless a channel says otherwise */
+#define RT_NODE_OWN_VISIBILITY 2u /* it may be seen even where its parent is not */
 /* A node: the transform of everything that hangs on it, and of its child nodes. The node's own transform is
  *     translation * before_rotation * rotation * after_rotation * scale * after_scale
  * The constant matrices in between hold pivots, offsets and pre-rotations. A matrix that is all 0 counts as the identity. */
@@ -427,13 +428,13 @@ typedef struct rt_node_desc {
     double rotation[4]; /* degrees about x, y and z; or the quaternion x y z w, which need not be unit */
     double scale[3];
     double before_rotation[12], after_rotation[12], after_scale[12];
-    rt_u32 flags; /* RT_NODE_HIDDEN, or 0 */
+    rt_u32 flags; /* RT_NODE_... */
     rt_u32 pad;   /* 0 */
 } rt_node_desc;
 
-/* How the values of a layer meet those of the layers below it. */
+/* How the values of a layer meet those of the layers below it. The first layer always replaces the values at rest. */
 enum {
-    RT_LAYER_ADDS,     /* sums, for rotations and scales as the layer says; in the first layer of a clip the same as the next */
+    RT_LAYER_ADDS,     /* sums, times the weight; for rotations and scales as the layer says */
     RT_LAYER_REPLACES, /* the value of this layer */
     RT_LAYER_BLENDS    /* between the value below and this one, by the weight */
 };

@@ -9,6 +9,7 @@
 // constexpr.
 #pragma once
 #include <atomic>
+#include <cmath>
 #include <exception>
 #include <mutex>
 #include <new>
@@ -290,6 +291,10 @@ template <size_t N>
 constexpr rt_primitive primitive(const rt_key (&keys)[N], const rt_cl_file& kernels, ShapeBounds bounds, ShapePrepare prepare,
                                  rt_u32 flags = 0) {
     return {sizeof(rt_primitive), RT_KERNEL_CONTRACT, N, sizeof(rt_key), keys, kernels, bounds, prepare, flags, 0};
+}
+// How far a disc of this radius reaches from its centre along an axis. n: that axis' component of the disc's unit normal.
+inline double disc_reach(double radius, double n) {
+    return radius * std::sqrt(std::fmax(0.0, 1 - n * n));
 }
 // Hands over one part of a shape. Throws Stopped if the host refuses it.
 inline void part(const rt_shape_output* out, const float lo[3], const float hi[3], const float* numbers, rt_u32 count,

@@ -66,7 +66,7 @@ void FileDescriptor::reset() {
 
 std::string worker_program() {
     const char* named = std::getenv("CLARITY_WORKER");
-    return named && *named ? named : "/proc/self/exe";
+    return named && *named ? named : kThisProgram;
 }
 
 WorkerProcess::WorkerProcess(const std::string& program, const std::string& command, const std::vector<std::string>& arguments,

@@ -28,6 +28,8 @@ class FileDescriptor {
     int fd_;
 };
 
+// What worker_program() returns for this program.
+inline constexpr const char* kThisProgram = "/proc/self/exe";
 // The program that runs as worker: the one that CLARITY_WORKER names, or this program.
 std::string worker_program();
 

@@ -4,6 +4,14 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/run_program.hpp"
+#include "support/scratch.hpp"
+
+#define STB_IMAGE_STATIC
+#define STB_IMAGE_IMPLEMENTATION
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wunused-function"
+#include <stb_image.h>
+#pragma GCC diagnostic pop
 
 namespace {
 
@@ -97,6 +105,44 @@ const Defect kDefects[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Plugins, Broken, testing::ValuesIn(kDefects),
                          [](const testing::TestParamInfo<Defect>& info) { return info.param.library; });
+
+struct Counts {
+    size_t red = 0, grey = 0;
+};
+Counts colors_of(const std::string& path) {
+    int width = 0, height = 0, channels = 0;
+    Counts counts;
+    unsigned char* data = stbi_load(path.c_str(), &width, &height, &channels, 3);
+    EXPECT_NE(data, nullptr) << path << ": " << stbi_failure_reason();
+    for (int i = 0; i < width * height; ++i) {
+        const unsigned char* p = data + 3 * i;
+        counts.red += p[0] == 255 && p[1] == 0 && p[2] == 0;
+        counts.grey += p[0] == p[1] && p[1] == p[2];
+    }
+    stbi_image_free(data);
+    EXPECT_EQ(counts.red + counts.grey, size_t(width) * size_t(height));
+    return counts;
+}
+
+// The pixels of one octant are wrong: they are red, and the others show the scene.
+TEST(Report, APictureShowsWhichPixelsDiffer) {
+    const Scratch scratch;
+    const std::string folder = scratch.path("report");
+    const nlohmann::json results =
+        checked({library("octant"), "--only", "hits.octants", "--lanes", "4", "--report", folder}, 1);
+    ASSERT_EQ(results.size(), 1u) << results;
+    const std::string picture = folder + "/broken.hits.octants.png", report = results[0]["report"];
+    EXPECT_NE(report.find("broken.hits.octants.rays"), std::string::npos) << report;
+    EXPECT_NE(report.find(picture), std::string::npos) << report;
+    const Counts counts = colors_of(picture);
+    EXPECT_GT(counts.red, 0u);
+    EXPECT_GT(counts.grey, counts.red / 100);
+    EXPECT_NE(report.find(std::to_string(counts.red) + " of " + std::to_string(counts.red + counts.grey) + " pixels differ"),
+              std::string::npos)
+        << report;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+        EXPECT_TRUE(entry.path().extension() == ".png" || entry.path().extension() == ".rays") << entry.path() << " is left";
+}
 
 // Without a defect the same plugin passes: so the tests above fail because of the defect.
 TEST(Sound, PluginPasses) {

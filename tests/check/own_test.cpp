@@ -7,18 +7,26 @@
 
 namespace {
 
-TEST(Check, AccusesNoneOfOurOwnStructures) {
+// Checks all of our own plugins of a kind. Returns how many there are.
+int check_own(const std::string& kind) {
     const nlohmann::json plugins = nlohmann::json::parse(run_program({"plugins", "--json"}).out)["plugins"];
     int count = 0;
     for (const auto& plugin : plugins) {
-        if (plugin["status"] != "loaded" || plugin["kind"] != "accel") continue;
+        if (plugin["status"] != "loaded" || plugin["kind"] != kind) continue;
         RunOptions options;
         options.limit_s = 300;
         const ProgramResult result = run_program({"check", plugin["id"], "--quick"}, options);
         EXPECT_EQ(result.exit_code, 0) << result.out << result.err;
         ++count;
     }
-    EXPECT_GE(count, 3);
+    return count;
+}
+
+TEST(Check, AccusesNoneOfOurOwnStructures) {
+    EXPECT_GE(check_own("accel"), 3);
+}
+TEST(Check, AccusesNoneOfOurOwnShapes) {
+    EXPECT_GE(check_own("primitive"), 6);
 }
 
 TEST(Check, SaysWhatIsWrongWithTheWords) {

@@ -38,7 +38,13 @@ TEST_F(NewPlugin, RenamesFilesAndWordsInThem) {
     EXPECT_NE(scratch_.read("a folder/README.md").find("./build/tree7.so"), std::string::npos);
     ASSERT_EQ(make("importer", "stone", "stone").exit_code, 0);
     EXPECT_TRUE(fs::exists(scratch_.path("stone/stone.cpp")));
-    EXPECT_EQ(entries("."), 2u) << "nothing else is left";
+    ASSERT_EQ(make("primitive", "pebble", "pebble").exit_code, 0);
+    for (const char* file : {"CMakeLists.txt", "README.md", "try.scene", "pebble.cpp", "pebble.cl"}) {
+        const std::string text = scratch_.read(std::string("pebble/") + file);
+        EXPECT_NE(text.find("pebble"), std::string::npos) << file;
+        EXPECT_EQ(text.find("my_primitive"), std::string::npos) << file;
+    }
+    EXPECT_EQ(entries("."), 3u) << "nothing else is left";
 }
 
 TEST_F(NewPlugin, NeverOverwrites) {
@@ -67,7 +73,7 @@ TEST_F(NewPlugin, SaysWhatIsWrong) {
     for (const char* kind : {"acel", "..", "."}) {
         const ProgramResult result = make(kind, "tree", "x");
         EXPECT_EQ(result.exit_code, 2) << kind;
-        EXPECT_NE(result.err.find("accel, importer"), std::string::npos) << result.err;
+        EXPECT_NE(result.err.find("accel, importer, primitive"), std::string::npos) << result.err;
     }
     const ProgramResult nowhere = make("accel", "tree", "no/where");
     EXPECT_EQ(nowhere.exit_code, 1);

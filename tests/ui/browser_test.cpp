@@ -292,6 +292,42 @@ TEST(SceneRows, ListOpenAndFoundScenes) {
     EXPECT_TRUE(rows.update(nullptr, "", open).empty());
 }
 
+// A row of the tree selects what a click into the picture selects.
+TEST(SceneRows, SpheresPolygonsPlanesAndShapesAreThePrimitivesThatRaysHit) {
+    const auto scene = scene_of(20);
+    scene->polygons.resize(2);
+    scene->planes.resize(1);
+    scene->shape_kinds = {{"box", nullptr}, {"torus", nullptr}};
+    for (const rt_u32 kind : {1u, 0u, 1u}) {
+        Shape shape;
+        shape.kind = kind;
+        shape.material = 10 + kind;
+        scene->shapes.push_back(shape);
+    }
+    EXPECT_EQ(row_count(*scene, RowKind::shape), 3u);
+    EXPECT_EQ(row_name(*scene, RowKind::shape, 1), "box 1");
+    EXPECT_EQ(row_name(*scene, RowKind::shape, 2), "torus 2");
+    EXPECT_EQ(row_material(*scene, RowKind::shape, 2), 11u);
+    const uint64_t triangles = first_prims(*scene).back();
+    const std::pair<RowKind, PrimPlace::Kind> kinds[] = {{RowKind::sphere, PrimPlace::Kind::sphere},
+                                                         {RowKind::polygon, PrimPlace::Kind::polygon},
+                                                         {RowKind::plane, PrimPlace::Kind::plane},
+                                                         {RowKind::shape, PrimPlace::Kind::shape}};
+    for (const auto& [row, place] : kinds)
+        for (size_t i = 0; i < row_count(*scene, row); ++i) {
+            const PrimPlace found = place_of_prim(*scene, row_prim(*scene, triangles, row, i));
+            EXPECT_EQ(found.kind, place) << kind_title(row) << ' ' << i;
+            EXPECT_EQ(found.index, i) << kind_title(row);
+        }
+    EXPECT_EQ(row_prim(*scene, triangles, RowKind::light, 0), -1);
+    SceneRows rows;
+    std::array<bool, kRowKinds> open{};
+    open[static_cast<size_t>(RowKind::shape)] = true;
+    const auto all = rows.update(scene, "", open);
+    EXPECT_EQ(std::count_if(all.begin(), all.end(), [](const SceneRow& r) { return r.kind == RowKind::shape && r.index >= 0; }),
+              3);
+}
+
 TEST(Keys, TheListShowsEveryBinding) {
     const auto lines = key_lines();
     for (const KeyMap& map : key_maps())

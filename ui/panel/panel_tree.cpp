@@ -15,7 +15,7 @@ namespace {
 struct Tree {
     SceneRows rows;
     std::string filter;
-    std::array<bool, kRowKinds> open{true, true, true, true, false, false, false, false};
+    std::array<bool, kRowKinds> open{true, true, true, true, true, false, false, false, false};
     std::shared_ptr<const Scene> scene;
     std::vector<uint64_t> first_prim;
     Selection shown;  // selection that the list was scrolled to last
@@ -34,30 +34,10 @@ void title_row(const SceneRow& row, size_t total) {
 }
 
 rt_u32 material_of(const Scene& scene, const SceneRow& row) {
-    const auto i = static_cast<size_t>(row.index);
-    switch (row.kind) {
-        case RowKind::instance:
-            return instance_material(scene, static_cast<rt_u32>(i));
-        case RowKind::sphere:
-            return scene.spheres[i].material;
-        case RowKind::polygon:
-            return scene.polygons[i].material;
-        case RowKind::plane:
-            return scene.planes[i].material;
-        case RowKind::material:
-            return static_cast<rt_u32>(i);
-        default:
-            return RT_NONE;
-    }
+    return row_material(scene, row.kind, static_cast<size_t>(row.index));
 }
-
-// The index of a sphere, polygon or plane among all primitives of the scene; -1 for other rows.
 rt_i32 prim_of(const Scene& scene, const SceneRow& row) {
-    uint64_t prim = tree.first_prim.back() + static_cast<uint64_t>(row.index);
-    if (row.kind == RowKind::polygon || row.kind == RowKind::plane) prim += scene.spheres.size();
-    if (row.kind == RowKind::plane) prim += scene.polygons.size();
-    const bool has = row.kind == RowKind::sphere || row.kind == RowKind::polygon || row.kind == RowKind::plane;
-    return has ? static_cast<rt_i32>(prim) : -1;
+    return row_prim(scene, tree.first_prim.back(), row.kind, static_cast<size_t>(row.index));
 }
 
 bool is_selected(const Session& session, const Scene& scene, const SceneRow& row) {

@@ -24,7 +24,7 @@ std::string what_it_hit(const RayRecord& ray, const Scene& scene) {
         case PrimPlace::Kind::plane:
             return row_name(scene, RowKind::plane, place.index);
         case PrimPlace::Kind::shape:
-            return scene.shape_kinds[scene.shapes[place.index].kind].id + ' ' + std::to_string(place.index);
+            return row_name(scene, RowKind::shape, place.index);
         case PrimPlace::Kind::none:
             break;
     }

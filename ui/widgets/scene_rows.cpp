@@ -27,23 +27,53 @@ const std::string& own_name(const Scene& scene, RowKind kind, size_t index) {
 }  // namespace
 
 const char* kind_title(RowKind kind) {
-    static const char* const titles[kRowKinds] = {"Instances", "Spheres",   "Polygons", "Planes",
+    static const char* const titles[kRowKinds] = {"Instances", "Spheres",   "Polygons", "Planes", "Shapes",
                                                   "Meshes",    "Materials", "Lights",   "Cameras"};
     return titles[static_cast<int>(kind)];
 }
 
 size_t row_count(const Scene& scene, RowKind kind) {
     const size_t counts[kRowKinds] = {scene.instances.size(), scene.spheres.size(), scene.polygons.size(),
-                                      scene.planes.size(),    scene.meshes.size(),  scene.materials.size(),
-                                      scene.lights.size(),    scene.cameras.size()};
+                                      scene.planes.size(),    scene.shapes.size(),  scene.meshes.size(),
+                                      scene.materials.size(), scene.lights.size(),  scene.cameras.size()};
     return counts[static_cast<int>(kind)];
 }
 
 std::string row_name(const Scene& scene, RowKind kind, size_t index) {
-    static const char* const nouns[kRowKinds] = {"instance", "sphere",   "polygon", "plane",
+    static const char* const nouns[kRowKinds] = {"instance", "sphere",   "polygon", "plane", "shape",
                                                  "mesh",     "material", "light",   "camera"};
+    if (kind == RowKind::shape)  // "torus 3"; shapes of all kinds are counted together
+        return scene.shape_kinds[scene.shapes[index].kind].id + " " + std::to_string(index);
     const std::string& name = own_name(scene, kind, index);
     return name.empty() ? std::string(nouns[static_cast<int>(kind)]) + " " + std::to_string(index) : name;
+}
+
+rt_u32 row_material(const Scene& scene, RowKind kind, size_t index) {
+    switch (kind) {
+        case RowKind::instance:
+            return instance_material(scene, static_cast<rt_u32>(index));
+        case RowKind::sphere:
+            return scene.spheres[index].material;
+        case RowKind::polygon:
+            return scene.polygons[index].material;
+        case RowKind::plane:
+            return scene.planes[index].material;
+        case RowKind::shape:
+            return scene.shapes[index].material;
+        case RowKind::material:
+            return static_cast<rt_u32>(index);
+        default:
+            return RT_NONE;
+    }
+}
+
+rt_i32 row_prim(const Scene& scene, uint64_t triangles, RowKind kind, size_t index) {
+    if (kind < RowKind::sphere || kind > RowKind::shape) return -1;
+    uint64_t prim = triangles + index;  // then kind after kind, in the order of RowKind
+    if (kind > RowKind::sphere) prim += scene.spheres.size();
+    if (kind > RowKind::polygon) prim += scene.polygons.size();
+    if (kind > RowKind::plane) prim += scene.planes.size();
+    return static_cast<rt_i32>(prim);
 }
 
 rt_u32 instance_material(const Scene& scene, rt_u32 instance) {

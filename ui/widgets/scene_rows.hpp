@@ -9,8 +9,8 @@
 
 namespace clarity::ui {
 
-enum class RowKind { instance, sphere, polygon, plane, mesh, material, light, camera };
-inline constexpr int kRowKinds = 8;
+enum class RowKind { instance, sphere, polygon, plane, shape, mesh, material, light, camera };
+inline constexpr int kRowKinds = 9;
 
 // A row of the tree: an object, or the title of a kind of objects.
 struct SceneRow {
@@ -22,6 +22,11 @@ struct SceneRow {
 std::string row_name(const Scene& scene, RowKind kind, size_t index);
 const char* kind_title(RowKind kind);
 size_t row_count(const Scene& scene, RowKind kind);
+// The material of a row's object; RT_NONE if it has none.
+rt_u32 row_material(const Scene& scene, RowKind kind, size_t index);
+// The index of a sphere, polygon, plane or shape among all primitives of the scene; -1 for other rows. triangles: those of all
+// instances, first_prims().back().
+rt_i32 row_prim(const Scene& scene, uint64_t triangles, RowKind kind, size_t index);
 // The material of the instance's first triangle; RT_NONE if it has no triangle.
 rt_u32 instance_material(const Scene& scene, rt_u32 instance);
 // The index of each instance's first triangle among all primitives of the scene, followed by that of the first sphere.

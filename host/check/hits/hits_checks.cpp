@@ -10,6 +10,8 @@
 #include "check/hits/checked_scene.hpp"
 #include "check/hits/judge.hpp"
 #include "check/hits/ray_sets.hpp"
+#include "check/hits/report_picture.hpp"
+#include "check/oclgrind.hpp"
 #include "check/scenes.hpp"
 #include "render/queries/ray_text.hpp"
 
@@ -100,6 +102,21 @@ std::string write_report(const Bench& bench, const std::string& name, const Faul
     return "the rays are in " + path;
 }
 
+// Draws the scene around the first wrong ray.
+std::string write_picture(const Bench& bench, CheckedScene& scene, const Variant& variant, const std::string& name,
+                          const rt_ray& ray, bool any_hit, const Step& step) {
+    if (bench.options().report_folder.empty()) return {};
+    const std::string path = bench.options().report_folder + "/" + bench.plugin().id + "." + name + ".png";
+    step("drawing the picture of the report", kCompileLimit_s);
+    try {
+        const ReportPicture picture = write_report_picture(path, scene, variant, ray, any_hit);
+        return "; the view along the first of them is " + path + ": " + std::to_string(picture.differing) + " of " +
+               std::to_string(picture.pixels) + " pixels differ, in red";
+    } catch (const Error& e) {
+        return std::string("; the picture was not written: ") + e.what();
+    }
+}
+
 Outcome compile(Bench& bench, const Step& step) {
     for (const Variant& variant : bench.variants()) try {
             bench.compiled(variant, step);
@@ -138,7 +155,8 @@ Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
             }
             if (wrong_variants.empty()) {
                 first = Outcome::failed(what + ": " + faults.text(set.rays, truths, traced.hits, variant.lanes));
-                first.repeat = write_report(bench, name, faults, set.rays, traced.hits, what);
+                first.repeat = write_report(bench, name, faults, set.rays, traced.hits, what) +
+                               write_picture(bench, scene, variant, name, set.rays[faults.wrong.front().ray], any_hit, step);
             }
             wrong_variants.push_back(what);
         }
@@ -230,8 +248,7 @@ std::vector<Check> access_checks(const rt_plugin& plugin, const rt_plugin* layou
     few.rays = 16;
     few.lanes.resize(1);
     const auto bench = std::make_shared<Bench>(plugin, layout, open, few);
-    return {{"accesses.oclgrind", "every access to memory, looked at by oclgrind",
-             [=](const Step& step) { return accesses(*bench, step); }}};
+    return {{kAccessCheck, kAccessTried, [=](const Step& step) { return accesses(*bench, step); }}};
 }
 
 std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,

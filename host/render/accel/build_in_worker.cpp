@@ -24,7 +24,7 @@ namespace {
 std::string library_of(const rt_plugin& plugin) {
     std::error_code error;
     const std::filesystem::path library = std::filesystem::canonical(loaded_file_of(plugin.id), error);
-    if (error || library == std::filesystem::read_symlink("/proc/self/exe", error)) return {};
+    if (error || library == program_file()) return {};
     return library.string();
 }
 

@@ -50,7 +50,7 @@ void apply_phong(const aiMaterial& m, rt_material_desc& out) {
     const float strength = finite(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
     store(specular * strength, 1, out.specular);
     out.shininess = finite(number(m, AI_MATKEY_SHININESS, 0), 1, 10000, 1);
-    // FBX and COLLADA store a reflection colour beside its factor. A black colour means no reflection.
+    // COLLADA stores a reflection colour beside its factor. A black colour means no reflection.
     out.reflect =
         finite(number(m, AI_MATKEY_REFLECTIVITY, 0) * brightest(color(m, AI_MATKEY_COLOR_REFLECTIVE, {0, 0, 0})), 0, 1, 0);
 }
@@ -82,9 +82,8 @@ bool is_readable(const std::string& path) {
 
 }  // namespace
 
-MaterialTable::MaterialTable(const aiScene& scene, Format format, const std::string& file, const rt_scene_sink& sink)
+MaterialTable::MaterialTable(const aiScene& scene, const std::string& file, const rt_scene_sink& sink)
     : scene_(scene),
-      format_(format),
       folder_(file.find_last_of('/') == file.npos ? "" : file.substr(0, file.find_last_of('/') + 1)),
       stem_(base_name(file).substr(0, base_name(file).find_last_of('.'))),
       sink_(sink),
@@ -107,14 +106,12 @@ rt_u32 MaterialTable::id(unsigned material) {
     out.texture = texture(m);
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);
-    // In FBX, a texture replaces the colour (programs leave any value there). In other formats, the two are multiplied.
-    if (format_ == Format::fbx && out.texture != RT_NONE) base = {1, 1, 1};
     store(base, 1, out.color);
     aiColor3D emission = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
     emission = emission * finite(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0, 1000, 1);
     store(emission, 1000, out.emission);
     ai_real metallic = 0;
-    const bool is_metallic = format_ != Format::fbx && m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS;
+    const bool is_metallic = m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS;
     is_metallic ? apply_metallic(m, out) : apply_phong(m, out);
     apply_transparency(m, out);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));

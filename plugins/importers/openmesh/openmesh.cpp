@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "mapped_file.hpp"
+#include "../common/mapped_file.hpp"
 #include "readers.hpp"
 #include "rt_plugin.hpp"
 #include "text.hpp"
@@ -143,7 +143,7 @@ std::string read(const std::string& format, const Source& source, FlatImporter& 
 }
 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    const MappedFile file(path);
+    const importers::MappedFile file(path);
     if (file.bytes().empty()) throw std::runtime_error("the file is empty");
     if (const char* kind = other_kind(file.bytes()))
         throw std::runtime_error(std::string("byte 0: found ") + kind + ", expected what its extension says");

@@ -18,9 +18,9 @@ int32_t prepare(const rt_host* host, const rt_key_values* values, const rt_shape
     if (radius == 0 && top == 0) throw rt::fail(host, "`radius` and `top` are both 0; expected a radius above 0 at one end");
     float lo[3], hi[3], numbers[10];
     for (int k = 0; k < 3; ++k) {
-        const double a = axis[k] / length, share = std::sqrt(std::fmax(0.0, 1 - a * a));
-        lo[k] = static_cast<float>(std::min(from[k] - radius * share, to[k] - top * share));
-        hi[k] = static_cast<float>(std::max(from[k] + radius * share, to[k] + top * share));
+        const double a = axis[k] / length, base = rt::disc_reach(radius, a), tip = rt::disc_reach(top, a);
+        lo[k] = static_cast<float>(std::min(from[k] - base, to[k] - tip));
+        hi[k] = static_cast<float>(std::max(from[k] + base, to[k] + tip));
         numbers[k] = from[k];
         numbers[3 + k] = static_cast<float>(a);
     }

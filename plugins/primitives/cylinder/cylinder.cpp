@@ -16,7 +16,7 @@ int32_t prepare(const rt_host* host, const rt_key_values* values, const rt_shape
     if (!(length > 0)) throw rt::fail(host, "`from` and `to` are the same point; expected the two ends of its axis");
     float lo[3], hi[3], numbers[9];
     for (int k = 0; k < 3; ++k) {
-        const double a = axis[k] / length, reach = radius * std::sqrt(std::fmax(0.0, 1 - a * a));
+        const double a = axis[k] / length, reach = rt::disc_reach(radius, a);
         lo[k] = static_cast<float>(std::min(from[k], to[k]) - reach);
         hi[k] = static_cast<float>(std::max(from[k], to[k]) + reach);
         numbers[k] = from[k];

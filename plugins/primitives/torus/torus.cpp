@@ -14,7 +14,7 @@ int32_t prepare(const rt_host* host, const rt_key_values* values, const rt_shape
     const double length = std::hypot(double(normal[0]), double(normal[1]), double(normal[2]));
     float lo[3], hi[3], numbers[8];
     for (int k = 0; k < 3; ++k) {
-        const double n = normal[k] / length, reach = radius * std::sqrt(std::fmax(0.0, 1 - n * n)) + tube;
+        const double n = normal[k] / length, reach = rt::disc_reach(radius, n) + tube;
         lo[k] = static_cast<float>(center[k] - reach);
         hi[k] = static_cast<float>(center[k] + reach);
         numbers[k] = center[k];

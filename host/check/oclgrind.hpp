@@ -1,0 +1,25 @@
+// oclgrind.hpp -- runs a worker in oclgrind, a simulated device that looks at every access of kernels to memory.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "check/steps.hpp"
+
+namespace clarity::check {
+
+// The check whose worker runs in oclgrind.
+inline constexpr const char* kAccessCheck = "accesses.oclgrind";
+inline constexpr const char* kAccessTried = "every access to memory, looked at by oclgrind";
+
+// How a worker is started.
+struct Launch {
+    std::string program, command;
+    std::vector<std::string> before;  // words before those of the worker
+};
+// `program command ...` in oclgrind, which writes what it finds into `log`. The program is empty if oclgrind is not installed.
+Launch in_oclgrind(const Launch& worker, const std::string& log);
+
+// The outcome of a worker in oclgrind: failed if oclgrind wrote anything.
+Outcome with_findings(const Outcome& outcome, const std::string& log);
+
+}  // namespace clarity::check

@@ -1,0 +1,90 @@
+// shape_test.cpp -- each broken shape is found by the check that it is a case for, with the right reason.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/run_program.hpp"
+
+namespace {
+
+struct Defect {
+    const char* library;             // shape_NAME.so
+    const char* check;               // that must fail
+    std::vector<const char*> words;  // of what it found
+    const char* lanes = "1";         // with which it is tried
+};
+void PrintTo(const Defect& defect, std::ostream* out) {
+    *out << defect.library;
+}
+
+nlohmann::json checked(const std::string& name, std::vector<std::string> words, int exit_code) {
+    std::vector<std::string> all = {"check", "--quick", "--json", std::string(BROKEN_PLUGINS) + "/shape_" + name + ".so"};
+    all.insert(all.end(), words.begin(), words.end());
+    RunOptions options;
+    options.limit_s = 120;
+    const ProgramResult result = run_program(all, options);
+    EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
+    return nlohmann::json::parse(result.out, nullptr, false);
+}
+
+class BrokenShape : public testing::TestWithParam<Defect> {};
+
+TEST_P(BrokenShape, IsFound) {
+    const Defect& defect = GetParam();
+    std::vector<std::string> words = {"--only", defect.check, "--lanes", "1"};
+    if (defect.lanes != std::string("1")) words.insert(words.end(), {"--lanes", defect.lanes});
+    const nlohmann::json results = checked(defect.library, words, 1);
+    ASSERT_TRUE(results.is_array() && results.size() >= 1) << results;
+    const nlohmann::json* failed = nullptr;
+    for (const auto& result : results)
+        if (result["status"] == "failed") failed = &result;
+    ASSERT_NE(failed, nullptr) << results.dump(2);
+    EXPECT_EQ((*failed)["check"], defect.check);
+    const std::string found = (*failed)["found"];
+    for (const char* word : defect.words) EXPECT_NE(found.find(word), std::string::npos) << word << "\nin: " << found;
+}
+
+const Defect kDefects[] = {
+    // on the host
+    {"crashes", "keys.values", {"crashed (segmentation fault"}},
+    {"endless", "keys.values", {"did not come to an end"}},
+    {"exits", "keys.values", {"ended the process (exit code 0)"}},
+    {"no_reason", "keys.values", {"refused without a reason"}},
+    {"box_inside_out", "keys.ends", {"`radius` at its greatest value", "box that is not finite, too large or inside out"}},
+    {"keeps_state", "keys.state", {"keeps state"}},
+    {"leaks", "keys.leaks", {"leaks memory"}},
+    // hits
+    {"does_not_compile", "hits.kernels", {"for 1 lane"}},
+    {"small_box", "hits.box", {"outside of the box"}},
+    {"forgets_t_min", "hits.box", {"below t_min"}},
+    {"nan", "hits.box", {"no number"}},
+    {"far_root", "hits.again", {"rays miss the surface"}},
+    {"octant", "hits.again", {"direction signs (-,+,-)"}},
+    {"one_sided", "hits.again", {"come from behind the surface"}},
+    {"hole", "hits.again", {"rays miss the surface"}},
+    {"loop", "hits.again", {"did not come to an end"}},
+    {"reads_beyond", "hits.again", {"crashed (segmentation fault", "numbers of the shape"}},
+    {"unit_direction", "hits.length", {"not of unit length"}},
+    {"first_lane", "hits.lanes", {"with 4 lanes", "every lane must be computed by itself"}, "4"},
+    {"lanes_8", "hits.lanes", {"in lane 7"}, "8"},
+    {"zero_radius", "hits.ends", {"`radius` at its least value", "no number"}},
+    // the surface
+    {"wrong_radius", "surface.height", {"heights disagree with the hits"}},
+    {"wrong_scale", "surface.height", {"along the normal has the height"}},
+    {"wrong_normal", "surface.normal", {"normals are not across the surface"}},
+    {"inward", "surface.normal", {"normals point outwards"}},
+    {"wrong_uv", "surface.uv", {"not within 0 and 1"}},
+    {"inexact", "surface.leaving", {"make s->error larger"}},
+};
+INSTANTIATE_TEST_SUITE_P(Plugins, BrokenShape, testing::ValuesIn(kDefects),
+                         [](const testing::TestParamInfo<Defect>& info) { return info.param.library; });
+
+// Without a defect the same plugin passes: so the tests above fail because of the defect.
+TEST(SoundShape, Passes) {
+    const nlohmann::json results = checked("none", {}, 0);
+    ASSERT_TRUE(results.is_array());
+    EXPECT_GE(results.size(), 15u);
+    for (const auto& result : results) EXPECT_NE(result["status"], "failed") << result.dump(2);
+}
+
+}  // namespace
