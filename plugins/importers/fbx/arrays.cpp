@@ -134,9 +134,8 @@ std::vector<T> text_array(const Document& document, const Node& node, size_t exp
         } else if (read_number(at, end, number)) {
             out.push_back(converted<T>(number));
         } else if (at[0] != '*') {
-            throw Broken(document.place(at) + ": found '" +
-                         std::string(at, static_cast<size_t>(std::min<ptrdiff_t>(end - at, 16))) + "' among the values of '" +
-                         std::string(node.name) + "'; expected a number");
+            throw Broken(document.place(at) + ": found " + quoted(at, end) + " among the values of '" + std::string(node.name) +
+                         "'; expected a number");
         } else {
             return out;  // an array whose numbers are missing
         }

@@ -42,10 +42,10 @@ void AsciiReader::fail(const char* where, const std::string& what) const {
     throw Broken(document_.place(where) + ": " + what);
 }
 
-std::string AsciiReader::shown(const char* from) const {
-    if (from >= end_) return "the end of the file";
+std::string quoted(const char* from, const char* end) {
+    if (from >= end) return "the end of the file";
     std::string text = "'";
-    for (; from < end_ && *from != '\n' && *from != '\r' && text.size() < 24; ++from) text += *from;
+    for (; from < end && *from != '\n' && *from != '\r' && text.size() < 24; ++from) text += *from < ' ' || *from > '~' ? '?' : *from;
     return text + "'";
 }
 
@@ -69,7 +69,7 @@ void AsciiReader::read_nodes(uint32_t parent, int depth) {
         while (at_ < end_ && *at_ != ':' && class_of(*at_) == other) ++at_;
         const char* name_end = at_;
         while (at_ < end_ && class_of(*at_) == space) ++at_;
-        if (at_ == end_ || *at_ != ':' || name_end == name) fail(name, "found " + shown(name) + "; expected a name and ':'");
+        if (at_ == end_ || *at_ != ':' || name_end == name) fail(name, "found " + quoted(name, end_) + "; expected a name and ':'");
         ++at_;
         if (nodes.size() >= kMaxNodes) fail(name, "there are more blocks than can be read");
         const uint32_t index = static_cast<uint32_t>(nodes.size());

@@ -18,7 +18,6 @@ class AsciiReader {
     void skip_space();
     void skip_values();
     [[noreturn]] void fail(const char* where, const std::string& what) const;
-    std::string shown(const char* from) const;  // a few characters, for messages
     Document& document_;
     const char *at_, *const end_;
 };
@@ -26,6 +25,9 @@ class AsciiReader {
 // Reads one number and moves `at` behind it. "nan", "inf" and "-1.#IND" are numbers here. Returns false if there is none.
 bool read_number(const char*& at, const char* end, double& number);
 bool read_number(const char*& at, const char* end, int64_t& number);  // without a fraction or exponent
+
+// A few characters, for messages.
+std::string quoted(const char* from, const char* end);
 
 // The text with &quot; &lf; &cr; and &amp; replaced. Source: measured from max_quote_6100_ascii.
 std::string without_entities(std::string_view text);

@@ -51,8 +51,8 @@ int32_t import_document(const rt_host* host, const Document& document, const std
     if (meshes.empty()) context.warn("contains no polygons (points, lines, NURBS and the like were skipped)");
     const Views views = add_views(context, nodes);
     if (!context.has_motion) return RT_OK;
-    std::map<uint32_t, std::vector<rt_u32>> morphs;
-    add_skins_and_morphs(context, nodes, meshes, morphs);
+    Morphs morphs;
+    add_deformers(context, nodes, meshes, morphs);
     add_clips(context, nodes, views, morphs);
     return RT_OK;
 }

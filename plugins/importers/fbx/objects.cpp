@@ -67,7 +67,7 @@ Objects::Objects(const Document& document) : document_(document) {
 
 void Objects::add_all(const Node& parent) {
     for (const Node& node : document_.children(parent)) {
-        if (node.first_child != 0) add(node);
+        if (node.first_child != 0 || document_.value(node, 1).kind == Value::string) add(node);  // a layer may have an empty block
     }
 }
 

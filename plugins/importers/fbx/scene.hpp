@@ -76,10 +76,12 @@ Views add_views(const Context& context, const std::vector<SceneNode>& nodes);
 
 // ---- motion
 
-void add_skins_and_morphs(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes,
-                          std::map<uint32_t, std::vector<rt_u32>>& morphs);
-void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views,
-               const std::map<uint32_t, std::vector<rt_u32>>& morphs);
+// Ids of the host's morphs, by the object that has their weight and, before version 7, the name of the shape.
+using Morphs = std::map<std::pair<uint32_t, std::string>, std::vector<rt_u32>>;
+void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes, Morphs& morphs);
+// Reads the geometry cache that a deformer names. Files that are missing or damaged are a warning.
+void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer);
+void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs);
 
 // ---- what files before version 7 have in other places
 

@@ -115,7 +115,6 @@ TEST_F(HostileModel, OmChunkOfAnotherKind) {
     expect_refused("chunk.om", header + chunk + std::string(96, '\0'), "chunk.om: ");
 }
 
-#ifdef CLARITY_HAVE_ASSIMP
 const std::string kFbxHead =
     "; FBX 7.4.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7400\n}\n";
 
@@ -140,8 +139,6 @@ TEST_F(HostileModel, FbxNodesInACircleBelowTheRoot) {
                               "Connections:  {\n\tC: \"OO\",1,0\n\tC: \"OO\",2,1\n\tC: \"OO\",1,2\n}\n";
     EXPECT_NE(refusal("circle.fbx", bytes), "");
 }
-#endif
-
 TEST_F(HostileModel, GltfBuffersBeyondTheFile) {
     const std::string bytes = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
                               R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"

@@ -236,7 +236,6 @@ TEST(OmModel, ReadsWhatOpenMeshWrites) {
 
 // ---- FBX
 
-#ifdef CLARITY_HAVE_ASSIMP
 TEST(FbxModel, PlacesNodesAsTheFileMeansThem) {
     const Scene scene = import_file(data("nodes.fbx"));
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
@@ -278,8 +277,6 @@ TEST(FbxModel, PlacesLampAndCamera) {
     EXPECT_GT(scene.cameras[0].target[0], -4);                          // along +x
     EXPECT_NEAR(scene.cameras[0].fov_y_rad, 2 * std::atan(0.5), 1e-5);  // 90 degrees across at 2:1
 }
-
-#endif
 
 // ---- glTF
 
