@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "complaints.hpp"
+#include "content_checks.hpp"
 #include "file_kind.hpp"
 #include "lights_cameras.hpp"
 #include "materials.hpp"
@@ -48,6 +49,20 @@ std::string lower_extension(const std::string& path) {
     std::string extension = dot == path.npos || path[dot] == '/' ? "" : path.substr(dot + 1);
     for (char& c : extension) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
     return extension;
+}
+
+// The whole file, or nothing if it is too large to be looked through.
+std::string read_content(const std::string& path) {
+    constexpr size_t kMostBytes = size_t(256) << 20;
+    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    std::string bytes;
+    char piece[65536];
+    while (file && bytes.size() < kMostBytes) {
+        const size_t got = std::fread(piece, 1, sizeof piece, file.get());
+        if (got == 0) break;
+        bytes.append(piece, got);
+    }
+    return bytes.size() < kMostBytes ? bytes : std::string();
 }
 
 std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
@@ -137,6 +152,10 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     const std::vector<uint8_t> head = read_head(host, path);
     const std::string extension = lower_extension(path);
 
+    const std::string bytes = read_content(path);
+    const std::string damage = bytes.empty() ? bytes : damage_in(bytes, extension);
+    if (!damage.empty()) throw rt::fail(host, damage);
+
     Assimp::Importer importer;
     HostProgress* progress = new HostProgress(*host);  // the importer deletes it
     importer.SetProgressHandler(progress);
@@ -147,8 +166,7 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     std::string why = importer.GetErrorString();
     const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
     if (!scene || !scene->mRootNode) {
-        why.erase(std::remove(why.begin(), why.end(), '\n'), why.end());
-        throw rt::fail(host, why.empty() ? "assimp cannot read it and does not say why" : "assimp cannot read it: " + why);
+        throw rt::fail(host, explain_refusal(bytes, extension, why));
     }
 
     const Units units = units_of(*scene, extension, head);

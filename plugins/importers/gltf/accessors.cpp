@@ -8,7 +8,7 @@ namespace gltf_import {
 namespace {
 
 // An accessor without a view is all zeros. No byte of the file stands behind it, so its size needs a limit.
-constexpr uint64_t kMostZeros = 1u << 24;
+constexpr uint64_t kMostZeros = 1u << 22;
 
 struct Component {
     uint64_t code;

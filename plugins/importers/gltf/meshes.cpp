@@ -166,27 +166,31 @@ void Meshes::add_faces(const Value& primitive, rt_u32 first, uint64_t count, Geo
         for (size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<rt_u32>(i);
     }
     const auto wrong = std::find_if(corners.begin(), corners.end(), [&](rt_u32 i) { return i >= count; });
-    if (wrong != corners.end()) {
-        warn(sink_, primitive.path() + ": found the index " + std::to_string(*wrong) + " at position " +
-                        std::to_string(wrong - corners.begin()) + " of its indices, expected one below " +
-                        std::to_string(count) + ", its number of vertices");
-    }
+    std::string found;
+    if (wrong != corners.end())
+        found = "the index " + std::to_string(*wrong) + " at position " + std::to_string(wrong - corners.begin()) +
+                " of its indices";
     for (rt_u32& i : corners) i = i < count ? first + i : RT_NONE;  // the host leaves such faces out, and counts them
     const uint64_t mode = primitive.count("mode", kTriangles);
-    const size_t n = corners.size(), step = mode == kTriangles ? 3 : 1, before = g.indices.size();
+    const size_t n = corners.size(), step = mode == kTriangles ? 3 : 1;
     if (mode == kTriangles && n % 3 != 0)
         warn(sink_, primitive.path() + ": found " + std::to_string(n) +
                         " corners, expected three for each triangle; the rest is left out");
-    for (size_t i = 0; i + 2 < n; i += step) {
+    size_t added = 0, usable = 0;
+    for (size_t i = 0; i + 2 < n; i += step, ++added) {
         // Specification, section 3.7.2.1: every other triangle of a strip is turned, so that all show the same side.
         const size_t odd = mode == kStrip ? i % 2 : 0;
-        if (mode == kFan) {
-            g.indices.insert(g.indices.end(), {corners[i + 1], corners[i + 2], corners[0]});
-        } else {
-            g.indices.insert(g.indices.end(), {corners[i], corners[i + 1 + odd], corners[i + 2 - odd]});
-        }
+        const rt_u32 strip[3] = {corners[i], corners[i + 1 + odd], corners[i + 2 - odd]};
+        const rt_u32 fan[3] = {corners[i + 1], corners[i + 2], corners[0]};
+        const rt_u32* const triangle = mode == kFan ? fan : strip;
+        g.indices.insert(g.indices.end(), triangle, triangle + 3);
+        usable += std::count(triangle, triangle + 3, RT_NONE) == 0;
     }
-    const size_t added = (g.indices.size() - before) / 3;
+    if (!found.empty()) {
+        const std::string expected = "one below " + std::to_string(count) + ", its number of vertices";
+        if (usable == 0) primitive.refuse(found, expected);
+        warn(sink_, primitive.path() + ": found " + found + ", expected " + expected);
+    }
     if (added > 0) g.materials.insert(g.materials.end(), added, materials_.id(primitive));
 }
 
