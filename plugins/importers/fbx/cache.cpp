@@ -110,7 +110,7 @@ void read_maya(const std::string& path, std::string_view xml, std::string_view c
     };
     const size_t type = element("<cacheType");
     const std::string stem = path.substr(0, path.find_last_of('.')), suffix = "." + std::string(attribute(xml, type, "Format"));
-    if (suffix != ".mc" && suffix != ".mcx") throw Broken("its format is '" + suffix.substr(1) + "'; expected mc or mcx");
+    if (suffix != ".mc" && suffix != ".mcx") throw Broken("its format is " + quoted(suffix.substr(1)) + "; expected mc or mcx");
     if (attribute(xml, type, "Type") == "OneFile") {
         const importers::MappedFile file(stem + suffix);
         return MayaCache(file.bytes(), channel, points, out).read(0);
@@ -121,7 +121,7 @@ void read_maya(const std::string& path, std::string_view xml, std::string_view c
     char* rest = nullptr;
     const long begin = std::strtol(range.c_str(), &rest, 10), end = *rest == '-' ? std::strtol(rest + 1, nullptr, 10) : begin;
     if (step <= 0 || end < begin || (end - begin) / step > 1000000)
-        throw Broken("its range of time '" + range + "' makes no sense");
+        throw Broken("its range of time " + quoted(range) + " makes no sense");
     for (long time = begin; time <= end; time += step) {
         const importers::MappedFile file(stem + "Frame" + std::to_string(time / step) + suffix);
         MayaCache(file.bytes(), channel, points, out).read(static_cast<double>(time) / kMayaTicks);
@@ -168,10 +168,10 @@ void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer)
             read_maya(context.folder + name, file.bytes(), channel, mesh.points, frames);
         }
     } catch (const std::runtime_error& why) {
-        context.warn("the geometry cache '" + name + "' is left out: " + why.what());
+        context.warn("the geometry cache " + quoted(name) + " is left out: " + why.what());
         return;
     }
-    if (frames.times.empty()) return context.warn("the geometry cache '" + name + "' has no channel '" + channel + "'");
+    if (frames.times.empty()) return context.warn("the geometry cache " + quoted(name) + " has no channel " + quoted(channel));
     // The copies of vertices follow the vertices of each frame.
     const size_t count = mesh.points + mesh.copy_of.size();
     std::vector<float> all;
@@ -182,7 +182,7 @@ void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer)
         for (const uint32_t v : mesh.copy_of) all.insert(all.end(), from + 3 * size_t(v), from + 3 * size_t(v) + 3);
     }
     if (!std::all_of(all.begin(), all.end(), [](float x) { return std::isfinite(x); })) {
-        return context.warn("the geometry cache '" + name + "' is left out: it has values that are no finite numbers");
+        return context.warn("the geometry cache " + quoted(name) + " is left out: it has values that are no finite numbers");
     }
     rt_vertex_frames out{};
     out.struct_bytes = sizeof out;

@@ -24,8 +24,8 @@ const std::map<std::string_view, Target> kNodeTargets = {
 
 class Clips {
  public:
-    Clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs)
-        : context_(context), document_(context.document), morphs_(morphs), views_(views), ticks_(ticks_of_second(document_)) {
+    Clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs)
+        : context_(context), document_(context.document), morphs_(morphs), ticks_(ticks_of_second(document_)) {
         for (uint32_t n = 0; n < nodes.size(); ++n) nodes_[nodes[n].object].push_back(nodes[n].id);
     }
     void add_stacks();
@@ -41,7 +41,6 @@ class Clips {
     const Context& context_;
     const Document& document_;
     const Morphs& morphs_;
-    const Views& views_;
     const double ticks_;
     std::map<uint32_t, std::vector<rt_u32>> nodes_;
     const std::vector<rt_u32> nothing_;
@@ -202,8 +201,8 @@ void Clips::add_take_model(rt_u32 clip, const Node& model) {
 
 }  // namespace
 
-void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs) {
-    Clips clips(context, nodes, views, morphs);
+void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs) {
+    Clips clips(context, nodes, morphs);
     context.document.version() >= 7000 ? clips.add_stacks() : clips.add_takes();
 }
 

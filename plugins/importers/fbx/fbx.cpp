@@ -50,10 +50,10 @@ int32_t import_document(const rt_host* host, const Document& document, const std
     rt::progress(host, 0.1f);
     const std::vector<SceneMesh> meshes = add_meshes(context, nodes);
     if (meshes.empty()) context.warn("contains no polygons (points, lines, NURBS and the like were skipped)");
-    const Views views = add_views(context, nodes);
+    add_views(context, nodes);
     Morphs morphs;
     add_deformers(context, nodes, meshes, morphs);
-    add_clips(context, nodes, views, morphs);
+    add_clips(context, nodes, morphs);
     return RT_OK;
 }
 

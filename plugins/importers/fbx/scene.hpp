@@ -65,11 +65,7 @@ class Materials {
 
 // ---- lights and cameras
 
-// Ids that the host gave, by node, for what animates them.
-struct Views {
-    std::map<uint32_t, rt_u32> lights, cameras;
-};
-Views add_views(const Context& context, const std::vector<SceneNode>& nodes);
+void add_views(const Context& context, const std::vector<SceneNode>& nodes);
 
 // ---- motion
 
@@ -81,11 +77,6 @@ void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, 
 void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer);
 // Frames a second; 0: the file does not say.
 double frames_of_second(const Document& document, const Objects& objects);
-void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs);
-
-// ---- what files before version 7 have in other places
-
-// The value at rest of a channel, as up to version 5.8 (`path`: "T", "X"); `otherwise` if the file has none.
-double oldest_rest(const Document& document, const Object& model, const char* letter, const char* axis, double otherwise);
+void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs);
 
 }  // namespace fbx_import

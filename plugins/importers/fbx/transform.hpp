@@ -12,12 +12,10 @@ using Transform = std::array<double, 12>;
 inline constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 Transform multiply(const Transform& a, const Transform& b);  // applies b first, then a
-Transform inverse(const Transform& m);                       // the identity if there is none
+Transform transposed(const Transform& m);                    // its 3x3 part, which for a rotation is the inverse
 Transform translation(const Vec3& by);
 Transform scaling(const Vec3& by);
 Transform rotation(const Vec3& degrees, rt_u32 order = RT_ROTATE_XYZ);
-Vec3 transform_vector(const Transform& m, const Vec3& v);
-Vec3 transform_point(const Transform& m, const Vec3& p);
 bool is_finite(const Transform& m);  // also as floats
 // A matrix of 16 numbers as the file writes them, column by column; false if there are fewer.
 bool matrix_of(const std::vector<double>& numbers, Transform& out);

@@ -53,9 +53,7 @@ double angle_of(const Properties& p) {
 
 // A camera looks along its node's +x, and +y is up. Source: FBX SDK help, "FbxCamera".
 rt_camera camera_of(const Context& context, const SceneNode& node, uint32_t attribute) {
-    const std::string& own = context.objects[attribute].name;
-    const std::string& name =
-        own.empty() || context.objects[attribute].type == "Camera" ? context.objects[node.object].name : own;
+    const std::string& name = context.objects[node.object].name;
     rt_camera out{};
     out.struct_bytes = sizeof out;
     out.name = name.c_str();
@@ -84,36 +82,33 @@ std::vector<uint32_t> cameras_of(const Context& context, uint32_t model) {
 
 }  // namespace
 
-Views add_views(const Context& context, const std::vector<SceneNode>& nodes) {
-    Views views;
-    std::vector<std::pair<uint32_t, rt_light_desc>> lights;
+void add_views(const Context& context, const std::vector<SceneNode>& nodes) {
+    std::vector<rt_light_desc> lights;
     float brightest = 0;
-    for (uint32_t n = 0; n < nodes.size(); ++n) {
-        for (const uint32_t attribute : attributes_of(context, nodes[n].object, "Light")) {
-            const rt_light_desc light = light_of(context, nodes[n], attribute);
-            lights.push_back({n, light});
-            brightest = std::max({brightest, light.color[0], light.color[1], light.color[2]});
+    for (const SceneNode& node : nodes) {
+        for (const uint32_t attribute : attributes_of(context, node.object, "Light")) {
+            lights.push_back(light_of(context, node, attribute));
+            brightest = std::max(brightest, *std::max_element(lights.back().color, lights.back().color + 3));
         }
     }
     // Physical intensities (watts, candela) assume falloff with distance. Lights here have none, so all of them are scaled
     // until the brightest is 1.
     if (brightest > 1) rt::log(context.host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest));
-    for (auto& [node, light] : lights) {
+    for (rt_light_desc& light : lights) {
         for (float& c : light.color) c = brightest > 1 ? c / brightest : c;
-        views.lights[node] = rt::id(context.sink.light(context.sink.ctx, &light));
+        rt::id(context.sink.light(context.sink.ctx, &light));
     }
     // The view cameras of MotionBuilder, which old exporters write too ("Producer Front"), come last: the first camera is the
     // one that is shown.
     for (const bool producers : {false, true}) {
-        for (uint32_t n = 0; n < nodes.size(); ++n) {
-            if ((context.objects[nodes[n].object].name.rfind("Producer ", 0) == 0) != producers) continue;
-            for (const uint32_t attribute : cameras_of(context, nodes[n].object)) {
-                const rt_camera camera = camera_of(context, nodes[n], attribute);
-                views.cameras[n] = rt::id(context.sink.camera(context.sink.ctx, &camera));
+        for (const SceneNode& node : nodes) {
+            if ((context.objects[node.object].name.rfind("Producer ", 0) == 0) != producers) continue;
+            for (const uint32_t attribute : cameras_of(context, node.object)) {
+                const rt_camera camera = camera_of(context, node, attribute);
+                rt::id(context.sink.camera(context.sink.ctx, &camera));
             }
         }
     }
-    return views;
 }
 
 }  // namespace fbx_import
