@@ -18,7 +18,8 @@ class TemporaryFolder {
         const std::filesystem::path parent = std::filesystem::temp_directory_path(error);
         path_ = ((error ? std::filesystem::path("/tmp") : parent) / (name + "-XXXXXX")).string();
         if (!mkdtemp(path_.data()))
-            throw Error(Exit::failed, path_ + ": cannot be made: " + std::strerror(errno) + "; set TMPDIR to a folder with room");
+            throw Error(Exit::failed,
+                        path_ + ": cannot be made: " + std::strerror(errno) + "; set TMPDIR to a folder with room");
     }
     ~TemporaryFolder() {
         std::error_code ignored;

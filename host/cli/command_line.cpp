@@ -124,15 +124,24 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
         "repeated");
 }
 
+void add_pose(CLI::App& app, PoseOptions& pose) {
+    single(app.add_option("--time", pose.time_s, "Show the scene at this time of the clip, seconds; default: at rest"))
+        ->type_name("SECONDS");
+    single(app.add_option("--clip", pose.clip, "Which clip of the file moves the scene; default: the first one"))
+        ->type_name("NAME");
+}
+
 void add_render(CLI::App& app, RenderOptions& render) {
     single(app.add_option("-o,--output", render.output, "Picture to write: .png, .exr or .pfm; #### is the frame's number"))
         ->type_name("OUT")
         ->required();
-    single(app.add_option("--frames", render.frames, "Numbers of the frames to render (all alike: scenes do not move yet)"))
+    single(app.add_option("--frames", render.frames,
+                          "Numbers of the frames to render; frame n shows a scene that moves at n / fps seconds"))
         ->type_name("A-B[/STEP]");
-    single(app.add_option("--time", render.time_s,
-                          "Time within the scene, seconds; ignored with a warning: scenes do not move yet"))
-        ->type_name("SECONDS");
+    single(app.add_option("--fps", render.fps, "Frames a second; default: those of the clip, else 24"))
+        ->type_name("F")
+        ->check(CLI::Range(1e-3, 1e6));
+    add_pose(app, render.pose);
     single(app.add_option("--repeat", render.repeat, "Trace each frame N times for timing, after one warm-up"))->type_name("N");
     single(app.add_option("--stats", render.stats_file, "Write a JSON of times, rays and sizes; - is stdout"))
         ->type_name("FILE");
@@ -342,9 +351,10 @@ CommandLine parse_command_line(int argc, char** argv) {
 
     add_scene(*info, p.scene)->required();
     info->add_flag("--json", p.json, "As JSON");
+    add_pose(*info, p.render.pose);
     info->callback([&] {
         line.command = [parsed](const PluginRegistry& registry) {
-            return run_info(registry, parsed->scene, parsed->json, parsed->common.quiet);
+            return run_info(registry, parsed->scene, parsed->render.pose, parsed->json, parsed->common.quiet);
         };
     });
 

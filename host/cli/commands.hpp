@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "check/check.hpp"
+#include "cli/pose_options.hpp"
 #include "import/import.hpp"
 #include "plugin/registry.hpp"
 #include "render/settings/edit.hpp"
@@ -39,9 +40,10 @@ TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions&
 struct RenderOptions {
     SceneOptions scene;
     TraceOptions trace;
-    std::string output;      // .png, .exr or .pfm; a run of # is replaced by the frame's number
-    std::string frames;      // A-B[/S]; "": one frame with number 1
-    double time_s = 0;       // time within the scene
+    std::string output;  // .png, .exr or .pfm; a run of # is replaced by the frame's number
+    std::string frames;  // A-B[/S]; "": one frame with number 1
+    PoseOptions pose;
+    double fps = 0;          // of the frames; 0: the clip's own
     unsigned repeat = 1;     // how often each picture is traced, for timing
     std::string stats_file;  // file for the statistics; "-": stdout; "": none
     bool watch = false;      // render again after each change of a kernel, plugin library or scene file
@@ -97,7 +99,7 @@ struct BenchCommand {
 };
 int run_bench_command(const PluginRegistry& plugins, const BenchCommand& options);
 
-int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool json, bool quiet);
+int run_info(const PluginRegistry& plugins, const SceneOptions& options, const PoseOptions& pose, bool json, bool quiet);
 
 int run_devices(bool json);
 

@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
+#include "scene/motion/pose.hpp"
 
 namespace clarity {
 namespace {
@@ -43,7 +44,14 @@ Json camera_json(const Camera& camera) {
             {"fov_deg", short_double(camera.fov_y_rad * 57.29578f)}};
 }
 
-Json scene_json(const Scene& scene, const std::vector<std::string>& files) {
+Json clip_json(const ClipInfo& clip) {
+    return {{"name", clip.name},    {"begin_s", clip.begin_s},
+            {"end_s", clip.end_s},  {"fps", clip.fps > 0 ? Json(clip.fps) : Json()},
+            {"nodes", clip.nodes},  {"skins", clip.skins},
+            {"morphs", clip.morphs}};
+}
+
+Json scene_json(const Scene& scene, const std::vector<ClipInfo>& animations, const std::vector<std::string>& files) {
     Json json;
     json["files"] = files;
     json["meshes"] = scene.meshes.size();
@@ -68,6 +76,8 @@ Json scene_json(const Scene& scene, const std::vector<std::string>& files) {
     json["unit_scale"] = scene.unit_scale > 0 ? Json(scene.unit_scale) : Json();
     json["camera_list"] = Json::array();
     for (const Camera& camera : scene.cameras) json["camera_list"].push_back(camera_json(camera));
+    json["animations"] = Json::array();
+    for (const ClipInfo& clip : animations) json["animations"].push_back(clip_json(clip));
     json["warnings"] = scene.warnings;
     return json;
 }
@@ -94,7 +104,7 @@ std::string vector_text(const std::array<float, 3>& v) {
     return text;
 }
 
-void print_scene(const Scene& scene, const std::vector<std::string>& files) {
+void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, const std::vector<std::string>& files) {
     for (const std::string& file : files) print_text("%s\n", printable_line(file).c_str());
     const uint64_t placed = scene.placed_triangle_count(), faces = face_count(scene);
     std::string more;
@@ -119,6 +129,13 @@ void print_scene(const Scene& scene, const std::vector<std::string>& files) {
         std::snprintf(fov, sizeof fov, "  fov %.4g deg", double(camera.fov_y_rad) * 57.29577951308232);
         row("", (camera.name.empty() ? "(no name)" : printable_line(camera.name)) + fov);
     }
+    count_row("animations", animations.size());
+    for (const ClipInfo& clip : animations) {
+        char span[96];
+        std::snprintf(span, sizeof span, "  %.6g to %.6g s, %u nodes, %u skins, %u morphs", clip.begin_s, clip.end_s,
+                      clip.nodes, clip.skins, clip.morphs);
+        row("", (clip.name.empty() ? "(no name)" : printable_line(clip.name)) + span);
+    }
     const Bounds bounds = scene.bounds();
     if (bounds.empty) {
         row("bounds", "none: the scene is empty or has planes only");
@@ -137,18 +154,22 @@ void print_scene(const Scene& scene, const std::vector<std::string>& files) {
 
 }  // namespace
 
-int run_info(const PluginRegistry& plugins, const SceneOptions& options, bool json, bool quiet) {
+int run_info(const PluginRegistry& plugins, const SceneOptions& options, const PoseOptions& pose, bool json, bool quiet) {
+    check_pose(pose);
     check_scene(plugins, options);
     ProgressBar progress(quiet);
     const CancelOnSignal cancel(progress);
     import::ImportOptions import = options.import;
     import.log_warnings = false;  // because they are printed with the rest
-    const Scene scene = import::import_scene(plugins, options.files, import, progress);
+    Scene scene = import::import_scene(plugins, options.files, import, progress);
+    const std::vector<ClipInfo> animations = clips(scene);
+    scene = at_pose(std::move(scene), pose);
     progress.clear();
     if (json)  // names in files may not be UTF-8, but JSON must be
-        std::printf("%s\n", scene_json(scene, options.files).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
+        std::printf("%s\n",
+                    scene_json(scene, animations, options.files).dump(2, ' ', false, Json::error_handler_t::replace).c_str());
     else
-        print_scene(scene, options.files);
+        print_scene(scene, animations, options.files);
     return static_cast<int>(Exit::done);
 }
 

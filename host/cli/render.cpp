@@ -1,20 +1,19 @@
 // clarity render: renders a scene to picture files, without a window.
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <condition_variable>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <utility>
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/file_watch.hpp"
 #include "base/log.hpp"
-#include "base/numbers.hpp"
 #include "base/output_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/frame_range.hpp"
@@ -60,12 +59,7 @@ void check_options(const RenderOptions& options, const Settings& settings, const
     if (options.repeat < 1 || options.repeat > kMaxRepeat)
         throw Error(Exit::usage, "--repeat " + std::to_string(options.repeat) + ": expected a number from 1 to " +
                                      std::to_string(kMaxRepeat));
-    if (!std::isfinite(options.time_s) || options.time_s < 0)
-        throw Error(Exit::usage, "--time: expected seconds from the scene's start, 0 or more");
-    if (options.time_s > 0)
-        log(LogLevel::warning, "--time " + exact_text(options.time_s) +
-                                   ": ignored, because this version shows every scene at rest, as it is at time 0; leave "
-                                   "--time out");
+    check_pose(options.pose);
     // The numbers of a camera can be checked without a scene, its name cannot.
     const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
                                                          options.trace.camera.find_first_of("0123456789+-.") != 0);
@@ -113,10 +107,13 @@ class RenderJob {
  private:
     // Imports, builds and compiles what is not up to date, then renders all pictures.
     Exit round(Progress& progress) {
-        if (!scene_) import(progress);
-        prepare(progress);
+        if (!file_scene_) import(progress);
+        // Frames of a scene that moves show it at times of their own.
+        const bool moving = !options_.frames.empty() && !options_.pose.time_s && moves(*file_scene_);
         MultiFrameRenderer frames(devices_);
         for (int number = range_.first;; number += range_.step) {
+            if (moving || !scene_) place(moving ? std::optional<int>(number) : std::nullopt);
+            if (moving || number == range_.first) prepare(progress);
             const bool whole = render(frames, number, progress);
             if (!whole) return Exit::interrupted;
             if (number > range_.last - range_.step) break;
@@ -161,7 +158,7 @@ class RenderJob {
                 const FileWatch& from = scenes.revision() != scenes_seen ? scenes : *kernels;
                 for (const std::string& path : from.last_changed()) log(LogLevel::info, "changed: " + path);
             }
-            if (scenes.revision() != scenes_seen) scene_.reset();
+            if (scenes.revision() != scenes_seen) file_scene_.reset();
             // The new library of a structure may have other kernel files.
             if (take_libraries(libraries)) kernels = std::make_unique<KernelWatch>(plugins_.accels(), changed);
         }
@@ -175,7 +172,7 @@ class RenderJob {
             if (!library.now) {
                 log(LogLevel::error, library.why);
             } else if (library.now->importer) {
-                scene_.reset();
+                file_scene_.reset();
             } else {
                 structures = true;
                 if (library.before && words_.settings.accel == library.now->id)
@@ -227,9 +224,18 @@ class RenderJob {
 
     void import(Progress& progress) {
         const auto begin = Clock::now();
-        auto scene = std::make_shared<const Scene>(
+        file_scene_ = std::make_shared<const Scene>(
             import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress));
         stats_.import_ms = ms_since(begin);
+        scene_.reset();
+    }
+
+    // Takes the scene at the time of a frame, or at the one that the options name.
+    void place(std::optional<int> frame) {
+        PoseOptions pose = options_.pose;
+        if (frame) pose.time_s = time_of_frame(*file_scene_, pose.clip, options_.fps, *frame);
+        const bool at_rest = !pose.time_s && pose.clip.empty();
+        auto scene = at_rest ? file_scene_ : std::make_shared<const Scene>(at_pose(*file_scene_, pose));
         const float aspect = float(settings_.width) / float(settings_.height);
         EditedView edited;
         edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);
@@ -369,8 +375,8 @@ class RenderJob {
     const PluginRegistry& plugins_;
     ProgressBar bar_;
     Devices devices_;
-    std::function<bool()> superseded_;  // with --watch: true if a save has made this round obsolete
-    std::shared_ptr<const Scene> scene_;
+    std::function<bool()> superseded_;                 // with --watch: true if a save has made this round obsolete
+    std::shared_ptr<const Scene> file_scene_, scene_;  // as imported; as shown
     View view_;
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <tuple>
 
 #include "base/error.hpp"
 #include "base/read_file.hpp"
@@ -192,180 +193,37 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string&
     return why.empty() ? id : missing(why);
 }
 
-namespace {
-
-// The geometric mean of the scale factors along the three axes. uniform: they are equal.
-float mean_scale(const Affine& m, bool& uniform) {
-    double lengths[3];
-    for (int j = 0; j < 3; ++j) {
-        lengths[j] = std::sqrt(double(m[j]) * m[j] + double(m[4 + j]) * m[4 + j] + double(m[8 + j]) * m[8 + j]);
-    }
-    const double scale = std::cbrt(lengths[0] * lengths[1] * lengths[2]);
-    uniform = std::abs(lengths[0] - lengths[1]) <= 1e-4 * scale && std::abs(lengths[1] - lengths[2]) <= 1e-4 * scale;
-    return static_cast<float>(scale);
-}
-
-std::array<float, 3> transform_direction(const Affine& m, const float* d) {
-    return {m[0] * d[0] + m[1] * d[1] + m[2] * d[2], m[4] * d[0] + m[5] * d[1] + m[6] * d[2],
-            m[8] * d[0] + m[9] * d[1] + m[10] * d[2]};
-}
-
-bool normalize(std::array<float, 3>& v) {
-    const double length = std::sqrt(double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2]);
-    if (!(length > 0) || !std::isfinite(length)) return false;
-    for (float& x : v) x = static_cast<float>(x / length);
-    return true;
-}
-
-template <class Array>
-bool usable(const Array& values) {
-    return std::all_of(std::begin(values), std::end(values), is_usable);
-}
-
-}  // namespace
-
-void SceneBuilder::place(const std::string& from, const FileContent& content, const Placement& placement, FileContent& into) {
-    const Affine& m = placement.world_from_object;
-    const auto material_of = [&](rt_u32 own) { return placement.material == RT_NONE ? own : placement.material; };
-    const auto name_of = [&](const std::string& own, bool alone) {
-        if (placement.name.empty()) return own;
-        return alone || own.empty() ? placement.name : placement.name + "/" + own;
+// Channels of cameras and lights name them by `source` until here, because files that load each other mix their order.
+void SceneBuilder::take_motion() {
+    Motion& motion = scene_.motion;
+    motion.nodes = std::move(world_.nodes);
+    motion.clips = std::move(world_.clips);
+    motion.layers = std::move(world_.layers);
+    motion.skins = std::move(world_.skins);
+    motion.bones = std::move(world_.bones);
+    const auto find = [&](const auto& list, rt_u32 source) {
+        const auto at = std::find_if(list.begin(), list.end(), [&](const auto& item) { return item.source == source; });
+        return at == list.end() ? RT_NONE : static_cast<rt_u32>(at - list.begin());
     };
-    size_t lost = 0;
-    for (const Instance& own : content.instances) {
-        Instance instance = own;
-        instance.name = name_of(own.name, content.instances.size() == 1);
-        instance.material = material_of(own.material);
-        instance.world_from_object = multiply(m, own.world_from_object);
-        if (usable(instance.world_from_object)) {
-            into.instances.push_back(std::move(instance));
-        } else {
-            ++lost;
-        }
+    for (Channel& channel : world_.channels) {
+        if (channel.moves == RT_MOVES_FOV) channel.target = find(scene_.cameras, channel.target);
+        if (channel.moves == RT_MOVES_COLOR) channel.target = find(scene_.lights, channel.target);
+        if (channel.target != RT_NONE) motion.channels.push_back(channel);
     }
-    for (const Sphere& own : content.spheres) {
-        bool uniform = true;
-        const float scale = mean_scale(m, uniform);
-        Sphere sphere = {transform_point(m, own.center.data()), own.radius * scale, material_of(own.material)};
-        if (!uniform) warn(from, "a sphere is scaled differently along its axes; it stays a sphere, of the mean radius");
-        if (usable(sphere.center) && is_usable(sphere.radius) && sphere.radius > 0) {
-            into.spheres.push_back(sphere);
-        } else {
-            ++lost;
-        }
-    }
-    Affine inverse;
-    const bool invertible = invert(m, inverse);
-    for (const Plane& own : content.planes) {
-        // dot(n, x) = d with x = M^-1 y, so the normal is transformed by the inverse transpose.
-        Plane plane = own;
-        plane.material = material_of(own.material);
-        float offset = own.offset;
-        std::array<float, 3> normal{};
-        for (int j = 0; j < 3 && invertible; ++j) {
-            for (int i = 0; i < 3; ++i) normal[j] += own.normal[i] * inverse[4 * i + j];
-            offset -= own.normal[j] * inverse[4 * j + 3];
-        }
-        const float length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
-        plane.normal = normal;
-        plane.offset = offset / length;
-        if (normalize(plane.normal) && is_usable(plane.offset)) {
-            into.planes.push_back(plane);
-        } else {
-            ++lost;
-        }
-    }
-    for (const FileContent::PolygonCorners& own : content.polygons) {
-        FileContent::PolygonCorners polygon = {own.corners, material_of(own.material)};
-        for (size_t i = 0; i < polygon.corners.size(); i += 3) {
-            const std::array<float, 3> p = transform_point(m, &own.corners[i]);
-            std::copy(p.begin(), p.end(), polygon.corners.begin() + static_cast<std::ptrdiff_t>(i));
-        }
-        if (usable(polygon.corners) && invertible) {
-            into.polygons.push_back(std::move(polygon));
-        } else {
-            ++lost;
-        }
-    }
-    for (Shape shape : content.shapes) {
-        shape.material = material_of(shape.material);
-        shape.world_from_object = multiply(m, shape.world_from_object);
-        Affine back;
-        if (usable(shape.world_from_object) && invert(shape.world_from_object, back)) {
-            into.shapes.push_back(shape);
-        } else {
-            ++lost;
-        }
-    }
-    const bool is_root = &into == &world_;
-    for (const auto* list : {&content.lights, &content.included_lights}) {
-        for (Light light : *list) {
-            light.name = name_of(light.name, false);
-            float* p = light.values.position;
-            std::array<float, 3> moved =
-                light.values.kind == RT_LIGHT_POINT ? transform_point(m, p) : transform_direction(m, p);
-            const bool good = usable(moved) && (light.values.kind == RT_LIGHT_POINT || normalize(moved));
-            std::copy(moved.begin(), moved.end(), p);
-            if (good) (is_root ? into.lights : into.included_lights).push_back(std::move(light));
-        }
-    }
-    for (const auto* list : {&content.cameras, &content.included_cameras}) {
-        for (Camera camera : *list) {
-            camera.name = name_of(camera.name, false);
-            camera.up = transform_direction(m, camera.up.data());
-            camera.eye = transform_point(m, camera.eye.data());
-            camera.target = transform_point(m, camera.target.data());
-            if (make_sound(camera)) (is_root ? into.cameras : into.included_cameras).push_back(std::move(camera));
-        }
-    }
-    if (lost > 0) {
-        warn(from, std::to_string(lost) + " objects are left out: their transform is not finite, too large or without volume");
-    }
-}
-
-// Instances need an invertible transform. If a transform flattens its mesh, the mesh is copied and transformed here.
-void SceneBuilder::bake_flattened_instances() {
-    Affine inverse;
-    for (Instance& instance : world_.instances) {
-        if (invert(instance.world_from_object, inverse)) continue;
-        const Mesh source = scene_.meshes[instance.mesh];
-        if (uint64_t(scene_.vertex_count()) + source.vertex_count >= RT_NONE ||
-            uint64_t(scene_.triangle_count()) + source.triangle_count > RT_REF_INDEX_MAX) {
-            throw Error(Exit::import_failed, "the scene has more vertices or triangles than it can hold");
-        }
-        Mesh baked = source;
-        baked.first_vertex = scene_.vertex_count();
-        baked.first_triangle = scene_.triangle_count();
-        const auto repeat = [](auto& values, size_t first, size_t count) {
-            values.reserve(values.size() + count);
-            for (size_t i = first; i < first + count; ++i) values.push_back(values[i]);
-        };
-        for (size_t v = source.first_vertex; v < size_t(source.first_vertex) + source.vertex_count; ++v) {
-            const std::array<float, 3> p = transform_point(instance.world_from_object, &scene_.positions[3 * v]);
-            scene_.positions.insert(scene_.positions.end(), p.begin(), p.end());
-        }
-        // The copy has no vertex normals; it is shaded with the normals of its triangles.
-        if (!scene_.normals.empty()) scene_.normals.resize(scene_.positions.size(), 0.f);
-        if (!scene_.uvs.empty()) repeat(scene_.uvs, 2 * size_t(source.first_vertex), 2 * size_t(source.vertex_count));
-        repeat(scene_.triangle_materials, source.first_triangle, source.triangle_count);
-        const size_t first = 3 * size_t(source.first_triangle), count = 3 * size_t(source.triangle_count);
-        for (size_t i = first; i < first + count; ++i) {
-            scene_.triangles.push_back(scene_.triangles[i] - source.first_vertex + baked.first_vertex);
-        }
-        instance.mesh = static_cast<rt_u32>(scene_.meshes.size());
-        instance.world_from_object = kIdentity;
-        scene_.meshes.push_back(std::move(baked));
-    }
+    const auto key = [](const Channel& c) { return std::make_tuple(c.clip, c.layer, c.moves, c.target, c.component); };
+    std::stable_sort(motion.channels.begin(), motion.channels.end(),
+                     [&](const Channel& a, const Channel& b) { return key(a) < key(b); });
 }
 
 Scene SceneBuilder::take() {
-    bake_flattened_instances();
     scene_.instances = std::move(world_.instances);
     scene_.spheres = std::move(world_.spheres);
     scene_.planes = std::move(world_.planes);
     scene_.shapes = std::move(world_.shapes);
     scene_.lights = std::move(world_.lights);
     scene_.cameras = std::move(world_.cameras);
+    take_motion();
+    bake_flattened_instances(scene_);
     for (const FileContent::PolygonCorners& polygon : world_.polygons) {
         const rt_u32 corner_count = static_cast<rt_u32>(polygon.corners.size() / 3);
         scene_.polygons.push_back({static_cast<rt_u32>(scene_.polygon_corners.size() / 3), corner_count, polygon.material});

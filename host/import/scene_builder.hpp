@@ -7,36 +7,13 @@
 
 #include "base/progress.hpp"
 #include "import/file_access.hpp"
+#include "import/file_content.hpp"
 #include "import/importer_choice.hpp"
 #include "plugin/registry.hpp"
 #include "scene/scene.hpp"
 #include "scene/triangulate.hpp"
 
 namespace clarity::import {
-
-// The objects that one file places in its own space. Meshes, materials and textures are in the Scene already, and only once,
-// however often the file is placed.
-struct FileContent {
-    struct PolygonCorners {
-        std::vector<float> corners;  // 3 each
-        rt_u32 material = 0;
-    };
-    std::vector<Instance> instances;
-    std::vector<Sphere> spheres;
-    std::vector<Plane> planes;
-    std::vector<PolygonCorners> polygons;
-    std::vector<Shape> shapes;
-    // included: those of files that this file loads. They are kept apart so that the first camera is the file's own.
-    std::vector<Light> lights, included_lights;
-    std::vector<Camera> cameras, included_cameras;
-};
-
-// How a file is placed in another file.
-struct Placement {
-    std::string name;  // name of the instance; if the file has several, the first part of their names
-    Affine world_from_object = kIdentity;
-    rt_u32 material = RT_NONE;  // scene material for all of it; RT_NONE: the file's own materials
-};
 
 // Called before an importer runs, so that the parent process knows which importer and file failed.
 class ImportObserver {
@@ -71,11 +48,13 @@ class SceneBuilder {
     std::string include(const std::string& from, const std::string& path, const Placement& placement, FileContent& into);
     // Index of the scene's texture for a path; RT_NONE (after a warning) if it cannot be read.
     rt_u32 texture_of_file(const std::string& from, const std::string& path);
+    // A number for the next camera or light, by which channels name it until take().
+    rt_u32 next_source() { return ++sources_; }
 
  private:
     const FileContent& content_of(const std::string& path, const std::string& canonical);
     void place(const std::string& from, const FileContent& content, const Placement& placement, FileContent& into);
-    void bake_flattened_instances();
+    void take_motion();
 
     const PluginRegistry& plugins_;
     const ImporterParameters parameters_;
@@ -90,6 +69,7 @@ class SceneBuilder {
     std::vector<std::string> open_;  // canonical paths of the files being imported now, outermost first
     uint64_t placed_ = 0;            // number of objects from included files, counted each time they are placed
     size_t warnings_left_out_ = 0;
+    rt_u32 sources_ = 0;
     bool knows_axes_ = false, knows_background_ = false, knows_ambient_ = false;
 };
 

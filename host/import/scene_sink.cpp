@@ -12,7 +12,6 @@ namespace clarity::import {
 namespace {
 
 constexpr rt_u32 kFailed = RT_NONE;
-constexpr float kPi = 3.14159265f;
 
 template <size_t n>
 bool usable(const float (&values)[n]) {
@@ -82,24 +81,6 @@ bool make_sound(rt_material& m) {
 
 }  // namespace
 
-bool make_sound(Camera& camera) {
-    if (!usable(camera.eye.data(), 3) || !usable(camera.target.data(), 3)) return false;
-    float forward[3];
-    for (int i = 0; i < 3; ++i) forward[i] = camera.target[i] - camera.eye[i];
-    const double distance2 = squared_length(forward);
-    if (!(distance2 > 0)) return false;
-    if (!(camera.fov_y_rad > 1e-3f && camera.fov_y_rad < kPi - 1e-3f)) camera.fov_y_rad = Camera{}.fov_y_rad;
-    const float* up = camera.up.data();
-    const float across[3] = {forward[1] * up[2] - forward[2] * up[1], forward[2] * up[0] - forward[0] * up[2],
-                             forward[0] * up[1] - forward[1] * up[0]};
-    if (usable(up, 3) && squared_length(across) > 1e-10 * distance2 * squared_length(up)) return true;
-    int axis = 1;  // any axis which is not along the view direction
-    if (std::abs(forward[1]) > 0.9 * std::sqrt(distance2)) axis = 2;
-    camera.up = {};
-    camera.up[axis] = 1;
-    return true;
-}
-
 // Catches all exceptions, because the plugin that calls may be written in C.
 template <class Result, class Body>
 Result SceneSink::guarded(void* ctx, Result failed, const Body& body) {
@@ -118,7 +99,7 @@ Result SceneSink::guarded(void* ctx, Result failed, const Body& body) {
 }
 
 SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string path, FileContent& content)
-    : builder_(builder), services_(services), path_(std::move(path)), content_(content) {
+    : builder_(builder), services_(services), path_(std::move(path)), content_(content), motion_(builder.scene(), content) {
     sink_.struct_bytes = sizeof(rt_scene_sink);
     sink_.ctx = this;
     sink_.texture = [](void* ctx, const rt_texture_desc* d) {
@@ -167,6 +148,42 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
     };
     sink_.primitive = [](void* ctx, const rt_primitive_desc* d) {
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.primitive(taken(d, "rt_primitive_desc")); });
+    };
+    offer_motion();
+}
+
+void SceneSink::offer_motion() {
+    sink_.node = [](void* ctx, const rt_node_desc* from) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) {
+            const rt_node_desc d = taken(from, "rt_node_desc");
+            return s.motion_.node(d, clean_name(d.name));
+        });
+    };
+    sink_.clip = [](void* ctx, const rt_clip_desc* from) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) {
+            const rt_clip_desc d = taken(from, "rt_clip_desc");
+            return s.motion_.clip(d, clean_name(d.name));
+        });
+    };
+    sink_.morph = [](void* ctx, const rt_morph_desc* from) {
+        return guarded(ctx, kFailed, [&](SceneSink& s) {
+            const rt_morph_desc d = taken(from, "rt_morph_desc");
+            return s.motion_.morph(d, clean_name(d.name), s.meshes_);
+        });
+    };
+    sink_.channel = [](void* ctx, const rt_channel_desc* d) {
+        return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) {
+            return s.motion_.channel(taken(d, "rt_channel_desc"), s.camera_sources_, s.light_sources_), int32_t(RT_OK);
+        });
+    };
+    sink_.skin = [](void* ctx, const rt_skin_desc* d) {
+        return guarded(ctx, int32_t(RT_FAILED),
+                       [&](SceneSink& s) { return s.motion_.skin(taken(d, "rt_skin_desc"), s.meshes_), int32_t(RT_OK); });
+    };
+    sink_.vertex_frames = [](void* ctx, const rt_vertex_frames* d) {
+        return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) {
+            return s.motion_.vertex_frames(taken(d, "rt_vertex_frames"), s.meshes_), int32_t(RT_OK);
+        });
     };
 }
 
@@ -243,10 +260,17 @@ rt_u32 SceneSink::instance(const rt_instance_desc& d) {
                     std::to_string(meshes_.size()) + " is unknown: pass an id that the sink returned");
     }
     if (!scene_material(d.material, "instance", RT_NONE, instance.material)) return kFailed;
-    instance.mesh = meshes_[d.mesh];
+    instance.mesh = instance.moving_mesh = meshes_[d.mesh];
     std::copy(std::begin(d.world_from_object), std::end(d.world_from_object), instance.world_from_object.begin());
+    instance.node = motion_.node_of(d.node, "instance");
+    if (instance.node != RT_NONE) {
+        const PlacedNode& node = motion_.at_rest(instance.node);
+        instance.node_from_object = instance.world_from_object;
+        instance.world_from_object = to_affine(node.world * to_matrix(instance.node_from_object));
+        instance.visible = node.visible;
+    }
     const rt_u32 id = static_cast<rt_u32>(content_.instances.size() + lost_instances_);
-    if (usable(d.world_from_object)) {
+    if (usable(d.world_from_object) && usable(instance.world_from_object.data(), 12)) {
         content_.instances.push_back(std::move(instance));
     } else {
         ++lost_instances_;
@@ -305,19 +329,28 @@ rt_u32 SceneSink::light(const rt_light_desc& d) {
     std::copy_n(d.color, 3, values.color);
     // The kernels' struct has the direction towards the light.
     for (int i = 0; i < 3; ++i) values.position[i] = d.kind == RT_LIGHT_POINT ? d.position[i] : -d.direction[i];
-    const rt_u32 id = static_cast<rt_u32>(content_.lights.size() + lost_views_);
+    light.node = motion_.node_of(d.node, "light");
+    std::copy_n(values.position, 3, light.at_node.begin());
+    if (light.node != RT_NONE) {
+        const Matrix& node = motion_.at_rest(light.node).world;
+        const Vec at = {values.position[0], values.position[1], values.position[2]};
+        const Vec placed = d.kind == RT_LIGHT_POINT ? point(node, at) : direction(node, at);
+        for (int i = 0; i < 3; ++i) values.position[i] = static_cast<float>(placed[i]);
+    }
     bool good = usable(values.position) && usable(values.color);
     if (good && values.kind == RT_LIGHT_DIRECTIONAL) {
         const double length = std::sqrt(squared_length(values.position));
         good = length > 0;
         for (float& x : values.position) x = good ? static_cast<float>(x / length) : 0;
     }
+    light_sources_.push_back(good ? builder_.next_source() : RT_NONE);
+    light.source = light_sources_.back();
     if (good) {
         content_.lights.push_back(std::move(light));
     } else {
         ++lost_views_;
     }
-    return id;
+    return static_cast<rt_u32>(light_sources_.size() - 1);
 }
 
 rt_u32 SceneSink::camera(const rt_camera& d) {
@@ -327,13 +360,20 @@ rt_u32 SceneSink::camera(const rt_camera& d) {
     std::copy(d.target, d.target + 3, camera.target.begin());
     std::copy(d.up, d.up + 3, camera.up.begin());
     camera.fov_y_rad = d.fov_y_rad;
-    const rt_u32 id = static_cast<rt_u32>(content_.cameras.size() + lost_views_);
-    if (make_sound(camera)) {
+    camera.node = motion_.node_of(d.node, "camera");
+    camera.node_eye = camera.eye;
+    camera.node_target = camera.target;
+    camera.node_up = camera.up;
+    if (camera.node != RT_NONE) camera = moved_by(camera, motion_.at_rest(camera.node).world);
+    const bool good = make_sound(camera);
+    camera_sources_.push_back(good ? builder_.next_source() : RT_NONE);
+    camera.source = camera_sources_.back();
+    if (good) {
         content_.cameras.push_back(std::move(camera));
     } else {
         ++lost_views_;
     }
-    return id;
+    return static_cast<rt_u32>(camera_sources_.size() - 1);
 }
 
 void SceneSink::info(const rt_scene_info& d) {
@@ -353,6 +393,11 @@ int32_t SceneSink::load(const rt_load& d) {
     }
     std::copy(std::begin(d.world_from_object), std::end(d.world_from_object), placement.world_from_object.begin());
     if (!scene_material(d.material, "load", RT_NONE, placement.material)) return RT_FAILED;
+    placement.node = motion_.node_of(d.node, "load");
+    if (placement.node != RT_NONE) {
+        placement.node_from_object = placement.world_from_object;
+        placement.world_from_object = to_affine(motion_.at_rest(placement.node).world * to_matrix(placement.node_from_object));
+    }
     const std::string why = builder_.include(path_, d.path, placement, content_);
     if (why.empty()) return RT_OK;
     fail(d.where ? std::string(d.where) + ": " + why : why);
@@ -386,6 +431,11 @@ std::string SceneSink::finish() {
                                  std::to_string(lost_instances_ + content_.instances.size()) +
                                  " objects have a transform that is not finite and were left out");
     }
+    for (const Skin& skin : content_.skins)
+        for (const Instance& instance : content_.instances)
+            if (instance.mesh == skin.mesh && instance.node == RT_NONE)
+                return "the plugin has placed a mesh with a skin without a node: set rt_instance_desc::node";
+    for (const std::string& loss : motion_.losses()) builder_.warn(path_, loss);
     if (lost_views_ > 0) {
         builder_.warn(path_, std::to_string(lost_views_) + " cameras or lights hold no finite numbers and were left out");
     }

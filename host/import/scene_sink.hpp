@@ -5,14 +5,12 @@
 #include <vector>
 
 #include "import/mesh_copy.hpp"
+#include "import/motion_sink.hpp"
 #include "import/scene_builder.hpp"
 #include "plugin/host_services.hpp"
 #include "rt_plugin.h"
 
 namespace clarity::import {
-
-// Replaces an unusable up vector or field of view. Returns false if the camera has no view direction.
-bool make_sound(Camera& camera);
 
 // Exists for one call of rt_importer.load. The ids that it gives to the plugin count within this file. A bug of the plugin (an
 // unknown id, no positions) fails the import. Damage in the file itself (bad indices, numbers that are not finite) is left out
@@ -46,6 +44,7 @@ class SceneSink {
     rt_u32 fail(const std::string& why);
     // Finds the scene material of an id. If the plugin never received this id, records an error and returns false.
     bool scene_material(rt_u32 id, const char* of, rt_u32 if_none, rt_u32& material);
+    void offer_motion();
     template <class Result, class Body>
     static Result guarded(void* ctx, Result failed, const Body& body);
 
@@ -54,7 +53,9 @@ class SceneSink {
     std::string path_;
     FileContent& content_;
     rt_scene_sink sink_{};
-    std::vector<rt_u32> materials_, meshes_, textures_;  // scene indices by id
+    MotionSink motion_;
+    std::vector<rt_u32> materials_, meshes_, textures_;   // scene indices by id
+    std::vector<rt_u32> camera_sources_, light_sources_;  // `source` by id; RT_NONE: it was left out
     std::vector<rt_primitive_kind> kinds_;
     FaceCount faces_;
     uint64_t kept_faces_before_ = 0, lost_instances_ = 0, lost_views_ = 0;

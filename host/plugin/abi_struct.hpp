@@ -53,6 +53,20 @@ inline constexpr uint32_t kLeastBytes<rt_key> = 64;
 template <>
 inline constexpr uint32_t kLeastBytes<rt_primitive_desc> = 40;
 
+// Motion came later, too.
+template <>
+inline constexpr uint32_t kLeastBytes<rt_node_desc> = 400;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_clip_desc> = 48;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_channel_desc> = 80;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_skin_desc> = 48;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_morph_desc> = 40;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_vertex_frames> = 32;
+
 // More than any struct of the ABI will have, and far less than a random word is likely to hold.
 inline constexpr uint32_t kMostBytes = 4096;
 

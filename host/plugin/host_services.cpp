@@ -19,6 +19,12 @@ int32_t host_fail(void* ctx, const char* why) {
 
 }  // namespace
 
+std::string HostServices::named(const std::string& text) const {
+    // "main.scene:3:9: ..." contains the file's name already.
+    const bool has_name = plugin_name_.empty() || text.compare(0, plugin_name_.size() + 1, plugin_name_ + ":") == 0;
+    return has_name ? text : plugin_name_ + ": " + text;
+}
+
 HostServices::HostServices(std::string name, Progress& progress) : plugin_name_(std::move(name)), progress_(progress) {
     host_.struct_bytes = sizeof(rt_host);
     host_.ctx = this;
@@ -30,10 +36,7 @@ HostServices::HostServices(std::string name, Progress& progress) : plugin_name_(
             const LogLevel known = level <= RT_LOG_DEBUG  ? LogLevel::debug
                                    : level == RT_LOG_INFO ? LogLevel::info
                                                           : LogLevel::warning;
-            const std::string& name = static_cast<HostServices*>(ctx)->plugin_name_;
-            const std::string said = text ? text : "";
-            // "main.scene:3:9: ..." contains the file's name already.
-            log(known, said.compare(0, name.size() + 1, name + ":") == 0 ? said : name + ": " + said);
+            log(known, static_cast<HostServices*>(ctx)->named(text ? text : ""));
         } catch (...) {
         }
     };
@@ -82,7 +85,7 @@ std::string HostServices::why() const {
 }
 
 void HostServices::check(int exit_code, const std::function<int32_t()>& call) {
-    const auto error = [&](const std::string& why) { return Error(static_cast<Exit>(exit_code), plugin_name_ + ": " + why); };
+    const auto error = [&](const std::string& why) { return Error(static_cast<Exit>(exit_code), named(why)); };
     int32_t status = RT_FAILED;
     std::string thrown;
     try {

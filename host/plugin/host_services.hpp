@@ -14,7 +14,7 @@ namespace clarity {
 // Exists for one call of a plugin.
 class HostServices {
  public:
-    // name: the plugin's name in log lines and error messages, "accel bvh2".
+    // name: what log lines and error messages begin with, "accel bvh2"; empty: nothing, where the reader of them knows.
     HostServices(std::string name, Progress& progress);
     HostServices(const HostServices&) = delete;
     HostServices& operator=(const HostServices&) = delete;
@@ -30,6 +30,9 @@ class HostServices {
     void check(int exit_code, const std::function<int32_t()>& call);
 
  private:
+    // "<name>: <text>", or the text alone if it begins with the name.
+    std::string named(const std::string& text) const;
+
     std::string plugin_name_;
     Progress& progress_;
     rt_host host_{};

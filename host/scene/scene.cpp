@@ -8,18 +8,6 @@
 namespace clarity {
 namespace {
 
-double length(const Vec& a) {
-    return std::sqrt(dot(a, a));
-}
-Vec scaled(const Vec& a, double s) {
-    return {a[0] * s, a[1] * s, a[2] * s};
-}
-Vec normalized(const Vec& a) {
-    return scaled(a, 1 / length(a));
-}
-Vec to_vec(const std::array<float, 3>& a) {
-    return {a[0], a[1], a[2]};
-}
 Vec to_vec(const float* p) {
     return {p[0], p[1], p[2]};
 }

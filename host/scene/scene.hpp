@@ -7,6 +7,7 @@
 
 #include "rt_plugin.h"
 #include "rt_types.h"
+#include "scene/motion/motion.hpp"
 
 namespace clarity {
 
@@ -35,6 +36,10 @@ struct Instance {
     rt_u32 material = RT_NONE;  // replaces the materials of the whole mesh; RT_NONE: the mesh keeps its own
     Affine world_from_object = kIdentity;
     bool visible = true;  // false: in no acceleration structure, but its primitives keep their numbers
+    // Of an instance that a node moves. root: the node of its file's placement. node_from_object: where the object is in the
+    // node's space. moving_mesh: its mesh, where a transform that is flat at rest has made another mesh of it.
+    rt_u32 node = RT_NONE, root = RT_NONE, moving_mesh = 0;
+    Affine node_from_object = kIdentity;
 };
 
 struct Sphere {
@@ -76,11 +81,17 @@ struct Material {
 struct Light {
     std::string name;
     rt_light values{};
+    rt_u32 node = RT_NONE;           // that moves it
+    std::array<float, 3> at_node{};  // its position, or direction, in the node's space
+    rt_u32 source = 0;               // for the import only: by which channels name it
 };
 struct Camera {
     std::string name;
     std::array<float, 3> eye{}, target{}, up{0, 1, 0};
     float fov_y_rad = 0.7853982f;
+    rt_u32 node = RT_NONE;                                      // that moves it
+    std::array<float, 3> node_eye{}, node_target{}, node_up{};  // in the node's space
+    rt_u32 source = 0;                                          // for the import only: by which channels name it
 };
 
 // A scene is valid once validate() has accepted it: every index is in range, every number is finite, and materials[0] is the
@@ -110,6 +121,7 @@ struct Scene {
     rt_u32 up_axis = 1;
     double unit_scale = 0;  // metres per unit; 0: the file does not say
     std::vector<std::string> warnings;
+    Motion motion;  // what the arrays above look like at other times
 
     rt_u32 vertex_count() const { return static_cast<rt_u32>(positions.size() / 3); }
     rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }
@@ -141,6 +153,14 @@ rt_material default_material();
 // Returns an empty text if the scene is sound, otherwise what is wrong ("triangle 12: vertex 99 of 80"). Linear in the scene's
 // size.
 std::string validate(const Scene& scene);
+std::string validate_motion(const Scene& scene);  // of its motion alone; validate() calls it
+
+// Copies the meshes of instances whose transforms flatten them, in the flattened form, because an instance needs a transform
+// that can be inverted. Throws Error(import_failed) if the scene cannot hold the copies.
+void bake_flattened_instances(Scene& scene);
+
+// Replaces an unusable up vector or field of view. Returns false if the camera has no view direction.
+bool make_sound(Camera& camera);
 
 // A camera which shows the whole scene from the front and slightly from above.
 Camera framing_camera(const Scene& scene, float aspect);

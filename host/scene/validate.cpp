@@ -197,7 +197,8 @@ std::string check_view(const Scene& s) {
 }  // namespace
 
 std::string validate(const Scene& scene) {
-    for (const auto check : {check_arrays, check_meshes, check_analytic, check_shapes, check_looks, check_view}) {
+    for (const auto check :
+         {check_arrays, check_meshes, check_analytic, check_shapes, check_looks, check_view, validate_motion}) {
         std::string why = check(scene);
         if (!why.empty()) return why;
     }

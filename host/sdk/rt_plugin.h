@@ -15,14 +15,15 @@
  *   is there, if that field is younger than version 2. All other fields of this file are always there.
  * - Enums get further values and bit masks further bits. A host refuses a kind that it does not know, and ignores other bits.
  * - Anything larger is an rt_extension: it has a name and a version of its own.
- * The other structs (rt_packed_prim, rt_prim, rt_group, rt_topology_node, rt_cl_file, rt_key_values) never change: data beside theirs would come in
- * arrays of their own. Kernels have a version of their own, RT_KERNEL_CONTRACT. Any other change increases RT_ABI_VERSION.
+ * The other structs (rt_packed_prim, rt_prim, rt_group, rt_topology_node, rt_cl_file, rt_key_values, rt_layer, rt_bone, rt_weight,
+ * rt_morph_target) never change: data beside theirs would come in arrays of their own. Kernels have a version of their own, RT_KERNEL_CONTRACT. Any other change increases RT_ABI_VERSION.
  *
  * Version history:
  *   1  First release. Hosts of later versions do not load it.
  *   2  Structs and arrays that can grow. What a structure can do is data. The kernel contract has a number. Materials and lights
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
- *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink). */
+ *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
+ *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads). */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -316,7 +317,9 @@ typedef struct rt_instance_desc {
     const char *name; /* or NULL */
     rt_u32 mesh;      /* id that the sink's `mesh` returned */
     rt_u32 material;  /* for the whole instance; RT_NONE: the mesh's own */
-    float world_from_object[12]; /* row-major 3x4 */
+    float world_from_object[12]; /* row-major 3x4; with a node: from the object into the node's space */
+    rt_u32 node;                 /* appended: id of the node that moves it; 0: none */
+    rt_u32 pad;                  /* 0 */
 } rt_instance_desc;
 
 /* Whitted's material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. rt::material() gives usual values. */
@@ -345,11 +348,13 @@ typedef struct rt_texture_desc {
 typedef struct rt_camera {
     rt_u32 struct_bytes;
     const char *name; /* or NULL */
-    float eye[3], target[3], up[3];
+    float eye[3], target[3], up[3]; /* with a node: in the node's space */
     float fov_y_rad;
+    rt_u32 node; /* appended: id of the node that moves it; 0: none */
+    rt_u32 pad;  /* 0 */
 } rt_camera;
 
-/* A light without falloff. */
+/* A light without falloff. With a node, position and direction are in the node's space. */
 typedef struct rt_light_desc {
     rt_u32 struct_bytes;
     rt_u32 kind;        /* RT_LIGHT_POINT, RT_LIGHT_DIRECTIONAL */
@@ -358,6 +363,8 @@ typedef struct rt_light_desc {
     float direction[3]; /* into which a directional light shines; need not be unit */
     float color[3];     /* linear RGB, intensity included */
     rt_u32 pad;         /* 0 */
+    rt_u32 node;        /* appended: id of the node that moves it; 0: none */
+    rt_u32 pad2;        /* 0 */
 } rt_light_desc;
 
 typedef struct rt_load {
@@ -367,6 +374,8 @@ typedef struct rt_load {
     float world_from_object[12]; /* applied after the file's own transforms */
     rt_u32 material;             /* for all of it, or RT_NONE */
     const char *where;           /* place that names the file, for error messages: "main.scene:3:9"; or NULL */
+    rt_u32 node;                 /* appended: id of a node, into whose space world_from_object leads; 0: none */
+    rt_u32 pad;                  /* 0 */
 } rt_load;
 
 typedef struct rt_scene_info {
@@ -392,6 +401,159 @@ typedef struct rt_primitive_desc {
     const char *where; /* place that has the shape, for error messages: "main.scene:3:1"; or NULL */
 } rt_primitive_desc;
 
+/* Motion. All of it is appended: ask RT_HAS(sink, rt_scene_sink, vertex_frames) first. Importers deliver what the file has, and the
+ * host computes the pose of a time from it. Times are seconds on the clip's own clock. Ids of nodes, clips and morphs count from 1.
+ * Matrices are row-major 3x4. What a node without parent moves is in the file's space. */
+
+enum { RT_ROTATE_XYZ, RT_ROTATE_XZY, RT_ROTATE_YZX, RT_ROTATE_YXZ, RT_ROTATE_ZXY, RT_ROTATE_ZYX, RT_ROTATE_QUATERNION };
+/* How a node takes over its parent's scale. R, S: rotation and scale of the parent's transform in the world, its translation left
+ * out; r, s: the node's own; p: the parent's own scale. Names as in FBX. */
+enum {
+    RT_INHERIT_RSRS, /* R S r s: products of matrices, as everywhere else */
+    RT_INHERIT_RRSS, /* R r S s: the parent's scale acts along the node's own axes */
+    RT_INHERIT_RRS   /* R r (S without p) s: the parent's own scale is left out */
+};
+#define RT_NODE_HIDDEN 1u         /* what it and its child nodes move is not seen, unless a channel says otherwise */
+#define RT_NODE_OWN_VISIBILITY 2u /* it may be seen even where its parent is not */
+/* A node: the transform of everything that hangs on it, and of its child nodes. The node's own transform is
+ *     translation * before_rotation * rotation * after_rotation * scale * after_scale
+ * The constant matrices in between hold pivots, offsets and pre-rotations. A matrix that is all 0 counts as the identity. */
+typedef struct rt_node_desc {
+    rt_u32 struct_bytes;
+    rt_u32 parent;    /* id of a node; 0: none */
+    const char *name; /* or NULL */
+    rt_u32 rotation_order; /* RT_ROTATE_XYZ: about x first, then y, then z (as FBX's eEulerXYZ); ...; RT_ROTATE_QUATERNION */
+    rt_u32 inherit;        /* RT_INHERIT_... */
+    double translation[3];
+    double rotation[4]; /* degrees about x, y and z; or the quaternion x y z w, which need not be unit */
+    double scale[3];
+    double before_rotation[12], after_rotation[12], after_scale[12];
+    rt_u32 flags; /* RT_NODE_... */
+    rt_u32 pad;   /* 0 */
+} rt_node_desc;
+
+/* How the values of a layer meet those of the layers below it. The first layer always replaces the values at rest. */
+enum {
+    RT_LAYER_ADDS,     /* sums, times the weight; for rotations and scales as the layer says */
+    RT_LAYER_REPLACES, /* the value of this layer */
+    RT_LAYER_BLENDS    /* between the value below and this one, by the weight */
+};
+#define RT_LAYER_ROTATES_BY_CHANNEL 1u /* angles are summed and blended one by one; otherwise rotations are multiplied */
+#define RT_LAYER_ADDS_SCALES 2u        /* scales are summed and blended; otherwise they are multiplied */
+/* A layer of a clip. 16 B; it never grows. */
+typedef struct rt_layer {
+    rt_u32 mode; /* RT_LAYER_ADDS, ... */
+    rt_u32 flags;
+    double weight; /* 0..1, unless a channel says otherwise */
+} rt_layer;
+typedef struct rt_clip_desc {
+    rt_u32 struct_bytes;
+    rt_u32 layer_count; /* 0: one layer that replaces */
+    const char *name;   /* or NULL */
+    double begin_s, end_s;
+    double fps; /* frames a second, as the file says; 0: it does not say */
+    const rt_layer *layers;
+} rt_clip_desc;
+
+/* What a channel moves, and which ids `target` counts in. Numbers: components 0..2 are x, y, z or red, green, blue. */
+enum {
+    RT_MOVES_TRANSLATION, /* of a node */
+    RT_MOVES_ROTATION,    /* of a node: degrees, or the quaternion as a whole: RT_ALL_COMPONENTS, 4 numbers a key */
+    RT_MOVES_SCALE,       /* of a node */
+    RT_MOVES_VISIBILITY,  /* of a node: seen if the value is 0.5 or more */
+    RT_MOVES_MORPH,       /* the weight of a morph */
+    RT_MOVES_LAYER,       /* the weight of the layer with the number `target` in this clip */
+    RT_MOVES_FOV,         /* of a camera: the vertical angle in radians */
+    RT_MOVES_COLOR        /* of a light */
+};
+#define RT_ALL_COMPONENTS 3u
+/* The span between a key and the next one. */
+enum {
+    RT_SPAN_LINEAR,    /* quaternions: along the shorter arc */
+    RT_SPAN_STEP,      /* the first key's value */
+    RT_SPAN_STEP_NEXT, /* the second key's value */
+    RT_SPAN_CUBIC      /* a Bezier curve in time and value through the handles; quaternions are made unit afterwards */
+};
+/* Outside of its keys. */
+enum {
+    RT_OUTSIDE_HOLD,            /* the value of the first or last key */
+    RT_OUTSIDE_REPEAT,          /* all keys again */
+    RT_OUTSIDE_MIRROR,          /* all keys again, every other time backwards */
+    RT_OUTSIDE_SLOPE,           /* straight on in the direction of the first or last span */
+    RT_OUTSIDE_REPEAT_RELATIVE  /* all keys again, beginning at the value where they ended */
+};
+/* The keys of one component, or of a quaternion, in one layer of a clip. Components without a channel keep the value at rest, or in
+ * layers that add, add nothing. */
+typedef struct rt_channel_desc {
+    rt_u32 struct_bytes;
+    rt_u32 clip;      /* id */
+    rt_u32 layer;     /* number within the clip, from 0 */
+    rt_u32 moves;     /* RT_MOVES_... */
+    rt_u32 target;    /* id of a node or morph; id that the sink's `camera` or `light` returned; number of a layer */
+    rt_u32 component; /* 0, 1, 2 or RT_ALL_COMPONENTS; 0 where there is one number only */
+    uint64_t key_count;     /* 1 or more */
+    const double *times_s;  /* one for each key; none is less than the one before */
+    const double *values;   /* one for each key; of quaternions 4: x y z w */
+    const uint8_t *spans;   /* RT_SPAN_..., one for each key, the last one unused; NULL: all are linear */
+    const double *handles;  /* four for each value: in seconds, in value, out seconds, out value. The curve's control points lie at
+                             * key - in and key + out. NULL if no span is cubic */
+    rt_u32 before, after;   /* RT_OUTSIDE_... */
+    rt_u32 before_count, after_count; /* how many times keys are repeated; 0: without end */
+} rt_channel_desc;
+
+/* A bone of a skin. 104 B; it never grows. */
+typedef struct rt_bone {
+    rt_u32 node; /* id */
+    rt_u32 pad;  /* 0 */
+    double bone_from_mesh[12]; /* where vertices of the mesh are in the node's space when the mesh is at rest on its bones */
+} rt_bone;
+/* 12 B; it never grows. */
+typedef struct rt_weight {
+    rt_u32 vertex, bone; /* bone: number within the skin, from 0 */
+    float weight;        /* the host divides the weights of a vertex by their sum */
+} rt_weight;
+enum { RT_SKIN_LINEAR, RT_SKIN_DUAL_QUATERNION, RT_SKIN_BLENDED };
+/* Bones move the vertices of a mesh; the node of its instance then has no effect on them. Vertices without weights stay with that
+ * node. A mesh has one skin at most. It acts also without a clip, but not where the user asks for the file at rest. */
+typedef struct rt_skin_desc {
+    rt_u32 struct_bytes;
+    rt_u32 mesh; /* id that the sink's `mesh` returned */
+    rt_u32 bone_count, method; /* RT_SKIN_... */
+    const rt_bone *bones;
+    const rt_weight *weights; /* in any order */
+    uint64_t weight_count;
+    const float *dual_quaternion_shares; /* per vertex, 0..1, for RT_SKIN_BLENDED; otherwise NULL */
+} rt_skin_desc;
+
+/* A shape that a morph reaches at one weight. 48 B; it never grows. */
+typedef struct rt_morph_target {
+    double weight; /* 1, or less for shapes in between; not 0 */
+    const rt_u32 *vertices; /* `count` different ones that move; NULL: the first `count` */
+    uint64_t count;
+    const float *positions; /* 3 for each: how far it moves */
+    const float *normals;   /* 3 for each: how much its normal changes; or NULL */
+    uint64_t pad;           /* 0 */
+} rt_morph_target;
+/* A morph: offsets of a mesh's vertices, times a weight. Between two of its targets the offsets are interpolated; the mesh at rest
+ * is the target at weight 0. All morphs of a mesh are added, then its skin acts. */
+typedef struct rt_morph_desc {
+    rt_u32 struct_bytes;
+    rt_u32 mesh;      /* id that the sink's `mesh` returned */
+    const char *name; /* or NULL */
+    double weight;    /* at rest */
+    const rt_morph_target *targets; /* in order of their weights */
+    rt_u32 target_count, pad;
+} rt_morph_desc;
+
+/* All vertices of a mesh at several times, which replace those at rest: a geometry cache. Between two times they move straight. */
+typedef struct rt_vertex_frames {
+    rt_u32 struct_bytes;
+    rt_u32 mesh; /* id that the sink's `mesh` returned */
+    uint64_t frame_count;
+    const double *times_s;  /* increasing */
+    const float *positions; /* 3 for each vertex of each frame */
+} rt_vertex_frames;
+
 /* Calls that return an id copy their arguments. RT_NONE means that they failed and recorded the error: then return RT_FAILED. */
 typedef struct rt_scene_sink {
     rt_u32 struct_bytes;
@@ -411,6 +573,13 @@ typedef struct rt_scene_sink {
     /* Appended: ask RT_HAS first. The kinds are numbered from 0; NULL: there is no such number. */
     const rt_primitive_kind *(*primitive_kind)(void *ctx, rt_u32 number);
     rt_u32 (*primitive)(void *ctx, const rt_primitive_desc *);
+    rt_u32 (*node)(void *ctx, const rt_node_desc *); /* after its parent */
+    rt_u32 (*clip)(void *ctx, const rt_clip_desc *); /* in the order of the file: the first one acts if the user names none */
+    rt_u32 (*morph)(void *ctx, const rt_morph_desc *);
+    /* These return RT_OK, or RT_FAILED with the error recorded. */
+    int32_t (*channel)(void *ctx, const rt_channel_desc *);
+    int32_t (*skin)(void *ctx, const rt_skin_desc *);
+    int32_t (*vertex_frames)(void *ctx, const rt_vertex_frames *);
 } rt_scene_sink;
 
 typedef struct rt_importer {

@@ -310,7 +310,12 @@ constexpr rt_material_desc material(const char* name = nullptr) {
 }
 // A white light at the origin, or one that shines downwards. kind: RT_LIGHT_POINT or RT_LIGHT_DIRECTIONAL.
 constexpr rt_light_desc light(rt_u32 kind, const char* name = nullptr) {
-    return {sizeof(rt_light_desc), kind, name, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0};
+    return {sizeof(rt_light_desc), kind, name, {0, 0, 0}, {0, -1, 0}, {1, 1, 1}, 0, 0, 0};
+}
+
+// A mesh that is placed where its vertices are.
+constexpr rt_instance_desc instance(rt_u32 mesh, const char* name = nullptr) {
+    return {sizeof(rt_instance_desc), name, mesh, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 0};
 }
 
 // Returns an id that the sink gave, or throws Stopped if it gave none: rt::id(sink->mesh(sink->ctx, &mesh)). Do not use it for

@@ -113,10 +113,33 @@ TEST_F(Render, FramesAreNumbered) {
     const ProgramResult result = run_program(words({"-o", out("f_###.png"), "--frames", "8-12/2", "--time", "1.5"}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(files(), (std::vector<std::string>{"f_008.png", "f_010.png", "f_012.png"}));
-    EXPECT_EQ(scratch_.read("out/f_008.png"), scratch_.read("out/f_012.png")) << "scenes do not move yet";
+    EXPECT_EQ(scratch_.read("out/f_008.png"), scratch_.read("out/f_012.png")) << "this scene does not move";
+    EXPECT_NE(result.err.find("--time 1.5: the scene does not move"), std::string::npos) << result.err;
 }
 
-// `animate` gives a warning of the importer, and --time one of its own: each is printed once.
+// Frame n is at n / fps on the clip's clock, and looks as --time shows it.
+TEST_F(Render, FramesOfAMovingScene) {
+    scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    scene_ = scratch_.write("moving.scene",
+                            "camera main eye 0 0 9\nload cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\n");
+    ASSERT_EQ(run_program(words({"-o", out("f_#.png"), "--frames", "0-4/2", "--fps", "2"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("rest.png")})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("one.png"), "--time", "1", "--clip", "animate"})).exit_code, 0);
+    EXPECT_EQ(scratch_.read("out/f_0.png"), scratch_.read("out/rest.png"));
+    EXPECT_EQ(scratch_.read("out/f_2.png"), scratch_.read("out/one.png"));
+    EXPECT_NE(scratch_.read("out/f_4.png"), scratch_.read("out/one.png"));
+    const ProgramResult info = run_program({"info", scene_, "--json", "--time", "2"});
+    ASSERT_EQ(info.exit_code, 0) << info.err;
+    const nlohmann::json json = nlohmann::json::parse(info.out);
+    EXPECT_NEAR(json["bounds"]["max"][0].get<double>(), 2, 1e-6);
+    EXPECT_EQ(json["animations"][0]["name"], "animate");
+    EXPECT_EQ(json["animations"][0]["end_s"], 2);
+    const ProgramResult unknown = run_program(words({"-o", out("x.png"), "--clip", "walk"}));
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_NE(unknown.err.find("animate"), std::string::npos) << unknown.err;
+}
+
+// A warning of the importer, and one of --time: each is printed once.
 TEST_F(Render, AWarningIsPrintedOnce) {
     const auto count = [](const std::string& text, const std::string& part) {
         size_t found = 0;
@@ -124,14 +147,14 @@ TEST_F(Render, AWarningIsPrintedOnce) {
         return found;
     };
     scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    scene_ = scratch_.write("moving.scene",
-                            "load cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\nsphere center 0 1 0 radius 1\n");
+    scene_ =
+        scratch_.write("moving.scene", "load cube.obj\ntriangle vertices 0 0 0 0 0 0 0 0 0\nsphere center 0 1 0 radius 1\n");
     const ProgramResult result = run_program(words({"-o", out("a.png"), "--time", "1.5"}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(count(result.err, "animation is not supported"), 1u) << result.err;
-    EXPECT_EQ(count(result.err, "warning: --time 1.5: ignored"), 1u) << result.err;
+    EXPECT_EQ(count(result.err, "a triangle without area"), 1u) << result.err;
+    EXPECT_EQ(count(result.err, "warning: --time 1.5: the scene does not move"), 1u) << result.err;
     const ProgramResult info = run_program({"info", scene_});
-    EXPECT_EQ(count(info.out + info.err, "animation is not supported"), 1u) << info.out << info.err;
+    EXPECT_EQ(count(info.out + info.err, "a triangle without area"), 1u) << info.out << info.err;
     EXPECT_EQ(run_program(words({"-o", out("a.png")})).err.find("--time"), std::string::npos);
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "misbehave.hpp"
+#include "moving.hpp"
 #include "rt_plugin.hpp"
 
 namespace test_importer {
@@ -221,6 +222,7 @@ struct Run {
             return place(0, m);
         }
         std::getline(words >> std::ws, argument);
+        if (what == "moving") return moving(host, sink, argument);
         if (what == "broken") return broken(argument);
         if (what == "fail") return fail(argument);
         if (what == "fail_silently") return RT_FAILED;

@@ -10,6 +10,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "base/library_files.hpp"
 #include "bench/suites/gunzip.hpp"
 
 namespace clarity::bench {
@@ -24,9 +25,8 @@ std::string environment(const char* name) {
 }
 
 std::string beside_program() {
-    std::error_code error;
-    const fs::path program = fs::read_symlink("/proc/self/exe", error);
-    return error ? std::string() : (program.parent_path().parent_path() / "share/clarity/scenes").string();
+    const fs::path program = program_file();
+    return program.empty() ? std::string() : (program.parent_path().parent_path() / "share/clarity/scenes").string();
 }
 
 // Splits "scenes/models/a.ply.gz + scenes/models/b.ply.gz (gunzip; faces of part 2 after part 1)" into the two paths.

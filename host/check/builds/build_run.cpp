@@ -108,7 +108,7 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
                             Call&& call) const {
     BuildRun run;
     CancelAt progress(cancel_after);
-    HostServices services("builder", progress);
+    HostServices services({}, progress);
     GuardedOutput output(plugin, static_cast<rt_u32>(build_.groups.size()), services);
     rt_host host = *services.host();
     switch (schedule) {
@@ -139,8 +139,6 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
         run.cancelled = true;
     } catch (const Error& e) {
         run.why = e.what();
-        const std::string who = "builder: ";
-        if (run.why.compare(0, who.size(), who) == 0) run.why.erase(0, who.size());
     }
     run.ms = ms_since(start);
     run.reports = progress.reports();

@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "base/parallel_for.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity::check {
 namespace {
@@ -13,30 +14,8 @@ namespace {
 constexpr double kRounding = 1.5e-6;
 constexpr double kInf = INFINITY;
 
-struct Vec {
-    double x, y, z;
-    double operator[](int k) const { return k == 0 ? x : k == 1 ? y : z; }
-};
-Vec operator-(const Vec& a, const Vec& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-Vec operator+(const Vec& a, const Vec& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-Vec operator*(double s, const Vec& a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-double dot(const Vec& a, const Vec& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec cross(const Vec& a, const Vec& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-double length(const Vec& a) {
-    return std::sqrt(dot(a, a));
-}
 double largest(const Vec& a) {
-    return std::max({std::fabs(a.x), std::fabs(a.y), std::fabs(a.z)});
+    return std::max({std::fabs(a[0]), std::fabs(a[1]), std::fabs(a[2])});
 }
 Vec vec(const float* p) {
     return {p[0], p[1], p[2]};
@@ -62,7 +41,7 @@ struct Across {
     Vec u, v;
     explicit Across(const Ray& ray) {
         const Vec w = (1 / ray.length_d) * ray.d;
-        const Vec a = std::fabs(w.x) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0};
+        const Vec a = std::fabs(w[0]) < 0.6 ? Vec{1, 0, 0} : Vec{0, 1, 0};
         u = cross(w, a);
         u = (1 / length(u)) * u;
         v = cross(w, u);
@@ -219,8 +198,8 @@ Truth BruteForce::trace(const rt_ray& given) const {
         const rt_instance& instance = scene_.instances[index];
         const float* m = instance.object_from_world;
         const auto turned = [&](const Vec& v) {
-            return Vec{m[0] * v.x + m[1] * v.y + m[2] * v.z, m[4] * v.x + m[5] * v.y + m[6] * v.z,
-                       m[8] * v.x + m[9] * v.y + m[10] * v.z};
+            return Vec{m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
+                       m[8] * v[0] + m[9] * v[1] + m[10] * v[2]};
         };
         Ray inner = ray;
         const Vec moved = turned(ray.o);

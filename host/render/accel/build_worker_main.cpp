@@ -68,7 +68,7 @@ void build(const Arguments& arguments) {
         log(LogLevel::debug, "build worker: " + note);
 
     worker::ChannelProgress progress;
-    HostServices services("builder", progress);
+    HostServices services({}, progress);  // without a name: the parent says which builder it is
     GuardedOutput output(plugin, input->group_count, services);
     const rt_build_input& table = input->table();
     services.check(static_cast<int>(Exit::failed), [&] {
@@ -101,8 +101,6 @@ int build_worker_main(int argc, char** argv) {
     } catch (const std::exception& e) {
         last.kind = MessageKind::failed;
         last.text = e.what();
-        const std::string who = "builder: ";  // the parent says which
-        if (last.text.compare(0, who.size(), who) == 0) last.text.erase(0, who.size());
     }
     std::fflush(nullptr);  // what the builder printed comes before the end
     worker::send_message(worker::kChannelFd, last);

@@ -15,43 +15,22 @@ std::vector<size_t> kinds_in(const Scene& scene) {
     return kinds;
 }
 
-std::string prefix_of(size_t kind) {
-    return "    case " + std::to_string(kind) + "u:\n";
-}
-
-void write_hit(SourceWriter& out, const Scene& scene, const std::vector<size_t>& kinds) {
+// A function that chooses by the kind of a shape. each, all: the code for a kind that takes one ray at a time, or all lanes; $
+// stands for the plugin's id. at_end: what follows the switch.
+void write_choice(SourceWriter& out, const Scene& scene, const std::vector<size_t>& kinds, const std::string& signature,
+                  const std::string& each, const std::string& all, const std::string& at_end) {
     // Not inlined: the tests of shapes are long, and leaf tests are in several places.
-    out.line(
-        "RT_NOINLINE vfloat rt_shape_hit(const rt_ctx *ctx, const global rt_shape *shape, const rt_shape_rays *ray, uint bits, "
-        "vfloat *u, vfloat *v)\n{\n"
-        "    const global float *numbers = shape->numbers, *more = ctx->shape_numbers + shape->first_more;\n"
-        "    switch (shape->kind) {");
+    out.line("RT_NOINLINE " + signature +
+             "\n{\n"
+             "    const global float *numbers = shape->numbers, *more = ctx->shape_numbers + shape->first_more;\n"
+             "    switch (shape->kind) {");
     for (const size_t kind : kinds) {
         const rt_plugin& plugin = *scene.shape_kinds[kind].plugin;
-        const std::string id = plugin.id;
-        if (plugin.primitive->flags & RT_SHAPE_SINGLE_RAY)
-            out.line(prefix_of(kind) + "        RT_SHAPE_HIT_EACH(" + id + "_hit)");
-        else
-            out.line(prefix_of(kind) + "        return " + id + "_hit(numbers, more, ray, u, v);");
+        std::string code = plugin.primitive->flags & RT_SHAPE_SINGLE_RAY ? each : all;
+        code.replace(code.find('$'), 1, plugin.id);
+        out.line("    case " + std::to_string(kind) + "u:\n        " + code);
     }
-    out.line("    }\n    return RT_INFINITY;\n}");
-}
-
-void write_surface(SourceWriter& out, const Scene& scene, const std::vector<size_t>& kinds) {
-    out.line(
-        "RT_NOINLINE void rt_shape_surface_at(const rt_ctx *ctx, const global rt_shape *shape, rt_vec at, vfloat u, vfloat v, "
-        "uint bits, rt_shape_surface *s)\n{\n"
-        "    const global float *numbers = shape->numbers, *more = ctx->shape_numbers + shape->first_more;\n"
-        "    switch (shape->kind) {");
-    for (const size_t kind : kinds) {
-        const rt_plugin& plugin = *scene.shape_kinds[kind].plugin;
-        const std::string id = plugin.id;
-        if (plugin.primitive->flags & RT_SHAPE_SINGLE_RAY)
-            out.line(prefix_of(kind) + "        RT_SHAPE_SURFACE_EACH(" + id + "_surface)");
-        else
-            out.line(prefix_of(kind) + "        " + id + "_surface(numbers, more, at, u, v, s);\n        return;");
-    }
-    out.line("    }\n}");
+    out.line("    }\n" + at_end + "}");
 }
 
 }  // namespace
@@ -66,8 +45,14 @@ void write_shapes(SourceWriter& out, const Scene& scene) {
         out.include(plugin, plugin.primitive->kernels);
     }
     out.line("#line 1 \"generated choice of shapes\"");
-    write_hit(out, scene, kinds);
-    write_surface(out, scene, kinds);
+    write_choice(out, scene, kinds,
+                 "vfloat rt_shape_hit(const rt_ctx *ctx, const global rt_shape *shape, const rt_shape_rays *ray, uint bits, "
+                 "vfloat *u, vfloat *v)",
+                 "RT_SHAPE_HIT_EACH($_hit)", "return $_hit(numbers, more, ray, u, v);", "    return RT_INFINITY;\n");
+    write_choice(out, scene, kinds,
+                 "void rt_shape_surface_at(const rt_ctx *ctx, const global rt_shape *shape, rt_vec at, vfloat u, vfloat v, "
+                 "uint bits, rt_shape_surface *s)",
+                 "RT_SHAPE_SURFACE_EACH($_surface)", "$_surface(numbers, more, at, u, v, s);\n        return;", "");
 }
 
 }  // namespace clarity

@@ -1,8 +1,7 @@
-// assimp.cpp -- the importer plugin for FBX, glTF, COLLADA, 3DS and other formats that the Open Asset Import Library reads.
+// assimp.cpp -- the importer plugin for COLLADA, 3DS and other formats that the Open Asset Import Library reads.
 //
 // The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. A mesh is imported once,
 // no matter how many nodes show it.
-// nodes show it.
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
@@ -15,7 +14,7 @@
 #include <vector>
 
 #include "complaints.hpp"
-#include "fbx_mend.hpp"
+#include "content_checks.hpp"
 #include "file_kind.hpp"
 #include "lights_cameras.hpp"
 #include "materials.hpp"
@@ -52,6 +51,20 @@ std::string lower_extension(const std::string& path) {
     return extension;
 }
 
+// The whole file, or nothing if it is too large to be looked through.
+std::string read_content(const std::string& path) {
+    constexpr size_t kMostBytes = size_t(256) << 20;
+    const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
+    std::string bytes;
+    char piece[65536];
+    while (file && bytes.size() < kMostBytes) {
+        const size_t got = std::fread(piece, 1, sizeof piece, file.get());
+        if (got == 0) break;
+        bytes.append(piece, got);
+    }
+    return bytes.size() < kMostBytes ? bytes : std::string();
+}
+
 std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
     const std::unique_ptr<FILE, int (*)(FILE*)> file(std::fopen(path.c_str(), "rb"), std::fclose);
     if (!file) throw rt::fail(host, "cannot open the file for reading");
@@ -61,27 +74,15 @@ std::vector<uint8_t> read_head(const rt_host* host, const std::string& path) {
     return head;
 }
 
-Format format_of(const std::string& extension) {
-    if (extension == "fbx") return Format::fbx;
-    return extension == "gltf" || extension == "glb" || extension == "vrm" ? Format::gltf : Format::other;
-}
-
 // The axes and the unit that the file declares.
 struct Units {
     rt_u32 up_axis = 1;
     double unit_scale = 0;
 };
 
-Units units_of(aiScene& scene, Format format, const std::string& extension, const std::vector<uint8_t>& head) {
+Units units_of(aiScene& scene, const std::string& extension, const std::vector<uint8_t>& head) {
     Units units;
-    if (format == Format::gltf) {
-        units.unit_scale = 1;
-    } else if (format == Format::fbx && scene.mMetaData) {
-        int up = 1;
-        float centimetres = 0;
-        if (scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) units.up_axis = static_cast<rt_u32>(up);
-        if (scene.mMetaData->Get("UnitScaleFactor", centimetres) && centimetres > 0) units.unit_scale = 0.01 * centimetres;
-    } else if (extension == "dae" && scene.mRootNode) {
+    if (extension == "dae" && scene.mRootNode) {
         // assimp scales the root node to metres. Undo that, and report the unit instead.
         const std::string text(head.begin(), head.end());
         if (text.find("Z_UP") != text.npos) units.up_axis = 2;
@@ -100,26 +101,24 @@ void warn(const rt_scene_sink& sink, const std::string& text) {
     sink.warn(sink.ctx, text.c_str());
 }
 
-// Adds one instance for each node with polygons. `mend` is set for FBX only.
-void add_instances(const NodeTree& tree, const FbxMend* mend, MeshTable& meshes, const rt_host* host,
-                   const rt_scene_sink& sink) {
+// Adds one instance for each node with polygons.
+void add_instances(const NodeTree& tree, MeshTable& meshes, const rt_host* host, const rt_scene_sink& sink) {
     size_t done = 0, strayed = 0;
     for (const PlacedNode& placed : tree.nodes()) {
         rt::progress(host, kReadShare + (1 - kReadShare) * float(++done) / float(tree.nodes().size()));
         if (placed.node->mNumMeshes == 0) continue;
-        if (!is_finite(placed.world_geometry)) {
+        if (!is_finite(placed.world)) {
             ++strayed;
             continue;
         }
-        const MeshTable::Placed shown =
-            meshes.place(*placed.node, mend ? mend->materials(*placed.node) : std::vector<unsigned>());
-        if (shown.mesh == RT_NONE) continue;
+        const rt_u32 mesh = meshes.id(*placed.node);
+        if (mesh == RT_NONE) continue;
         rt_instance_desc out{};
         out.struct_bytes = sizeof out;
         out.name = placed.node->mName.C_Str();
-        out.mesh = shown.mesh;
-        out.material = shown.material;
-        std::transform(placed.world_geometry.begin(), placed.world_geometry.end(), out.world_from_object,
+        out.mesh = mesh;
+        out.material = RT_NONE;
+        std::transform(placed.world.begin(), placed.world.end(), out.world_from_object,
                        [](double x) { return static_cast<float>(x); });
         rt::id(sink.instance(sink.ctx, &out));
     }
@@ -152,20 +151,14 @@ void report(const aiScene& scene, const NodeTree& tree, const MeshTable& meshes,
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
     const std::vector<uint8_t> head = read_head(host, path);
     const std::string extension = lower_extension(path);
-    const Format format = format_of(extension);
-    if (format == Format::fbx) {
-        const std::string refusal = fbx_refusal(head.data(), head.size());
-        if (!refusal.empty()) throw rt::fail(host, refusal);
-        if (fbx_version(head.data(), head.size()) >= 8000)
-            warn(*sink, "the file's FBX version is newer than 7.7, the newest known");
-    }
+
+    const std::string bytes = read_content(path);
+    const std::string damage = bytes.empty() ? bytes : damage_in(bytes, extension);
+    if (!damage.empty()) throw rt::fail(host, damage);
 
     Assimp::Importer importer;
     HostProgress* progress = new HostProgress(*host);  // the importer deletes it
     importer.SetProgressHandler(progress);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, true);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_ANIMATIONS, false);
-    importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, false);
     importer.SetPropertyInteger(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, 1);
     const Complaints complaints;
     importer.ReadFile(path, 0);
@@ -173,19 +166,17 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     std::string why = importer.GetErrorString();
     const std::unique_ptr<aiScene> scene(importer.GetOrphanedScene());
     if (!scene || !scene->mRootNode) {
-        why.erase(std::remove(why.begin(), why.end(), '\n'), why.end());
-        throw rt::fail(host, why.empty() ? "assimp cannot read it and does not say why" : "assimp cannot read it: " + why);
+        throw rt::fail(host, explain_refusal(bytes, extension, why));
     }
 
-    const Units units = units_of(*scene, format, extension, head);
-    const std::unique_ptr<FbxMend> mend = format == Format::fbx ? std::make_unique<FbxMend>(*scene, path) : nullptr;
-    const NodeTree tree(*scene, format == Format::fbx);
-    MaterialTable materials(*scene, format, path, *sink);
+    const Units units = units_of(*scene, extension, head);
+    const NodeTree tree(*scene);
+    MaterialTable materials(*scene, path, *sink);
     MeshTable meshes(*scene, materials, *sink);
-    add_instances(tree, mend.get(), meshes, host, *sink);
+    add_instances(tree, meshes, host, *sink);
     report(*scene, tree, meshes, complaints.errors(), host, *sink);
     add_lights(*scene, tree, *host, *sink);
-    add_cameras(*scene, tree, format, *sink);
+    add_cameras(*scene, tree, *sink);
     rt_scene_info info{};
     info.struct_bytes = sizeof info;
     info.up_axis = units.up_axis;
@@ -199,12 +190,11 @@ int32_t probe(const uint8_t* head, uint64_t bytes) {
 }
 
 // The formats that users expect. assimp reads more; many of those are rare, unsafe or not meshes.
-constexpr const char* extensions[] = {"fbx",  "gltf", "glb",     "dae",  "3ds", "blend",   "ac",  "ase", "b3d",
-                                      "bvh",  "dxf",  "hmp",     "ifc",  "irr", "irrmesh", "lwo", "lws", "lxo",
-                                      "md2",  "md3",  "md5mesh", "ms3d", "nff", "q3o",     "smd", "ter", "vrm",
-                                      "x",    "x3d",  "xgl",     "zgl",  "3mf", "amf",     "cob", "scn",
+constexpr const char* extensions[] = {"dae",     "3ds", "blend", "ac",  "ase", "b3d", "bvh",     "dxf",  "hmp", "ifc", "irr",
+                                      "irrmesh", "lwo", "lws",   "lxo", "md2", "md3", "md5mesh", "ms3d", "nff", "q3o", "smd",
+                                      "ter",     "x",   "x3d",   "xgl", "zgl", "3mf", "amf",     "cob",  "scn",
 #ifdef ASSIMP_TAKES_MESH_FORMATS
-                                      "obj",  "ply",  "stl",     "off",
+                                      "obj",     "ply", "stl",   "off",
 #endif
                                       nullptr};
 constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::guarded<load>};
@@ -213,4 +203,4 @@ constexpr rt_importer importer = {sizeof(rt_importer), extensions, probe, rt::gu
 }  // namespace assimp_import
 
 extern "C" RT_EXPORT const rt_plugin rt_plugin_v1 = rt::importer_plugin(
-    "assimp", "FBX, glTF, COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);
+    "assimp", "COLLADA, 3DS and more (Open Asset Import Library)", "1.0.0", nullptr, assimp_import::importer);

@@ -93,7 +93,7 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
     for (const rt_light_desc& light : lights) rt::id(sink.light(sink.ctx, &light));
 }
 
-void add_cameras(const aiScene& scene, const NodeTree& tree, Format format, const rt_scene_sink& sink) {
+void add_cameras(const aiScene& scene, const NodeTree& tree, const rt_scene_sink& sink) {
     Placement placement(tree);
     for (unsigned i = 0; i < scene.mNumCameras; ++i) {
         const aiCamera& camera = *scene.mCameras[i];
@@ -104,19 +104,14 @@ void add_cameras(const aiScene& scene, const NodeTree& tree, Format format, cons
         rt_camera out{};
         out.struct_bytes = sizeof out;
         out.name = camera.mName.C_Str();
-        // For glTF, assimp 5.2 stores the node's translation again as the camera's position.
-        const Vec eye = transform_point(world, format == Format::gltf ? aiVector3D() : camera.mPosition);
+        const Vec eye = transform_point(world, camera.mPosition);
         store(eye, out.eye);
         store({eye[0] + forward[0], eye[1] + forward[1], eye[2] + forward[2]}, out.target);
         store(up, out.up);
         if (!all_finite(out.eye) || !all_finite(out.target)) continue;
-        // mHorizontalFOV is the whole angle, whatever the comment in its header says. For glTF, assimp stores yfov times the
-        // aspect.
-        const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? camera.mAspect
-                              : format == Format::gltf                            ? 1
-                                                                                  : 4.0 / 3;
-        double fov_y = format == Format::gltf ? camera.mHorizontalFOV / aspect
-                                              : 2 * std::atan(std::tan(0.5 * camera.mHorizontalFOV) / aspect);
+        // mHorizontalFOV is the whole angle, whatever the comment in its header says.
+        const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? camera.mAspect : 4.0 / 3;
+        double fov_y = 2 * std::atan(std::tan(0.5 * camera.mHorizontalFOV) / aspect);
         if (!(fov_y > 0.001) || fov_y > 3.1) {
             const std::string text =
                 "the camera " + quoted(camera.mName) + " has no angle of view (orthographic?): 45 degrees are used";

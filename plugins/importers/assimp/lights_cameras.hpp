@@ -9,6 +9,6 @@
 namespace assimp_import {
 
 void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host, const rt_scene_sink& sink);
-void add_cameras(const aiScene& scene, const NodeTree& tree, Format format, const rt_scene_sink& sink);
+void add_cameras(const aiScene& scene, const NodeTree& tree, const rt_scene_sink& sink);
 
 }  // namespace assimp_import

@@ -1,6 +1,5 @@
 #include "materials.hpp"
 
-#include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 
 #include <algorithm>
@@ -33,7 +32,8 @@ float brightest(const aiColor3D& c) {
     return std::max({c.r, c.g, c.b});
 }
 
-// Converts metallic-roughness materials (glTF and others): a smooth metal mirrors, a rough one stays diffuse in its own colour.
+// Converts metallic-roughness materials (COLLADA and others): a smooth metal mirrors, a rough one stays diffuse in its own
+// colour.
 void apply_metallic(const aiMaterial& m, rt_material_desc& out) {
     const float metallic = finite(number(m, AI_MATKEY_METALLIC_FACTOR, 0), 0, 1, 0);
     const float roughness = finite(number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1), 0, 1, 1);
@@ -50,19 +50,15 @@ void apply_phong(const aiMaterial& m, rt_material_desc& out) {
     const float strength = finite(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
     store(specular * strength, 1, out.specular);
     out.shininess = finite(number(m, AI_MATKEY_SHININESS, 0), 1, 10000, 1);
-    // FBX and COLLADA store a reflection colour beside its factor. A black colour means no reflection.
+    // COLLADA stores a reflection colour beside its factor. A black colour means no reflection.
     out.reflect =
         finite(number(m, AI_MATKEY_REFLECTIVITY, 0) * brightest(color(m, AI_MATKEY_COLOR_REFLECTIVE, {0, 0, 0})), 0, 1, 0);
 }
 
 // Converts opacity and transmission to refraction. Rays are bent only if the file gives an index of refraction or a
 // transmission.
-void apply_transparency(const aiMaterial& m, Format format, rt_material_desc& out) {
-    float opacity = finite(number(m, AI_MATKEY_OPACITY, 1), 0, 1, 1);
-    if (format == Format::gltf) {
-        aiString mode;
-        if (m.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS || std::string(mode.C_Str()) != "BLEND") opacity = 1;
-    }
+void apply_transparency(const aiMaterial& m, rt_material_desc& out) {
+    const float opacity = finite(number(m, AI_MATKEY_OPACITY, 1), 0, 1, 1);
     const float transmission = finite(number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0), 0, 1, 0);
     const float stated = finite(number(m, AI_MATKEY_REFRACTI, 0), 0, 10, 0);
     out.refract = std::max(1 - opacity, transmission);
@@ -86,9 +82,8 @@ bool is_readable(const std::string& path) {
 
 }  // namespace
 
-MaterialTable::MaterialTable(const aiScene& scene, Format format, const std::string& file, const rt_scene_sink& sink)
+MaterialTable::MaterialTable(const aiScene& scene, const std::string& file, const rt_scene_sink& sink)
     : scene_(scene),
-      format_(format),
       folder_(file.find_last_of('/') == file.npos ? "" : file.substr(0, file.find_last_of('/') + 1)),
       stem_(base_name(file).substr(0, base_name(file).find_last_of('.'))),
       sink_(sink),
@@ -111,16 +106,14 @@ rt_u32 MaterialTable::id(unsigned material) {
     out.texture = texture(m);
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);
-    // In FBX, a texture replaces the colour (programs leave any value there). In other formats, the two are multiplied.
-    if (format_ == Format::fbx && out.texture != RT_NONE) base = {1, 1, 1};
     store(base, 1, out.color);
     aiColor3D emission = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
     emission = emission * finite(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0, 1000, 1);
     store(emission, 1000, out.emission);
     ai_real metallic = 0;
-    const bool is_metallic = format_ != Format::fbx && m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS;
+    const bool is_metallic = m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS;
     is_metallic ? apply_metallic(m, out) : apply_phong(m, out);
-    apply_transparency(m, format_, out);
+    apply_transparency(m, out);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));
 }
 

@@ -17,12 +17,10 @@ struct TextureMapping {
     aiUVTransform transform;
 };
 
-enum class Format { fbx, gltf, other };
-
 // Converts materials and passes each to the sink when it is first used.
 class MaterialTable {
  public:
-    MaterialTable(const aiScene& scene, Format format, const std::string& file, const rt_scene_sink& sink);
+    MaterialTable(const aiScene& scene, const std::string& file, const rt_scene_sink& sink);
     rt_u32 id(unsigned material);  // RT_NONE: the default material
     TextureMapping mapping(unsigned material) const;
 
@@ -33,7 +31,6 @@ class MaterialTable {
     std::string existing_path(const std::string& reference) const;
 
     const aiScene& scene_;
-    const Format format_;
     const std::string folder_, stem_;
     const rt_scene_sink& sink_;
     std::vector<rt_u32> ids_;

@@ -98,25 +98,14 @@ bool is_sound(const aiMesh& mesh, const aiFace& face) {
 
 }  // namespace
 
-MeshTable::Placed MeshTable::place(const aiNode& node, const std::vector<unsigned>& materials) {
-    std::vector<Part> own, wanted;
+rt_u32 MeshTable::id(const aiNode& node) {
+    std::vector<Part> parts;
     for (unsigned i = 0; i < node.mNumMeshes; ++i) {
         const unsigned mesh = node.mMeshes[i];
         if (mesh >= scene_.mNumMeshes || !scene_.mMeshes[mesh] || !scene_.mMeshes[mesh]->mVertices) continue;
-        own.push_back({mesh, scene_.mMeshes[mesh]->mMaterialIndex});
-        wanted.push_back({mesh, i < materials.size() ? materials[i] : own.back().second});
+        parts.push_back({mesh, scene_.mMeshes[mesh]->mMaterialIndex});
     }
-    if (own.empty()) return {};
-    if (wanted == own) return {id(own, node), RT_NONE};
-    // If the node changes all materials to the same one, the instance gets that material. Otherwise the node needs a mesh of
-    // its own.
-    const bool is_uniform =
-        std::all_of(wanted.begin(), wanted.end(), [&](const Part& p) { return p.second == wanted[0].second; });
-    const rt_u32 material = is_uniform ? materials_.id(wanted[0].second) : RT_NONE;
-    return material != RT_NONE ? Placed{id(own, node), material} : Placed{id(wanted, node), RT_NONE};
-}
-
-rt_u32 MeshTable::id(const std::vector<Part>& parts, const aiNode& node) {
+    if (parts.empty()) return RT_NONE;
     const auto known = ids_.find(parts);
     if (known != ids_.end()) return known->second;
     const aiString& name = scene_.mMeshes[parts[0].first]->mName;

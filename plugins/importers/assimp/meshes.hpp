@@ -13,18 +13,13 @@
 namespace assimp_import {
 
 // assimp splits a mesh by material. This class joins the parts again, with one material per face. Corners with equal attributes
-// become one vertex (assimp's FBX importer makes one vertex per corner).
+// become one vertex.
 class MeshTable {
  public:
     MeshTable(const aiScene& scene, MaterialTable& materials, const rt_scene_sink& sink)
         : scene_(scene), materials_(materials), sink_(sink) {}
-    struct Placed {
-        rt_u32 mesh = RT_NONE;      // RT_NONE: the node has no polygons
-        rt_u32 material = RT_NONE;  // of the whole instance; RT_NONE: the mesh has its own materials
-    };
-    // Returns the mesh made of the node's meshes. `materials` holds one material for each of them; if it is empty, they keep
-    // their own.
-    Placed place(const aiNode& node, const std::vector<unsigned>& materials);
+    // Returns the mesh made of the node's meshes. RT_NONE: the node has no polygons.
+    rt_u32 id(const aiNode& node);
 
     // Numbers of elements that were left out, and of faces that were not.
     uint64_t points_and_lines() const { return points_and_lines_; }
@@ -34,7 +29,6 @@ class MeshTable {
  private:
     // Index of a mesh of the scene, and of its material.
     using Part = std::pair<unsigned, unsigned>;
-    rt_u32 id(const std::vector<Part>& parts, const aiNode& node);
     rt_u32 add(const std::vector<Part>& parts, const char* name);
 
     const aiScene& scene_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string_view>
 
 namespace assimp_import {
 namespace {
@@ -12,17 +11,6 @@ Transform from_assimp(const aiMatrix4x4& m) {
 }
 
 enum class Part { whole, pivot, geometric, geometric_inverse };
-
-// Helper nodes that assimp's FBX importer adds are recognised by the end of their names.
-Part part_of(const aiNode& node) {
-    constexpr std::string_view tag = "_$AssimpFbx$_";
-    const std::string_view name(node.mName.data, node.mName.length);
-    const size_t at = name.rfind(tag);
-    if (at == name.npos) return Part::whole;
-    const std::string_view part = name.substr(at + tag.size());
-    if (part.substr(0, 9) != "Geometric") return Part::pivot;
-    return part.size() > 7 && part.substr(part.size() - 7) == "Inverse" ? Part::geometric_inverse : Part::geometric;
-}
 
 }  // namespace
 
@@ -54,42 +42,21 @@ bool is_finite(const Transform& m) {
     return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(static_cast<float>(x)); });
 }
 
-NodeTree::NodeTree(const aiScene& scene, bool is_fbx) {
+NodeTree::NodeTree(const aiScene& scene) {
     struct Pending {
         const aiNode* node;
-        Transform parent;     // inherited by the node
-        Transform geometric;  // product of the geometric parts since the last whole node
+        Transform parent;  // inherited by the node
     };
     std::vector<Pending> stack;
-    if (scene.mRootNode) stack.push_back({scene.mRootNode, kIdentity, kIdentity});
+    if (scene.mRootNode) stack.push_back({scene.mRootNode, kIdentity});
     while (!stack.empty()) {
         const Pending at = stack.back();
         stack.pop_back();
-        const Transform local = from_assimp(at.node->mTransformation);
-        const Part part = is_fbx ? part_of(*at.node) : Part::whole;
-        PlacedNode placed;
-        placed.node = at.node;
-        Transform geometric = kIdentity;  // passed on to the children
-        switch (part) {
-            case Part::whole:
-                placed.world = multiply(at.parent, local);
-                placed.world_geometry = multiply(placed.world, at.geometric);
-                break;
-            case Part::pivot:
-                placed.world = placed.world_geometry = multiply(at.parent, local);
-                break;
-            case Part::geometric:
-                placed.world = placed.world_geometry = at.parent;
-                geometric = multiply(at.geometric, local);
-                break;
-            case Part::geometric_inverse:
-                placed.world = placed.world_geometry = at.parent;
-                break;
-        }
-        nodes_.push_back(placed);
+        nodes_.push_back({at.node, multiply(at.parent, from_assimp(at.node->mTransformation))});
+        const Transform world = nodes_.back().world;
         // The children go onto the stack in reverse, so that siblings come out in the order of the file.
         for (unsigned i = at.node->mNumChildren; i > 0; --i) {
-            if (const aiNode* child = at.node->mChildren[i - 1]) stack.push_back({child, placed.world, geometric});
+            if (const aiNode* child = at.node->mChildren[i - 1]) stack.push_back({child, world});
         }
     }
     for (size_t i = 0; i < nodes_.size(); ++i) {

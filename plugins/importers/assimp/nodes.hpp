@@ -19,22 +19,16 @@ bool is_finite(const Transform& m);
 
 struct PlacedNode {
     const aiNode* node = nullptr;
-    Transform world{};           // inherited by children, lights and cameras
-    Transform world_geometry{};  // for the node's own meshes
+    Transform world{};
 };
 
 // All nodes of the tree, parents first. It is built without recursion, because files may nest without limit.
-//
-// FBX: with preserved pivots, assimp makes one node for each part of a node's transform, with the name
-// `<node>_$AssimpFbx$_<part>`. Geometric transforms apply only to the meshes of a node. assimp 5.2 undoes them for the children
-// by further nodes, but in an order that is wrong for a rotation with a scaling. So geometric transforms are not inherited
-// here, and the undoing nodes are skipped.
 class NodeTree {
  public:
-    NodeTree(const aiScene& scene, bool is_fbx);
+    explicit NodeTree(const aiScene& scene);
     const std::vector<PlacedNode>& nodes() const { return nodes_; }
     // Returns the n-th node with a name in the order of the file, the last one if there are fewer, or nullptr if there is none.
-    // Lights and cameras refer to nodes by name only, and FBX names need not be unique.
+    // Lights and cameras refer to nodes by name only, and names need not be unique.
     const PlacedNode* find(const std::string& name, size_t n) const;
 
  private:

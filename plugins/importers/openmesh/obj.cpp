@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "mapped_file.hpp"
+#include "../common/mapped_file.hpp"
 #include "mtl.hpp"
 #include "readers.hpp"
 #include "rt_plugin.hpp"
@@ -114,7 +114,7 @@ class ObjLines {
     bool open_library(const std::string& folder, std::string name) {
         for (char& c : name) c = c == '\\' ? '/' : c;
         try {
-            const MappedFile file((name.empty() || name.front() == '/' ? "" : folder) + name);
+            const importers::MappedFile file((name.empty() || name.front() == '/' ? "" : folder) + name);
             parse_mtl(file.bytes(), materials_);
             return true;
         } catch (const std::runtime_error&) {

@@ -43,9 +43,11 @@ class OffText {
         }
         if (kind.is_four_dimensional)
             throw std::runtime_error("has vertices that are not three-dimensional, which is not supported");
+        const std::string_view counts = line;
         long long vertices = -1, faces = -1;
         if (!parse_integer(next_word(line), vertices) || !parse_integer(next_word(line), faces) || vertices < 0 || faces < 0) {
-            throw std::runtime_error(where() + "expected the numbers of vertices and faces: is it an OFF file?");
+            throw std::runtime_error(where() + "found " + quoted(counts) +
+                                     ", expected the numbers of vertices and faces: is it an OFF file?");
         }
         // The shortest vertex is "0 0 0\n" with 6 bytes. A face takes at least 2 bytes.
         std::string why = too_large("vertex", static_cast<unsigned long long>(vertices), 6, size_);
@@ -74,7 +76,8 @@ class OffText {
     void vertex(const Kind& kind, long long index, long long count, FlatImporter& mesh, std::string& out) {
         std::string_view line = content();
         if (line.empty())
-            throw std::runtime_error("ends after " + std::to_string(index) + " of " + std::to_string(count) + " vertices");
+            throw std::runtime_error(where() + "found the end of the file after " + std::to_string(index) + " of " +
+                                     std::to_string(count) + " vertices, expected x y z of the next one");
         float xyz[3] = {0, 0, 0};
         bool good = true;
         std::string_view words[3];
@@ -95,7 +98,8 @@ class OffText {
     void face(long long index, long long count, std::string& out) {
         std::string_view line = content();
         if (line.empty())
-            throw std::runtime_error("ends after " + std::to_string(index) + " of " + std::to_string(count) + " faces");
+            throw std::runtime_error(where() + "found the end of the file after " + std::to_string(index) + " of " +
+                                     std::to_string(count) + " faces, expected the next one");
         long long corners = 0;
         const std::string_view first = next_word(line);
         if (!parse_integer(first, corners) || corners < 0) {

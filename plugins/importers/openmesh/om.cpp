@@ -10,7 +10,7 @@ namespace openmesh_import {
 void read_om(const Source& source, FlatImporter& mesh) {
     constexpr size_t header_bytes = 16;
     if (source.bytes.size() < header_bytes || source.bytes.substr(0, 2) != "OM" || !std::strchr("TQP", source.bytes[2])) {
-        throw std::runtime_error("not an OM file: its header is not there");
+        throw std::runtime_error("byte 0: not an OM file: its header, 'OM' and the kind of its faces, is not there");
     }
     uint32_t counts[3];
     for (int i = 0; i < 3; ++i) {

@@ -6,10 +6,11 @@
 #include <algorithm>
 #include <cctype>
 #include <istream>
+#include <new>
 #include <stdexcept>
 #include <string>
 
-#include "mapped_file.hpp"
+#include "../common/mapped_file.hpp"
 #include "readers.hpp"
 #include "rt_plugin.hpp"
 #include "text.hpp"
@@ -66,11 +67,14 @@ std::string format_of(const std::string& path, std::string_view bytes) {
     return bytes.substr(0, 3) == "OFF" ? "off" : extension;
 }
 
-const char* picture_kind(std::string_view bytes) {
+const char* other_kind(std::string_view bytes) {
     if (bytes.substr(0, 4) == "\x89PNG") return "a PNG picture";
     if (bytes.substr(0, 3) == "\xFF\xD8\xFF") return "a JPEG picture";
     if (bytes.substr(0, 2) == "\x1F\x8B") return "a gzip archive: unpack it";
     if (bytes.substr(0, 4) == "PK\x03\x04") return "a zip archive: unpack it";
+    if (bytes.substr(0, 4) == "glTF") return "a binary glTF file: call it .glb";
+    if (bytes.substr(0, 11) == "Kaydara FBX") return "an FBX file: call it .fbx";
+    if (bytes.substr(0, 5) == "<?xml") return "an XML file";
     return nullptr;
 }
 
@@ -118,20 +122,36 @@ void emit(const Source& source, const FlatImporter& mesh, rt_u32 material) {
     rt::id(source.sink.instance(source.sink.ctx, &instance));
 }
 
+// Reads the bytes of a file in one of the formats into `mesh`. Returns the name of its texture, or an empty string.
+std::string read(const std::string& format, const Source& source, FlatImporter& mesh) {
+    std::string texture;
+    try {
+        if (format == "obj") read_obj(source, mesh);
+        if (format == "ply") texture = read_ply(source, mesh);
+        if (format == "stl") read_stl(source, mesh);
+        if (format == "off") read_off(source, mesh);
+        if (format == "om") read_om(source, mesh);
+    } catch (const std::bad_alloc&) {
+        throw std::runtime_error(
+            "needs more memory than an import may take: a count in it is damaged, or the file is too large");
+    } catch (const std::length_error&) {
+        throw std::runtime_error("found a number that counts more than memory can hold: it is damaged");
+    } catch (const std::ios_base::failure&) {
+        throw std::runtime_error("cannot be read to its end: it is cut off or damaged");
+    }
+    return texture;
+}
+
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    const MappedFile file(path);
+    const importers::MappedFile file(path);
     if (file.bytes().empty()) throw std::runtime_error("the file is empty");
-    if (const char* kind = picture_kind(file.bytes())) throw std::runtime_error(std::string("it is ") + kind);
+    if (const char* kind = other_kind(file.bytes()))
+        throw std::runtime_error(std::string("byte 0: found ") + kind + ", expected what its extension says");
     const auto report = [&](float fraction) { rt::progress(host, kReadShare * std::min(1.0f, std::max(0.0f, fraction))); };
     const Source source{path, file.bytes(), report, *sink};
     const std::string format = format_of(path, file.bytes());
     FlatImporter mesh(format == "obj");
-    std::string texture;
-    if (format == "obj") read_obj(source, mesh);
-    if (format == "ply") texture = read_ply(source, mesh);
-    if (format == "stl") read_stl(source, mesh);
-    if (format == "off") read_off(source, mesh);
-    if (format == "om") read_om(source, mesh);
+    const std::string texture = read(format, source, mesh);
     mesh.finish_faces();
     rt::progress(host, kReadShare);
 
@@ -148,7 +168,8 @@ int32_t load(const rt_host* host, const char* path, const double*, const rt_scen
     } else if (mesh.n_vertices() > 0) {
         warn(source, "contains no polygons (points and lines were skipped)");
     } else {
-        throw std::runtime_error("contains neither vertices nor polygons: is it " + format + "?");
+        throw std::runtime_error("byte 0: found " + quoted(file.bytes().substr(0, 24)) +
+                                 " and no vertex behind it, expected a ." + format + " file");
     }
     return RT_OK;
 }

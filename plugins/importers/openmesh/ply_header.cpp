@@ -22,7 +22,8 @@ const Type& type_of(std::string_view word) {
     for (const Type& type : kTypes) {
         if (word == type.name || word == type.other_name) return type;
     }
-    throw std::runtime_error("the PLY header uses the type " + quoted(word) + ", which PLY does not have");
+    throw std::runtime_error("found the type " + quoted(word) +
+                             ", expected char, uchar, short, ushort, int, uint, float or double");
 }
 
 Property parse_property(std::string_view rest) {
@@ -31,8 +32,8 @@ Property parse_property(std::string_view rest) {
     if (word == "list") {
         property.count_type = &type_of(next_word(rest));
         if (property.count_type->is_float)
-            throw std::runtime_error(
-                "the PLY header gives the length of a list a floating-point type; expected an integer type");
+            throw std::runtime_error("found the type " + std::string(property.count_type->name) +
+                                     " for the length of a list, expected an integer type");
         word = next_word(rest);
     }
     property.type = &type_of(word);
@@ -40,43 +41,60 @@ Property parse_property(std::string_view rest) {
     // Names of texture coordinates in files of other programs.
     if (property.name == "texture_u") property.name = "u";
     if (property.name == "texture_v") property.name = "v";
-    if (property.name.empty()) throw std::runtime_error("the PLY header has a property without a name");
+    if (property.name.empty()) throw std::runtime_error("found a property without a name, expected one behind its type");
     return property;
+}
+
+}  // namespace
+
+namespace {
+
+void parse_line(std::string_view line, Header& header) {
+    const std::string_view word = next_word(line);
+    if (word == "format") {
+        header.format = std::string(next_word(line));
+    } else if (word == "element") {
+        Element element;
+        element.name = std::string(next_word(line));
+        long long count = -1;
+        const std::string_view number = next_word(line);
+        if (!parse_integer(number, count) || count < 0)
+            throw std::runtime_error("found " + quoted(number) + ", expected the number of elements " + quoted(element.name));
+        element.count = static_cast<unsigned long long>(count);
+        header.elements.push_back(element);
+    } else if (word == "property") {
+        if (header.elements.empty()) throw std::runtime_error("found a property, expected an element before it");
+        header.elements.back().properties.push_back(parse_property(line));
+    } else if (word == "comment") {
+        if (next_word(line) == "TextureFile") header.texture = std::string(trim(line));
+    } else if (word != "obj_info" && !word.empty()) {
+        throw std::runtime_error("found " + quoted(word) +
+                                 ", expected format, element, property, comment, obj_info or end_header");
+    }
 }
 
 }  // namespace
 
 Header parse_header(std::string_view bytes) {
     Header header;
-    if (next_line(bytes).substr(0, 3) != "ply") throw std::runtime_error("not a PLY file: it does not start with 'ply'");
-    while (!bytes.empty()) {
-        std::string_view line = next_line(bytes);
-        const std::string_view word = next_word(line);
-        if (word == "end_header") {
+    const std::string_view first = next_line(bytes);
+    if (first.substr(0, 3) != "ply")
+        throw std::runtime_error("line 1: found " + quoted(first) + ", expected 'ply', with which a PLY file begins");
+    for (size_t line_number = 2; !bytes.empty(); ++line_number) {
+        const std::string_view line = next_line(bytes);
+        std::string_view words = line;
+        if (next_word(words) == "end_header") {
             header.body = bytes;
             return header;
         }
-        if (word == "format") {
-            header.format = std::string(next_word(line));
-        } else if (word == "element") {
-            Element element;
-            element.name = std::string(next_word(line));
-            long long count = -1;
-            if (!parse_integer(next_word(line), count) || count < 0) {
-                throw std::runtime_error("the PLY header gives no count of element " + quoted(element.name));
-            }
-            element.count = static_cast<unsigned long long>(count);
-            header.elements.push_back(element);
-        } else if (word == "property") {
-            if (header.elements.empty()) throw std::runtime_error("the PLY header has a property before the first element");
-            header.elements.back().properties.push_back(parse_property(line));
-        } else if (word == "comment") {
-            if (next_word(line) == "TextureFile") header.texture = std::string(trim(line));
-        } else if (word != "obj_info" && !word.empty()) {
-            throw std::runtime_error("the PLY header has a line that starts with " + quoted(word));
+        try {
+            parse_line(line, header);
+        } catch (const std::runtime_error& error) {
+            throw std::runtime_error("line " + std::to_string(line_number) + ": the PLY header is damaged: " + error.what());
         }
     }
-    throw std::runtime_error("the PLY header has no end: the file is cut off or damaged");
+    throw std::runtime_error(
+        "the PLY header has no end: found the end of the file, expected end_header; it is cut off or damaged");
 }
 
 namespace {
@@ -94,7 +112,8 @@ unsigned long long least_bytes(const Element& element, bool ascii) {
 
 void check(const Header& header) {
     if (header.format != "ascii" && header.format != "binary_little_endian" && header.format != "binary_big_endian") {
-        throw std::runtime_error("the PLY format " + quoted(header.format) + " is not known");
+        throw std::runtime_error("found the PLY format " + quoted(header.format) +
+                                 ", expected ascii, binary_little_endian or binary_big_endian");
     }
     const Element *vertices = header.find("vertex"), *faces = header.find("face");
     if (!vertices) throw std::runtime_error("the PLY header has no element 'vertex'");

@@ -34,12 +34,13 @@ bool is_ascii(std::string_view bytes) {
 
 void read_binary(const Source& source, FlatImporter& mesh) {
     if (source.bytes.size() < kHeaderBytes)
-        throw std::runtime_error("not an STL file: it is too short for a binary one and has no keyword of a text one");
+        throw std::runtime_error("byte 0: found " + quoted(source.bytes.substr(0, 16)) +
+                                 ", expected 'solid' of a text STL file, or the 84 bytes with which a binary one begins");
     const uint32_t count = declared_count(source.bytes);
     const size_t room = (source.bytes.size() - kHeaderBytes) / kFacetBytes;
     if (count > room) {
-        throw std::runtime_error("declares " + std::to_string(count) + " facets and has room for " + std::to_string(room) +
-                                 ": it is cut off, or no STL file");
+        throw std::runtime_error("byte 80: declares " + std::to_string(count) + " facets and has room for " +
+                                 std::to_string(room) + ": it is cut off, or no STL file");
     }
     BytesBuffer buffer({}, source.bytes, source.progress);
     run_reader("stl", buffer, true, true, false, mesh);
@@ -50,12 +51,15 @@ void read_binary(const Source& source, FlatImporter& mesh) {
 
 void read_ascii(const Source& source, FlatImporter& mesh) {
     uint64_t facets = 0, vertices = 0;
-    size_t line_number = 0;
+    size_t line_number = 0, bad_line = 0;  // the first line behind a facet that has not three vertices
     const auto edit = [&](std::string_view line, int, std::string& out) {
         ++line_number;
         line = trim(line);
         out = line;
-        if (has(line, "outer", "OUTER")) ++facets;
+        if (has(line, "outer", "OUTER")) {
+            if (vertices != 3 * facets && bad_line == 0) bad_line = line_number;
+            ++facets;
+        }
         const std::string_view word = next_word(line);
         if (word != "vertex" && word != "VERTEX") return !word.empty();
         ++vertices;
@@ -72,8 +76,9 @@ void read_ascii(const Source& source, FlatImporter& mesh) {
     LineBuffer buffer(source.bytes, false, edit, 1, source.progress);
     run_reader("stl", buffer, false, false, false, mesh);
     if (vertices != 3 * facets) {
-        throw std::runtime_error("has " + std::to_string(vertices) + " vertices for " + std::to_string(facets) +
-                                 " facets: it is cut off or damaged");
+        throw std::runtime_error("line " + std::to_string(bad_line ? bad_line : line_number) + ": found " +
+                                 std::to_string(vertices) + " vertices in a file of " + std::to_string(facets) +
+                                 " facets, expected three for each up to here: it is cut off or damaged");
     }
     if (facets > mesh.face_count()) {
         warn(source, counted(facets - mesh.face_count(), "facet") + " left out: fewer than three different corners");

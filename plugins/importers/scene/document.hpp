@@ -5,11 +5,10 @@
 #include <vector>
 
 #include "diagnostics.hpp"
+#include "placement.hpp"
 #include "rt_plugin.h"
 
 namespace scene_format {
-
-using Vec3 = std::array<float, 3>;
 
 // A name where it is defined, or where it is used (possibly on an earlier line). Empty: no name was given.
 struct Name {
@@ -23,7 +22,7 @@ struct Camera {
     float fov_deg = 45;  // vertical, degrees
 };
 struct Light {
-    std::string name;
+    Name name;
     rt_light_desc values{};  // without name
 };
 struct Material {
@@ -53,8 +52,18 @@ struct Load {
     std::string path;
     Position position;  // of the path in the file
     Name name;
-    std::array<float, 12> world_from_object{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};  // row-major 3x4
+    Placement placement;
     Name material;
+};
+
+// Keys of one motion of a loaded object, a camera or a light.
+struct Animation {
+    enum class Motion { translate, rotate, scale };
+    Name target;
+    Motion motion = Motion::translate;
+    std::vector<float> numbers;  // of each key: time, then x y z, or a unit axis and degrees
+    size_t numbers_per_key() const { return motion == Motion::rotate ? 5 : 4; }
+    size_t key_count() const { return numbers.size() / numbers_per_key(); }
 };
 
 // A shape that a plugin makes.
@@ -86,7 +95,7 @@ struct Document {
     std::vector<Shape> shapes;
     std::vector<Load> loads;
     std::vector<Item> items;  // all geometry in the order of the file; this order numbers the primitives
-    std::vector<Name> animated;
+    std::vector<Animation> animations;
     Vec3 background{}, ambient{};
     Position background_position, ambient_position;  // line 0: the file does not set it
     uint32_t statement_count = 0;

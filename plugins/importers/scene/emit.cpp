@@ -5,6 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "emit_motion.hpp"
+
 namespace scene_format {
 namespace {
 
@@ -22,9 +24,10 @@ const char* name_or_null(const std::string& name) {
 class Emitter {
  public:
     Emitter(const Document& document, std::string_view file, const rt_scene_sink& sink)
-        : document_(document), file_(file), sink_(sink) {}
+        : document_(document), file_(file), sink_(sink), motion_(document, sink) {}
 
     void info() const;
+    bool motion() { return motion_.emit(); }
     bool materials();
     bool lights_and_cameras();
     // Emits one item, or a run of consecutive triangles as one mesh. Moves `at` behind them.
@@ -41,6 +44,7 @@ class Emitter {
     const Document& document_;
     const std::string file_;
     const rt_scene_sink& sink_;
+    MotionEmitter motion_;
     std::unordered_map<std::string, rt_u32> material_ids_;
     Position position_;  // of the statement that is emitted; used when the sink refuses it
 };
@@ -80,7 +84,11 @@ bool Emitter::lights_and_cameras() {
     for (const Light& light : document_.lights) {
         rt_light_desc desc = light.values;
         desc.struct_bytes = sizeof desc;
-        desc.name = name_or_null(light.name);
+        desc.name = name_or_null(light.name.text);
+        if (const rt_u32 node = motion_.node_of_light(light)) {
+            desc.node = node;
+            for (float& x : desc.position) x = 0;  // the node is there
+        }
         if (sink_.light(sink_.ctx, &desc) == RT_NONE) return false;
     }
     constexpr float rad_per_deg = 3.14159265358979323846f / 180.0f;
@@ -92,6 +100,11 @@ bool Emitter::lights_and_cameras() {
         std::copy(camera.target.begin(), camera.target.end(), desc.target);
         std::copy(camera.up.begin(), camera.up.end(), desc.up);
         desc.fov_y_rad = camera.fov_deg * rad_per_deg;
+        desc.node = motion_.node_of_camera(camera);
+        for (int i = 0; desc.node != 0 && i < 3; ++i) {
+            desc.target[i] -= desc.eye[i];
+            desc.eye[i] = 0;  // the node is there
+        }
         if (sink_.camera(sink_.ctx, &desc) == RT_NONE) return false;
     }
     return true;
@@ -143,7 +156,10 @@ bool Emitter::load(const Load& load) {
     auto desc = sized<rt_load>();
     desc.path = load.path.c_str();
     desc.name = name_or_null(load.name.text);
-    std::copy(load.world_from_object.begin(), load.world_from_object.end(), desc.world_from_object);
+    desc.node = motion_.node_of_load(load);
+    const Placement placement = desc.node == 0 ? load.placement : Placement();  // else the node has it
+    const std::array<float, 12> placed = placement.world_from_object();
+    std::copy(placed.begin(), placed.end(), desc.world_from_object);
     desc.material = material(load.material);
     const std::string place = where();
     desc.where = place.c_str();
@@ -185,7 +201,7 @@ bool Emitter::item(size_t& at) {
 int32_t emit(const Document& document, std::string_view file, const rt_host& host, const rt_scene_sink& sink) {
     Emitter emitter(document, file, sink);
     emitter.info();
-    bool ok = emitter.materials() && emitter.lights_and_cameras(), names_place = false;
+    bool ok = emitter.motion() && emitter.materials() && emitter.lights_and_cameras(), names_place = false;
     constexpr size_t items_between_reports = 1024;
     for (size_t at = 0, reported = 0; ok && at < document.items.size();) {
         const ItemKind kind = document.items[at].kind;

@@ -8,7 +8,6 @@ namespace scene_format {
 namespace {
 
 using Double3 = std::array<double, 3>;
-constexpr double kPi = 3.14159265358979323846;
 
 Double3 point(const float* p, const Double3& origin) {
     return {p[0] - origin[0], p[1] - origin[1], p[2] - origin[2]};
@@ -80,34 +79,6 @@ bool triangle_is_degenerate(const std::array<float, 9>& corners) {
     const double size = box_size(corners.data(), 3);
     const Double3 normal = newell_normal(corners.data(), 3);
     return !(std::sqrt(dot(normal, normal)) > 2 * kAreaTolerance * size * size);
-}
-
-void Placement::rotate(const Vec3& unit_axis, float degrees) {
-    const double angle = std::fmod(double{degrees}, 360.0) * kPi / 180.0;
-    const double s = std::sin(angle), c = std::cos(angle), t = 1 - c;
-    const double x = unit_axis[0], y = unit_axis[1], z = unit_axis[2];
-    // Rodrigues' rotation formula.
-    const std::array<double, 9> turn = {t * x * x + c,     t * x * y - s * z, t * x * z + s * y,  //
-                                        t * x * y + s * z, t * y * y + c,     t * y * z - s * x,  //
-                                        t * x * z - s * y, t * y * z + s * x, t * z * z + c};
-    std::array<double, 9> product{};
-    for (size_t row = 0; row < 3; ++row) {
-        for (size_t column = 0; column < 3; ++column) {
-            for (size_t k = 0; k < 3; ++k) product[3 * row + column] += turn[3 * row + k] * rotation_[3 * k + column];
-        }
-    }
-    rotation_ = product;
-}
-
-std::array<float, 12> Placement::world_from_object() const {
-    std::array<float, 12> m{};
-    for (size_t row = 0; row < 3; ++row) {
-        for (size_t column = 0; column < 3; ++column) {
-            m[4 * row + column] = static_cast<float>(rotation_[3 * row + column] * double{scale_[column]});
-        }
-        m[4 * row + 3] = translate_[row];
-    }
-    return m;
 }
 
 }  // namespace scene_format

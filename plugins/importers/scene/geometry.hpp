@@ -1,4 +1,4 @@
-// geometry.hpp -- checks polygons, and computes the transform of a loaded file.
+// geometry.hpp -- checks polygons.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,18 +16,5 @@ inline constexpr double kAreaTolerance = 1e-9;
 // they do.
 std::string polygon_fault(const std::vector<float>& corners);
 bool triangle_is_degenerate(const std::array<float, 9>& corners);
-
-// The transform of a loaded file: first scale, then the rotations in their order, then the translation.
-class Placement {
- public:
-    void scale(const Vec3& factors) { scale_ = factors; }
-    void rotate(const Vec3& unit_axis, float degrees);  // in degrees, counter-clockwise seen from the tip of the axis
-    void translate(const Vec3& by) { translate_ = by; }
-    std::array<float, 12> world_from_object() const;  // row-major 3x4
-
- private:
-    Vec3 scale_{1, 1, 1}, translate_{0, 0, 0};
-    std::array<double, 9> rotation_{1, 0, 0, 0, 1, 0, 0, 0, 1};  // row-major
-};
 
 }  // namespace scene_format

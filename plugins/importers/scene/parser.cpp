@@ -2,6 +2,7 @@
 #include "parser.hpp"
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -73,7 +74,7 @@ void check_use(const Name& use, const Names& names, const char* kind, Diagnostic
 }
 
 void check_names(const Document& document, Diagnostics& diagnostics) {
-    defined_names(document.cameras, "camera", diagnostics);
+    const Names cameras = defined_names(document.cameras, "camera", diagnostics);
     const Names materials = defined_names(document.materials, "material", diagnostics);
     const Names loads = defined_names(document.loads, "name", diagnostics);
     const auto check_materials = [&](const auto& things) {
@@ -85,7 +86,21 @@ void check_names(const Document& document, Diagnostics& diagnostics) {
     check_materials(document.triangles);
     check_materials(document.shapes);
     check_materials(document.loads);
-    for (const Name& target : document.animated) check_use(target, loads, "name", diagnostics);
+    Names movable = loads;
+    movable.insert(cameras.begin(), cameras.end());
+    for (const Light& light : document.lights)
+        if (!light.name.text.empty()) movable.emplace(light.name.text, light.name.position);
+    std::set<std::pair<std::string, Animation::Motion>> moved;
+    for (const Animation& animation : document.animations) {
+        check_use(animation.target, movable, "name", diagnostics);
+        if (diagnostics.full()) return;
+        const std::string& name = animation.target.text;
+        if (animation.motion == Animation::Motion::scale && movable.count(name) != 0 && loads.count(name) == 0)
+            diagnostics.error({animation.target.position, in_quotes(name) + " is no loaded object; only those can be scaled"});
+        if (!moved.emplace(name, animation.motion).second)
+            diagnostics.error({animation.target.position, "the same motion of " + in_quotes(name) +
+                                                              " for the second time; put all its keys into one line"});
+    }
 }
 
 }  // namespace

@@ -81,7 +81,7 @@ void read_light(Statement& s, Document& document, Diagnostics&) {
                 intensity = s.number_between("`intensity`", 0, 1e9f);
                 break;
             case kName:
-                light.name = s.name("the light's name").text;
+                light.name = s.name("the light's name");
                 break;
             case kWhere:
                 if (is_point) {
@@ -283,7 +283,7 @@ void read_load(Statement& s, Document& document, Diagnostics&) {
     Load load;
     load.path = s.path("the file to load");
     load.position = s.last();
-    Placement placement;
+    Placement& placement = load.placement;
     while (!s.done()) {
         switch (s.key()) {
             case kTranslate:
@@ -305,31 +305,31 @@ void read_load(Statement& s, Document& document, Diagnostics&) {
                 break;
         }
     }
-    load.world_from_object = placement.world_from_object();
     add_item(document, ItemKind::load, document.loads.size(), s.position());
     document.loads.push_back(std::move(load));
 }
 
-void read_animate(Statement& s, Document& document, Diagnostics& diagnostics) {
-    Name target = s.name("the name of a loaded object");
-    const size_t channel = s.choice("motion", {"translate", "rotate", "scale"});
+void read_animate(Statement& s, Document& document, Diagnostics&) {
+    Animation animation;
+    animation.target = s.name("the name of a loaded object, a camera or a light");
+    animation.motion = static_cast<Animation::Motion>(s.choice("motion", {"translate", "rotate", "scale"}));
+    const bool rotates = animation.motion == Animation::Motion::rotate;
     constexpr const char* what[] = {"`translate` (time x y z)", "`rotate` (time, axis x y z, degrees)", "`scale` (time x y z)"};
-    const size_t numbers_per_key = channel == 1 ? 5 : 4;
-    float last_time = 0;
-    size_t keys = 0;
+    const char* expected = what[static_cast<int>(animation.motion)];
+    const size_t count = animation.numbers_per_key();
+    std::vector<float>& numbers = animation.numbers;
     do {
-        for (size_t i = 0; i < numbers_per_key; ++i) {
-            const float value = s.number(what[channel], i, numbers_per_key);
-            if (i > 0) continue;
-            if (keys > 0 && !(value > last_time)) s.fail_at_last("times must grow; expected a later time than the one before");
-            last_time = value;
+        for (size_t i = 0; i < count; ++i) {
+            numbers.push_back(s.number(expected, i, count));
+            if (i == 0 && numbers.size() > count && !(numbers.back() > numbers[numbers.size() - 1 - count]))
+                s.fail_at_last("times must grow; expected a later time than the one before");
         }
-        ++keys;
+        float* axis = numbers.data() + numbers.size() - count + 1;
+        const float length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
+        if (rotates && !(length > 0)) s.fail_at_last("the zero vector has no direction; expected another axis for `rotate`");
+        for (int i = 0; rotates && i < 3; ++i) axis[i] /= length;
     } while (!s.done());
-    if (document.animated.empty()) {
-        diagnostics.warning(s.position(), "animation is not supported yet: `animate` is ignored, the scene is shown at rest");
-    }
-    document.animated.push_back(std::move(target));
+    document.animations.push_back(std::move(animation));
 }
 
 }  // namespace

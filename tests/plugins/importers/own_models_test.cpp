@@ -234,9 +234,8 @@ TEST(OmModel, ReadsWhatOpenMeshWrites) {
 }
 #endif
 
-// ---- FBX, glTF
+// ---- FBX
 
-#ifdef CLARITY_HAVE_ASSIMP
 TEST(FbxModel, PlacesNodesAsTheFileMeansThem) {
     const Scene scene = import_file(data("nodes.fbx"));
     EXPECT_TRUE(scene.warnings.empty()) << scene.warnings.front();
@@ -279,6 +278,8 @@ TEST(FbxModel, PlacesLampAndCamera) {
     EXPECT_NEAR(scene.cameras[0].fov_y_rad, 2 * std::atan(0.5), 1e-5);  // 90 degrees across at 2:1
 }
 
+// ---- glTF
+
 TEST(GltfModel, KeepsInstancesMaterialsAndCamera) {
     const Scene scene = import_file(data("nodes.gltf"));
     EXPECT_EQ(scene.meshes.size(), 1u);
@@ -299,7 +300,6 @@ TEST(GltfModel, KeepsInstancesMaterialsAndCamera) {
     EXPECT_LT(scene.cameras[0].target[2], 9);
     EXPECT_NEAR(scene.cameras[0].fov_y_rad, 0.8, 1e-5);
 }
-#endif
 
 }  // namespace
 }  // namespace clarity::test

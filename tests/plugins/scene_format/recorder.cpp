@@ -72,7 +72,7 @@ void add_geometry_calls(rt_scene_sink& sink) {
     };
     sink.load = [](void* ctx, const rt_load* load) -> int32_t {
         Recording& r = recording_of(ctx);
-        RecordedLoad copy{load->path, text_or_empty(load->name), {}, load->material};
+        RecordedLoad copy{load->path, text_or_empty(load->name), {}, load->material, load->node};
         std::copy(load->world_from_object, load->world_from_object + 12, copy.world_from_object.begin());
         r.loads.push_back(copy);
         r.order.push_back("load");
@@ -110,6 +110,23 @@ void add_look_calls(rt_scene_sink& sink) {
     sink.warn = [](void* ctx, const char* text) { recording_of(ctx).warnings.push_back(text); };
 }
 
+void add_motion_calls(rt_scene_sink& sink) {
+    sink.node = [](void* ctx, const rt_node_desc* node) -> rt_u32 {
+        recording_of(ctx).nodes.push_back(*node);
+        return static_cast<rt_u32>(recording_of(ctx).nodes.size());
+    };
+    sink.clip = [](void* ctx, const rt_clip_desc* clip) -> rt_u32 {
+        recording_of(ctx).clips.push_back(*clip);
+        return static_cast<rt_u32>(recording_of(ctx).clips.size());
+    };
+    sink.channel = [](void* ctx, const rt_channel_desc* c) -> int32_t {
+        const size_t values = c->key_count * (c->component == RT_ALL_COMPONENTS ? 4 : 1);
+        recording_of(ctx).channels.push_back(
+            {c->moves, c->target, c->component, {c->times_s, c->times_s + c->key_count}, {c->values, c->values + values}});
+        return RT_OK;
+    };
+}
+
 template <class Numbers>
 bool all_finite(const Numbers& numbers) {
     return std::all_of(std::begin(numbers), std::end(numbers), [](float x) { return std::isfinite(x); });
@@ -132,6 +149,7 @@ void import_text(const std::string& text, Recording& recording) {
     sink.ctx = &recording;
     add_geometry_calls(sink);
     add_look_calls(sink);
+    add_motion_calls(sink);
     const rt_host host = recording_host(recording);
     recording.status = rt_plugin_v1.importer->load(&host, path.c_str(), nullptr, &sink);
 

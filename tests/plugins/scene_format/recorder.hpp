@@ -40,6 +40,11 @@ struct RecordedLoad {
     std::string path, name;
     std::array<float, 12> world_from_object;
     rt_u32 material;
+    rt_u32 node;
+};
+struct RecordedChannel {
+    rt_u32 moves, target, component;
+    std::vector<double> times, values;
 };
 
 struct Recording {
@@ -56,6 +61,9 @@ struct Recording {
     std::vector<RecordedLight> lights;
     std::vector<RecordedCamera> cameras;
     std::vector<RecordedLoad> loads;
+    std::vector<rt_node_desc> nodes;  // their name pointers are not valid any more
+    std::vector<rt_clip_desc> clips;  // likewise
+    std::vector<RecordedChannel> channels;
     std::vector<std::string> order;  // "sphere", "mesh", "load", ... in the order of the calls
     bool has_background = false, has_ambient = false;
     std::array<float, 3> background{}, ambient{};

@@ -67,12 +67,39 @@ animate  car  translate  0 0 0 0   2 1 0 0        # time x y z ...
     EXPECT_EQ(r.loads[0].path, "car.fbx");
     EXPECT_EQ(r.loads[0].name, "car");
     EXPECT_EQ(r.loads[0].material, 3u);
-    expect_near(transformed(r.loads[0].world_from_object, {0, 0, 0}), {1, 0, 0});
+    EXPECT_TRUE(r.warnings.empty());
+    // `animate` hangs the loaded file on a node, which has its placement.
+    ASSERT_EQ(r.nodes.size(), 1u);
+    EXPECT_EQ(r.loads[0].node, 1u);
+    expect_near(transformed(r.loads[0].world_from_object, {0, 0, 1}), {0, 0, 1});
+    EXPECT_NEAR(r.nodes[0].translation[0], 1, 1e-6);
+    EXPECT_NEAR(r.nodes[0].rotation[1], std::sin(3.14159265 / 8), 1e-6);
+    EXPECT_NEAR(r.nodes[0].scale[0], 0.01, 1e-6);
+    ASSERT_EQ(r.clips.size(), 1u);
+    EXPECT_EQ(r.clips[0].end_s, 2);
+    ASSERT_EQ(r.channels.size(), 3u);
+    EXPECT_EQ(r.channels[0].moves, rt_u32(RT_MOVES_TRANSLATION));
+    EXPECT_EQ(r.channels[0].component, 0u);
+    EXPECT_EQ(r.channels[0].values, (std::vector<double>{0, 1}));
+}
+
+TEST(SceneFormat, PlacesLoadedFiles) {
+    const Recording r = import_good("load car.fbx translate 1 0 0  rotate 0 1 0 45  scale .01\n");
+    expect_near(transformed(r.loads.at(0).world_from_object, {0, 0, 0}), {1, 0, 0});
     const float leg = 0.01f * std::sqrt(0.5f);
     expect_near(transformed(r.loads[0].world_from_object, {0, 0, 1}), {1 + leg, 0, leg});
-    ASSERT_EQ(r.warnings.size(), 1u);
-    EXPECT_EQ(r.warnings[0],
-              "test.scene:13:1: animation is not supported yet: `animate` is ignored, the scene is shown at rest");
+    EXPECT_EQ(r.loads[0].node, 0u);
+}
+
+TEST(SceneFormat, RotationsMayTurnFurtherThanHalf) {
+    const Recording r = import_good("camera eye_of_storm eye 1 2 3\nanimate eye_of_storm rotate 0 0 1 0 0  4 0 1 0 360\n");
+    ASSERT_EQ(r.nodes.size(), 1u);
+    EXPECT_EQ(r.nodes[0].translation[1], 2);
+    expect_near(r.cameras.at(0).values.eye, {0, 0, 0});
+    ASSERT_EQ(r.channels.size(), 1u);
+    EXPECT_EQ(r.channels[0].component, rt_u32(RT_ALL_COMPONENTS));
+    EXPECT_EQ(r.channels[0].times.size(), 7u) << "a key each 60 degrees";
+    EXPECT_NEAR(r.channels[0].values[4 * 3 + 1], 1, 1e-9) << "half a turn about y at the middle";
 }
 
 TEST(SceneFormat, FillsInDefaults) {

@@ -39,9 +39,8 @@ int32_t load(const rt_host* host, const char* path, const double* params, const 
     mesh.index_count = indices.size();
     mesh.face_count = indices.size() / 3;  // face_sizes is NULL, so all faces are triangles
     mesh.material = RT_NONE;
-    rt_instance_desc placed{sizeof placed, nullptr, 0, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}};
-    placed.mesh = rt::id(sink->mesh(sink->ctx, &mesh));  // the host copies the mesh
-    rt::id(sink->instance(sink->ctx, &placed));          // a mesh is visible only through an instance
+    const rt_instance_desc placed = rt::instance(rt::id(sink->mesh(sink->ctx, &mesh)));  // the host copies the mesh
+    rt::id(sink->instance(sink->ctx, &placed));  // a mesh is visible only through an instance
     return RT_OK;
 }
 

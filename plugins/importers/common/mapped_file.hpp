@@ -1,4 +1,4 @@
-// mapped_file.hpp -- maps a file into memory, read-only.
+// mapped_file.hpp -- maps a file into memory, read-only. For importers.
 #pragma once
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace openmesh_import {
+namespace importers {
 
 class MappedFile {
  public:
@@ -42,4 +42,4 @@ class MappedFile {
     size_t size_ = 0;
 };
 
-}  // namespace openmesh_import
+}  // namespace importers

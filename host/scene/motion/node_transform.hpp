@@ -1,0 +1,26 @@
+// node_transform.hpp -- where nodes are in the world.
+#pragma once
+#include "scene/motion/matrix.hpp"
+#include "scene/motion/motion.hpp"
+
+namespace clarity {
+
+// What channels may change of a node.
+struct NodeValues {
+    Vec translation{}, scale{1, 1, 1};
+    Vec degrees{};          // of a node with angles
+    Quaternion rotation{};  // of a node with RT_ROTATE_QUATERNION
+    bool visible = true;
+};
+NodeValues values_at_rest(const rt_node_desc& node);
+
+struct PlacedNode {
+    Matrix world = kIdentityMatrix;
+    Matrix rotation = kIdentityMatrix;  // the product of all rotations from the root, without scales
+    Matrix scale = kIdentityMatrix;     // of the node itself
+    bool visible = true;
+};
+// parent: NULL for a node without one.
+PlacedNode place_node(const rt_node_desc& node, const NodeValues& values, const PlacedNode* parent);
+
+}  // namespace clarity

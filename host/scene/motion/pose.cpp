@@ -1,0 +1,142 @@
+#include "scene/motion/pose.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "base/error.hpp"
+#include "scene/motion/clip_values.hpp"
+#include "scene/motion/deform.hpp"
+
+namespace clarity {
+namespace {
+
+std::vector<PlacedNode> place_nodes(const Motion& motion, const std::vector<NodeValues>& values) {
+    std::vector<PlacedNode> placed;
+    placed.reserve(motion.nodes.size());
+    for (size_t i = 0; i < motion.nodes.size(); ++i) {
+        const rt_node_desc& node = motion.nodes[i].values;
+        placed.push_back(place_node(node, values[i], node.parent == RT_NONE ? nullptr : &placed[node.parent]));
+    }
+    return placed;
+}
+
+// A skin puts vertices into the space of its file, so the node of the instance does not move them a second time.
+std::vector<PosedInstance> pose_instances(const Scene& scene, const std::vector<PlacedNode>& nodes) {
+    std::map<rt_u32, rt_u32> root_of_skinned;  // by mesh
+    for (const Skin& skin : scene.motion.skins) root_of_skinned[skin.mesh] = skin.root;
+    std::vector<PosedInstance> instances;
+    instances.reserve(scene.instances.size());
+    for (const Instance& instance : scene.instances) {
+        PosedInstance posed = {instance.mesh, instance.world_from_object, instance.visible};
+        if (instance.node != RT_NONE) {
+            const PlacedNode& node = nodes[instance.node];
+            posed.mesh = instance.moving_mesh;
+            posed.visible = node.visible;
+            const bool skinned = root_of_skinned.count(posed.mesh) != 0;
+            const Matrix root = instance.root == RT_NONE ? kIdentityMatrix : nodes[instance.root].world;
+            posed.world_from_object = to_affine(skinned ? root : node.world * to_matrix(instance.node_from_object));
+        }
+        instances.push_back(posed);
+    }
+    return instances;
+}
+
+void pose_cameras(const std::vector<PlacedNode>& nodes, std::vector<Camera>& cameras) {
+    for (Camera& camera : cameras) {
+        if (camera.node == RT_NONE) continue;
+        Camera moved = moved_by(camera, nodes[camera.node].world);
+        if (make_sound(moved)) camera = moved;
+    }
+}
+
+void pose_lights(const std::vector<PlacedNode>& nodes, std::vector<Light>& lights) {
+    for (Light& light : lights) {
+        if (light.node == RT_NONE) continue;
+        const Matrix& m = nodes[light.node].world;
+        const bool is_point = light.values.kind == RT_LIGHT_POINT;
+        Vec moved = is_point ? point(m, to_vec(light.at_node)) : direction(m, to_vec(light.at_node));
+        if (!is_point) {
+            const double length = std::sqrt(dot(moved, moved));
+            if (!(length > 0)) continue;
+            for (double& x : moved) x /= length;
+        }
+        for (int i = 0; i < 3; ++i) light.values.position[i] = static_cast<float>(moved[i]);
+    }
+}
+
+}  // namespace
+
+std::vector<ClipInfo> clips(const Scene& scene) {
+    const Motion& motion = scene.motion;
+    std::vector<ClipInfo> infos;
+    for (const Clip& clip : motion.clips) {
+        const auto known = std::find_if(infos.begin(), infos.end(), [&](const ClipInfo& i) { return i.name == clip.name; });
+        if (known == infos.end()) {
+            infos.push_back({clip.name, clip.begin_s, clip.end_s, clip.fps});
+        } else {
+            known->begin_s = std::min(known->begin_s, clip.begin_s);
+            known->end_s = std::max(known->end_s, clip.end_s);
+            if (known->fps == 0) known->fps = clip.fps;
+        }
+    }
+    for (ClipInfo& info : infos) {
+        const std::vector<bool> acts = acting_clips(motion, info.name);
+        std::set<rt_u32> nodes, morphs;
+        for (const Channel& channel : motion.channels) {
+            if (!acts[channel.clip]) continue;
+            if (channel.moves <= RT_MOVES_VISIBILITY) nodes.insert(channel.target);
+            if (channel.moves == RT_MOVES_MORPH) morphs.insert(channel.target);
+        }
+        info.nodes = static_cast<rt_u32>(nodes.size());
+        info.morphs = static_cast<rt_u32>(morphs.size());
+        info.skins = static_cast<rt_u32>(motion.skins.size());
+    }
+    return infos;
+}
+
+Pose evaluate(const Scene& scene, const std::string& clip, double time_s) {
+    const Motion& motion = scene.motion;
+    Pose pose;
+    pose.cameras = scene.cameras;
+    pose.lights = scene.lights;
+    MovingValues values = values_at_rest(scene);
+    if (!clip.empty() || !motion.clips.empty()) play(scene, clip, time_s, values);
+    Deformers deformers;
+    deformers.nodes = place_nodes(motion, values.nodes);
+    deformers.morph_weights = std::move(values.morph_weights);
+    deformers.time_s = time_s;
+    for (size_t i = 0; i < pose.cameras.size(); ++i) pose.cameras[i].fov_y_rad = values.fovs[i];
+    for (size_t i = 0; i < pose.lights.size(); ++i) std::copy_n(values.colors[i].begin(), 3, pose.lights[i].values.color);
+    pose.instances = pose_instances(scene, deformers.nodes);
+    pose_cameras(deformers.nodes, pose.cameras);
+    pose_lights(deformers.nodes, pose.lights);
+    pose.meshes = deform(scene, deformers);
+    return pose;
+}
+
+Scene posed(Scene scene, const Pose& pose) {
+    Scene result = std::move(scene);
+    result.motion = {};
+    for (size_t i = 0; i < result.instances.size(); ++i) {
+        Instance& instance = result.instances[i];
+        instance.mesh = pose.instances[i].mesh;
+        instance.world_from_object = pose.instances[i].world_from_object;
+        instance.visible = pose.instances[i].visible;
+        instance.node = instance.root = RT_NONE;
+    }
+    result.cameras = pose.cameras;
+    result.lights = pose.lights;
+    for (Camera& camera : result.cameras) camera.node = RT_NONE;
+    for (Light& light : result.lights) light.node = RT_NONE;
+    for (const PosedMesh& mesh : pose.meshes) {
+        const auto first = 3 * static_cast<std::ptrdiff_t>(result.meshes[mesh.mesh].first_vertex);
+        std::copy(mesh.positions.begin(), mesh.positions.end(), result.positions.begin() + first);
+        std::copy(mesh.normals.begin(), mesh.normals.end(), result.normals.begin() + (mesh.normals.empty() ? 0 : first));
+    }
+    bake_flattened_instances(result);
+    return result;
+}
+
+}  // namespace clarity

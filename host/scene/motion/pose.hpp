@@ -1,0 +1,47 @@
+// pose.hpp -- a scene at one time of one clip.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+struct PosedInstance {
+    rt_u32 mesh = 0;
+    Affine world_from_object = kIdentity;
+    bool visible = true;
+};
+// The vertices of a mesh that deforms, in the space of its instances.
+struct PosedMesh {
+    rt_u32 mesh = 0;
+    std::vector<float> positions;  // 3 for each vertex
+    std::vector<float> normals;    // 3 for each vertex, not unit, or (0,0,0); empty if the scene has none
+};
+// What differs from the scene at rest.
+struct Pose {
+    std::vector<PosedInstance> instances;  // one for each of the scene
+    std::vector<Camera> cameras;           // likewise
+    std::vector<Light> lights;             // likewise
+    std::vector<PosedMesh> meshes;         // those that deform only
+};
+
+// A clip as users name it: all clips of one name, which play together.
+struct ClipInfo {
+    std::string name;
+    double begin_s = 0, end_s = 0;
+    double fps = 0;                           // frames a second; 0: the file does not say
+    rt_u32 nodes = 0, skins = 0, morphs = 0;  // that it moves
+};
+// The clips of a scene, in the order of its files. Files that lack a clip of the name play their first one.
+std::vector<ClipInfo> clips(const Scene& scene);
+
+// The pose of a clip at a time in seconds of its own clock. clip: a name; empty: the first one. Skins act also if there is no
+// clip. The result depends on the arguments alone. Throws Error(usage) if the scene has no clip of this name.
+Pose evaluate(const Scene& scene, const std::string& clip, double time_s);
+
+// The scene in a pose. Its arrays keep their order; meshes may follow where a transform flattens an instance. The result has no
+// motion.
+Scene posed(Scene scene, const Pose& pose);
+
+}  // namespace clarity

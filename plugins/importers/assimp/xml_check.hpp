@@ -1,0 +1,16 @@
+// xml_check.hpp -- checks that an XML text is well-formed, and that references and numbers of COLLADA make sense.
+#pragma once
+#include <string>
+#include <string_view>
+
+namespace assimp_import {
+
+// The text for a message: shortened, printable, in quotes.
+std::string in_quotes(std::string_view text);
+
+// Both return an empty string, or the place, what is there and what should be.
+std::string xml_damage(std::string_view text);
+// The text must be well-formed.
+std::string collada_damage(std::string_view text);
+
+}  // namespace assimp_import

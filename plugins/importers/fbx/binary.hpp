@@ -1,0 +1,75 @@
+// binary.hpp -- numbers and records of binary FBX files.
+#pragma once
+#include <cstring>
+
+#include "document.hpp"
+
+namespace fbx_import {
+
+// "Kaydara FBX Binary", two spaces, 0, 0x1A, the byte order (0 little, 1 big), and the version as 32 bits in that order.
+// Source: Blender developer blog, "FBX binary file format specification"; the byte order: measured from
+// maya_cube_big_endian_7500_binary.
+inline constexpr std::string_view kMagic{"Kaydara FBX Binary  \0\x1A", 22};
+inline constexpr size_t kVersionAt = 23, kHeaderBytes = 27;
+
+// Nodes within nodes, at most. Files of the shared set nest 8 deep.
+inline constexpr int kMaxDepth = 64;
+inline constexpr size_t kMaxNodes = size_t(1) << 28;
+
+// Reads a number of the file's byte order. The caller has checked that the bytes are there.
+template <class T>
+T load(const char* at, bool big_endian) {
+    char bytes[sizeof(T)];
+    std::memcpy(bytes, at, sizeof(T));
+    if (big_endian) {
+        for (size_t i = 0; i < sizeof(T) / 2; ++i) {
+            const char c = bytes[i];
+            bytes[i] = bytes[sizeof(T) - 1 - i];
+            bytes[sizeof(T) - 1 - i] = c;
+        }
+    }
+    T value;
+    std::memcpy(&value, bytes, sizeof(T));
+    return value;
+}
+
+// Bytes of one element of an array of this type, or of one value; 0: there is no such type. Source: as above.
+inline size_t element_bytes(char type) {
+    switch (type) {
+        case 'd':
+        case 'l':
+        case 'D':
+        case 'L':
+            return 8;
+        case 'f':
+        case 'i':
+        case 'F':
+        case 'I':
+            return 4;
+        case 'Y':
+            return 2;
+        case 'b':
+        case 'c':
+        case 'C':
+        case 'B':
+            return 1;
+        default:
+            return 0;
+    }
+}
+inline bool is_array(char type) {
+    return type >= 'a' && type <= 'z' && element_bytes(type) != 0;
+}
+
+class BinaryReader {
+ public:
+    explicit BinaryReader(Document& document) : document_(document), bytes_(document.bytes_) {}
+    void read();
+
+ private:
+    size_t read_nodes(size_t at, size_t end, uint32_t parent, int depth);
+    Document& document_;
+    const std::string_view bytes_;
+};
+
+}  // namespace fbx_import

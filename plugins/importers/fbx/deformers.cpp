@@ -1,0 +1,207 @@
+// deformers.cpp -- skins and morphs: what moves the vertices of a mesh.
+#include <algorithm>
+
+#include "scene.hpp"
+
+namespace fbx_import {
+namespace {
+
+// The host's vertices of each vertex of the file: itself, and its copies.
+class Copies {
+ public:
+    explicit Copies(const SceneMesh& mesh) : mesh_(mesh) {
+        for (uint32_t i = 0; i < mesh.copy_of.size(); ++i) copies_.emplace_back(mesh.copy_of[i], mesh.points + i);
+        std::stable_sort(copies_.begin(), copies_.end());
+    }
+    template <class Body>
+    void each(int32_t vertex, const Body& body) const {
+        if (vertex < 0 || static_cast<uint32_t>(vertex) >= mesh_.points) return;
+        const rt_u32 v = static_cast<rt_u32>(vertex);
+        body(v);
+        auto at = std::lower_bound(copies_.begin(), copies_.end(), std::make_pair(v, rt_u32(0)));
+        for (; at != copies_.end() && at->first == v; ++at) body(at->second);
+    }
+
+ private:
+    const SceneMesh& mesh_;
+    std::vector<std::pair<rt_u32, rt_u32>> copies_;
+};
+
+class Deformers {
+ public:
+    Deformers(const Context& context, const std::vector<SceneNode>& nodes, const SceneMesh& mesh, Morphs& morphs)
+        : context_(context), document_(context.document), nodes_(nodes), mesh_(mesh), copies_(mesh), morphs_(morphs) {}
+    void add();
+
+ private:
+    void add_skin(uint32_t skin);
+    void add_oldest_skin();
+    void add_bone(const Node& cluster, uint32_t bone);
+    void pass_skin(rt_u32 method, const std::vector<float>& shares);
+    void add_channel(uint32_t channel);
+    void pass_morph(const std::string& name, double weight, const std::vector<std::pair<double, const Node*>>& shapes, uint32_t owner,
+                    const std::string& key);
+
+    const Context& context_;
+    const Document& document_;
+    const std::vector<SceneNode>& nodes_;
+    const SceneMesh& mesh_;
+    const Copies copies_;
+    Morphs& morphs_;
+    std::vector<rt_bone> bones_;
+    std::vector<rt_weight> weights_;
+};
+
+void Deformers::add() {
+    const Objects& objects = context_.objects;
+    std::vector<uint32_t> deformers = objects.below(mesh_.object, "Deformer");
+    bool has_skin = false;
+    for (const uint32_t deformer : deformers) {
+        const std::string_view type = objects[deformer].type;
+        if (type == "Skin" && !has_skin) {
+            add_skin(deformer);
+            has_skin = true;
+        } else if (type == "Skin") {
+            context_.warn("a mesh has several skins; the first one moves it: '" + objects[mesh_.object].name + "'");
+        } else if (type == "BlendShape") {
+            for (const uint32_t channel : objects.below(deformer, "Deformer", "BlendShapeChannel")) add_channel(channel);
+        } else if (type == "VertexCacheDeformer") {
+            add_cache(context_, mesh_, deformer);
+        }
+    }
+    const Node* geometry = objects[mesh_.object].node;
+    if (!has_skin && document_.child(geometry, "Link")) add_oldest_skin();
+    // Before version 7, shapes are blocks of the model (measured from maya_blend_shape_cube_6100_binary).
+    for (const Node& shape : document_.children(*geometry)) {
+        if (shape.name != "Shape") continue;
+        const std::string name(document_.text(&shape, 0));
+        pass_morph(name, 0, {{1, &shape}}, mesh_.object, name);
+    }
+}
+
+// Clusters hang from the skin, and a bone's model from each. Transform: where the mesh is in the bone's space when both are bound.
+// Source: FBX SDK help, "FbxCluster"; measured from max_transformed_skin_6100_ascii.
+void Deformers::add_skin(uint32_t skin) {
+    const Objects& objects = context_.objects;
+    for (const uint32_t cluster : objects.below(skin, "Deformer", "Cluster")) {
+        const std::vector<uint32_t> bones = objects.below(cluster, "Model");
+        if (!bones.empty()) add_bone(*objects[cluster].node, bones[0]);
+    }
+    const std::string_view type = document_.text(document_.child(objects[skin].node, "SkinningType"), 0);
+    std::vector<float> shares;
+    if (type == "Blend") {
+        shares.resize(mesh_.points + mesh_.copy_of.size());
+        const std::vector<int32_t> indices = document_.numbers<int32_t>(objects[skin].node, "Indexes");
+        const std::vector<float> blend = document_.numbers<float>(objects[skin].node, "BlendWeights");
+        for (size_t i = 0; i < std::min(indices.size(), blend.size()); ++i) {
+            copies_.each(indices[i], [&](rt_u32 v) { shares[v] = std::clamp(blend[i], 0.f, 1.f); });
+        }
+    }
+    pass_skin(type == "DualQuaternion" ? RT_SKIN_DUAL_QUATERNION : type == "Blend" ? RT_SKIN_BLENDED : RT_SKIN_LINEAR, shares);
+}
+
+// Up to version 5.8: `Link: "Bone" { Indexes, Weights, Transform }` in the model (measured from max7_skin_5000_binary).
+void Deformers::add_oldest_skin() {
+    for (const Node& link : document_.children(*context_.objects[mesh_.object].node)) {
+        const uint32_t bone = link.name == "Link" ? context_.objects.find(document_.text(&link, 0)) : kNoObject;
+        if (bone != kNoObject) add_bone(link, bone);
+    }
+    pass_skin(RT_SKIN_LINEAR, {});
+}
+
+void Deformers::add_bone(const Node& cluster, uint32_t bone) {
+    const std::vector<int32_t> indices = document_.numbers<int32_t>(&cluster, "Indexes");
+    const std::vector<float> weights = document_.numbers<float>(&cluster, "Weights");
+    const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const SceneNode& n) { return n.object == bone; });
+    Transform bind = kIdentity;
+    if (indices.empty() || node == nodes_.end() || !matrix_of(document_.numbers<double>(&cluster, "Transform"), bind)) return;
+    bind = multiply(bind, nodes_[mesh_.node].transform.geometry);
+    if (!is_finite(bind)) throw Broken(document_.place(cluster) + ": the matrix of a bone is not finite");
+    rt_bone out{};
+    out.node = node->id;
+    std::copy(bind.begin(), bind.end(), out.bone_from_mesh);
+    const rt_u32 number = static_cast<rt_u32>(bones_.size());
+    bones_.push_back(out);
+    for (size_t i = 0; i < std::min(indices.size(), weights.size()); ++i) {
+        copies_.each(indices[i], [&](rt_u32 v) { weights_.push_back({v, number, weights[i]}); });
+    }
+}
+
+void Deformers::pass_skin(rt_u32 method, const std::vector<float>& shares) {
+    if (bones_.empty()) return;
+    rt_skin_desc out{};
+    out.struct_bytes = sizeof out;
+    out.mesh = mesh_.id;
+    out.bone_count = static_cast<rt_u32>(bones_.size());
+    out.method = method;
+    out.bones = bones_.data();
+    out.weights = weights_.data();
+    out.weight_count = weights_.size();
+    out.dual_quaternion_shares = shares.empty() ? nullptr : shares.data();
+    if (context_.sink.skin(context_.sink.ctx, &out) != RT_OK) throw rt::Stopped();
+}
+
+// FullWeights: at which percentage of DeformPercent each shape is reached. Source: FBX SDK help, "FbxBlendShapeChannel".
+void Deformers::add_channel(uint32_t channel) {
+    const Objects& objects = context_.objects;
+    const std::vector<double> full = document_.numbers<double>(objects[channel].node, "FullWeights");
+    std::vector<std::pair<double, const Node*>> shapes;
+    for (const uint32_t shape : objects.below(channel, "Geometry", "Shape")) {
+        const double percent = shapes.size() < full.size() ? full[shapes.size()] : 100;
+        shapes.push_back({percent / 100, objects[shape].node});
+    }
+    const double percent = context_.properties(channel).number("DeformPercent", 0);
+    pass_morph(objects[channel].name, percent / 100, shapes, channel, "");
+}
+
+void Deformers::pass_morph(const std::string& name, double weight, const std::vector<std::pair<double, const Node*>>& shapes,
+                           uint32_t owner, const std::string& key) {
+    struct Offsets {
+        std::vector<rt_u32> vertices;
+        std::vector<float> positions, normals;
+    };
+    std::vector<Offsets> offsets(shapes.size());
+    std::vector<rt_morph_target> targets;
+    for (size_t s = 0; s < shapes.size(); ++s) {
+        const Node* shape = shapes[s].second;
+        const std::vector<int32_t> indices = document_.numbers<int32_t>(shape, "Indexes");
+        const std::vector<float> moves = document_.numbers<float>(shape, "Vertices"), turns = document_.numbers<float>(shape, "Normals");
+        Offsets& out = offsets[s];
+        std::vector<bool> seen(mesh_.points);
+        for (size_t i = 0; i < std::min(indices.size(), moves.size() / 3); ++i) {
+            if (indices[i] < 0 || static_cast<uint32_t>(indices[i]) >= mesh_.points || seen[static_cast<size_t>(indices[i])]) continue;
+            seen[static_cast<size_t>(indices[i])] = true;
+            copies_.each(indices[i], [&](rt_u32 v) {
+                out.vertices.push_back(v);
+                out.positions.insert(out.positions.end(), &moves[3 * i], &moves[3 * i] + 3);
+                if (turns.size() == moves.size()) out.normals.insert(out.normals.end(), &turns[3 * i], &turns[3 * i] + 3);
+            });
+        }
+        if (out.vertices.empty() || shapes[s].first == 0) continue;
+        rt_morph_target target{};
+        target.weight = shapes[s].first;
+        target.vertices = out.vertices.data();
+        target.count = out.vertices.size();
+        target.positions = out.positions.data();
+        target.normals = out.normals.empty() ? nullptr : out.normals.data();
+        targets.push_back(target);
+    }
+    if (targets.empty()) return;
+    std::stable_sort(targets.begin(), targets.end(), [](const auto& a, const auto& b) { return a.weight < b.weight; });
+    rt_morph_desc out{};
+    out.struct_bytes = sizeof out;
+    out.mesh = mesh_.id;
+    out.name = name.c_str();
+    out.weight = weight;
+    out.targets = targets.data();
+    out.target_count = static_cast<rt_u32>(targets.size());
+    morphs_[{owner, key}].push_back(rt::id(context_.sink.morph(context_.sink.ctx, &out)));
+}
+
+}  // namespace
+
+void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes, Morphs& morphs) {
+    for (const SceneMesh& mesh : meshes) Deformers(context, nodes, mesh, morphs).add();
+}
+
+}  // namespace fbx_import

@@ -1,0 +1,112 @@
+#include "document.hpp"
+
+#include <algorithm>
+
+#include "ascii.hpp"
+#include "binary.hpp"
+
+namespace fbx_import {
+
+Document::Document(std::string_view bytes) : bytes_(bytes) {
+    read_header();
+    if (binary_) {
+        BinaryReader(*this).read();
+    } else {
+        AsciiReader(*this).read();
+    }
+    // Up to FBX 5, the number in a binary file's header is that of the container: 3000 where FBXVersion says 5000 (measured
+    // from max7_cube_5000_binary). From 5.8 on, both are the same.
+    const int64_t stated = integer(child(child(&root(), "FBXHeaderExtension"), "FBXVersion"), 0, version_);
+    version_ = static_cast<int>(std::clamp<int64_t>(stated, 0, 99999));
+    // Such ASCII files have no version (measured from synthetic_missing_version_6100_ascii). Connections have ids from 7.0 on.
+    if (version_ == 0 && !binary_) {
+        const Node* connections = child(&root(), "Connections");
+        version_ = connections && child(connections, "C") ? 7000 : connections ? 6000 : 5000;
+    }
+}
+
+void Document::read_header() {
+    const auto starts = [&](std::string_view start) { return bytes_.substr(0, start.size()) == start; };
+    if (bytes_.empty()) throw Broken("the file is empty");
+    struct Kind {
+        std::string_view magic;
+        const char* name;
+    };
+    static constexpr Kind kinds[] = {
+        {"\x89PNG", "a PNG picture"},   {"\xFF\xD8\xFF", "a JPEG picture"}, {"PK\x03\x04", "a zip archive"},
+        {"\x1F\x8B", "a gzip archive"}, {"%PDF", "a PDF document"},         {"glTF", "a binary glTF file"},
+        {"ply", "a PLY file"},          {"<?xml", "an XML file"},           {"BLENDER", "a Blender file"},
+    };
+    for (const Kind& kind : kinds) {
+        if (starts(kind.magic)) throw Broken(std::string("not an FBX file: it is ") + kind.name + "; rename it");
+    }
+    binary_ = starts(kMagic.substr(0, 18));
+    if (!binary_) {
+        const std::string_view head = bytes_.substr(0, 4096);
+        if (head.find("FBX") == head.npos) throw Broken("not an FBX file: neither the binary nor the text header is there");
+        // Only a comment has the version of very old files: `; FBX 5.8.0 project file`.
+        const size_t key = head.find("FBX ");
+        const auto digit = [&](size_t i) { return key + i < head.size() && head[key + i] >= '0' && head[key + i] <= '9'; };
+        if (key != head.npos && digit(4)) version_ = (head[key + 4] - '0') * 1000;
+        if (version_ != 0 && digit(6)) version_ += (head[key + 6] - '0') * 100;
+        return;
+    }
+    if (bytes_.size() < kHeaderBytes || !starts(kMagic) || static_cast<unsigned char>(bytes_[kVersionAt - 1]) > 1) {
+        throw Broken(
+            "byte 18: the header of this binary FBX file is damaged (was it transferred as text?): fetch or export it again");
+    }
+    big_endian_ = bytes_[kVersionAt - 1] == 1;
+    version_ = static_cast<int>(std::min(load<uint32_t>(bytes_.data() + kVersionAt, big_endian_), 99999u));
+}
+
+const Node* Document::child(const Node* node, std::string_view name) const {
+    if (!node) return nullptr;
+    for (const Node& child : children(*node)) {
+        if (child.name == name) return &child;
+    }
+    return nullptr;
+}
+
+const Node* Document::child(const Node* node, std::string_view name, std::string_view first_text) const {
+    if (!node) return nullptr;
+    for (const Node& child : children(*node)) {
+        if (child.name == name && text(&child, 0) == first_text) return &child;
+    }
+    return nullptr;
+}
+
+bool Values::next(Value& value) {
+    return document_.is_binary() ? next_binary(value) : next_ascii(value);
+}
+
+Value Document::value(const Node& node, size_t i) const {
+    Values values(*this, node);
+    Value value;
+    while (values.next(value) && i > 0) --i;
+    return value;
+}
+
+int64_t Document::integer(const Node* node, size_t i, int64_t otherwise) const {
+    const Value found = node ? value(*node, i) : Value();
+    if (found.kind == Value::integer) return found.whole;
+    if (found.kind != Value::real || !(found.number > -9e18 && found.number < 9e18)) return otherwise;
+    return static_cast<int64_t>(found.number);
+}
+
+double Document::number(const Node* node, size_t i, double otherwise) const {
+    const Value found = node ? value(*node, i) : Value();
+    return found.kind == Value::integer || found.kind == Value::real ? found.number : otherwise;
+}
+
+std::string_view Document::text(const Node* node, size_t i) const {
+    const Value found = node ? value(*node, i) : Value();
+    return found.kind == Value::string || found.kind == Value::raw ? found.text : std::string_view();
+}
+
+std::string Document::place(const char* at) const {
+    const size_t offset = static_cast<size_t>(at - bytes_.data());
+    if (binary_) return "byte " + std::to_string(offset);
+    return "line " + std::to_string(1 + std::count(bytes_.data(), at, '\n'));
+}
+
+}  // namespace fbx_import

@@ -1,0 +1,123 @@
+// document.hpp -- an FBX file as a tree of named nodes with values. It knows how files are written, not what they mean.
+//
+// Nodes, values and arrays are views into the file's bytes and are decoded when asked for. No count, length or offset of the
+// file is trusted: each is compared with the bytes that are there before it is used.
+#pragma once
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace fbx_import {
+
+// The file is damaged. The text says where, what was found, and what was expected.
+struct Broken : std::runtime_error {
+    using std::runtime_error::runtime_error;
+};
+
+struct Node {
+    std::string_view name;
+    std::string_view values;             // of binary files the records of the values, of ASCII files their text
+    uint32_t value_count = 0;            // of binary files, as declared
+    uint32_t first_child = 0, next = 0;  // numbers of nodes; 0: none
+};
+
+struct Value {
+    enum Kind { none, integer, real, string, raw, array } kind = none;
+    int64_t whole = 0;      // of an integer; of an ASCII array how many values it declares
+    double number = 0;      // of an integer or real
+    std::string_view text;  // of a string or raw; of an array all that follows its type
+    char type = 0;          // of binary files, the type's letter
+};
+
+class Document {
+ public:
+    // Reads the tree. The bytes must outlive the document. Throws Broken.
+    explicit Document(std::string_view bytes);
+
+    int version() const { return version_; }  // 7400; 0: the file does not say
+    bool is_binary() const { return binary_; }
+    bool is_big_endian() const { return big_endian_; }
+
+    class Children;
+    Children children(const Node& node) const;
+    const Node& root() const { return nodes_[0]; }
+    const Node* child(const Node* node,
+                      std::string_view name) const;  // the first one of this name; nullptr if none, or no node
+    const Node* child(const Node* node, std::string_view name, std::string_view first_text) const;
+
+    // The i-th value; kind is `none` if there are fewer. Throws Broken.
+    Value value(const Node& node, size_t i) const;
+    int64_t integer(const Node* node, size_t i, int64_t otherwise) const;
+    double number(const Node* node, size_t i, double otherwise) const;
+    std::string_view text(const Node* node, size_t i) const;
+
+    // All numbers of a node: its array, or its values one by one. T: float, double, int32_t or int64_t; numbers that do not fit
+    // become the nearest one that does. Throws Broken.
+    template <class T>
+    std::vector<T> numbers(const Node* node) const;
+    // The numbers of the node's child `name`.
+    template <class T>
+    std::vector<T> numbers(const Node* node, std::string_view name) const {
+        return numbers<T>(child(node, name));
+    }
+    // The bytes of all texts and raw values. Those of ASCII files are decoded from base64.
+    std::string content(const Node& node) const;
+
+    std::string place(const char* at) const;  // "line 12" or "byte 3456"
+    std::string place(const Node& node) const { return place(node.name.data()); }
+
+ private:
+    friend class BinaryReader;
+    friend class AsciiReader;
+    friend class Values;
+    void read_header();
+
+    std::string_view bytes_;
+    bool binary_ = false, big_endian_ = false;
+    int version_ = 0;
+    std::vector<Node> nodes_ = std::vector<Node>(1);
+};
+
+class Document::Children {
+ public:
+    struct Iterator {
+        const Document* document;
+        uint32_t at;
+        const Node& operator*() const { return document->nodes_[at]; }
+        Iterator& operator++() {
+            at = document->nodes_[at].next;
+            return *this;
+        }
+        bool operator!=(const Iterator& other) const { return at != other.at; }
+    };
+    Children(const Document& document, uint32_t first) : document_(document), first_(first) {}
+    Iterator begin() const { return {&document_, first_}; }
+    Iterator end() const { return {&document_, 0}; }
+
+ private:
+    const Document& document_;
+    uint32_t first_;
+};
+
+inline Document::Children Document::children(const Node& node) const {
+    return {*this, node.first_child};
+}
+
+// The values of a node, one after the other.
+class Values {
+ public:
+    Values(const Document& document, const Node& node) : document_(document), node_(node), rest_(node.values) {}
+    bool next(Value& value);  // false: there are no more. Throws Broken
+
+ private:
+    bool next_binary(Value& value);
+    bool next_ascii(Value& value);
+    const Document& document_;
+    const Node& node_;
+    std::string_view rest_;
+    uint32_t taken_ = 0;
+};
+
+}  // namespace fbx_import

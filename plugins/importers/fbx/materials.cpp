@@ -1,0 +1,162 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "scene.hpp"
+
+namespace fbx_import {
+namespace {
+
+float limited(double x, double low, double high, double otherwise) {
+    return static_cast<float>(std::isfinite(x) ? std::clamp(x, low, high) : otherwise);
+}
+
+Vec3 scaled(const Vec3& v, double by) {
+    return {v[0] * by, v[1] * by, v[2] * by};
+}
+
+void store(const Vec3& v, double high, float out[3]) {
+    for (int k = 0; k < 3; ++k) out[k] = limited(v[k], 0, high, 0);
+}
+
+// Names of properties: FBX SDK help, "FbxSurfacePhong". Up to version 5.8 they are `Diffuse`, `Emissive`, ... (measured from
+// max2009_blob_5800_ascii).
+Vec3 color(const Properties& p, const char* name, const char* oldest, const Vec3& otherwise) {
+    return p.has(name) ? p.vector(name, otherwise) : p.vector(oldest, otherwise);
+}
+
+void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
+    // A texture replaces the colour: programs leave any value there.
+    const Vec3 diffuse = scaled(color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8}), p.number("DiffuseFactor", 1));
+    store(has_texture ? Vec3{1, 1, 1} : diffuse, 1, out.color);
+    store(scaled(color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1)), 1000, out.emission);
+    const double strength = limited(p.number("SpecularFactor", 1), 0, 1, 1);
+    store(scaled(color(p, "SpecularColor", "Specular", {}), strength), 1, out.specular);
+    out.shininess = limited(p.number("ShininessExponent", p.number("Shininess", 0)), 1, 10000, 1);
+    const Vec3 reflection = p.vector("ReflectionColor", {});
+    out.reflect = limited(p.number("ReflectionFactor", 0) * std::max({reflection[0], reflection[1], reflection[2]}), 0, 1, 0);
+    // The transparent share is the mean of TransparentColor times TransparencyFactor. Maya always writes 1 for the factor, so
+    // the factor alone means nothing. Source: FBX SDK help, "FbxSurfaceLambert".
+    const Vec3 clear = scaled(p.vector("TransparentColor", {}), p.number("TransparencyFactor", 1));
+    const double opacity = p.number("Opacity", 1 - (clear[0] + clear[1] + clear[2]) / 3);
+    out.refract = 1 - limited(opacity, 0, 1, 1);
+    out.ior = 1;  // files have no index of refraction, so rays are not bent
+    if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
+}
+
+std::string base_name(const std::string& path) {
+    const size_t slash = path.find_last_of('/');
+    return slash == path.npos ? path : path.substr(slash + 1);
+}
+
+bool is_readable(const std::string& path) {
+    FILE* file = std::fopen(path.c_str(), "rb");
+    if (file) std::fclose(file);
+    return file != nullptr;
+}
+
+std::string with_slashes(std::string_view path) {
+    std::string out(path);
+    std::replace(out.begin(), out.end(), '\\', '/');
+    while (out.substr(0, 2) == "./") out.erase(0, 2);
+    return out;
+}
+
+}  // namespace
+
+std::vector<const Node*> Materials::of(uint32_t model) const {
+    std::vector<const Node*> out;
+    for (const uint32_t material : context_.objects.below(model, "Material")) out.push_back(context_.objects[material].node);
+    if (!out.empty()) return out;
+    // Up to version 5.8 they are blocks of the model (measured from max2009_blob_5800_ascii).
+    for (const Node& child : context_.document.children(*context_.objects[model].node)) {
+        if (child.name == "Material" && child.first_child) out.push_back(&child);
+    }
+    return out;
+}
+
+rt_u32 Materials::id(const Node* material, uint32_t model) {
+    const auto known = ids_.find(material);
+    if (known != ids_.end()) return known->second;
+    Object object;
+    object.node = material;
+    object.kind = "Material";
+    uint32_t number = kNoObject;
+    for (const uint32_t i : context_.objects.below(model, "Material")) {
+        if (context_.objects[i].node == material) number = i;
+    }
+    const bool has_id = context_.document.value(*material, 0).kind == Value::integer;
+    const std::string name = plain_name(context_.document, context_.document.text(material, has_id ? 1 : 0));
+    rt_material_desc out{};
+    out.struct_bytes = sizeof out;
+    if (!name.empty()) out.name = name.c_str();
+    out.texture = texture(number, model);
+    read_phong(context_.templates.of(object), out.texture != RT_NONE, out);
+    return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
+}
+
+// A texture hangs from the material's property, and a layered texture may be in between. In version 6 it hangs from the model,
+// beside the material (measured from max2009_blob_6100_binary and the files that Blender 2.79 writes).
+rt_u32 Materials::texture(uint32_t material, uint32_t model) {
+    const Objects& objects = context_.objects;
+    if (material != kNoObject) {
+        for (const Link* link : objects.below(material)) {
+            const Object& object = objects[link->from];
+            const bool is_color = link->property == "DiffuseColor" ||
+                                  link->property.find("base_color") != link->property.npos ||
+                                  link->property.find("baseColor") != link->property.npos;
+            if (!is_color) continue;
+            if (object.kind == "Texture") return file_texture(link->from);
+            if (object.kind != "LayeredTexture") continue;
+            for (const uint32_t layer : objects.below(link->from, "Texture")) return file_texture(layer);
+        }
+    }
+    for (const uint32_t found : objects.below(model, "Texture")) return file_texture(found);
+    return RT_NONE;
+}
+
+// A texture's picture is in the Content of the Video that hangs from it, or in a file. Source: Blender developer blog.
+rt_u32 Materials::file_texture(uint32_t texture) {
+    const auto known = textures_.find(texture);
+    if (known != textures_.end()) return known->second;
+    const Document& document = context_.document;
+    const Node* node = context_.objects[texture].node;
+    rt_texture_desc out{};
+    out.struct_bytes = sizeof out;
+    std::string content, path;
+    for (const uint32_t video : context_.objects.below(texture, "Video")) {
+        const Node* found = document.child(context_.objects[video].node, "Content");
+        if (found && content.empty()) content = document.content(*found);
+    }
+    if (!content.empty()) {
+        out.bytes = reinterpret_cast<const uint8_t*>(content.data());
+        out.byte_count = content.size();
+    } else {
+        const Node* name = document.child(node, "FileName");
+        path = existing_path(document.text(document.child(node, "RelativeFilename"), 0),
+                             document.text(name ? name : document.child(node, "Filename"), 0));
+        if (path.empty()) return textures_[texture] = RT_NONE;
+        out.path = path.c_str();
+    }
+    return textures_[texture] = context_.sink.texture(context_.sink.ctx, &out);
+}
+
+// Files often hold texture paths of the author's machine. So look also in the places beside the scene where programs put
+// textures.
+std::string Materials::existing_path(std::string_view relative, std::string_view absolute) const {
+    std::vector<std::string> candidates;
+    for (const std::string& path : {with_slashes(relative), with_slashes(absolute)}) {
+        const bool is_absolute = !path.empty() && (path[0] == '/' || (path.size() > 1 && path[1] == ':'));
+        if (!path.empty() && !is_absolute) candidates.push_back(path);
+        if (path.empty() || base_name(path).empty()) continue;
+        for (const std::string& folder : {std::string(), std::string("textures/"), context_.stem + ".fbm/"}) {
+            candidates.push_back(folder + base_name(path));
+        }
+    }
+    for (const std::string& candidate : candidates) {
+        if (is_readable(context_.folder + candidate)) return candidate;
+    }
+    return candidates.empty() ? "" : candidates.front();
+}
+
+}  // namespace fbx_import

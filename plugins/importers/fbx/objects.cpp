@@ -1,0 +1,166 @@
+#include "objects.hpp"
+
+#include <algorithm>
+#include <unordered_set>
+
+#include "ascii.hpp"
+
+namespace fbx_import {
+namespace {
+
+// Binary files write "Cube", 0, 1, "Model". Source: Blender developer blog.
+constexpr std::string_view kSeparator{"\0\1", 2};
+
+// Replaces bytes that are no UTF-8 (motionbuilder_cube_7700_binary has some), which JSON cannot hold.
+std::string valid_utf8(const std::string& text) {
+    std::string out;
+    for (size_t i = 0; i < text.size();) {
+        const unsigned char c = static_cast<unsigned char>(text[i]);
+        const size_t length = c < 0x80                ? 1
+                              : c >= 0xC2 && c < 0xE0 ? 2
+                              : c >= 0xE0 && c < 0xF0 ? 3
+                              : c >= 0xF0 && c < 0xF5 ? 4
+                                                      : 0;
+        bool good = length > 0 && i + length <= text.size();
+        for (size_t k = 1; good && k < length; ++k) good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
+        if (good && length == 3)
+            good = !(c == 0xE0 && static_cast<unsigned char>(text[i + 1]) < 0xA0) &&
+                   !(c == 0xED && static_cast<unsigned char>(text[i + 1]) > 0x9F);
+        if (good && length == 4)
+            good = !(c == 0xF0 && static_cast<unsigned char>(text[i + 1]) < 0x90) &&
+                   !(c == 0xF4 && static_cast<unsigned char>(text[i + 1]) > 0x8F);
+        out += good ? text.substr(i, length) : "?";
+        i += good ? length : 1;
+    }
+    return out;
+}
+
+}  // namespace
+
+std::string plain_name(const Document& document, std::string_view name) {
+    if (document.is_binary()) return valid_utf8(std::string(name.substr(0, name.find(kSeparator))));
+    const size_t colons = name.find("::");
+    if (colons != name.npos) name.remove_prefix(colons + 2);
+    return valid_utf8(without_entities(name));
+}
+
+Objects::Objects(const Document& document) : document_(document) {
+    all_.emplace_back();
+    by_id_[0] = kRoot;
+    by_name_["Model::Scene"] = by_name_[std::string_view("Scene\0\1Model", 12)] = kRoot;
+    settings_ = document.child(&document.root(), "GlobalSettings");
+    const Node* objects = document.child(&document.root(), "Objects");
+    if (objects && !settings_) settings_ = document.child(objects, "GlobalSettings");  // version 6
+    if (objects) {
+        add_all(*objects);
+    } else {  // up to version 5.8, objects stand in the file's top level (measured from max7_skin_5000_binary)
+        add_all(document.root());
+    }
+    connect();
+    if (!objects) connect_oldest();
+    below_.resize(links_.size());
+    for (uint32_t i = 0; i < links_.size(); ++i) below_[i] = i;
+    above_ = below_;
+    std::stable_sort(below_.begin(), below_.end(), [&](uint32_t a, uint32_t b) { return links_[a].to < links_[b].to; });
+    std::stable_sort(above_.begin(), above_.end(), [&](uint32_t a, uint32_t b) { return links_[a].from < links_[b].from; });
+}
+
+void Objects::add_all(const Node& parent) {
+    for (const Node& node : document_.children(parent)) {
+        if (node.first_child != 0 || document_.value(node, 1).kind == Value::string) add(node);  // a layer may have an empty block
+    }
+}
+
+// From version 7.0 on: an id, the name with its class, the type. Before: the name with its class, the type; the name is the id.
+// Where objects share an id or a name, connections mean the first one. A further model of the same name cannot be reached by
+// any connection: the first one is then shown as often as it is connected (max_quote_6100_ascii and its truth).
+void Objects::add(const Node& node) {
+    const Value first = document_.value(node, 0);
+    const bool has_id = first.kind == Value::integer;
+    const size_t name_at = has_id ? 1 : 0;
+    const uint32_t index = static_cast<uint32_t>(all_.size());
+    const std::string_view name = document_.text(&node, name_at);
+    Object object;
+    object.node = &node;
+    object.kind = node.name;
+    object.type = document_.text(&node, name_at + 1);
+    if (object.type.empty()) object.type = document_.text(document_.child(&node, "Type"), 0);
+    object.name = plain_name(document_, name);
+    all_.push_back(object);
+    if (has_id) {
+        by_id_.emplace(first.whole, index);
+        return;
+    }
+    if (!by_name_.emplace(name, index).second && object.kind == "Model") all_.back().kind = "Model again";
+    // A model's camera, light or mesh is part of it, and has a second name (measured from maya_node_attribute_zoo_6100_binary).
+    const std::string_view inner = document_.text(document_.child(&node, "NodeAttributeName"), 0);
+    if (!inner.empty()) by_name_.emplace(inner, index);
+}
+
+uint32_t Objects::find(std::string_view name) const {
+    const auto found = by_name_.find(name);
+    return found == by_name_.end() ? kNoObject : found->second;
+}
+
+// "OO": object to object, "OP": object to property, "PO", "PP": from a property. Source: Blender developer blog; "PO" from the
+// FBX SDK help, "FbxConnection".
+void Objects::connect() {
+    const Node* list = document_.child(&document_.root(), "Connections");
+    if (!list) return;
+    std::unordered_set<uint64_t> known;
+    for (const Node& node : document_.children(*list)) {
+        if (node.name != "C" && node.name != "Connect") continue;
+        const std::string_view kind = document_.text(&node, 0);
+        if (kind.size() != 2) continue;
+        const auto end = [&](size_t i) {
+            const Value v = document_.value(node, i);
+            if (v.kind == Value::string || v.kind == Value::raw) return find(v.text);
+            const auto found = by_id_.find(v.whole);
+            return v.kind == Value::integer && found != by_id_.end() ? found->second : kNoObject;
+        };
+        Link link;
+        size_t i = 1;
+        link.from = end(i++);
+        if (kind[0] == 'P') link.from_property = document_.text(&node, i++);
+        link.to = end(i++);
+        if (kind[1] == 'P') link.property = document_.text(&node, i);
+        if (link.from == kNoObject || link.to == kNoObject || link.from == kRoot) continue;
+        // A connection that is there again means nothing, but where names are ids it is that of another object of the same
+        // name.
+        const bool is_new = known.insert(uint64_t(link.from) << 32 | link.to).second;
+        if (kind == "OO" && !is_new && document_.value(node, 1).kind == Value::integer) continue;
+        links_.push_back(link);
+    }
+}
+
+// Up to version 5.8, a model names its children (measured from max7_skin_5000_binary and max2009_blob_5800_ascii).
+void Objects::connect_oldest() {
+    for (uint32_t parent = 1; parent < all_.size(); ++parent) {
+        const Node* list = document_.child(all_[parent].node, "Children");
+        if (all_[parent].kind != "Model" || !list) continue;
+        Values values(document_, *list);
+        for (Value v; values.next(v);) {
+            const uint32_t child = find(v.text);
+            if (child != kNoObject && child != kRoot) links_.push_back({child, parent, {}, {}});
+        }
+    }
+}
+
+std::vector<const Link*> Objects::links(const std::vector<uint32_t>& order, uint32_t object, uint32_t Link::*end) const {
+    auto at = std::lower_bound(order.begin(), order.end(), object, [&](uint32_t i, uint32_t o) { return links_[i].*end < o; });
+    std::vector<const Link*> out;
+    for (; at != order.end() && links_[*at].*end == object; ++at) out.push_back(&links_[*at]);
+    return out;
+}
+
+std::vector<uint32_t> Objects::below(uint32_t object, std::string_view kind, std::string_view type) const {
+    std::vector<uint32_t> out;
+    for (const Link* link : below(object)) {
+        const Object& found = all_[link->from];
+        if (!link->property.empty() || !link->from_property.empty()) continue;
+        if (found.kind == kind && (type.empty() || found.type == type)) out.push_back(link->from);
+    }
+    return out;
+}
+
+}  // namespace fbx_import

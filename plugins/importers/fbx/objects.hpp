@@ -1,0 +1,61 @@
+// objects.hpp -- the objects of a file, and what is connected to what.
+#pragma once
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "document.hpp"
+
+namespace fbx_import {
+
+inline constexpr uint32_t kRoot = 0, kNoObject = 0xFFFFFFFFu;
+
+struct Object {
+    const Node* node = nullptr;  // nullptr: the root of the scene
+    std::string_view kind;       // "Model", "Geometry", "Material"
+    std::string_view type;       // "Mesh", "Camera", "Skin"
+    std::string name;
+};
+
+// `from` hangs from `to`, or from its property.
+struct Link {
+    uint32_t from = kNoObject, to = kNoObject;
+    std::string_view property, from_property;
+};
+
+class Objects {
+ public:
+    explicit Objects(const Document& document);
+
+    size_t size() const { return all_.size(); }
+    const Object& operator[](uint32_t object) const { return all_[object]; }
+    uint32_t find(std::string_view name) const;  // by name as the file writes it; before version 7 only
+    // What hangs from an object, and from what it hangs, in the order of the file.
+    std::vector<const Link*> below(uint32_t object) const { return links(below_, object, &Link::to); }
+    std::vector<const Link*> above(uint32_t object) const { return links(above_, object, &Link::from); }
+    // Objects of this kind that hang from the object itself, not from a property; `type` "" stands for any.
+    std::vector<uint32_t> below(uint32_t object, std::string_view kind, std::string_view type = "") const;
+
+    // The file's settings: unit, axes, time.
+    const Node* settings() const { return settings_; }
+
+ private:
+    void add(const Node& node);
+    void add_all(const Node& parent);
+    void connect();
+    void connect_oldest();
+    std::vector<const Link*> links(const std::vector<uint32_t>& order, uint32_t object, uint32_t Link::*end) const;
+
+    const Document& document_;
+    std::vector<Object> all_;
+    std::unordered_map<int64_t, uint32_t> by_id_;
+    std::unordered_map<std::string_view, uint32_t> by_name_;
+    std::vector<Link> links_;
+    std::vector<uint32_t> below_, above_;  // numbers of links, sorted by `to` and by `from`
+    const Node* settings_ = nullptr;
+};
+
+// The name without its class, which stands before it in ASCII files ("Model::Cube") and behind it in binary ones.
+std::string plain_name(const Document& document, std::string_view name);
+
+}  // namespace fbx_import

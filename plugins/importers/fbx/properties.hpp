@@ -1,0 +1,46 @@
+// properties.hpp -- the properties of an object: its own, else those of its class's template.
+#pragma once
+#include <array>
+#include <unordered_map>
+
+#include "objects.hpp"
+
+namespace fbx_import {
+
+using Vec3 = std::array<double, 3>;
+
+class Properties {
+ public:
+    Properties(const Document& document, const Node* object, const Node* defaults = nullptr);
+    bool has(std::string_view name) const { return find(name).node != nullptr; }
+    double number(std::string_view name, double otherwise) const;
+    int64_t whole(std::string_view name, int64_t otherwise) const;
+    Vec3 vector(std::string_view name, const Vec3& otherwise) const;
+    std::string_view text(std::string_view name) const;
+
+ private:
+    struct Place {
+        const Node* node = nullptr;
+        size_t first = 0;  // number of its first value
+    };
+    void add(const Node* list);
+    Place find(std::string_view name) const;
+    const Document& document_;
+    const Node* object_;
+    std::unordered_map<std::string_view, Place> places_;
+};
+
+// The templates of a file, by class of objects.
+class Templates {
+ public:
+    explicit Templates(const Document& document);
+    // The properties of an object, where it has none those of its template.
+    Properties of(const Object& object) const;
+
+ private:
+    const Document& document_;
+    std::unordered_map<std::string_view, const Node*> by_class_;
+    std::unordered_map<std::string, const Node*> by_name_;
+};
+
+}  // namespace fbx_import

@@ -1,0 +1,193 @@
+#include "animations.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "rt_plugin.hpp"
+
+namespace gltf_import {
+namespace {
+
+enum class Path { translation, rotation, scale, weights, other };
+
+Path path_of(const Value& target) {
+    const std::string path = target["path"].text();
+    if (path == "translation") return Path::translation;
+    if (path == "rotation") return Path::rotation;
+    if (path == "scale") return Path::scale;
+    if (path == "weights") return Path::weights;
+    if (path == "pointer") return Path::other;  // KHR_animation_pointer
+    target["path"].refuse("'translation', 'rotation', 'scale' or 'weights'");
+}
+
+// The keys of a sampler. A cubic one has three elements a key: tangent in, value, tangent out.
+struct Sampler {
+    std::vector<double> times;
+    std::vector<float> values;
+    size_t width = 0;  // numbers of an element
+    bool is_cubic = false, is_step = false;
+    double value(size_t key, size_t k, int part) const {
+        return values[((is_cubic ? 3 * key + size_t(part) : key) * width) + k];
+    }
+};
+
+std::vector<double> read_times(const Value& input, Accessors& accessors) {
+    const Elements<float> times = accessors.floats(input, "SCALAR");
+    if (times.count == 0) input.refuse("an accessor without elements", "a key or more");
+    for (size_t i = 0; i < times.count; ++i) {
+        const float t = times.values[i], before = i > 0 ? times.values[i - 1] : t;
+        if (!std::isfinite(t) || t < before)
+            input.refuse(
+                "the time " + std::to_string(t) + " s of key " + std::to_string(i) + " after " + std::to_string(before) + " s",
+                "times that increase");
+    }
+    return {times.values.begin(), times.values.end()};
+}
+
+Sampler read_sampler(const Value& sampler, std::vector<double> times, const char* types, size_t width, Accessors& accessors) {
+    Sampler out;
+    const std::string how = sampler.text("interpolation", "LINEAR");
+    out.is_cubic = how == "CUBICSPLINE";
+    out.is_step = how == "STEP";
+    if (!out.is_cubic && !out.is_step && how != "LINEAR") sampler["interpolation"].refuse("'LINEAR', 'STEP' or 'CUBICSPLINE'");
+    out.times = std::move(times);
+    const bool is_list = types == std::string_view("SCALAR");  // the weights of all morphs, one after the other
+    out.width = width;
+    const uint64_t elements = out.times.size() * (out.is_cubic ? 3 : 1) * (is_list ? width : 1);
+    out.values = accessors.floats(sampler["output"], types, elements).values;
+    return out;
+}
+
+class Clip {
+ public:
+    Clip(rt_u32 id, const rt_scene_sink& sink) : id_(id), sink_(sink) {}
+
+    // Adds the numbers from `first` on of each element: `count` of them, which one channel interpolates together.
+    void add(const Sampler& sampler, rt_u32 moves, rt_u32 target, rt_u32 component, size_t first, size_t count) const {
+        const size_t keys = sampler.times.size();
+        std::vector<double> values, handles;
+        for (size_t key = 0; key < keys; ++key) {
+            // A Hermite spline as a Bezier curve: its handles are as long as a third of the span, in time and along the
+            // tangent.
+            const double before = key > 0 ? sampler.times[key] - sampler.times[key - 1] : 0;
+            const double after = key + 1 < keys ? sampler.times[key + 1] - sampler.times[key] : 0;
+            for (size_t k = first; k < first + count; ++k) {
+                values.push_back(sampler.value(key, k, 1));
+                if (!sampler.is_cubic) continue;
+                handles.insert(handles.end(), {before / 3, before / 3 * sampler.value(key, k, 0), after / 3,
+                                               after / 3 * sampler.value(key, k, 2)});
+            }
+        }
+        const std::vector<uint8_t> spans(keys, sampler.is_cubic ? RT_SPAN_CUBIC : RT_SPAN_STEP);
+        rt_channel_desc out{};
+        out.struct_bytes = sizeof out;
+        out.clip = id_;
+        out.moves = moves;
+        out.target = target;
+        out.component = component;
+        out.key_count = keys;
+        out.times_s = sampler.times.data();
+        out.values = values.data();
+        out.spans = sampler.is_cubic || sampler.is_step ? spans.data() : nullptr;
+        out.handles = sampler.is_cubic ? handles.data() : nullptr;
+        out.before = out.after = RT_OUTSIDE_HOLD;
+        if (sink_.channel(sink_.ctx, &out) != RT_OK) throw rt::Stopped();
+    }
+    void add_vector(const Sampler& sampler, rt_u32 moves, rt_u32 target) const {
+        for (rt_u32 k = 0; k < 3; ++k) add(sampler, moves, target, k, k, 1);
+    }
+
+ private:
+    rt_u32 id_;
+    const rt_scene_sink& sink_;
+};
+
+class Animation {
+ public:
+    Animation(const Value& animation, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,
+              const rt_scene_sink& sink)
+        : animation_(animation),
+          samplers_(animation["samplers"]),
+          accessors_(accessors),
+          tree_(tree),
+          meshes_(meshes),
+          sink_(sink) {}
+
+    void add() {
+        const Value channels = animation_["channels"];
+        double begin = 0, end = 0;
+        for (size_t i = 0; i < samplers_.size(); ++i) {
+            times_.push_back(read_times(samplers_[i]["input"], accessors_));
+            begin = i == 0 ? times_[i].front() : std::min(begin, times_[i].front());
+            end = i == 0 ? times_[i].back() : std::max(end, times_[i].back());
+        }
+        const std::string name = animation_.text("name", "");
+        rt_clip_desc out{};
+        out.struct_bytes = sizeof out;
+        out.name = name.empty() ? nullptr : name.c_str();
+        out.begin_s = begin;
+        out.end_s = end;
+        const Clip clip(rt::id(sink_.clip(sink_.ctx, &out)), sink_);
+        for (size_t i = 0; i < channels.size(); ++i) add_channel(channels[i], clip);
+    }
+
+ private:
+    void add_channel(const Value& channel, const Clip& clip) {
+        const Value target = channel["target"];
+        const auto node = target.index("node", tree_.list());
+        const Path path = path_of(target);
+        const size_t sampler = channel["sampler"].index(samplers_);
+        if (path == Path::other) {
+            const std::string text = target.path() + " moves what KHR_animation_pointer names; it is left out";
+            sink_.warn(sink_.ctx, text.c_str());
+        }
+        if (!node || path == Path::other) return;
+        if (!seen_.insert({*node, path}).second)
+            target.refuse("a second channel for the " + target["path"].text() + " of " + tree_.list()[*node].path(), "one");
+        const auto read = [&](const char* types, size_t width) {
+            return read_sampler(samplers_[sampler], times_[sampler], types, width, accessors_);
+        };
+        const rt_u32 id = tree_.id(*node);
+        if (path == Path::translation) clip.add_vector(read("VEC3", 3), RT_MOVES_TRANSLATION, id);
+        if (path == Path::scale) clip.add_vector(read("VEC3", 3), RT_MOVES_SCALE, id);
+        if (path == Path::rotation) clip.add(read("VEC4", 4), RT_MOVES_ROTATION, id, RT_ALL_COMPONENTS, 0, 4);
+        const std::vector<rt_u32>& morphs = meshes_.morphs(*node);
+        if (path != Path::weights || morphs.empty()) return;
+        const Sampler weights = read("SCALAR", morphs.size());
+        for (size_t k = 0; k < morphs.size(); ++k) clip.add(weights, RT_MOVES_MORPH, morphs[k], 0, k, 1);
+    }
+
+    const Value animation_, samplers_;
+    Accessors& accessors_;
+    const NodeTree& tree_;
+    const Meshes& meshes_;
+    const rt_scene_sink& sink_;
+    std::vector<std::vector<double>> times_;
+    std::set<std::pair<size_t, Path>> seen_;
+};
+
+}  // namespace
+
+std::set<size_t> nodes_with_animated_weights(const Document& document) {
+    std::set<size_t> nodes;
+    const Value animations = document.list("animations"), list = document.list("nodes");
+    for (size_t i = 0; i < animations.size(); ++i) {
+        const Value channels = animations[i]["channels"];
+        for (size_t k = 0; k < channels.size(); ++k) {
+            const Value target = channels[k]["target"];
+            const auto node = target.index("node", list);
+            if (node && path_of(target) == Path::weights) nodes.insert(*node);
+        }
+    }
+    return nodes;
+}
+
+void add_animations(const Document& document, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,
+                    const rt_scene_sink& sink) {
+    const Value animations = document.list("animations");
+    for (size_t i = 0; i < animations.size(); ++i) Animation(animations[i], accessors, tree, meshes, sink).add();
+}
+
+}  // namespace gltf_import

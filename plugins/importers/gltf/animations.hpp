@@ -1,0 +1,18 @@
+// animations.hpp -- passes the file's animations to the host as clips.
+#pragma once
+#include <set>
+
+#include "accessors.hpp"
+#include "meshes.hpp"
+#include "nodes.hpp"
+#include "rt_plugin.h"
+
+namespace gltf_import {
+
+// The nodes whose weights of morphs an animation changes.
+std::set<size_t> nodes_with_animated_weights(const Document& document);
+
+void add_animations(const Document& document, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,
+                    const rt_scene_sink& sink);
+
+}  // namespace gltf_import

@@ -1,0 +1,125 @@
+// deform.cpp -- skins and morph targets of a mesh.
+#include <algorithm>
+#include <cmath>
+
+#include "meshes.hpp"
+#include "rt_plugin.hpp"
+
+namespace gltf_import {
+namespace {
+
+[[noreturn]] void refuse_joint(const Value& joints, uint64_t found, size_t vertex, const Value& skin) {
+    joints.refuse("joint number " + std::to_string(found) + " at vertex " + std::to_string(vertex),
+                  "one of the " + std::to_string(skin["joints"].size()) + " joints of " + skin.path());
+}
+
+std::vector<rt_bone> bones_of(const Value& skin, Accessors& accessors, const NodeTree& tree) {
+    const Value joints = skin["joints"];
+    std::vector<rt_bone> bones(joints.size());
+    Elements<float> inverse;
+    if (skin.has("inverseBindMatrices")) {
+        inverse = accessors.floats(skin["inverseBindMatrices"], "MAT4");
+        if (inverse.count < joints.size())
+            skin["inverseBindMatrices"].refuse(std::to_string(inverse.count) + " matrices",
+                                               std::to_string(joints.size()) + ", one for each joint");
+    }
+    for (size_t i = 0; i < bones.size(); ++i) {
+        bones[i].node = tree.id(joints[i].index(tree.list()));
+        for (size_t row = 0; row < 3; ++row) {
+            for (size_t column = 0; column < 4; ++column) {
+                bones[i].bone_from_mesh[4 * row + column] =
+                    inverse.count > 0 ? double(inverse.values[16 * i + 4 * column + row]) : kIdentity[4 * row + column];
+            }
+        }
+    }
+    return bones;
+}
+
+}  // namespace
+
+void Meshes::add_skin(const Value& skin, rt_u32 mesh, const std::vector<Part>& parts) {
+    const std::vector<rt_bone> bones = bones_of(skin, accessors_, tree_);
+    std::vector<rt_weight> weights;
+    for (const Part& part : parts) {
+        const Value attributes = part.primitive["attributes"];
+        for (int set = 0;; ++set) {
+            const std::string joints_key = "JOINTS_" + std::to_string(set), weights_key = "WEIGHTS_" + std::to_string(set);
+            if (!attributes.has(joints_key.c_str())) break;
+            const Value joints_of = attributes[joints_key.c_str()];
+            const Elements<uint32_t> joints = accessors_.integers(joints_of, "VEC4", part.count);
+            const Elements<float> shares = accessors_.floats(attributes[weights_key.c_str()], "VEC4", part.count);
+            for (size_t i = 0; i < shares.values.size(); ++i) {
+                if (!(shares.values[i] > 0) || !std::isfinite(shares.values[i])) continue;
+                if (joints.values[i] >= bones.size()) refuse_joint(joints_of, joints.values[i], i / 4, skin);
+                weights.push_back({static_cast<rt_u32>(part.first + i / 4), joints.values[i], shares.values[i]});
+            }
+        }
+    }
+    if (weights.empty()) return;
+    rt_skin_desc out{};
+    out.struct_bytes = sizeof out;
+    out.mesh = mesh;
+    out.bone_count = static_cast<rt_u32>(bones.size());
+    out.method = RT_SKIN_LINEAR;
+    out.bones = bones.data();
+    out.weights = weights.data();
+    out.weight_count = weights.size();
+    if (sink_.skin(sink_.ctx, &out) != RT_OK) throw rt::Stopped();
+}
+
+// One target at a time, because all of them together may be much larger than the file: most vertices move in few of them.
+std::vector<rt_u32> Meshes::add_morphs(const Value& mesh, const Value& node, rt_u32 id, const std::vector<Part>& parts) {
+    size_t count = 0;
+    for (const Part& part : parts) count = std::max(count, part.primitive.list("targets").size());
+    const Value weights = node.has("weights") ? node["weights"] : mesh.list("weights");
+    const Value extras = mesh.has("extras") && mesh["extras"].json().is_object() ? mesh["extras"] : mesh.object("extensions");
+    const bool has_names = extras.has("targetNames") && extras["targetNames"].json().is_array();
+    std::vector<rt_u32> ids;
+    for (size_t k = 0; k < count; ++k) {
+        std::vector<rt_u32> vertices;
+        std::vector<float> positions, normals;
+        bool has_normals = false;
+        for (const Part& part : parts) {
+            const Value targets = part.primitive.list("targets");
+            if (k >= targets.size()) continue;
+            const auto read = [&](const char* key) {
+                return targets[k].has(key) ? accessors_.floats(targets[k][key], "VEC3", part.count).values
+                                           : std::vector<float>();
+            };
+            std::vector<float> moved = read("POSITION"), turned = read("NORMAL");
+            has_normals = has_normals || !turned.empty();
+            moved.resize(3 * part.count);
+            turned.resize(3 * part.count);
+            const auto is_zero = [](const float* v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
+            for (size_t i = 0; i < part.count; ++i) {
+                if (is_zero(&moved[3 * i]) && is_zero(&turned[3 * i])) continue;
+                vertices.push_back(static_cast<rt_u32>(part.first + i));
+                positions.insert(positions.end(), &moved[3 * i], &moved[3 * i] + 3);
+                normals.insert(normals.end(), &turned[3 * i], &turned[3 * i] + 3);
+            }
+        }
+        if (vertices.empty()) {  // the weights of an animation count it nevertheless
+            vertices = {0};
+            positions = normals = {0, 0, 0};
+        }
+        const Value names = has_names ? extras["targetNames"] : weights;
+        const std::string name = has_names && k < names.size() && names[k].json().is_string() ? names[k].text() : "";
+        rt_morph_target target{};
+        target.weight = 1;
+        target.vertices = vertices.data();
+        target.count = vertices.size();
+        target.positions = positions.data();
+        target.normals = has_normals ? normals.data() : nullptr;
+        rt_morph_desc out{};
+        out.struct_bytes = sizeof out;
+        out.mesh = id;
+        out.name = name.empty() ? nullptr : name.c_str();
+        out.weight = k < weights.size() ? weights[k].number() : 0;
+        out.targets = &target;
+        out.target_count = 1;
+        ids.push_back(rt::id(sink_.morph(sink_.ctx, &out)));
+    }
+    return ids;
+}
+
+}  // namespace gltf_import

@@ -1,0 +1,197 @@
+#include "meshes.hpp"
+
+#include <algorithm>
+
+#include "rt_plugin.hpp"
+
+namespace gltf_import {
+namespace {
+
+constexpr size_t kNone = size_t(-1);
+enum Mode : uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kStrip, kFan };
+
+void warn(const rt_scene_sink& sink, const std::string& text) {
+    sink.warn(sink.ctx, text.c_str());
+}
+
+}  // namespace
+
+struct Meshes::Geometry {
+    std::vector<float> positions, normals, uvs;
+    std::vector<rt_u32> indices, materials;
+    std::vector<Part> parts;
+    bool has_normals = false, has_uvs = false;
+};
+
+Meshes::Meshes(const Document& document, Accessors& accessors, Materials& materials, const NodeTree& tree,
+               const rt_scene_sink& sink, bool moves, std::set<size_t> animated)
+    : accessors_(accessors),
+      materials_(materials),
+      tree_(tree),
+      sink_(sink),
+      meshes_(document.list("meshes")),
+      skins_(document.list("skins")),
+      moves_(moves),
+      animated_(std::move(animated)) {}
+
+void Meshes::place(size_t node) {
+    const Value value = tree_.list()[node];
+    const auto mesh = value.index("mesh", meshes_), skin = value.index("skin", skins_);
+    if (!mesh) return;
+    copies_left_out_ = copies_left_out_ || value.object("extensions").has("EXT_mesh_gpu_instancing");
+    const bool has_own_weights = value.has("weights") || animated_.count(node) > 0;
+    const std::tuple key(*mesh, moves_ ? skin.value_or(kNone) : kNone, moves_ && has_own_weights ? node : kNone);
+    const std::string name = value.text("name", meshes_[*mesh].text("name", ""));
+    auto known = built_.find(key);
+    if (known == built_.end()) known = built_.emplace(key, build(meshes_[*mesh], value, name)).first;
+    of_node_[node] = &known->second;
+    if (known->second.mesh == RT_NONE) return;
+    rt_instance_desc out = rt::instance(known->second.mesh, name.c_str());
+    out.node = tree_.id(node);
+    std::transform(tree_.placed(node).begin(), tree_.placed(node).end(), out.world_from_object, to_float);
+    rt::id(sink_.instance(sink_.ctx, &out));
+}
+
+const std::vector<rt_u32>& Meshes::morphs(size_t node) const {
+    static const std::vector<rt_u32> none;
+    const auto found = of_node_.find(node);
+    return found == of_node_.end() ? none : found->second->morphs;
+}
+
+void Meshes::report() const {
+    if (copies_left_out_) warn(sink_, "copies by EXT_mesh_gpu_instancing are left out: one of each is there");
+    if (triangles_ == 0) {
+        warn(sink_, "contains no polygons" + std::string(points_and_lines_ ? " (points and lines were skipped)" : ""));
+    } else if (points_and_lines_ > 0) {
+        warn(sink_, "points and lines are left out: " + std::to_string(points_and_lines_) + " primitives of meshes");
+    }
+}
+
+Meshes::Built Meshes::build(const Value& mesh, const Value& node, const std::string& name) {
+    Geometry g;
+    const Value primitives = mesh["primitives"];
+    for (size_t i = 0; i < primitives.size(); ++i) add_primitive(primitives[i], g);
+    Built built;
+    if (g.indices.empty()) return built;
+    triangles_ += g.indices.size() / 3;
+    g.normals.resize(g.has_normals ? g.positions.size() : 0);  // zeros: the vertex has none
+    g.uvs.resize(g.has_uvs ? g.positions.size() / 3 * 2 : 0);
+
+    rt_mesh out{};
+    out.struct_bytes = sizeof out;
+    out.name = name.c_str();
+    out.positions = g.positions.data();
+    out.vertex_count = static_cast<rt_u32>(g.positions.size() / 3);
+    out.position_stride = out.normal_stride = 3 * sizeof(float);
+    out.uv_stride = 2 * sizeof(float);
+    if (g.has_normals) out.normals = g.normals.data();
+    if (g.has_uvs) out.uvs = g.uvs.data();
+    out.indices = g.indices.data();
+    out.index_count = g.indices.size();
+    out.face_count = g.indices.size() / 3;
+    out.material = g.materials[0];
+    if (std::any_of(g.materials.begin(), g.materials.end(), [&](rt_u32 m) { return m != g.materials[0]; }))
+        out.face_materials = g.materials.data();
+    built.mesh = rt::id(sink_.mesh(sink_.ctx, &out));
+    if (!moves_) return built;
+    if (const auto skin = node.index("skin", skins_)) add_skin(skins_[*skin], built.mesh, g.parts);
+    built.morphs = add_morphs(mesh, node, built.mesh, g.parts);
+    return built;
+}
+
+void Meshes::add_primitive(const Value& primitive, Geometry& g) {
+    const uint64_t mode = primitive.count("mode", kTriangles);
+    if (mode > kFan) primitive["mode"].refuse("0 to 6");
+    const Value attributes = primitive["attributes"];
+    if (mode < kTriangles || !attributes.has("POSITION")) {
+        ++points_and_lines_;
+        return;
+    }
+    uint64_t count = 0;
+    const rt_u32 first = add_vertices(primitive, g, count);
+    add_faces(primitive, first, count, g);
+}
+
+// Returns the first vertex of the primitive. Primitives with the same attributes share their vertices.
+rt_u32 Meshes::add_vertices(const Value& primitive, Geometry& g, uint64_t& count) {
+    const Value attributes = primitive["attributes"];
+    const TextureMapping mapping = materials_.mapping(primitive);
+    if (!g.parts.empty()) {
+        const Part& last = g.parts.back();
+        const Value before = last.primitive;
+        if (before["attributes"].json() == attributes.json() &&
+            before.list("targets").json() == primitive.list("targets").json() && last.mapping == mapping) {
+            count = last.count;
+            return last.first;
+        }
+    }
+    const bool is_draco = primitive.object("extensions").has("KHR_draco_mesh_compression");
+    if (is_draco && !accessors_.has_view(attributes["POSITION"]))
+        primitive.refuse("data compressed with KHR_draco_mesh_compression",
+                         "plain data: export the file again without compression");
+    const Elements<float> positions = accessors_.floats(attributes["POSITION"], "VEC3");
+    count = positions.count;
+    const size_t first = g.positions.size() / 3;
+    if (first + count >= RT_NONE) attributes["POSITION"].refuse("more than 4 billion vertices in one mesh", "fewer");
+    g.positions.insert(g.positions.end(), positions.values.begin(), positions.values.end());
+    if (attributes.has("NORMAL")) {
+        const Elements<float> normals = accessors_.floats(attributes["NORMAL"], "VEC3", count);
+        g.normals.resize(3 * first);
+        g.normals.insert(g.normals.end(), normals.values.begin(), normals.values.end());
+        g.has_normals = true;
+    }
+    const std::string set = "TEXCOORD_" + std::to_string(mapping.set);
+    const char* const uv = attributes.has(set.c_str()) ? set.c_str() : "TEXCOORD_0";
+    if (attributes.has(uv)) {
+        const Elements<float> uvs = accessors_.floats(attributes[uv], "VEC2", count);
+        g.uvs.resize(2 * first);
+        const auto& m = mapping.matrix;
+        for (size_t i = 0; i < count; ++i) {
+            const double u = uvs.values[2 * i], v = uvs.values[2 * i + 1];
+            g.uvs.push_back(to_float(m[0] * u + m[1] * v + m[2]));
+            g.uvs.push_back(to_float(1 - (m[3] * u + m[4] * v + m[5])));  // (0, 0) is at the top left in glTF
+        }
+        g.has_uvs = true;
+    }
+    g.parts.push_back({primitive, static_cast<rt_u32>(first), count, mapping});
+    return static_cast<rt_u32>(first);
+}
+
+void Meshes::add_faces(const Value& primitive, rt_u32 first, uint64_t count, Geometry& g) {
+    std::vector<rt_u32> corners;
+    if (primitive.has("indices")) {
+        corners = accessors_.integers(primitive["indices"], "SCALAR").values;
+    } else {
+        corners.resize(count);
+        for (size_t i = 0; i < corners.size(); ++i) corners[i] = static_cast<rt_u32>(i);
+    }
+    const auto wrong = std::find_if(corners.begin(), corners.end(), [&](rt_u32 i) { return i >= count; });
+    std::string found;
+    if (wrong != corners.end())
+        found = "the index " + std::to_string(*wrong) + " at position " + std::to_string(wrong - corners.begin()) +
+                " of its indices";
+    for (rt_u32& i : corners) i = i < count ? first + i : RT_NONE;  // the host leaves such faces out, and counts them
+    const uint64_t mode = primitive.count("mode", kTriangles);
+    const size_t n = corners.size(), step = mode == kTriangles ? 3 : 1;
+    if (mode == kTriangles && n % 3 != 0)
+        warn(sink_, primitive.path() + ": found " + std::to_string(n) +
+                        " corners, expected three for each triangle; the rest is left out");
+    size_t added = 0, usable = 0;
+    for (size_t i = 0; i + 2 < n; i += step, ++added) {
+        // Specification, section 3.7.2.1: every other triangle of a strip is turned, so that all show the same side.
+        const size_t odd = mode == kStrip ? i % 2 : 0;
+        const rt_u32 strip[3] = {corners[i], corners[i + 1 + odd], corners[i + 2 - odd]};
+        const rt_u32 fan[3] = {corners[i + 1], corners[i + 2], corners[0]};
+        const rt_u32* const triangle = mode == kFan ? fan : strip;
+        g.indices.insert(g.indices.end(), triangle, triangle + 3);
+        usable += std::count(triangle, triangle + 3, RT_NONE) == 0;
+    }
+    if (!found.empty()) {
+        const std::string expected = "one below " + std::to_string(count) + ", its number of vertices";
+        if (usable == 0) primitive.refuse(found, expected);
+        warn(sink_, primitive.path() + ": found " + found + ", expected " + expected);
+    }
+    if (added > 0) g.materials.insert(g.materials.end(), added, materials_.id(primitive));
+}
+
+}  // namespace gltf_import

@@ -1,0 +1,284 @@
+// gltf_test.cpp -- small glTF files made here: what the format can say about a triangle, and what is wrong in a broken file.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "base/error.hpp"
+#include "import/import.hpp"
+#include "measure.hpp"
+
+namespace clarity::test {
+namespace {
+
+using nlohmann::json;
+
+std::string base64(const std::string& bytes) {
+    static const char* const digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string out;
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+        uint32_t bits = 0;
+        for (size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+        for (size_t k = 0; k < 4; ++k) out += i + k > bytes.size() ? '=' : digits[bits >> (18 - 6 * k) & 63];
+    }
+    return out;
+}
+
+// A scene of one mesh of one primitive.
+class Model {
+ public:
+    Model() {
+        json_ = {{"asset", {{"version", "2.0"}}},
+                 {"scene", 0},
+                 {"scenes", {{{"nodes", {0}}}}},
+                 {"nodes", {{{"mesh", 0}}}},
+                 {"meshes", {{{"primitives", {{{"attributes", json::object()}}}}}}}};
+    }
+    json& operator[](const char* key) { return json_[key]; }
+    json& primitive() { return json_["meshes"][0]["primitives"][0]; }
+
+    // Returns the index of a new accessor.
+    template <class T>
+    size_t add(const std::vector<T>& values, const char* type, int component_type, size_t components) {
+        json_["bufferViews"].push_back(
+            {{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", values.size() * sizeof(T)}});
+        bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+        json_["accessors"].push_back({{"bufferView", json_["bufferViews"].size() - 1},
+                                      {"componentType", component_type},
+                                      {"count", values.size() / components},
+                                      {"type", type}});
+        return json_["accessors"].size() - 1;
+    }
+    void positions(const std::vector<float>& values) { primitive()["attributes"]["POSITION"] = add(values, "VEC3", 5126, 3); }
+    void indices(const std::vector<uint16_t>& values) { primitive()["indices"] = add(values, "SCALAR", 5123, 1); }
+    std::string text() {
+        json_["buffers"] = {{{"byteLength", bytes_.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes_)}}};
+        return json_.dump(1);
+    }
+    std::string glb() {
+        json_["buffers"] = {{{"byteLength", bytes_.size()}}};
+        std::string text = json_.dump();
+        text.resize((text.size() + 3) / 4 * 4, ' ');
+        const auto u32 = [](size_t value) {
+            const auto small = static_cast<uint32_t>(value);
+            return std::string(reinterpret_cast<const char*>(&small), 4);
+        };
+        const std::string chunks = u32(text.size()) + "JSON" + text + u32(bytes_.size()) + std::string("BIN\0", 4) + bytes_;
+        return "glTF" + u32(2) + u32(12 + chunks.size()) + chunks;
+    }
+    const std::string& bytes() const { return bytes_; }
+
+ private:
+    json json_;
+    std::string bytes_;
+};
+
+Model quad() {
+    Model model;
+    model.positions({0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0});
+    return model;
+}
+
+class Gltf : public testing::Test {
+ protected:
+    Scene import(const std::string& bytes, const std::string& name = "model.gltf") {
+        return import_file(folder_.write(name, bytes));
+    }
+    void expect_refused(const std::string& bytes, const std::string& part, const std::string& name = "model.gltf") {
+        try {
+            import(bytes, name);
+            ADD_FAILURE() << "was imported; expected a message with: " << part;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find(name + ": "), std::string::npos) << error.what();
+            EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+        }
+    }
+    TemporaryFolder folder_;
+};
+
+TEST_F(Gltf, ReadsStripsAndFans) {
+    for (const int mode : {5, 6}) {
+        Model model = quad();
+        model.primitive()["mode"] = mode;
+        model.indices(mode == 5 ? std::vector<uint16_t>{0, 1, 2, 3} : std::vector<uint16_t>{0, 1, 3, 2});
+        const Scene scene = import(model.text());
+        EXPECT_EQ(scene.triangle_count(), 2u);
+        EXPECT_NEAR(scene.surface_area(), 1, 1e-6) << "mode " << mode;
+        for (size_t t = 0; t < 2; ++t) {  // all of them show the same side
+            const rt_u32* v = &scene.triangles[3 * t];
+            const float* p = scene.positions.data();
+            const float cross = (p[3 * v[1]] - p[3 * v[0]]) * (p[3 * v[2] + 1] - p[3 * v[0] + 1]) -
+                                (p[3 * v[1] + 1] - p[3 * v[0] + 1]) * (p[3 * v[2]] - p[3 * v[0]]);
+            EXPECT_GT(cross, 0) << "mode " << mode << ", triangle " << t;
+        }
+    }
+}
+
+TEST_F(Gltf, LeavesPointsAndLinesOutWithOneWarning) {
+    Model model = quad();
+    model.indices({0, 1, 2});
+    json line = model.primitive();
+    line["mode"] = 1;
+    model["meshes"][0]["primitives"].push_back(line);
+    model["meshes"][0]["primitives"].push_back(line);
+    const Scene scene = import(model.text());
+    EXPECT_EQ(scene.triangle_count(), 1u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("points and lines"), std::string::npos);
+}
+
+TEST_F(Gltf, ReadsSparseAccessorsAlsoWithoutAView) {
+    Model model = quad();
+    model.indices({0, 1, 2});
+    const std::vector<uint8_t> where = {1, 2};
+    const size_t places = model.add(where, "SCALAR", 5121, 1);
+    const size_t values = model.add(std::vector<float>{3, 0, 0, 0, 2, 0}, "VEC3", 5126, 3);
+    const auto view = [&](size_t accessor) { return model["accessors"][accessor]["bufferView"]; };
+    json& positions = model["accessors"][0];
+    positions["sparse"] = {{"count", 2},
+                           {"indices", {{"bufferView", view(places)}, {"componentType", 5121}}},
+                           {"values", {{"bufferView", view(values)}}}};
+    EXPECT_NEAR(import(model.text()).surface_area(), 3, 1e-6);
+    positions.erase("bufferView");  // the others are zeros
+    EXPECT_NEAR(import(model.text()).surface_area(), 3, 1e-6);
+    positions["sparse"]["count"] = 3;
+    expect_refused(model.text(), "accessors[0].sparse.indices: found 3 elements of 1 bytes");
+}
+
+TEST_F(Gltf, ReadsQuantizedStridedPositions) {
+    Model model;
+    // Normalised 16-bit integers, 8 bytes apart; the fourth number of each is padding.
+    const std::vector<int16_t> values = {0, 0, 0, 9, 32767, 0, 0, 9, 0, -32768, 0, 9};
+    model.primitive()["attributes"]["POSITION"] = model.add(values, "VEC3", 5122, 4);
+    model["accessors"][0]["normalized"] = true;
+    model["bufferViews"][0]["byteStride"] = 8;
+    model["extensionsRequired"] = {"KHR_mesh_quantization"};
+    const Scene scene = import(model.text());
+    EXPECT_NEAR(scene.surface_area(), 0.5, 1e-6);
+    EXPECT_FLOAT_EQ(scene.bounds().min[1], -1);
+    model["bufferViews"][0]["byteStride"] = 4;
+    expect_refused(model.text(), "bufferViews[0].byteStride: found 4, expected 6");
+}
+
+TEST_F(Gltf, TransformsTextureCoordinates) {
+    Model model = quad();
+    model.indices({0, 1, 2});
+    model.primitive()["attributes"]["TEXCOORD_1"] = model.add(std::vector<float>{0, 0, 1, 0, 0, 1, 1, 1}, "VEC2", 5126, 2);
+    model.primitive()["material"] = 0;
+    model["materials"] = {{{"pbrMetallicRoughness",
+                            {{"baseColorTexture",
+                              {{"index", 0},
+                               {"extensions",
+                                {{"KHR_texture_transform",
+                                  {{"texCoord", 1}, {"offset", {.25, .5}}, {"rotation", M_PI / 2}, {"scale", {2, 1}}}}}}}}}}}};
+    model["textures"] = {{{"source", 0}}};
+    model["images"] = {{{"uri", "missing.png"}}};
+    const Scene scene = import(model.text());
+    // u = 1 becomes 2 by the scale. A quarter of a turn counter-clockwise, where v points down, leads it to v = -2.
+    EXPECT_NEAR(scene.uvs[2], .25, 1e-5);
+    EXPECT_NEAR(scene.uvs[3], 1 - (.5 - 2), 1e-5);
+    EXPECT_NEAR(scene.uvs[4], .25 + 1, 1e-5);
+    EXPECT_NEAR(scene.uvs[5], 1 - .5, 1e-5);
+}
+
+TEST_F(Gltf, ReadsChunksAndFilesBesideTheScene) {
+    Model model = quad();
+    model.indices({0, 1, 2});
+    EXPECT_NEAR(import(model.glb(), "model.glb").surface_area(), .5, 1e-6);
+    json text = json::parse(model.text());
+    text["buffers"][0]["uri"] = "some%20data.bin";
+    folder_.write("some data.bin", model.bytes());
+    EXPECT_NEAR(import(text.dump()).surface_area(), .5, 1e-6);
+    folder_.write("some data.bin", model.bytes().substr(1));
+    expect_refused(text.dump(), "buffers[0].byteLength: found 54, expected at most 53");
+    for (const char* uri : {"../data.bin", "/etc/hostname", "http://localhost/data.bin", "a/../../data.bin"}) {
+        text["buffers"][0]["uri"] = uri;
+        expect_refused(text.dump(),
+                       std::string("buffers[0].uri: found '") + uri + "', expected the name of a file in the scene's folder");
+    }
+    text["buffers"][0]["uri"] = "none.bin";
+    expect_refused(text.dump(), "buffers[0].uri: 'none.bin': cannot open the file: No such file");
+}
+
+TEST_F(Gltf, NamesTheLineOfBrokenJson) {
+    expect_refused("{\n \"asset\": {\"version\": \"2.0\"}\n \"nodes\": []\n}",
+                   "line 3, column 2 (byte 32): found '\"nodes\"', expected ',' or '}'");
+    expect_refused("{\n \"asset\": {\"version\": \"2.0\"},\n}", "line 3, column 1");
+    expect_refused("{\"asset\": {\"version\": 2.}}", "found '}', expected a digit");
+    expect_refused("{\"asset\": {\"version\": \"2.0", "a string with its second");
+    expect_refused("{\"asset\": \"\xC3\x28\"}", "text in UTF-8");
+    expect_refused("{\"asset\": [1e999]}", "found '1e999'");
+    expect_refused("{\"a\":" + std::string(100000, '['), "at most 128 arrays and objects");
+    expect_refused("[]", "the top level: found an array");
+}
+
+TEST_F(Gltf, NamesTheByteOfABrokenContainer) {
+    Model model = quad();
+    const std::string good = model.glb();
+    expect_refused(good.substr(0, good.size() - 8), "byte 8: found a length of", "model.glb");
+    std::string bytes = good;
+    bytes[4] = 1;
+    expect_refused(bytes, "byte 4: found version 1", "model.glb");
+    bytes = good;
+    bytes[15] = 0x7F;
+    expect_refused(bytes, "byte 12: found a chunk of", "model.glb");
+    bytes = good;
+    bytes[16] = 'X';
+    expect_refused(bytes, "byte 16: found a chunk of type 'XSON'", "model.glb");
+    expect_refused(good.substr(0, 14), "byte 14: found the end of the file", "model.glb");
+}
+
+TEST_F(Gltf, NamesThePlaceOfWrongContent) {
+    const auto broken = [&](const char* part, const std::function<void(Model&)>& edit) {
+        Model model = quad();
+        model.indices({0, 1, 2});
+        edit(model);
+        expect_refused(model.text(), part);
+    };
+    broken("accessors[0].bufferView: found 17, expected the index of one of 2 bufferViews",
+           [](Model& m) { m["accessors"][0]["bufferView"] = 17; });
+    broken("accessors[0]: found 5 elements of 12 bytes, 12 apart, from byte 0",
+           [](Model& m) { m["accessors"][0]["count"] = 5; });
+    broken("accessors[0].count: found -3, expected a whole number", [](Model& m) { m["accessors"][0]["count"] = -3; });
+    broken("expected at most 4194304 in an accessor without a bufferView", [](Model& m) {
+        m["accessors"][0].erase("bufferView");
+        m["accessors"][0]["count"] = 4000000000u;
+    });
+    broken("accessors[0].type: found 'VEC2', expected VEC3 for meshes[0].primitives[0].attributes.POSITION",
+           [](Model& m) { m["accessors"][0]["type"] = "VEC2"; });
+    broken("accessors[1].componentType: found 5126, expected 5121, 5123 or 5125",
+           [](Model& m) { m["accessors"][1]["componentType"] = 5126; });
+    broken("nodes[2].children[0]: found 0, which is a child of nodes[1], too", [](Model& m) {
+        m["nodes"] = {{{"mesh", 0}}, {{"children", {0}}}, {{"children", {0}}}};
+        m["scenes"][0]["nodes"] = {1, 2};
+    });
+    broken("meshes[0].primitives[0]: found the index 70 at position 1 of its indices, expected one below 4", [](Model& m) {
+        m.indices({0, 70, 1});
+    });
+    broken("nodes[1]: found a cycle of children", [](Model& m) {
+        m["nodes"] = {{{"mesh", 0}}, {{"children", {2}}}, {{"children", {1}}}};
+    });
+    broken("extensionsRequired[0]: found 'KHR_draco_mesh_compression'",
+           [](Model& m) { m["extensionsRequired"] = {"KHR_draco_mesh_compression"}; });
+    broken("bufferViews[0]: found data compressed with EXT_meshopt_compression",
+           [](Model& m) { m["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = json::object(); });
+    broken("asset.version: found '1.0'", [](Model& m) { m["asset"]["version"] = "1.0"; });
+    broken("meshes[0]: found no member 'primitives'", [](Model& m) { m["meshes"][0].erase("primitives"); });
+    broken("nodes[0].rotation: found an array of 3, expected 4 numbers", [](Model& m) {
+        m["nodes"][0]["rotation"] = {0, 0, 1};
+    });
+}
+
+TEST_F(Gltf, LeavesFacesOfMissingVerticesOut) {
+    Model model = quad();
+    model.indices({0, 1, 2, 0, 2, 77});
+    const Scene scene = import(model.text());
+    EXPECT_EQ(scene.triangle_count(), 1u);
+    ASSERT_EQ(scene.warnings.size(), 2u);
+    EXPECT_NE(scene.warnings[0].find("meshes[0].primitives[0]: found the index 77 at position 5"), std::string::npos)
+        << scene.warnings[0];
+}
+
+}  // namespace
+}  // namespace clarity::test
