@@ -134,8 +134,8 @@ std::vector<T> text_array(const Document& document, const Node& node, size_t exp
         } else if (read_number(at, end, number)) {
             out.push_back(converted<T>(number));
         } else if (at[0] != '*') {
-            throw Broken(document.place(at) + ": found " + quoted(at, end) + " among the values of '" + std::string(node.name) +
-                         "'; expected a number");
+            throw Broken(document.place(at) + ": found " + quoted({at, static_cast<size_t>(end - at)}) +
+                         " among the values of " + quoted(node.name) + "'; expected a number");
         } else {
             return out;  // an array whose numbers are missing
         }
@@ -161,21 +161,20 @@ std::vector<T> Document::numbers(const Node* node) const {
         const size_t declared = static_cast<size_t>(std::clamp<int64_t>(first.whole, 0, int64_t(1) << 40));
         std::vector<T> out = text_array<T>(*this, *inner, declared);
         if (out.size() < declared) {
-            throw Broken(place(*node) + ": '" + std::string(node->name) + "' declares " + std::to_string(declared) +
+            throw Broken(place(*node) + ": " + quoted(node->name) + " declares " + std::to_string(declared) +
                          " values, but has " + std::to_string(out.size()));
         }
         out.resize(declared);
         return out;
     }
-    if (first.kind == Value::array)
-        return binary_array<T>(first, big_endian_, place(*node) + ": '" + std::string(node->name) + "'");
+    if (first.kind == Value::array) return binary_array<T>(first, big_endian_, place(*node) + ": " + quoted(node->name) + "");
     // Before version 7, each number is a value of its own (measured from maya_cube_6100_binary).
     std::vector<T> out;
     out.reserve(node->value_count);
     Values values(*this, *node);
     for (Value v; values.next(v);) {
         if (v.kind != Value::integer && v.kind != Value::real) {
-            throw Broken(place(*node) + ": value " + std::to_string(out.size()) + " of '" + std::string(node->name) +
+            throw Broken(place(*node) + ": value " + std::to_string(out.size()) + " of " + quoted(node->name) +
                          "' is no number; expected one");
         }
         out.push_back(v.kind == Value::integer ? converted<T>(v.whole) : converted<T>(v.number));

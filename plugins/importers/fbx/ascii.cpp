@@ -42,13 +42,6 @@ void AsciiReader::fail(const char* where, const std::string& what) const {
     throw Broken(document_.place(where) + ": " + what);
 }
 
-std::string quoted(const char* from, const char* end) {
-    if (from >= end) return "the end of the file";
-    std::string text = "'";
-    for (; from < end && *from != '\n' && *from != '\r' && text.size() < 24; ++from) text += *from < ' ' || *from > '~' ? '?' : *from;
-    return text + "'";
-}
-
 void AsciiReader::read() {
     if (std::string_view(at_, static_cast<size_t>(end_ - at_)).substr(0, 3) == "\xEF\xBB\xBF") at_ += 3;
     read_nodes(0, 0);
@@ -69,7 +62,8 @@ void AsciiReader::read_nodes(uint32_t parent, int depth) {
         while (at_ < end_ && *at_ != ':' && class_of(*at_) == other) ++at_;
         const char* name_end = at_;
         while (at_ < end_ && class_of(*at_) == space) ++at_;
-        if (at_ == end_ || *at_ != ':' || name_end == name) fail(name, "found " + quoted(name, end_) + "; expected a name and ':'");
+        if (at_ == end_ || *at_ != ':' || name_end == name)
+            fail(name, "found " + quoted({name, static_cast<size_t>(end_ - name)}) + "; expected a name and ':'");
         ++at_;
         if (nodes.size() >= kMaxNodes) fail(name, "there are more blocks than can be read");
         const uint32_t index = static_cast<uint32_t>(nodes.size());
@@ -83,8 +77,7 @@ void AsciiReader::read_nodes(uint32_t parent, int depth) {
         if (at_ == end_ || *at_ != '{') continue;
         const char* open = at_++;
         read_nodes(index, depth + 1);
-        if (at_ == end_)
-            fail(open, "the file ends within this block, '" + std::string(nodes[index].name) + "'; expected its '}'");
+        if (at_ == end_) fail(open, "the file ends within this block, " + quoted(nodes[index].name) + "; expected its '}'");
         ++at_;
     }
 }

@@ -26,9 +26,6 @@ class AsciiReader {
 bool read_number(const char*& at, const char* end, double& number);
 bool read_number(const char*& at, const char* end, int64_t& number);  // without a fraction or exponent
 
-// A few characters, for messages.
-std::string quoted(const char* from, const char* end);
-
 // The text with &quot; &lf; &cr; and &amp; replaced. Source: measured from max_quote_6100_ascii.
 std::string without_entities(std::string_view text);
 

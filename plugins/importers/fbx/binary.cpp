@@ -2,10 +2,6 @@
 
 namespace fbx_import {
 
-void BinaryReader::read() {
-    read_nodes(kHeaderBytes, bytes_.size(), 0, 0);
-}
-
 // Reads the nodes from `at` up to an empty record or `end`. Returns where it stopped.
 //
 // A record: its end, counted from the begin of the file, the number of its values, the bytes of its values (32 bits each, 64
@@ -40,7 +36,7 @@ size_t BinaryReader::read_nodes(size_t at, size_t end, uint32_t parent, int dept
         }
         const size_t values_at = at + head + name_bytes;
         if (value_bytes > record_end - values_at || value_count > value_bytes) {
-            fail(at, "the record '" + std::string(bytes_.substr(at + head, name_bytes)) + "' says that it has " +
+            fail(at, "the record " + quoted(bytes_.substr(at + head, name_bytes)) + " says that it has " +
                          std::to_string(value_count) + " values in " + std::to_string(value_bytes) + " bytes; " +
                          std::to_string(record_end - values_at) + " bytes are there");
         }
@@ -67,7 +63,7 @@ bool Values::next_binary(Value& value) {
     if (taken_ == node_.value_count) return false;
     const auto need = [&](uint64_t bytes, const char* what) {
         if (rest_.size() >= bytes) return;
-        throw Broken(document_.place(rest_.data()) + ": " + what + " of '" + std::string(node_.name) + "' needs " +
+        throw Broken(document_.place(rest_.data()) + ": " + what + " of " + quoted(node_.name) + " needs " +
                      std::to_string(bytes) + " bytes; its record has " + std::to_string(rest_.size()) + " more");
     };
     need(1, "a value");
@@ -87,7 +83,7 @@ bool Values::next_binary(Value& value) {
         rest_.remove_prefix(4);
         value.kind = type == 'S' ? Value::string : Value::raw;
     } else if (size == 0) {
-        throw Broken(document_.place(begin) + ": a value of '" + std::string(node_.name) + "' has the type " +
+        throw Broken(document_.place(begin) + ": a value of " + quoted(node_.name) + " has the type " +
                      std::to_string(static_cast<unsigned char>(type)) + "; expected one of the letters YCBIFDLSRfdilbc");
     }
     need(size, "a value");
@@ -97,26 +93,14 @@ bool Values::next_binary(Value& value) {
     ++taken_;
     if (value.kind != Value::none) return true;
     value.kind = type == 'F' || type == 'D' ? Value::real : Value::integer;
-    switch (type) {
-        case 'D':
-            value.number = load<double>(at, big);
-            return true;
-        case 'F':
-            value.number = load<float>(at, big);
-            return true;
-        case 'L':
-            value.whole = load<int64_t>(at, big);
-            break;
-        case 'I':
-            value.whole = load<int32_t>(at, big);
-            break;
-        case 'Y':
-            value.whole = load<int16_t>(at, big);
-            break;
-        default:
-            value.whole = static_cast<unsigned char>(*at);
-            break;
+    if (type == 'D' || type == 'F') {
+        value.number = type == 'D' ? load<double>(at, big) : load<float>(at, big);
+        return true;
     }
+    value.whole = type == 'L'   ? load<int64_t>(at, big)
+                  : type == 'I' ? load<int32_t>(at, big)
+                  : type == 'Y' ? load<int16_t>(at, big)
+                                : static_cast<unsigned char>(*at);
     value.number = static_cast<double>(value.whole);
     return true;
 }

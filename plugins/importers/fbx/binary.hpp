@@ -1,5 +1,6 @@
 // binary.hpp -- numbers and records of binary FBX files.
 #pragma once
+#include <algorithm>
 #include <cstring>
 
 #include "document.hpp"
@@ -19,55 +20,30 @@ inline constexpr size_t kMaxNodes = size_t(1) << 28;
 // Reads a number of the file's byte order. The caller has checked that the bytes are there.
 template <class T>
 T load(const char* at, bool big_endian) {
-    char bytes[sizeof(T)];
-    std::memcpy(bytes, at, sizeof(T));
-    if (big_endian) {
-        for (size_t i = 0; i < sizeof(T) / 2; ++i) {
-            const char c = bytes[i];
-            bytes[i] = bytes[sizeof(T) - 1 - i];
-            bytes[sizeof(T) - 1 - i] = c;
-        }
-    }
     T value;
-    std::memcpy(&value, bytes, sizeof(T));
+    std::memcpy(&value, at, sizeof(T));
+    auto* bytes = reinterpret_cast<unsigned char*>(&value);
+    if (big_endian) std::reverse(bytes, bytes + sizeof(T));
     return value;
 }
 
 // Bytes of one element of an array of this type, or of one value; 0: there is no such type. Source: as above.
 inline size_t element_bytes(char type) {
-    switch (type) {
-        case 'd':
-        case 'l':
-        case 'D':
-        case 'L':
-            return 8;
-        case 'f':
-        case 'i':
-        case 'F':
-        case 'I':
-            return 4;
-        case 'Y':
-            return 2;
-        case 'b':
-        case 'c':
-        case 'C':
-        case 'B':
-            return 1;
-        default:
-            return 0;
-    }
+    constexpr std::string_view of_8 = "dlDL", of_4 = "fiFI", of_1 = "bcBC";
+    const auto is_in = [&](std::string_view types) { return types.find(type) != types.npos; };
+    return is_in(of_8) ? 8 : is_in(of_4) ? 4 : type == 'Y' ? 2 : is_in(of_1) ? 1 : 0;
 }
 inline bool is_array(char type) {
     return type >= 'a' && type <= 'z' && element_bytes(type) != 0;
 }
 
+// Reads the nodes of binary files into the document.
 class BinaryReader {
  public:
     explicit BinaryReader(Document& document) : document_(document), bytes_(document.bytes_) {}
-    void read();
+    size_t read_nodes(size_t at, size_t end, uint32_t parent = 0, int depth = 0);
 
  private:
-    size_t read_nodes(size_t at, size_t end, uint32_t parent, int depth);
     Document& document_;
     const std::string_view bytes_;
 };

@@ -13,34 +13,19 @@ struct Target {
     double factor = 1;  // from the file's values to the host's
 };
 const std::map<std::string_view, Target> kNodeTargets = {
-    {"Lcl Translation", {RT_MOVES_TRANSLATION}}, {"Lcl Rotation", {RT_MOVES_ROTATION}}, {"Lcl Scaling", {RT_MOVES_SCALE}},
-    {"Visibility", {RT_MOVES_VISIBILITY}},       {"T", {RT_MOVES_TRANSLATION}},         {"R", {RT_MOVES_ROTATION}},
+    {"Lcl Translation", {RT_MOVES_TRANSLATION}},
+    {"Lcl Rotation", {RT_MOVES_ROTATION}},
+    {"Lcl Scaling", {RT_MOVES_SCALE}},
+    {"Visibility", {RT_MOVES_VISIBILITY}},
+    {"T", {RT_MOVES_TRANSLATION}},
+    {"R", {RT_MOVES_ROTATION}},
     {"S", {RT_MOVES_SCALE}},
 };
 
-// Frames a second of the time modes from 1 on; 14 has a number of its own. Source: FBX SDK help, "FbxTime::EMode".
-constexpr double kRates[] = {120,  100,  60, 50, 48,     30, 30, 29.97002997, 29.97002997, 25,
-                             24, 1000, 23.976023976, 0, 96, 72, 59.94005994,  119.88011988};
-
-double frames_of_second(const Context& context) {
-    const Node* root = &context.document.root();
-    const Node* version5 = context.document.child(root, "Version5");
-    // Up to version 5.8: `Settings: FrameRate: "30"` (measured from max2009_cube_anim_5800_ascii).
-    const Node* oldest = context.document.child(context.document.child(version5 ? version5 : root, "Settings"), "FrameRate");
-    const Properties p(context.document, context.objects.settings());
-    const int64_t mode = p.whole("TimeMode", -1);
-    if (mode == 14) return std::clamp(p.number("CustomFrameRate", 0), 0.0, 1e6);
-    if (mode >= 1 && mode <= 18) return kRates[mode - 1];
-    if (mode == 0) return 30;
-    const double stated = std::strtod(std::string(context.document.text(oldest, 0)).c_str(), nullptr);
-    return stated > 0 && stated < 1e6 ? stated : 0;
-}
-
 class Clips {
  public:
-    Clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs)
-        : context_(context), document_(context.document), morphs_(morphs), views_(views), ticks_(ticks_of_second(document_)),
-          fps_(frames_of_second(context)) {
+    Clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs)
+        : context_(context), document_(context.document), morphs_(morphs), ticks_(ticks_of_second(document_)) {
         for (uint32_t n = 0; n < nodes.size(); ++n) nodes_[nodes[n].object].push_back(nodes[n].id);
     }
     void add_stacks();
@@ -56,8 +41,7 @@ class Clips {
     const Context& context_;
     const Document& document_;
     const Morphs& morphs_;
-    const Views& views_;
-    const double ticks_, fps_;
+    const double ticks_;
     std::map<uint32_t, std::vector<rt_u32>> nodes_;
     const std::vector<rt_u32> nothing_;
 };
@@ -73,13 +57,14 @@ rt_u32 Clips::add_clip(const std::string& name, double begin, double end, const 
     out.name = name.c_str();
     out.begin_s = begin / ticks_;
     out.end_s = std::max(end, begin) / ticks_;
-    out.fps = fps_;
+    out.fps = context_.fps;
     out.layers = layers.data();
     out.layer_count = static_cast<rt_u32>(layers.size());
     return rt::id(context_.sink.clip(context_.sink.ctx, &out));
 }
 
-void Clips::add(rt_u32 clip, rt_u32 layer, const Target& target, const std::vector<rt_u32>& ids, rt_u32 component, Curve curve) {
+void Clips::add(rt_u32 clip, rt_u32 layer, const Target& target, const std::vector<rt_u32>& ids, rt_u32 component,
+                Curve curve) {
     if (curve.times.empty()) return;
     if (target.factor != 1) curve.scale(target.factor);
     rt_channel_desc out{};
@@ -179,10 +164,18 @@ void Clips::add_takes() {
             if (model.name == "Model") add_take_model(clip, model);
         }
     }
+    // Channels that stand in the models themselves, outside of takes, are a clip of their own, which comes last (measured from
+    // max7_skin_5000_binary and its record).
+    rt_u32 clip = 0;
+    for (const Node& model : document_.children(document_.root())) {
+        if (model.name != "Model" || !document_.child(&model, "Channel")) continue;
+        if (clip == 0) clip = add_clip("(internal)", 0, 0, {});
+        add_take_model(clip, model);
+    }
 }
 
-// The channels "T", "R" and "S" are in the channel "Transform", each with channels "X", "Y" and "Z"; "Visibility" and those of shapes
-// stand beside it. Measured from maya_game_sausage_6100_ascii_combined and maya_blend_shape_cube_6100_binary.
+// The channels "T", "R" and "S" are in the channel "Transform", each with channels "X", "Y" and "Z"; "Visibility" and those of
+// shapes stand beside it. Measured from maya_game_sausage_6100_ascii_combined and maya_blend_shape_cube_6100_binary.
 void Clips::add_take_model(rt_u32 clip, const Node& model) {
     const uint32_t object = context_.objects.find(document_.text(&model, 0));
     if (object == kNoObject) return;
@@ -208,8 +201,8 @@ void Clips::add_take_model(rt_u32 clip, const Node& model) {
 
 }  // namespace
 
-void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs) {
-    Clips clips(context, nodes, views, morphs);
+void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs) {
+    Clips clips(context, nodes, morphs);
     context.document.version() >= 7000 ? clips.add_stacks() : clips.add_takes();
 }
 

@@ -9,21 +9,27 @@ namespace {
 
 // Flags of a key. Source: FBX SDK help, "FbxAnimCurveDef".
 enum : uint32_t {
-    kConstant = 0x2, kLinear = 0x4, kNextValue = 0x100, kAuto = 0x100, kClampProgressive = 0x4000, kClamp = 0x1000,
-    kWeightedRight = 0x1000000, kWeightedNextLeft = 0x2000000
+    kConstant = 0x2,
+    kLinear = 0x4,
+    kNextValue = 0x100,
+    kAuto = 0x100,
+    kClampProgressive = 0x4000,
+    kClamp = 0x1000,
+    kWeightedRight = 0x1000000,
+    kWeightedNextLeft = 0x2000000
 };
 constexpr double kUsualWeight = 1.0 / 3;
 
-// What a key has beside its time and value: the slopes behind it and before the next key (value per second), and how far the handles
-// reach, as parts of the span.
+// What a key has beside its time and value: the slopes behind it and before the next key (value per second), and how far the
+// handles reach, as parts of the span.
 struct Tangents {
     uint32_t flags = 0;
     double slope = 0, next_slope = 0, weight = kUsualWeight, next_weight = kUsualWeight;
 };
 
-// The slope that an automatic key has: that of the line from the key before to the key behind; 0 at the ends. Clamped ones are flat at
-// peaks and valleys, and their handles stay between the neighbours. Measured from motionbuilder_tangent_auto_7700_ascii,
-// maya_extrapolate_cube_7700_binary and maya_game_sausage_7500_binary_combined.
+// The slope that an automatic key has: that of the line from the key before to the key behind; 0 at the ends. Clamped ones are
+// flat at peaks and valleys, and their handles stay between the neighbours. Measured from
+// motionbuilder_tangent_auto_7700_ascii, maya_extrapolate_cube_7700_binary and maya_game_sausage_7500_binary_combined.
 double auto_slope(const Curve& c, size_t i, uint32_t flags, double weight_before, double weight_behind) {
     if (i == 0 || i + 1 == c.times.size()) return 0;
     const double before = c.times[i] - c.times[i - 1], behind = c.times[i + 1] - c.times[i];
@@ -74,8 +80,8 @@ uint32_t weight_bits(bool is_binary, double number) {
     return bits;
 }
 
-// Type: C hold, R repeat, M mirror, K keep the slope, A repeat relative to the last value. Repetition -1: without end. Measured from
-// maya_extrapolate_cube_7700_binary; the letters: FBX SDK help, "FbxAnimCurveBase::EExtrapolationType".
+// Type: C hold, R repeat, M mirror, K keep the slope, A repeat relative to the last value. Repetition -1: without end. Measured
+// from maya_extrapolate_cube_7700_binary; the letters: FBX SDK help, "FbxAnimCurveBase::EExtrapolationType".
 void read_outside(const Document& document, const Node* node, rt_u32& mode, rt_u32& count) {
     if (!node) return;
     const Node* type = document.child(node, "Type");
@@ -106,8 +112,26 @@ void Curve::scale(double by) {
     for (size_t i = 1; i < handles.size(); i += 2) handles[i] *= by;
 }
 
-// 46186158000, or 141120000 if FBXHeaderVersion is 1004 or more and TCDefinition is there and not 127. Source: README of the shared
-// scenes; measured from synthetic_tcdefinition_127_7700_ascii.
+// Frames a second of the time modes from 1 on; 14 has a number of its own. Source: FBX SDK help, "FbxTime::EMode".
+static constexpr double kRates[] = {120, 100, 60,   50,           48, 30, 30, 29.97002997, 29.97002997,
+                                    25,  24,  1000, 23.976023976, 0,  96, 72, 59.94005994, 119.88011988};
+
+double frames_of_second(const Document& document, const Objects& objects) {
+    const Node* root = &document.root();
+    const Node* version5 = document.child(root, "Version5");
+    // Up to version 5.8: `Settings: FrameRate: "30"` (measured from max2009_cube_anim_5800_ascii).
+    const Node* oldest = document.child(document.child(version5 ? version5 : root, "Settings"), "FrameRate");
+    const Properties p(document, objects.settings());
+    const int64_t mode = p.whole("TimeMode", -1);
+    if (mode == 14) return std::clamp(p.number("CustomFrameRate", 0), 0.0, 1e6);
+    if (mode >= 1 && mode <= 18) return kRates[mode - 1];
+    if (mode == 0) return 30;
+    const double stated = std::strtod(std::string(document.text(oldest, 0)).c_str(), nullptr);
+    return stated > 0 && stated < 1e6 ? stated : 0;
+}
+
+// 46186158000, or 141120000 if FBXHeaderVersion is 1004 or more and TCDefinition is there and not 127. Source: README of the
+// shared scenes; measured from synthetic_tcdefinition_127_7700_ascii.
 double ticks_of_second(const Document& document) {
     const Node* header = document.child(&document.root(), "FBXHeaderExtension");
     const Node* definition = document.child(document.child(header, "OtherFlags"), "TCDefinition");
@@ -116,8 +140,9 @@ double ticks_of_second(const Document& document) {
     return is_new ? 141120000.0 : 46186158000.0;
 }
 
-// KeyAttrRefCount tells for how many keys each set of attributes counts. A set: flags, and four floats, of which the first two are the
-// slopes and the third one holds the weights. Measured from maya_anim_interpolation_7700_ascii and maya_extrapolate_cube_7700_binary.
+// KeyAttrRefCount tells for how many keys each set of attributes counts. A set: flags, and four floats, of which the first two
+// are the slopes and the third one holds the weights. Measured from maya_anim_interpolation_7700_ascii and
+// maya_extrapolate_cube_7700_binary.
 Curve read_curve(const Document& document, const Node& node, double ticks) {
     Curve c;
     c.values = document.numbers<double>(&node, "KeyValueFloat");
@@ -152,10 +177,11 @@ Curve read_curve(const Document& document, const Node& node, double ticks) {
     return c;
 }
 
-// Before version 7: `Key: time, value, letter, ...`. C: constant, with s (this value) or n (the next one). L: linear. U, or any other:
-// cubic, with s or b, the slope behind and the slope before the next key; or with a: automatic, no slopes. A cubic key then has a
-// letter for the weights: n none, r the right one, l the next left one, a both. Measured from max2009_cube_anim_5800_ascii,
-// max_transformed_skin_6100_ascii, maya_game_sausage_6100_ascii_combined and blender_279_sausage_6100_ascii.
+// Before version 7: `Key: time, value, letter, ...`. C: constant, with s (this value) or n (the next one). L: linear. U, or any
+// other: cubic, with s or b, the slope behind and the slope before the next key; or with a: automatic, no slopes. A cubic key
+// then has a letter for the weights: n none, r the right one, l the next left one, a both. Measured from
+// max2009_cube_anim_5800_ascii, max_transformed_skin_6100_ascii, maya_game_sausage_6100_ascii_combined and
+// blender_279_sausage_6100_ascii.
 Curve read_take_curve(const Document& document, const Node& channel, double ticks) {
     const Node* key = document.child(&channel, "Key");
     Curve c;
@@ -168,7 +194,8 @@ Curve read_take_curve(const Document& document, const Node& channel, double tick
         const auto letter = [&] { return !values.next(v) ? '\0' : v.text.empty() ? static_cast<char>(v.whole) : v.text[0]; };
         while (values.next(v)) {
             if (v.kind != Value::integer && v.kind != Value::real) {
-                throw Broken(document.place(*key) + ": key " + std::to_string(c.times.size()) + " has no time; expected a number");
+                throw Broken(document.place(*key) + ": key " + std::to_string(c.times.size()) +
+                             " has no time; expected a number");
             }
             c.times.push_back(v.number / ticks);
             c.values.push_back(number());

@@ -16,8 +16,8 @@ struct Curve {
 
 // Ticks of the file's clock in a second.
 double ticks_of_second(const Document& document);
-// The curve of an AnimationCurve (version 7), or of a channel in a take (before). No keys: there are none, or they are damaged, of
-// which the caller is told by an exception.
+// The curve of an AnimationCurve (version 7), or of a channel in a take (before). No keys: there are none, or they are damaged,
+// of which the caller is told by an exception.
 Curve read_curve(const Document& document, const Node& node, double ticks);
 Curve read_take_curve(const Document& document, const Node& channel, double ticks);
 

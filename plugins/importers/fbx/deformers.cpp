@@ -27,6 +27,13 @@ class Copies {
     std::vector<std::pair<rt_u32, rt_u32>> copies_;
 };
 
+// A shape of the file, and at which weight it is reached.
+struct Shape {
+    double weight;
+    const Node* node;
+    std::vector<float> shares;  // of each of its vertices; empty: 1
+};
+
 class Deformers {
  public:
     Deformers(const Context& context, const std::vector<SceneNode>& nodes, const SceneMesh& mesh, Morphs& morphs)
@@ -39,7 +46,7 @@ class Deformers {
     void add_bone(const Node& cluster, uint32_t bone);
     void pass_skin(rt_u32 method, const std::vector<float>& shares);
     void add_channel(uint32_t channel);
-    void pass_morph(const std::string& name, double weight, const std::vector<std::pair<double, const Node*>>& shapes, uint32_t owner,
+    void pass_morph(const std::string& name, double weight, const std::vector<Shape>& shapes, uint32_t owner,
                     const std::string& key);
 
     const Context& context_;
@@ -75,12 +82,12 @@ void Deformers::add() {
     for (const Node& shape : document_.children(*geometry)) {
         if (shape.name != "Shape") continue;
         const std::string name(document_.text(&shape, 0));
-        pass_morph(name, 0, {{1, &shape}}, mesh_.object, name);
+        pass_morph(name, 0, {{1, &shape, {}}}, mesh_.object, name);
     }
 }
 
-// Clusters hang from the skin, and a bone's model from each. Transform: where the mesh is in the bone's space when both are bound.
-// Source: FBX SDK help, "FbxCluster"; measured from max_transformed_skin_6100_ascii.
+// Clusters hang from the skin, and a bone's model from each. Transform: where the mesh is in the bone's space when both are
+// bound. Source: FBX SDK help, "FbxCluster"; measured from max_transformed_skin_6100_ascii.
 void Deformers::add_skin(uint32_t skin) {
     const Objects& objects = context_.objects;
     for (const uint32_t cluster : objects.below(skin, "Deformer", "Cluster")) {
@@ -145,17 +152,22 @@ void Deformers::pass_skin(rt_u32 method, const std::vector<float>& shares) {
 void Deformers::add_channel(uint32_t channel) {
     const Objects& objects = context_.objects;
     const std::vector<double> full = document_.numbers<double>(objects[channel].node, "FullWeights");
-    std::vector<std::pair<double, const Node*>> shapes;
+    std::vector<Shape> shapes;
     for (const uint32_t shape : objects.below(channel, "Geometry", "Shape")) {
         const double percent = shapes.size() < full.size() ? full[shapes.size()] : 100;
-        shapes.push_back({percent / 100, objects[shape].node});
+        shapes.push_back({percent / 100, objects[shape].node, {}});
+    }
+    // Blender writes the share of each vertex there (measured from blender440_shape_weight_anim_7400_binary).
+    if (shapes.size() == 1 && full.size() > 1 && document_.numbers<int32_t>(shapes[0].node, "Indexes").size() == full.size()) {
+        shapes[0].weight = 1;
+        for (const double share : full) shapes[0].shares.push_back(static_cast<float>(share / 100));
     }
     const double percent = context_.properties(channel).number("DeformPercent", 0);
     pass_morph(objects[channel].name, percent / 100, shapes, channel, "");
 }
 
-void Deformers::pass_morph(const std::string& name, double weight, const std::vector<std::pair<double, const Node*>>& shapes,
-                           uint32_t owner, const std::string& key) {
+void Deformers::pass_morph(const std::string& name, double weight, const std::vector<Shape>& shapes, uint32_t owner,
+                           const std::string& key) {
     struct Offsets {
         std::vector<rt_u32> vertices;
         std::vector<float> positions, normals;
@@ -163,13 +175,16 @@ void Deformers::pass_morph(const std::string& name, double weight, const std::ve
     std::vector<Offsets> offsets(shapes.size());
     std::vector<rt_morph_target> targets;
     for (size_t s = 0; s < shapes.size(); ++s) {
-        const Node* shape = shapes[s].second;
+        const Node* shape = shapes[s].node;
         const std::vector<int32_t> indices = document_.numbers<int32_t>(shape, "Indexes");
-        const std::vector<float> moves = document_.numbers<float>(shape, "Vertices"), turns = document_.numbers<float>(shape, "Normals");
+        const std::vector<float> turns = document_.numbers<float>(shape, "Normals");
+        std::vector<float> moves = document_.numbers<float>(shape, "Vertices");
+        for (size_t i = 0; i < std::min(moves.size(), 3 * shapes[s].shares.size()); ++i) moves[i] *= shapes[s].shares[i / 3];
         Offsets& out = offsets[s];
         std::vector<bool> seen(mesh_.points);
         for (size_t i = 0; i < std::min(indices.size(), moves.size() / 3); ++i) {
-            if (indices[i] < 0 || static_cast<uint32_t>(indices[i]) >= mesh_.points || seen[static_cast<size_t>(indices[i])]) continue;
+            if (indices[i] < 0 || static_cast<uint32_t>(indices[i]) >= mesh_.points || seen[static_cast<size_t>(indices[i])])
+                continue;
             seen[static_cast<size_t>(indices[i])] = true;
             copies_.each(indices[i], [&](rt_u32 v) {
                 out.vertices.push_back(v);
@@ -177,9 +192,9 @@ void Deformers::pass_morph(const std::string& name, double weight, const std::ve
                 if (turns.size() == moves.size()) out.normals.insert(out.normals.end(), &turns[3 * i], &turns[3 * i] + 3);
             });
         }
-        if (out.vertices.empty() || shapes[s].first == 0) continue;
+        if (out.vertices.empty() || shapes[s].weight == 0) continue;
         rt_morph_target target{};
-        target.weight = shapes[s].first;
+        target.weight = shapes[s].weight;
         target.vertices = out.vertices.data();
         target.count = out.vertices.size();
         target.positions = out.positions.data();
@@ -200,7 +215,8 @@ void Deformers::pass_morph(const std::string& name, double weight, const std::ve
 
 }  // namespace
 
-void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes, Morphs& morphs) {
+void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes,
+                   Morphs& morphs) {
     for (const SceneMesh& mesh : meshes) Deformers(context, nodes, mesh, morphs).add();
 }
 

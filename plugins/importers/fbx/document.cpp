@@ -10,7 +10,7 @@ namespace fbx_import {
 Document::Document(std::string_view bytes) : bytes_(bytes) {
     read_header();
     if (binary_) {
-        BinaryReader(*this).read();
+        BinaryReader(*this).read_nodes(kHeaderBytes, bytes_.size());
     } else {
         AsciiReader(*this).read();
     }
@@ -57,6 +57,13 @@ void Document::read_header() {
     }
     big_endian_ = bytes_[kVersionAt - 1] == 1;
     version_ = static_cast<int>(std::min(load<uint32_t>(bytes_.data() + kVersionAt, big_endian_), 99999u));
+}
+
+std::string quoted(std::string_view text) {
+    text = text.substr(0, std::min(text.find_first_of("\r\n"), size_t(40)));
+    std::string out = "'";
+    for (const char c : text) out += c < ' ' || c > '~' ? '?' : c;
+    return out + "'";
 }
 
 const Node* Document::child(const Node* node, std::string_view name) const {

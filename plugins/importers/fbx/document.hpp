@@ -16,6 +16,9 @@ struct Broken : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+// Words of the file in quotes, for messages: a few characters, and none that cannot be shown.
+std::string quoted(std::string_view text);
+
 struct Node {
     std::string_view name;
     std::string_view values;             // of binary files the records of the values, of ASCII files their text

@@ -40,7 +40,8 @@ int32_t import_document(const rt_host* host, const Document& document, const std
                              templates,
                              folder,
                              name.substr(0, name.find_last_of('.')),
-                             RT_HAS(sink, rt_scene_sink, vertex_frames)};
+                             frames_of_second(document, objects)};
+    if (!RT_HAS(sink, rt_scene_sink, vertex_frames)) throw Broken("this importer needs a newer version of the program");
     if (version >= kNewestVersion + 300) context.warn("the file's FBX version is newer than 7.7, the newest known");
     const rt_scene_info info = info_of(context);
     sink->info(sink->ctx, &info);
@@ -49,11 +50,10 @@ int32_t import_document(const rt_host* host, const Document& document, const std
     rt::progress(host, 0.1f);
     const std::vector<SceneMesh> meshes = add_meshes(context, nodes);
     if (meshes.empty()) context.warn("contains no polygons (points, lines, NURBS and the like were skipped)");
-    const Views views = add_views(context, nodes);
-    if (!context.has_motion) return RT_OK;
+    add_views(context, nodes);
     Morphs morphs;
     add_deformers(context, nodes, meshes, morphs);
-    add_clips(context, nodes, views, morphs);
+    add_clips(context, nodes, morphs);
     return RT_OK;
 }
 

@@ -24,6 +24,26 @@ std::vector<uint32_t> top_models(const Context& context) {
     return out;
 }
 
+// `Channel: "Transform" { Channel: "T" { Channel: "X" { Default: 1 } } }` of a model or of its block in a take.
+const Node* axis_of(const Document& document, const Node* owner, const char* letter, const char* axis) {
+    const Node* transform = document.child(owner, "Channel", "Transform");
+    return document.child(document.child(transform, "Channel", letter), "Channel", axis);
+}
+
+// Up to version 5.8, the values at rest are the defaults of the channels, of the model itself (measured from
+// max7_skin_5000_binary) or of the current take (measured from max2009_cube_anim_5800_ascii).
+double oldest_rest(const Document& document, const Object& model, const char* letter, const char* axis, double otherwise) {
+    if (document.version() >= 6000) return otherwise;
+    const Node* found = axis_of(document, model.node, letter, axis);
+    if (!found) {
+        const Node* takes = document.child(&document.root(), "Takes");
+        const Node* take = document.child(takes, "Take", document.text(document.child(takes, "Current"), 0));
+        if (!take) take = document.child(takes, "Take");
+        found = axis_of(document, document.child(take, "Model", document.text(model.node, 0)), letter, axis);
+    }
+    return document.number(document.child(found, "Default"), 0, otherwise);
+}
+
 NodeTransform transform_of(const Context& context, uint32_t model) {
     NodeTransform out = node_transform(context.properties(model));
     const Object& object = context.objects[model];
@@ -90,12 +110,11 @@ std::vector<SceneNode> read_nodes(const Context& context) {
         node.parent = at.parent;
         node.transform = transform_of(context, at.model);
         const SceneNode* parent = at.parent == kNoObject ? nullptr : &nodes[at.parent];
-        node.world = place(node.transform, parent ? &parent->world : nullptr);
         const Properties p = context.properties(at.model);
         node.hidden =
             p.number("Visibility", 1) < 0.5 || (parent && parent->hidden && p.number("Visibility Inheritance", 1) != 0);
+        node.id = pass(context, node, nodes);
         nodes.push_back(node);
-        if (context.has_motion) nodes.back().id = pass(context, nodes.back(), nodes);
         const uint32_t index = static_cast<uint32_t>(nodes.size() - 1);
         const std::vector<const Link*> below = objects.below(at.model);
         for (auto link = below.rbegin(); link != below.rend(); ++link) {
@@ -108,10 +127,6 @@ std::vector<SceneNode> read_nodes(const Context& context) {
         if (objects[i].kind == "Model" && !is_done[i]) fail(i, "hangs from itself: the nodes form a circle; expected a tree");
     }
     return nodes;
-}
-
-Transform base_of(const Context& context, const SceneNode& node) {
-    return context.has_motion ? kIdentity : node.world.matrix;
 }
 
 }  // namespace fbx_import

@@ -11,7 +11,7 @@ namespace {
 // Binary files write "Cube", 0, 1, "Model". Source: Blender developer blog.
 constexpr std::string_view kSeparator{"\0\1", 2};
 
-// Replaces bytes that are no UTF-8 (motionbuilder_cube_7700_binary has some), which JSON cannot hold.
+// Replaces bytes that are no UTF-8 (motionbuilder_cube_7700_binary has some), which JSON cannot hold, and control characters.
 std::string valid_utf8(const std::string& text) {
     std::string out;
     for (size_t i = 0; i < text.size();) {
@@ -29,7 +29,7 @@ std::string valid_utf8(const std::string& text) {
         if (good && length == 4)
             good = !(c == 0xF0 && static_cast<unsigned char>(text[i + 1]) < 0x90) &&
                    !(c == 0xF4 && static_cast<unsigned char>(text[i + 1]) > 0x8F);
-        out += good ? text.substr(i, length) : "?";
+        out += c < 0x20 || c == 0x7F ? " " : good ? text.substr(i, length) : "?";
         i += good ? length : 1;
     }
     return out;
@@ -67,7 +67,8 @@ Objects::Objects(const Document& document) : document_(document) {
 
 void Objects::add_all(const Node& parent) {
     for (const Node& node : document_.children(parent)) {
-        if (node.first_child != 0 || document_.value(node, 1).kind == Value::string) add(node);  // a layer may have an empty block
+        if (node.first_child != 0 || document_.value(node, 1).kind == Value::string)
+            add(node);  // a layer may have an empty block
     }
 }
 

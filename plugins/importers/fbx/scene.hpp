@@ -14,7 +14,7 @@ struct Context {
     const Objects& objects;
     const Templates& templates;
     std::string folder, stem;  // of the file: "/models/", "car"
-    bool has_motion;           // whether the sink takes nodes, clips and what they move
+    double fps;                // frames a second, 0: the file does not say
 
     void warn(const std::string& text) const { sink.warn(sink.ctx, text.c_str()); }
     Properties properties(uint32_t object) const { return templates.of(objects[object]); }
@@ -27,14 +27,11 @@ struct SceneNode {
     uint32_t object = kNoObject;
     uint32_t parent = kNoObject;  // number of a node
     NodeTransform transform;
-    World world;
-    rt_u32 id = 0;  // the host's; 0: it takes no nodes
+    rt_u32 id = 0;  // the host's
     bool hidden = false;
 };
 // Parents before their children. Passes them to the host. Throws Broken if they form a circle.
 std::vector<SceneNode> read_nodes(const Context& context);
-// Copies where the node is: into the node's space if the host knows nodes, otherwise into the world. Returns the matrix.
-Transform base_of(const Context& context, const SceneNode& node);
 
 // ---- meshes
 
@@ -68,24 +65,18 @@ class Materials {
 
 // ---- lights and cameras
 
-// Ids that the host gave, by node, for what animates them.
-struct Views {
-    std::map<uint32_t, rt_u32> lights, cameras;
-};
-Views add_views(const Context& context, const std::vector<SceneNode>& nodes);
+void add_views(const Context& context, const std::vector<SceneNode>& nodes);
 
 // ---- motion
 
 // Ids of the host's morphs, by the object that has their weight and, before version 7, the name of the shape.
 using Morphs = std::map<std::pair<uint32_t, std::string>, std::vector<rt_u32>>;
-void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes, Morphs& morphs);
+void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes,
+                   Morphs& morphs);
 // Reads the geometry cache that a deformer names. Files that are missing or damaged are a warning.
 void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer);
-void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs);
-
-// ---- what files before version 7 have in other places
-
-// The value at rest of a channel, as up to version 5.8 (`path`: "T", "X"); `otherwise` if the file has none.
-double oldest_rest(const Document& document, const Object& model, const char* letter, const char* axis, double otherwise);
+// Frames a second; 0: the file does not say.
+double frames_of_second(const Document& document, const Objects& objects);
+void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs);
 
 }  // namespace fbx_import

@@ -17,19 +17,8 @@ Transform multiply(const Transform& a, const Transform& b) {
     return m;
 }
 
-Transform inverse(const Transform& m) {
-    const auto minor = [&](int r0, int r1, int c0, int c1) {
-        return m[4 * r0 + c0] * m[4 * r1 + c1] - m[4 * r0 + c1] * m[4 * r1 + c0];
-    };
-    const double determinant = m[0] * minor(1, 2, 1, 2) - m[1] * minor(1, 2, 0, 2) + m[2] * minor(1, 2, 0, 1);
-    if (determinant == 0 || !std::isfinite(1 / determinant)) return kIdentity;
-    const double d = 1 / determinant;
-    Transform out = {minor(1, 2, 1, 2) * d,  -minor(0, 2, 1, 2) * d, minor(0, 1, 1, 2) * d,  0,
-                     -minor(1, 2, 0, 2) * d, minor(0, 2, 0, 2) * d,  -minor(0, 1, 0, 2) * d, 0,
-                     minor(1, 2, 0, 1) * d,  -minor(0, 2, 0, 1) * d, minor(0, 1, 0, 1) * d,  0};
-    const Vec3 back = transform_vector(out, {m[3], m[7], m[11]});
-    for (int k = 0; k < 3; ++k) out[4 * k + 3] = -back[k];
-    return out;
+Transform transposed(const Transform& m) {
+    return {m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0};
 }
 
 Transform translation(const Vec3& by) {
@@ -54,18 +43,6 @@ Transform rotation(const Vec3& degrees, rt_u32 order) {
         out = multiply(turn, out);
     }
     return out;
-}
-
-Vec3 transform_vector(const Transform& m, const Vec3& v) {
-    Vec3 r{};
-    for (int row = 0; row < 3; ++row) r[row] = m[4 * row] * v[0] + m[4 * row + 1] * v[1] + m[4 * row + 2] * v[2];
-    return r;
-}
-
-Vec3 transform_point(const Transform& m, const Vec3& p) {
-    Vec3 r = transform_vector(m, p);
-    for (int row = 0; row < 3; ++row) r[row] += m[4 * row + 3];
-    return r;
 }
 
 bool is_finite(const Transform& m) {
@@ -109,40 +86,11 @@ NodeTransform node_transform(const Properties& p) {
     out.after_scale = translation(back);
     if (active) {
         out.before_rotation = multiply(out.before_rotation, rotation(p.vector("PreRotation", zero)));
-        out.after_rotation = multiply(inverse(rotation(p.vector("PostRotation", zero))), out.after_rotation);
+        out.after_rotation = multiply(transposed(rotation(p.vector("PostRotation", zero))), out.after_rotation);
     }
     out.geometry =
         multiply(translation(p.vector("GeometricTranslation", zero)),
                  multiply(rotation(p.vector("GeometricRotation", zero)), scaling(p.vector("GeometricScaling", one))));
-    return out;
-}
-
-// The global rotation and scale of the three modes: R S r s, R r S s, and R r (S without the parent's own scale) s. The
-// translation is where the parent's matrix takes the node's own. Source: FBX SDK help, "Computing transformation matrices".
-World place(const NodeTransform& node, const World* parent) {
-    const Transform turn =
-        multiply(multiply(node.before_rotation, rotation(node.rotation, node.rotation_order)), node.after_rotation);
-    const Transform own =
-        multiply(multiply(translation(node.translation), turn), multiply(scaling(node.scale), node.after_scale));
-    World out;
-    out.own_scale = node.scale;
-    if (!parent || node.inherit == RT_INHERIT_RSRS) {
-        out.matrix = parent ? multiply(parent->matrix, own) : own;
-    }
-    Transform linear = turn;
-    for (const int k : {3, 7, 11}) linear[k] = 0;
-    out.rotation = parent ? multiply(parent->rotation, linear) : linear;
-    Transform above = parent ? parent->scale : kIdentity;
-    if (parent && node.inherit == RT_INHERIT_RRS) above = multiply(above, inverse(scaling(parent->own_scale)));
-    if (parent && node.inherit != RT_INHERIT_RSRS) {
-        out.matrix = multiply(out.rotation, multiply(above, scaling(node.scale)));
-        const Vec3 at = transform_point(parent->matrix, {own[3], own[7], own[11]});
-        for (int k = 0; k < 3; ++k) out.matrix[4 * k + 3] = at[k];
-    }
-    // What is left of the matrix without its rotation.
-    Transform scale = multiply(inverse(out.rotation), out.matrix);
-    for (const int k : {3, 7, 11}) scale[k] = 0;
-    out.scale = scale;
     return out;
 }
 

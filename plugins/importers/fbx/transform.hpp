@@ -12,12 +12,10 @@ using Transform = std::array<double, 12>;
 inline constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 Transform multiply(const Transform& a, const Transform& b);  // applies b first, then a
-Transform inverse(const Transform& m);                       // the identity if there is none
+Transform transposed(const Transform& m);                    // its 3x3 part, which for a rotation is the inverse
 Transform translation(const Vec3& by);
 Transform scaling(const Vec3& by);
 Transform rotation(const Vec3& degrees, rt_u32 order = RT_ROTATE_XYZ);
-Vec3 transform_vector(const Transform& m, const Vec3& v);
-Vec3 transform_point(const Transform& m, const Vec3& p);
 bool is_finite(const Transform& m);  // also as floats
 // A matrix of 16 numbers as the file writes them, column by column; false if there are fewer.
 bool matrix_of(const std::vector<double>& numbers, Transform& out);
@@ -30,13 +28,5 @@ struct NodeTransform {
     Transform geometry = kIdentity;  // of the node's own meshes only
 };
 NodeTransform node_transform(const Properties& properties);
-
-// Where a node is. `parent` is its parent's world, nullptr: none.
-struct World {
-    Transform matrix = kIdentity;
-    Transform rotation = kIdentity, scale = kIdentity;  // the parts that the inherit modes need
-    Vec3 own_scale{1, 1, 1};
-};
-World place(const NodeTransform& node, const World* parent);
 
 }  // namespace fbx_import

@@ -7,22 +7,6 @@
 namespace fbx_import {
 namespace {
 
-bool normalize(Vec3& v) {
-    const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!(length > 1e-30) || !std::isfinite(length)) return false;
-    for (double& x : v) x /= length;
-    return true;
-}
-
-template <class Out>
-void store(const Vec3& v, Out& out) {
-    for (int k = 0; k < 3; ++k) out[k] = static_cast<float>(v[k]);
-}
-
-bool all_finite(const float v[3]) {
-    return std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
-}
-
 // The attributes of a model: objects that hang from it; before version 7 the model itself.
 std::vector<uint32_t> attributes_of(const Context& context, uint32_t model, std::string_view type) {
     std::vector<uint32_t> out = context.objects.below(model, "NodeAttribute", type);
@@ -37,16 +21,9 @@ rt_light_desc light_of(const Context& context, const SceneNode& node, uint32_t a
     const Properties p = context.properties(attribute);
     const int64_t type = p.whole("LightType", 0);
     rt_light_desc out = rt::light(type == 1 ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT, name.c_str());
-    const Transform base = base_of(context, node);
-    if (type == 1) {
-        Vec3 direction = transform_vector(base, {0, -1, 0});
-        if (!normalize(direction)) direction = {0, -1, 0};
-        store(direction, out.direction);
-    } else {
-        if (type != 0)
-            context.warn(std::string("the ") + (type == 2 ? "spot" : "area") + " light '" + name + "' became a point light");
-        store(transform_point(base, {}), out.position);
-    }
+    out.direction[1] = -1;
+    if (type > 1)
+        context.warn(std::string("the ") + (type == 2 ? "spot" : "area") + " light '" + name + "' became a point light");
     const Vec3 color = p.vector("Color", {1, 1, 1});
     const double intensity = p.number("Intensity", 100) / 100;
     for (int k = 0; k < 3; ++k) {
@@ -76,20 +53,11 @@ double angle_of(const Properties& p) {
 
 // A camera looks along its node's +x, and +y is up. Source: FBX SDK help, "FbxCamera".
 rt_camera camera_of(const Context& context, const SceneNode& node, uint32_t attribute) {
-    const std::string& own = context.objects[attribute].name;
-    const std::string& name =
-        own.empty() || context.objects[attribute].type == "Camera" ? context.objects[node.object].name : own;
-    const Transform base = base_of(context, node);
-    Vec3 forward = transform_vector(base, {1, 0, 0}), up = transform_vector(base, {0, 1, 0});
-    if (!normalize(forward)) forward = {0, 0, -1};
-    if (!normalize(up)) up = {0, 1, 0};
+    const std::string& name = context.objects[node.object].name;
     rt_camera out{};
     out.struct_bytes = sizeof out;
     out.name = name.c_str();
-    const Vec3 eye = transform_point(base, {});
-    store(eye, out.eye);
-    store({eye[0] + forward[0], eye[1] + forward[1], eye[2] + forward[2]}, out.target);
-    store(up, out.up);
+    out.target[0] = out.up[1] = 1;
     double angle = angle_of(context.properties(attribute));
     if (!(angle > 0.001) || angle > 3.1) {
         context.warn("the camera '" + name + "' has no angle of view (orthographic?): 45 degrees are used");
@@ -114,39 +82,33 @@ std::vector<uint32_t> cameras_of(const Context& context, uint32_t model) {
 
 }  // namespace
 
-Views add_views(const Context& context, const std::vector<SceneNode>& nodes) {
-    Views views;
-    std::vector<std::pair<uint32_t, rt_light_desc>> lights;
+void add_views(const Context& context, const std::vector<SceneNode>& nodes) {
+    std::vector<rt_light_desc> lights;
     float brightest = 0;
-    for (uint32_t n = 0; n < nodes.size(); ++n) {
-        for (const uint32_t attribute : attributes_of(context, nodes[n].object, "Light")) {
-            const rt_light_desc light = light_of(context, nodes[n], attribute);
-            if (!all_finite(light.position)) continue;
-            lights.push_back({n, light});
-            brightest = std::max({brightest, light.color[0], light.color[1], light.color[2]});
+    for (const SceneNode& node : nodes) {
+        for (const uint32_t attribute : attributes_of(context, node.object, "Light")) {
+            lights.push_back(light_of(context, node, attribute));
+            brightest = std::max(brightest, *std::max_element(lights.back().color, lights.back().color + 3));
         }
     }
     // Physical intensities (watts, candela) assume falloff with distance. Lights here have none, so all of them are scaled
     // until the brightest is 1.
     if (brightest > 1) rt::log(context.host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest));
-    for (auto& [node, light] : lights) {
+    for (rt_light_desc& light : lights) {
         for (float& c : light.color) c = brightest > 1 ? c / brightest : c;
-        views.lights[node] = rt::id(context.sink.light(context.sink.ctx, &light));
+        rt::id(context.sink.light(context.sink.ctx, &light));
     }
     // The view cameras of MotionBuilder, which old exporters write too ("Producer Front"), come last: the first camera is the
     // one that is shown.
     for (const bool producers : {false, true}) {
-        for (uint32_t n = 0; n < nodes.size(); ++n) {
-            if ((context.objects[nodes[n].object].name.rfind("Producer ", 0) == 0) != producers) continue;
-            for (const uint32_t attribute : cameras_of(context, nodes[n].object)) {
-                const rt_camera camera = camera_of(context, nodes[n], attribute);
-                if (all_finite(camera.eye) && all_finite(camera.target)) {
-                    views.cameras[n] = rt::id(context.sink.camera(context.sink.ctx, &camera));
-                }
+        for (const SceneNode& node : nodes) {
+            if ((context.objects[node.object].name.rfind("Producer ", 0) == 0) != producers) continue;
+            for (const uint32_t attribute : cameras_of(context, node.object)) {
+                const rt_camera camera = camera_of(context, node, attribute);
+                rt::id(context.sink.camera(context.sink.ctx, &camera));
             }
         }
     }
-    return views;
 }
 
 }  // namespace fbx_import

@@ -1,0 +1,193 @@
+// fbx_model_test.cpp -- what FBX files of all ages say about a scene, from small files made here.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "base/error.hpp"
+#include "fbx_writer.hpp"
+#include "measure.hpp"
+#include "scene/motion/pose.hpp"
+
+namespace clarity::test {
+namespace {
+
+using Numbers = std::vector<double>;
+using Indices = std::vector<int32_t>;
+
+FbxNode node(const std::string& name, const std::vector<FbxNode::Value>& values, const std::vector<FbxNode>& children = {}) {
+    return {name, values, children};
+}
+FbxNode property(const std::string& name, const Numbers& numbers) {
+    FbxNode out = node("P", {text(name), text(""), text(""), text("A")});
+    for (const double x : numbers) out.values.push_back(x);
+    return out;
+}
+FbxNode geometry(int64_t id, const std::vector<FbxNode>& layers = {}) {
+    FbxNode out = node("Geometry", {whole(id), text("Geometry::Square"), text("Mesh")},
+                       {node("Vertices", {Numbers{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}}),
+                        node("PolygonVertexIndex", {Indices{0, 1, -3, 0, 2, -4}})});
+    out.children.insert(out.children.end(), layers.begin(), layers.end());
+    return out;
+}
+FbxNode model(int64_t id, const std::string& name, const std::vector<FbxNode>& properties = {}) {
+    return node("Model", {whole(id), text("Model::" + name), text("Mesh")},
+                {node("Version", {whole(232)}), node("Properties70", {}, properties)});
+}
+FbxNode link(int64_t from, int64_t to, const std::string& property = "") {
+    FbxNode out = node("C", {text(property.empty() ? "OO" : "OP"), whole(from), whole(to)});
+    if (!property.empty()) out.values.push_back(text(property));
+    return out;
+}
+
+class FbxModelForm : public testing::TestWithParam<FbxForm> {
+ protected:
+    Scene import(const std::vector<FbxNode>& objects, const std::vector<FbxNode>& links) {
+        const std::string version = std::to_string(GetParam().version);
+        const std::vector<FbxNode> all = {
+            node("FBXHeaderExtension", {}, {node("FBXVersion", {whole(GetParam().version)})}),
+            node("GlobalSettings", {}, {node("Version", {whole(1000)}), node("Properties70", {}, {property("TimeMode", {6})})}),
+            node("Objects", {}, objects), node("Connections", {}, links)};
+        return import_file(folder_.write("model.fbx", FbxWriter(GetParam()).file(all)));
+    }
+    TemporaryFolder folder_;
+};
+INSTANTIATE_TEST_SUITE_P(Forms, FbxModelForm,
+                         testing::Values(FbxForm{true, false, false, 7400}, FbxForm{true, true, false, 7700},
+                                         FbxForm{false, false, false, 7500}),
+                         [](const auto& form) {
+                             return std::string(form.param.binary ? "Binary" : "Ascii") + std::to_string(form.param.version);
+                         });
+
+TEST_P(FbxModelForm, ShowsAMeshBelowEachOfItsParents) {
+    const Scene scene = import({geometry(1), model(2, "Shown"), model(3, "Left", {property("Lcl Translation", {-5, 0, 0})}),
+                                model(4, "Right", {property("Lcl Translation", {5, 0, 0})})},
+                               {link(3, 0), link(4, 0), link(2, 3), link(2, 4), link(1, 2)});
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    ASSERT_EQ(scene.instances.size(), 2u);
+    EXPECT_EQ(scene.bounds().min[0], -5);
+    EXPECT_EQ(scene.bounds().max[0], 6);
+}
+
+TEST_P(FbxModelForm, TurnsAboutPivotsAndInheritsScaleAsItSays) {
+    // Half a turn about (1, 0, 0) takes the square to x 1..2.
+    Scene scene =
+        import({geometry(1), model(2, "A", {property("RotationPivot", {1, 0, 0}), property("Lcl Rotation", {0, 180, 0})})},
+               {link(2, 0), link(1, 2)});
+    EXPECT_NEAR(scene.bounds().min[0], 1, 1e-6);
+    EXPECT_NEAR(scene.bounds().max[0], 2, 1e-6);
+    // Mode 2 leaves the parent's own scale out, but the place of the child is scaled.
+    scene = import({geometry(1), model(2, "Parent", {property("Lcl Scaling", {3, 3, 3})}),
+                    model(3, "Child", {property("InheritType", {2}), property("Lcl Translation", {1, 0, 0})})},
+                   {link(2, 0), link(3, 2), link(1, 3)});
+    EXPECT_NEAR(scene.bounds().min[0], 3, 1e-6);
+    EXPECT_NEAR(scene.bounds().max[0], 4, 1e-6);
+}
+
+TEST_P(FbxModelForm, MapsLayersOfEachKind) {
+    const auto layer = [](const std::string& mapping, const std::string& reference, const Numbers& uvs,
+                          const Indices& indices) {
+        std::vector<FbxNode> children = {node("MappingInformationType", {text(mapping)}),
+                                         node("ReferenceInformationType", {text(reference)}), node("UV", {uvs})};
+        if (!indices.empty()) children.push_back(node("UVIndex", {indices}));
+        return node("LayerElementUV", {whole(0)}, children);
+    };
+    const auto uvs_of = [&](const FbxNode& uv_layer) {
+        const Scene scene = import({geometry(1, {uv_layer}), model(2, "A")}, {link(2, 0), link(1, 2)});
+        std::vector<float> out;
+        for (const rt_u32 v : scene.triangles) out.push_back(scene.uvs.empty() ? -1 : scene.uvs[2 * size_t(v)]);
+        return out;
+    };
+    const Numbers six = {0, 0, 1, 0, 2, 0, 3, 0, 4, 0, 5, 0}, four = {0, 0, 1, 0, 2, 0, 3, 0};
+    using Floats = std::vector<float>;
+    EXPECT_EQ(uvs_of(layer("ByPolygonVertex", "Direct", six, {})), (Floats{0, 1, 2, 3, 4, 5}));
+    EXPECT_EQ(uvs_of(layer("ByPolygonVertex", "IndexToDirect", six, {5, 4, 3, 2, 1, 0})), (Floats{5, 4, 3, 2, 1, 0}));
+    EXPECT_EQ(uvs_of(layer("ByPolygonVertex", "Index", six, {5, 4, 3, 2, 1, 99})), (Floats{5, 4, 3, 2, 1, 0}));
+    EXPECT_EQ(uvs_of(layer("ByVertice", "Direct", four, {})), (Floats{0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(uvs_of(layer("ByVertex", "IndexToDirect", four, {3, 2, 1, 0})), (Floats{3, 2, 1, 3, 1, 0}));
+    EXPECT_EQ(uvs_of(layer("ByPolygon", "Direct", {7, 0, 8, 0}, {})), (Floats{7, 7, 7, 8, 8, 8}));
+    EXPECT_EQ(uvs_of(layer("AllSame", "Direct", {7, 0}, {})), (Floats{7, 7, 7, 7, 7, 7}));
+    EXPECT_EQ(uvs_of(layer("ByEdge", "Direct", six, {})), (Floats{-1, -1, -1, -1, -1, -1}));
+    EXPECT_EQ(uvs_of(layer("", "", six, {})), (Floats{0, 1, 2, 3, 4, 5}));
+}
+
+TEST_P(FbxModelForm, MovesWithItsCurves) {
+    constexpr int64_t second = 46186158000;
+    const auto curve = [](int64_t id, const std::string& letter) {
+        return node("AnimationCurve", {whole(id), text("AnimCurve::"), text("")},
+                    {node("KeyTime", {Numbers{0, double(second)}}), node("KeyValueFloat", {Numbers{0, 4}}),
+                     node("KeyAttrFlags", {Indices{4}}), node("KeyAttrDataFloat", {Numbers{0, 0, 0, 0}}),
+                     node("KeyAttrRefCount", {Indices{2}}),
+                     node("Post-Extrapolation", {}, {node("Type", {text(letter)}), node("Repetition", {whole(-1)})})});
+    };
+    FbxNode stop = node("P", {text("LocalStop"), text("KTime"), text("Time"), text(""), whole(second)});
+    const Scene scene = import(
+        {geometry(1), model(2, "A", {property("Lcl Translation", {9, 9, 9})}),
+         node("AnimationStack", {whole(3), text("AnimStack::Walk"), text("")}, {node("Properties70", {}, {stop})}),
+         node("AnimationLayer", {whole(4), text("AnimLayer::Base"), text("")}, {node("Version", {whole(1)})}),
+         node("AnimationCurveNode", {whole(5), text("AnimCurveNode::T"), text("")},
+              {node("Properties70", {}, {property("d|X", {0}), property("d|Z", {7})})}),
+         curve(6, "A"), curve(7, "C")},
+        {link(2, 0), link(1, 2), link(4, 3), link(5, 4), link(5, 2, "Lcl Translation"), link(6, 5, "d|X"), link(7, 5, "d|Y")});
+    ASSERT_EQ(clips(scene).size(), 1u);
+    EXPECT_EQ(clips(scene)[0].name, "Walk");
+    EXPECT_NEAR(clips(scene)[0].end_s, 1, 1e-9);
+    EXPECT_EQ(clips(scene)[0].fps, 30);
+    EXPECT_EQ(scene.bounds().min[2], 9);  // the file at rest
+    const auto at = [&](double time) { return posed(scene, evaluate(scene, "", time)).bounds().min; };
+    EXPECT_NEAR(at(0.25)[0], 1, 1e-6);
+    EXPECT_NEAR(at(0.25)[2], 7, 1e-6);  // a component without a curve has the curve node's value
+    EXPECT_NEAR(at(1.5)[0], 6, 1e-6);   // repeated, beginning where it ended
+    EXPECT_NEAR(at(1.5)[1], 4, 1e-6);   // held
+}
+
+TEST(FbxOldModel, TakesNamesAndBlocksForIds) {
+    const TemporaryFolder folder;
+    const std::string body = "\tVertices: 0,0,0,1,0,0,0,1,0\n\tPolygonVertexIndex: 0,1,-3\n\tGeometryVersion: 124\n";
+    const std::string takes =
+        "Takes: {\nTake: \"Go\" {\nLocalTime: 0,46186158000\nModel: \"Model::A\" {\nChannel: \"Transform\" {\nChannel: \"T\" "
+        "{\n"
+        "Channel: \"X\" {\nDefault: 3\nKey: 0,0,L\n,46186158000,2,C,n\n}\n}\n}\n}\n}\n}\n";
+    Scene scene = import_file(folder.write(
+        "six.fbx",
+        "; FBX 6.1.0 project file\nObjects: {\nModel: \"Model::A\", \"Mesh\" {\nProperties60: {\nProperty: \"Lcl Scaling\", "
+        "\"Lcl Scaling\", \"A\",2,2,2\n}\n" +
+            body +
+            "}\n}\nConnections: {\nConnect: \"OO\", \"Model::A\", "
+            "\"Model::Scene\"\n}\n" +
+            takes));
+    EXPECT_NEAR(scene.surface_area(), 2, 1e-6);
+    EXPECT_NEAR(posed(scene, evaluate(scene, "Go", 0.5)).bounds().min[0], 1, 1e-6);
+    // Up to 5.8 there are no objects and connections; the value at rest is the take's.
+    scene = import_file(
+        folder.write("five.fbx",
+                     "; FBX 5.8.0 project file\nModel: \"Model::Root\" {\nType: \"Null\"\nChildren: \"Model::A\"\n}\n"
+                     "Model: \"Model::A\" {\n" +
+                         body + "}\n" + takes));
+    ASSERT_EQ(scene.instances.size(), 1u);
+    EXPECT_NEAR(scene.bounds().min[0], 3, 1e-6);
+    EXPECT_EQ(scene.unit_scale, 0.01);
+}
+
+TEST(FbxOldModel, RefusesNodesThatMultiplyWithoutEnd) {
+    const TemporaryFolder folder;
+    std::string objects, links;
+    for (int i = 1; i <= 40; ++i) {  // each of 40 levels hangs twice from the level above: 2^40 copies
+        for (const int half : {0, 1}) {
+            const std::string id = std::to_string(2 * i + half), above = std::to_string(2 * i - 2);
+            objects += "Model: " + id + ", \"Model::N\", \"Null\" {\nVersion: 232\n}\n";
+            links += "C: \"OO\"," + id + "," + (i == 1 ? "0" : above) + "\nC: \"OO\"," + id + "," +
+                     (i == 1 ? "0" : above + "\nC: \"OO\"," + id + "," + std::to_string(2 * i - 1)) + "\n";
+        }
+    }
+    try {
+        import_file(folder.write("many.fbx",
+                                 "; FBX 7.4.0 project file\nObjects: {\n" + objects + "}\nConnections: {\n" + links + "}\n"));
+        FAIL() << "was imported";
+    } catch (const Error& error) {
+        EXPECT_NE(std::string(error.what()).find("too many copies"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace
+}  // namespace clarity::test
