@@ -16,6 +16,9 @@ int32_t prepare(const rt_host* host, const rt_key_values* values, const rt_shape
     const double length = std::hypot(axis[0], axis[1], axis[2]);
     if (!(length > 0)) throw rt::fail(host, "`from` and `to` are the same point; expected the two ends of its axis");
     if (radius == 0 && top == 0) throw rt::fail(host, "`radius` and `top` are both 0; expected a radius above 0 at one end");
+    const double growth = (double(top) - radius) / length;
+    if (!(std::fabs(growth) < 1e15))
+        throw rt::fail(host, "`radius` and `top` differ too much for its length; expected less than 1e15 times the length");
     float lo[3], hi[3], numbers[10];
     for (int k = 0; k < 3; ++k) {
         const double a = axis[k] / length, base = rt::disc_reach(radius, a), tip = rt::disc_reach(top, a);
@@ -26,7 +29,7 @@ int32_t prepare(const rt_host* host, const rt_key_values* values, const rt_shape
     }
     numbers[6] = static_cast<float>(length);
     numbers[7] = radius;
-    numbers[8] = static_cast<float>((double(top) - radius) / length);
+    numbers[8] = static_cast<float>(growth);
     numbers[9] = values[kCaps].numbers[0];
     rt::part(out, lo, hi, numbers, 10);
     return RT_OK;

@@ -12,6 +12,7 @@
 #define NURBS_STEPS 512    /* pieces of one patch, at most */
 #define NURBS_SMALLEST (1.0f / 1024.0f)
 #define NURBS_BORDER 1e-4f /* pieces overlap by this share of their width, so that rounding leaves no gap */
+#define NURBS_BESIDE 1e-3f /* a root is at most this share of the patch's size beside the ray */
 
 /* The surface, times its weight, and derivatives by u and v. */
 typedef struct nurbs_jet {
@@ -182,12 +183,14 @@ RT_INLINE float nurbs_hit(const global float *numbers, const global float *more,
                 at = clamp(next, (float2)(piece.x, piece.z) - 0.5f * width, (float2)(piece.y, piece.w) + 0.5f * width);
             }
             const float2 beyond = max((float2)(piece.x, piece.z) - at, at - (float2)(piece.y, piece.w));
-            found = beyond.x <= NURBS_BORDER * width.x && beyond.y <= NURBS_BORDER * width.y;
+            if (beyond.x > NURBS_BORDER * width.x || beyond.y > NURBS_BORDER * width.y) continue;
             at = clamp(at, (float2)(piece.x, piece.z), (float2)(piece.y, piece.w));
-            if (!found) continue;
-        } else if (max(width.x, width.y) <= NURBS_SMALLEST || top + 2u > NURBS_STACK) {
-            found = 1;
+            /* Where there is no root, Newton's method may end anywhere in the piece. */
+            const float4 point = nurbs_evaluate(more, p, q, at.x, at.y).at;
+            const float3 from = point.xyz - point.w * line.origin;
+            found = max(fabs(dot(line.across_a, from)), fabs(dot(line.across_b, from))) <= NURBS_BESIDE * size;
         }
+        if (!found && (max(width.x, width.y) <= NURBS_SMALLEST || top + 2u > NURBS_STACK)) found = 1;
         if (found) {
             const float4 point = nurbs_evaluate(more, p, q, at.x, at.y).at;
             const float t = dot(line.along, point.xyz / point.w - line.origin) / sqrt(length2);
@@ -233,3 +236,4 @@ RT_INLINE void nurbs_surface(const global float *numbers, const global float *mo
 #undef NURBS_STEPS
 #undef NURBS_SMALLEST
 #undef NURBS_BORDER
+#undef NURBS_BESIDE

@@ -39,7 +39,7 @@ RT_INLINE vfloat torus_extremum(const torus_ray *r, vfloat s, vfloat *slope)
 #define TORUS_ROOT(value, r, a, b, root)                                                                                       \
     {                                                                                                                          \
         vfloat low = a, high = b, slope;                                                                                       \
-        const vmask falls = RT_MASK(value(r, low, &slope) > rt_vfloat(0.0f));                                                  \
+        const vmask falls = ~RT_MASK(value(r, low, &slope) < rt_vfloat(0.0f)); /* 0 counts as positive, as below */            \
         root = 0.5f * (low + high);                                                                                            \
         for (uint step = 0; step < TORUS_STEPS; ++step) {                                                                      \
             const vfloat y = value(r, root, &slope);                                                                           \

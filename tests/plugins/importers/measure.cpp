@@ -57,7 +57,7 @@ nlohmann::json read_json(const std::string& path) {
 
 bool has_importer_for(const std::string& path) {
     const std::string extension = fs::path(path).extension().string();
-    if (extension == ".gltf" || extension == ".glb") return true;
+    if (extension == ".gltf" || extension == ".glb" || extension == ".fbx") return true;
     for (const char* openmesh : {".obj", ".ply", ".stl", ".off", ".om"}) {
         if (extension != openmesh) continue;
 #if defined(CLARITY_HAVE_OPENMESH) || defined(CLARITY_HAVE_ASSIMP)

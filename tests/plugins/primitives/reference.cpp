@@ -117,6 +117,18 @@ ShapeCase cone_case(const std::string& word, const std::string& keys, const Vec&
     return c;
 }
 
+// Spheres are built in, but must agree with a mesh as shapes do.
+ShapeCase sphere_case() {
+    const Vec center = {0.2, -0.1, 0.3};
+    const double radius = 1.1;
+    ShapeCase c{"sphere", "sphere center" + text(center) + " radius 1.1", 1.7, {}, {}};
+    c.sheets.push_back({[=](const Vec& p) { return length(p - center) - radius; }, everywhere});
+    const Axis axis(center, center + Vec{0, 1, 0});
+    c.faces.push_back(
+        [=](double u, double v) { return axis.point(radius * std::sin(kPi * v), u, radius * std::cos(kPi * v)); });
+    return c;
+}
+
 ShapeCase torus_case(const std::string& name, const std::string& statement, const Axis& axis, double ring, double tube) {
     ShapeCase c{name, statement, 1.7, {}, {}};
     c.sheets.push_back({[=](const Vec& p) { return std::hypot(axis.away(p) - ring, axis.z(p)) - tube; }, everywhere});
@@ -241,6 +253,7 @@ const std::vector<ShapeCase>& shape_cases() {
         torus_case("torus, thin", "torus radius 1.5 tube .02", Axis({0, 0, 0}, {0, 1, 0}), 1.5, 0.02),
         torus_case("nurbs, torus", nurbs_torus(1, 0.4), Axis({0, 0, 0}, {0, 0, 1}), 1, 0.4),
         hills_case(),
+        sphere_case(),
     };
     return cases;
 }
@@ -249,12 +262,14 @@ const std::vector<PlacedShape>& placed_shapes() {
     static const std::vector<PlacedShape> all = [] {
         std::vector<PlacedShape> list;
         const std::vector<ShapeCase>& cases = shape_cases();
-        for (size_t i = 0; i < cases.size() + 2; ++i) {  // the first two once more
+        const size_t plugins =
+            cases.size() - 1;  // the last is a sphere, which keeps its form: its scale must be the same along all axes
+        for (size_t i = 0; i < plugins + 3; ++i) {  // the first two once more
             const Vec translate = {6.0 * double(i % 4), 6.0 * double(i / 4), i == 1 ? 40.0 : 0.0}, axis = {1, 2, 3};
             const Vec scale = i % 3 == 2 ? Vec{1, 0.7, 1.3} : i % 3 == 1 ? Vec{0.8, 0.8, 0.8} : Vec{1, 1, 1};
             const double degrees = i == 0 ? 0 : 40.0 * double(i);
             const std::array<double, 12> world = placement(translate, axis, degrees, scale);
-            list.push_back({&cases[i % cases.size()],
+            list.push_back({i == plugins + 2 ? &cases.back() : &cases[i % plugins],
                             " translate" + text(translate) + " rotate" + text(axis) + text(degrees) + " scale" + text(scale),
                             world, inverse(world)});
         }
