@@ -135,7 +135,7 @@ std::vector<T> text_array(const Document& document, const Node& node, size_t exp
             out.push_back(converted<T>(number));
         } else if (at[0] != '*') {
             throw Broken(document.place(at) + ": found " + quoted({at, static_cast<size_t>(end - at)}) +
-                         " among the values of " + quoted(node.name) + "'; expected a number");
+                         " among the values of " + quoted(node.name) + "; expected a number");
         } else {
             return out;  // an array whose numbers are missing
         }
@@ -167,7 +167,7 @@ std::vector<T> Document::numbers(const Node* node) const {
         out.resize(declared);
         return out;
     }
-    if (first.kind == Value::array) return binary_array<T>(first, big_endian_, place(*node) + ": " + quoted(node->name) + "");
+    if (first.kind == Value::array) return binary_array<T>(first, big_endian_, place(*node) + ": " + quoted(node->name));
     // Before version 7, each number is a value of its own (measured from maya_cube_6100_binary).
     std::vector<T> out;
     out.reserve(node->value_count);
@@ -175,7 +175,7 @@ std::vector<T> Document::numbers(const Node* node) const {
     for (Value v; values.next(v);) {
         if (v.kind != Value::integer && v.kind != Value::real) {
             throw Broken(place(*node) + ": value " + std::to_string(out.size()) + " of " + quoted(node->name) +
-                         "' is no number; expected one");
+                         " is no number; expected one");
         }
         out.push_back(v.kind == Value::integer ? converted<T>(v.whole) : converted<T>(v.number));
     }
