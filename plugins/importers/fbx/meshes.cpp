@@ -11,31 +11,32 @@ namespace {
 // A geometry in the form that the host takes.
 struct MeshData {
     std::vector<float> positions, normals, uvs;
-    std::vector<rt_u32> indices, sizes;  // no sizes: all faces are triangles
+    std::vector<int32_t> indices;  // those below 0 are far above any vertex for the host
+    std::vector<rt_u32> sizes;     // none: all faces are triangles
     size_t faces = 0, points = 0;
     std::vector<int32_t> slots;
     std::vector<uint32_t> copy_of;
 };
 
-// PolygonVertexIndex lists corners; the last one of a face is written as -1 - index. Source: Blender developer blog. `indices`
-// gets the indices themselves.
-void read_faces(std::vector<int32_t> corners, MeshData& out) {
+// PolygonVertexIndex lists corners; the last one of a face is written as -1 - index. Source: Blender developer blog.
+void read_faces(MeshData& mesh) {
+    std::vector<int32_t>& corners = mesh.indices;
     bool all_triangles = corners.size() % 3 == 0;
     for (size_t i = 0; all_triangles && i < corners.size(); i += 3) {
         all_triangles = corners[i] >= 0 && corners[i + 1] >= 0 && corners[i + 2] < 0;
     }
-    out.indices.resize(corners.size());
+    mesh.faces = corners.size() / 3;
+    for (size_t i = 2; all_triangles && i < corners.size(); i += 3) corners[i] = ~corners[i];
+    if (all_triangles) return;
     rt_u32 size = 0;
     for (size_t i = 0; i < corners.size(); ++i) {
-        const int32_t c = corners[i];
-        out.indices[i] = static_cast<rt_u32>(c < 0 ? ~c : c);
         ++size;
-        if (!all_triangles && (c < 0 || i + 1 == corners.size())) {
-            out.sizes.push_back(size);
-            size = 0;
-        }
+        if (corners[i] >= 0 && i + 1 < corners.size()) continue;
+        mesh.sizes.push_back(size);
+        size = 0;
+        corners[i] = corners[i] < 0 ? ~corners[i] : corners[i];
     }
-    out.faces = all_triangles ? corners.size() / 3 : out.sizes.size();
+    mesh.faces = mesh.sizes.size();
 }
 
 // Gives each corner a vertex with its normal and uv: the file's own vertex for the first set of values, a copy for each further
@@ -90,7 +91,7 @@ void for_corners(MeshData& mesh, const Body& body) {
     Corner c{0, 0, 0};
     size_t left = mesh.sizes.empty() ? 3 : mesh.sizes[0];
     for (; c.corner < mesh.indices.size(); ++c.corner) {
-        c.vertex = mesh.indices[c.corner];
+        c.vertex = static_cast<rt_u32>(mesh.indices[c.corner]);
         if (c.vertex < mesh.points) body(c);
         if (--left > 0) continue;
         ++c.face;
@@ -112,7 +113,8 @@ void read_layers(const Document& document, const Node& geometry, MeshData& mesh)
     VertexCopies copies(mesh, !normals.empty(), !uvs.empty());
     const auto or_zero = [](const float* values) { return values ? values : zeros; };
     for_corners(mesh, [&](const Corner& c) {
-        mesh.indices[c.corner] = copies.vertex(static_cast<rt_u32>(c.vertex), or_zero(normals.at(c)), or_zero(uvs.at(c)));
+        const rt_u32 vertex = copies.vertex(static_cast<rt_u32>(c.vertex), or_zero(normals.at(c)), or_zero(uvs.at(c)));
+        mesh.indices[c.corner] = static_cast<int32_t>(vertex);
     });
 }
 
@@ -122,7 +124,8 @@ MeshData read_mesh(const Document& document, const Node& geometry) {
     mesh.points = mesh.positions.size() / 3;
     mesh.positions.resize(3 * mesh.points);
     if (mesh.points >= RT_NONE / 2) throw Broken(document.place(geometry) + ": there are more vertices than a mesh can have");
-    read_faces(document.numbers<int32_t>(&geometry, "PolygonVertexIndex"), mesh);
+    mesh.indices = document.numbers<int32_t>(&geometry, "PolygonVertexIndex");
+    read_faces(mesh);
     mesh.slots = material_slots(document, geometry, mesh.faces);
     read_layers(document, geometry, mesh);
     return mesh;
@@ -153,7 +156,7 @@ SceneMesh pass(const Context& context, const Wanted& wanted, MeshData& mesh, con
     out.uv_stride = 8;
     out.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
     out.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
-    out.indices = mesh.indices.data();
+    out.indices = reinterpret_cast<const rt_u32*>(mesh.indices.data());
     out.index_count = mesh.indices.size();
     out.face_sizes = mesh.sizes.empty() ? nullptr : mesh.sizes.data();
     out.face_count = mesh.faces;
