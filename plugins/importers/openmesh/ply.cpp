@@ -134,9 +134,11 @@ std::string read_ply(const Source& source, FlatImporter& mesh) {
         // The check below reports that not all elements were read.
     }
     if (mesh.n_vertices() < vertices->count || mesh.face_count() < faces->count) {
-        throw std::runtime_error("ends after " + std::to_string(mesh.n_vertices()) + " of " + std::to_string(vertices->count) +
-                                 " vertices and " + std::to_string(mesh.face_count()) + " of " + std::to_string(faces->count) +
-                                 " faces: it is cut off or damaged");
+        const size_t body = source.bytes.size() - header.body.size();
+        const std::string where = header.is_ascii() ? lines.where() : "byte " + std::to_string(body + binary.position()) + ": ";
+        throw std::runtime_error(where + "ends after " + std::to_string(mesh.n_vertices()) + " of " +
+                                 std::to_string(vertices->count) + " vertices and " + std::to_string(mesh.face_count()) +
+                                 " of " + std::to_string(faces->count) + " faces: it is cut off or damaged");
     }
     if (has_lists) take_texcoords(mesh);
     return header.texture;
