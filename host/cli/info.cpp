@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
+#include "import/sequence_reader.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {
@@ -163,7 +164,7 @@ int run_info(const PluginRegistry& plugins, const SceneOptions& options, const P
     import.log_warnings = false;  // because they are printed with the rest
     Scene scene = import::import_scene(plugins, options.files, import, progress);
     const std::vector<ClipInfo> animations = clips(scene);
-    scene = at_pose(std::move(scene), pose);
+    scene = at_pose(std::move(scene), pose, import::SequenceReader(plugins, import, progress));
     progress.clear();
     if (json)  // names in files may not be UTF-8, but JSON must be
         std::printf("%s\n",

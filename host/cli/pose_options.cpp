@@ -5,7 +5,6 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/numbers.hpp"
-#include "scene/motion/pose.hpp"
 
 namespace clarity {
 namespace {
@@ -35,14 +34,14 @@ bool moves(const Scene& scene) {
     return !scene.motion.empty();
 }
 
-Scene at_pose(Scene scene, const PoseOptions& options) {
+Scene at_pose(Scene scene, const PoseOptions& options, const FrameVertices& read) {
     if (!options.time_s && options.clip.empty()) return scene;
     const ClipInfo clip = find_clip(scene, options.clip);
     if (!moves(scene)) {
         log(LogLevel::warning, "--time " + exact_text(*options.time_s) + ": the scene does not move; leave --time out");
         return scene;
     }
-    const Pose pose = evaluate(scene, options.clip, options.time_s.value_or(clip.begin_s));
+    const Pose pose = evaluate(scene, options.clip, options.time_s.value_or(clip.begin_s), read);
     return posed(std::move(scene), pose);
 }
 

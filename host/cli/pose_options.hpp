@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "scene/scene.hpp"
+#include "scene/motion/pose.hpp"
 
 namespace clarity {
 
@@ -17,8 +17,9 @@ void check_pose(const PoseOptions& options);
 // Whether a scene looks different at other times, or in the pose of its bones.
 bool moves(const Scene& scene);
 
-// The scene as the options ask. Warns if it does not move. Throws Error(usage) if it has no such clip.
-Scene at_pose(Scene scene, const PoseOptions& options);
+// The scene as the options ask. read: for sequences of files. Warns if it does not move. Throws Error(usage) if it has no such
+// clip.
+Scene at_pose(Scene scene, const PoseOptions& options, const FrameVertices& read);
 
 // When a frame is shown, in seconds: frame n at n / fps. fps 0: the clip's own, or 24 if the file does not say.
 double time_of_frame(const Scene& scene, const std::string& clip, double fps, int number);

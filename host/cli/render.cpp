@@ -13,6 +13,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/file_watch.hpp"
+#include "base/frame_path.hpp"
 #include "base/log.hpp"
 #include "base/output_file.hpp"
 #include "cli/commands.hpp"
@@ -21,6 +22,7 @@
 #include "cli/progress_bar.hpp"
 #include "cli/render_stats.hpp"
 #include "device/kernel_watch.hpp"
+#include "import/sequence_reader.hpp"
 #include "plugin/library_watch.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 
@@ -89,7 +91,8 @@ class RenderJob {
           settings_(words_.settings),
           range_(options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames)),
           plugins_(plugins),
-          bar_(options.quiet) {
+          bar_(options.quiet),
+          sequences_(plugins, options.scene.import, bar_) {
         stats_.files = options.scene.files;
         stats_.settings = settings_;
     }
@@ -235,7 +238,7 @@ class RenderJob {
         PoseOptions pose = options_.pose;
         if (frame) pose.time_s = time_of_frame(*file_scene_, pose.clip, options_.fps, *frame);
         const bool at_rest = !pose.time_s && pose.clip.empty();
-        auto scene = at_rest ? file_scene_ : std::make_shared<const Scene>(at_pose(*file_scene_, pose));
+        auto scene = at_rest ? file_scene_ : std::make_shared<const Scene>(at_pose(*file_scene_, pose, std::ref(sequences_)));
         const float aspect = float(settings_.width) / float(settings_.height);
         EditedView edited;
         edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);
@@ -377,6 +380,7 @@ class RenderJob {
     Devices devices_;
     std::function<bool()> superseded_;                 // with --watch: true if a save has made this round obsolete
     std::shared_ptr<const Scene> file_scene_, scene_;  // as imported; as shown
+    import::SequenceReader sequences_;
     View view_;
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;

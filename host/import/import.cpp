@@ -1,6 +1,7 @@
 #include "import/import.hpp"
 
 #include "base/error.hpp"
+#include "base/frame_path.hpp"
 #include "base/log.hpp"
 #include "import/file_access.hpp"
 #include "import/import_in_worker.hpp"
@@ -22,7 +23,12 @@ Scene import_in_process(const PluginRegistry& plugins, const std::vector<std::st
 Scene import_scene(const PluginRegistry& plugins, const std::vector<std::string>& files, const ImportOptions& options,
                    Progress& progress) {
     if (files.empty()) throw Error(Exit::usage, "no scene file given");
-    for (const std::string& file : files) check_model_file(file);
+    for (const std::string& file : files) {
+        const std::string first = first_frame(file);
+        if (first.empty())
+            throw Error(Exit::import_failed, file + ": no file has such a name; # stands for the digits of a frame's number");
+        check_model_file(first);
+    }
     Scene scene = options.in_process ? import_in_process(plugins, files, options, progress)
                                      : import_in_worker(plugins, files, options, progress);
     for (ShapeKind& kind : scene.shape_kinds) {

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/error.hpp"
+#include "base/frame_path.hpp"
 #include "base/read_file.hpp"
 #include "import/mesh_copy.hpp"
 #include "import/scene_sink.hpp"
@@ -66,9 +67,10 @@ void SceneBuilder::warn(const std::string& file, const std::string& text) {
 
 void SceneBuilder::add_root(const std::string& path) {
     std::error_code error;
-    const fs::path canonical = fs::canonical(path, error);
+    const std::string file = first_frame(path);
+    const fs::path canonical = fs::canonical(file, error);
     if (error) fail(path, "cannot be read: " + error.message());
-    const FileContent& content = content_of(path, canonical.string());
+    const FileContent& content = content_or_sequence(path, file, canonical.string());
     place(path, content, {}, world_);
     const bool hollow = std::all_of(content.instances.begin(), content.instances.end(),
                                     [&](const Instance& i) { return scene_.meshes[i.mesh].triangle_count == 0; });
@@ -131,10 +133,48 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     return *(files_[canonical] = std::move(content));
 }
 
+// `file` is the path itself, or the first file that a path like walk_####.obj stands for. All its files are one clip then.
+const FileContent& SceneBuilder::content_or_sequence(const std::string& path, const std::string& file,
+                                                     const std::string& canonical) {
+    if (file == path) return content_of(file, canonical);
+    constexpr double kFps = 24;
+    const std::string pattern = (fs::path(canonical).parent_path() / fs::path(path).filename()).string();
+    const auto known = files_.find(pattern);
+    if (known != files_.end()) return *known->second;
+    FileSequence sequence;
+    sequence.pattern = pattern;
+    sequence.fps = kFps;
+    sequence.first_mesh = static_cast<rt_u32>(scene_.meshes.size());
+    sequence.first_number = static_cast<rt_u32>(scene_.motion.sequence_numbers.size());
+    // Under the pattern's name: the same file placed by its own name is another mesh, which rests.
+    content_of(file, pattern);
+    FileContent& content = *files_[pattern];
+    for (const int number : frame_numbers(pattern)) scene_.motion.sequence_numbers.push_back(static_cast<rt_u32>(number));
+    sequence.mesh_count = static_cast<rt_u32>(scene_.meshes.size()) - sequence.first_mesh;
+    sequence.number_count = static_cast<rt_u32>(scene_.motion.sequence_numbers.size()) - sequence.first_number;
+    Clip clip;
+    clip.name = file_name(pattern);
+    clip.layer_count = 1;
+    clip.first_layer = static_cast<rt_u32>(content.layers.size());
+    clip.begin_s = scene_.motion.sequence_numbers[sequence.first_number] / kFps;
+    clip.end_s = scene_.motion.sequence_numbers.back() / kFps;
+    clip.fps = kFps;
+    content.layers.push_back({RT_LAYER_REPLACES, 0, 1});
+    content.clips.push_back(std::move(clip));
+    content.rig_count = std::max<rt_u32>(content.rig_count, 1);
+    content.deforms = true;
+    scene_.motion.sequences.push_back(std::move(sequence));
+    return content;
+}
+
 std::string SceneBuilder::include(const std::string& from, const std::string& path, const Placement& placement,
                                   FileContent& into) {
     const std::string what = "cannot load '" + path + "': ";
-    const FileAccess::Found found = access_.find(from, path);
+    // A path like walk_####.obj stands for the files beside the one that names it.
+    const fs::path pattern = fs::path(from).parent_path() / path;
+    const std::string frame = first_frame(pattern.string());
+    const bool is_sequence = !frame.empty() && frame != pattern.string();
+    const FileAccess::Found found = access_.find(from, is_sequence ? fs::absolute(frame).string() : path);
     if (found.path.empty()) return what + found.why;
     if (std::find(open_.begin(), open_.end(), found.path) != open_.end()) {
         std::string cycle;
@@ -145,13 +185,14 @@ std::string SceneBuilder::include(const std::string& from, const std::string& pa
     if (open_.size() >= kMaxDepth) return what + "files load each other more than " + std::to_string(kMaxDepth) + " deep";
     // Show the path as the author wrote it: the file's own relative paths start there. If a search path was needed, show the
     // path that was found.
-    const fs::path beside = fs::path(from).parent_path() / path;
+    const fs::path beside = is_sequence ? fs::path(frame) : pattern;
     std::error_code error;
     const std::string shown = fs::equivalent(beside, found.path, error) ? beside.string() : found.path;
     const size_t depth = open_.size();
     try {
         check_model_file(shown);
-        const FileContent& content = content_of(shown, found.path);
+        const FileContent& content =
+            is_sequence ? content_or_sequence(pattern.string(), frame, found.path) : content_of(shown, found.path);
         placed_ += content.instances.size() + content.spheres.size() + content.planes.size() + content.polygons.size();
         for (const Shape& shape : content.shapes) placed_ += shape.part_count;
         if (placed_ > kMaxPlaced)

@@ -53,6 +53,7 @@ class SceneBuilder {
 
  private:
     const FileContent& content_of(const std::string& path, const std::string& canonical);
+    const FileContent& content_or_sequence(const std::string& path, const std::string& file, const std::string& canonical);
     void place(const std::string& from, const FileContent& content, const Placement& placement, FileContent& into);
     void take_motion();
 

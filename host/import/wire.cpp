@@ -19,7 +19,7 @@ namespace clarity::import {
 namespace {
 
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
-constexpr uint32_t kSectionCount = 43;
+constexpr uint32_t kSectionCount = 45;
 constexpr uint64_t kPieceAlignment = 64;
 constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
 
@@ -64,6 +64,10 @@ struct WireClip {
     uint32_t name_bytes, rig, first_layer, layer_count;
     double begin_s, end_s, fps;
 };
+struct WireSequence {
+    uint32_t name_bytes, first_mesh, mesh_count, first_number, number_count, pad;
+    double fps;
+};
 struct WireMorph {
     uint32_t name_bytes, mesh, first_target, target_count;
     double weight;
@@ -80,6 +84,7 @@ struct Converted {
     std::vector<WireNode> nodes;
     std::vector<WireClip> clips;
     std::vector<WireMorph> morphs;
+    std::vector<WireSequence> sequences;
     std::vector<uint32_t> shape_kinds, warnings;  // length of each text in `names`, in bytes
     std::vector<char> names;
 };
@@ -94,7 +99,7 @@ void visit(S& s, C& c, Visitor&& v) {
     auto& m = s.motion;
     v(m.layers), v(m.channels), v(m.key_times), v(m.key_values), v(m.key_handles), v(m.key_spans), v(m.skins), v(m.bones);
     v(m.weights), v(m.shares), v(m.morph_targets), v(m.morph_vertices), v(m.morph_positions), v(m.morph_normals), v(m.frames);
-    v(m.frame_times), v(m.frame_positions), v(c.warnings), v(c.names);
+    v(m.frame_times), v(m.frame_positions), v(m.sequence_numbers), v(c.sequences), v(c.warnings), v(c.names);
 }
 
 Converted convert(const Scene& s) {
@@ -119,6 +124,8 @@ Converted convert(const Scene& s) {
     for (const Clip& k : s.motion.clips)
         c.clips.push_back({name(k.name), k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps});
     for (const Morph& m : s.motion.morphs) c.morphs.push_back({name(m.name), m.mesh, m.first_target, m.target_count, m.weight});
+    for (const FileSequence& q : s.motion.sequences)
+        c.sequences.push_back({name(q.pattern), q.first_mesh, q.mesh_count, q.first_number, q.number_count, 0, q.fps});
     for (const std::string& warning : s.warnings) c.warnings.push_back(name(warning));
     return c;
 }
@@ -160,6 +167,8 @@ bool convert_back(const Converted& c, Scene& s) {
         s.motion.clips.push_back({name(k.name_bytes), k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps});
     for (const WireMorph& m : c.morphs)
         s.motion.morphs.push_back({name(m.name_bytes), m.mesh, m.first_target, m.target_count, m.weight});
+    for (const WireSequence& q : c.sequences)
+        s.motion.sequences.push_back({name(q.name_bytes), q.first_mesh, q.mesh_count, q.first_number, q.number_count, q.fps});
     for (const uint32_t bytes : c.warnings) s.warnings.push_back(name(bytes));
     return good && at == c.names.size();
 }

@@ -10,6 +10,7 @@
 #include <new>
 
 #include "base/error.hpp"
+#include "base/frame_path.hpp"
 #include "base/log.hpp"
 #include "import/import.hpp"
 #include "import/scene_builder.hpp"
@@ -79,7 +80,7 @@ std::string import_files(const Arguments& arguments, ImportProgress& progress) {
     const ImporterParameters parameters = parse_importer_choices(plugins, arguments.importers);
     // A file that the user named may be a link to another folder. Only the target itself may be read, not the files beside it.
     std::vector<std::string> named;
-    for (const std::string& file : arguments.files) named.push_back(std::filesystem::canonical(file).string());
+    for (const std::string& file : arguments.files) named.push_back(std::filesystem::canonical(first_frame(file)).string());
     for (const std::string& note : enter_sandbox(worker::WorkerKind::parser, access.folders(), named, arguments.limits)) {
         log(LogLevel::debug, "import worker: " + note);
     }

@@ -30,8 +30,12 @@ std::string ImportCase::file(const std::string& name, const std::string& text) c
 }
 
 Scene ImportCase::import(const std::vector<std::string>& files) {
+    return import_scene(plugins(), files, options_, progress_);
+}
+
+const PluginRegistry& ImportCase::plugins() {
     static const PluginRegistry plugins = PluginRegistry::of({CLARITY_TEST_IMPORTER});
-    return import_scene(plugins, files, options_, progress_);
+    return plugins;
 }
 
 std::string ImportCase::failure(const std::vector<std::string>& files) {

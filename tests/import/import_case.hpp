@@ -22,6 +22,7 @@ class ImportCase : public ::testing::Test {
     std::string file(const std::string& name, const std::string& text) const;
     std::string path(const std::string& name) const { return folder_ + "/" + name; }
 
+    static const PluginRegistry& plugins();  // with the importer of tests
     Scene import(const std::vector<std::string>& files);
     Scene import_text(const std::string& text) { return import({file("case.cltest", text)}); }
     // The message of the Error(import_failed) which the import must throw. If it throws none, the test fails and the result is

@@ -1,4 +1,5 @@
 // What importers deliver of motion, good and bad, with both kinds of import: in this process and in the worker.
+#include "import/sequence_reader.hpp"
 #include "import_case.hpp"
 #include "scene/motion/pose.hpp"
 
@@ -45,6 +46,49 @@ TEST_P(MotionSink, a_file_that_moves_can_be_placed_twice) {
     EXPECT_EQ(scene.motion.skins.size(), 1u);
     EXPECT_NEAR(corner(scene, 0, 2, 0)[0], 5, 1e-4);
     EXPECT_NEAR(corner(scene, 0, 2, 1)[0], 110, 1e-4) << "twice as large, at 100";
+}
+
+// Files 2, 4 and 8 of a sequence: at n / 24 seconds each looks as it is, and in between vertices move straight.
+TEST_P(MotionSink, numbered_files_are_a_clip) {
+    for (const int number : {2, 4, 8}) {
+        const std::string x = std::to_string(number);
+        file("walk_0" + x + ".cltest", "face " + x + " 0 9 0 9 1");
+    }
+    const Scene scene = import({path("walk_##.cltest")});
+    const std::vector<ClipInfo> infos = clips(scene);
+    ASSERT_EQ(infos.size(), 1u);
+    EXPECT_EQ(infos[0].name, "walk_##.cltest");
+    EXPECT_NEAR(infos[0].begin_s, 2 / 24.0, 1e-12);
+    EXPECT_NEAR(infos[0].end_s, 8 / 24.0, 1e-12);
+    SequenceReader reader(plugins(), options_, progress_);
+    const auto x_at = [&](double number) {
+        const Scene at = posed(scene, evaluate(scene, "", number / 24, std::ref(reader)));
+        return at.positions.at(0);
+    };
+    EXPECT_NEAR(x_at(2), 2, 1e-5);
+    EXPECT_NEAR(x_at(3), 3, 1e-5);
+    EXPECT_NEAR(x_at(5), 5, 1e-5);
+    EXPECT_NEAR(x_at(99), 8, 1e-5);
+    EXPECT_NEAR(x_at(-1), 2, 1e-5);
+    file("walk_08.cltest", "face 0 0 1 0 1 1 0 1");
+    SequenceReader again(plugins(), options_, progress_);
+    try {
+        evaluate(scene, "", 8 / 24.0, std::ref(again));
+        FAIL();
+    } catch (const Error& e) {
+        EXPECT_TRUE(contains(e.what(), "walk_08.cltest: has 4 vertices, but the first file of the sequence has 3")) << e.what();
+    }
+    EXPECT_TRUE(contains(failure({path("run_##.cltest")}), "no file has such a name"));
+}
+
+// A text file may load a sequence, too.
+TEST_P(MotionSink, a_sequence_may_be_loaded) {
+    file("walk_1.cltest", "face 1 0 9 0 9 1");
+    file("walk_2.cltest", "face 2 0 9 0 9 1");
+    const Scene scene = import_text("load walk_#.cltest 1 100");
+    SequenceReader reader(plugins(), options_, progress_);
+    const Scene at = posed(scene, evaluate(scene, "", 2 / 24.0, std::ref(reader)));
+    EXPECT_NEAR(transform_point(at.instances.at(0).world_from_object, at.positions.data())[0], 102, 1e-4);
 }
 
 TEST_P(MotionSink, bugs_of_plugins_are_refused) {

@@ -201,16 +201,4 @@ void check_output_path(const std::string& path) {
     check_writable(path);
 }
 
-std::string frame_path(const std::string& pattern, int frame) {
-    const size_t last = pattern.rfind('#');
-    const size_t slash = pattern.rfind('/');
-    if (last == std::string::npos || (slash != std::string::npos && last < slash)) return pattern;
-    size_t first = last;
-    while (first > 0 && pattern[first - 1] == '#') --first;
-    std::string number = std::to_string(frame);
-    const size_t width = last - first + 1;
-    if (number.size() < width) number.insert(frame < 0 ? 1 : 0, width - number.size(), '0');
-    return pattern.substr(0, first) + number + pattern.substr(last + 1);
-}
-
 }  // namespace clarity

@@ -25,7 +25,5 @@ void write_image(const std::string& path, const FloatImage& values, const ByteIm
 bool writes_display(const std::string& path);
 // Throws Error(usage) if the ending is unknown or the folder is missing or not writable. Call it before any work.
 void check_output_path(const std::string& path);
-// Inserts the frame's number: "out_####.png", 12 -> "out_0012.png".
-std::string frame_path(const std::string& pattern, int frame);
 
 }  // namespace clarity

@@ -185,9 +185,23 @@ void apply_skin(const Scene& scene, const Deformers& deformers, const Skin& skin
     });
 }
 
-// Normals of vertices whose positions alone are known: the mean of those of the triangles around, weighted by area. Vertices
-// that had none at rest keep none.
-void renew_normals(const Scene& scene, const Mesh& mesh, PosedMesh& out) {
+}  // namespace
+
+PosedMesh at_rest(const Scene& scene, rt_u32 index) {
+    const Mesh& mesh = scene.meshes[index];
+    PosedMesh out;
+    out.mesh = index;
+    const auto range = [&](const std::vector<float>& values) {
+        const auto first = values.begin() + 3 * static_cast<std::ptrdiff_t>(mesh.first_vertex);
+        return std::vector<float>(first, first + 3 * static_cast<std::ptrdiff_t>(mesh.vertex_count));
+    };
+    out.positions = range(scene.positions);
+    if (!scene.normals.empty()) out.normals = range(scene.normals);
+    return out;
+}
+
+void renew_normals(const Scene& scene, PosedMesh& out) {
+    const Mesh& mesh = scene.meshes[out.mesh];
     std::vector<Vec> sums(mesh.vertex_count, Vec{});
     const auto position = [&](rt_u32 v) {
         return Vec{out.positions[3 * size_t(v)], out.positions[3 * size_t(v) + 1], out.positions[3 * size_t(v) + 2]};
@@ -207,24 +221,14 @@ void renew_normals(const Scene& scene, const Mesh& mesh, PosedMesh& out) {
     }
 }
 
-}  // namespace
-
 std::vector<PosedMesh> deform(const Scene& scene, const Deformers& deformers) {
     const Motion& motion = scene.motion;
     std::vector<PosedMesh> meshes;
     for (const auto& [index, parts] : parts_by_mesh(motion)) {
-        const Mesh& mesh = scene.meshes[index];
-        PosedMesh out;
-        out.mesh = index;
-        const auto range = [&](const std::vector<float>& values) {
-            const auto first = values.begin() + 3 * static_cast<std::ptrdiff_t>(mesh.first_vertex);
-            return std::vector<float>(first, first + 3 * static_cast<std::ptrdiff_t>(mesh.vertex_count));
-        };
-        out.positions = range(scene.positions);
-        if (!scene.normals.empty()) out.normals = range(scene.normals);
+        PosedMesh out = at_rest(scene, index);
         if (parts.frames) {
             take_frame(motion, *parts.frames, deformers.time_s, out.positions);
-            if (!out.normals.empty()) renew_normals(scene, mesh, out);
+            if (!out.normals.empty()) renew_normals(scene, out);
         }
         for (const rt_u32 morph : parts.morphs) add_morph(motion, motion.morphs[morph], deformers.morph_weights[morph], out);
         if (parts.skin) apply_skin(scene, deformers, *parts.skin, out);

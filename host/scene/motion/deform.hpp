@@ -14,6 +14,12 @@ struct Deformers {
     double time_s = 0;                  // for vertex frames
 };
 
+// A mesh as the scene has it.
+PosedMesh at_rest(const Scene& scene, rt_u32 mesh);
+// Computes normals from positions: the mean of those of the triangles around a vertex, weighted by area. Vertices that have
+// none at rest keep none.
+void renew_normals(const Scene& scene, PosedMesh& mesh);
+
 // The meshes of a scene that have frames, morphs or a skin.
 std::vector<PosedMesh> deform(const Scene& scene, const Deformers& deformers);
 

@@ -64,6 +64,14 @@ struct VertexFrames {
     uint64_t first_position = 0;               // in frame_positions: 3 for each vertex of each frame
 };
 
+// Numbered files, each with all vertices of the same meshes at another time. They are read when a pose needs them.
+struct FileSequence {
+    std::string pattern;  // absolute, with a run of #: see base/frame_path.hpp
+    rt_u32 first_mesh = 0, mesh_count = 0;
+    rt_u32 first_number = 0, number_count = 0;  // in sequence_numbers
+    double fps = 24;                            // file n is at n / fps
+};
+
 struct Motion {
     std::vector<Node> nodes;  // parents before their children
     std::vector<Clip> clips;  // of each rig in the order of its file
@@ -82,8 +90,10 @@ struct Motion {
     std::vector<VertexFrames> frames;  // of each mesh one at most
     std::vector<double> frame_times;
     std::vector<float> frame_positions;
+    std::vector<FileSequence> sequences;
+    std::vector<rt_u32> sequence_numbers;
 
-    bool empty() const { return nodes.empty() && morphs.empty() && frames.empty(); }
+    bool empty() const { return nodes.empty() && morphs.empty() && frames.empty() && sequences.empty(); }
 };
 
 }  // namespace clarity

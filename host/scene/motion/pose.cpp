@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
+#include "scene/motion/file_sequence.hpp"
 
 namespace clarity {
 namespace {
@@ -96,7 +97,7 @@ std::vector<ClipInfo> clips(const Scene& scene) {
     return infos;
 }
 
-Pose evaluate(const Scene& scene, const std::string& clip, double time_s) {
+Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const FrameVertices& read) {
     const Motion& motion = scene.motion;
     Pose pose;
     pose.cameras = scene.cameras;
@@ -113,6 +114,7 @@ Pose evaluate(const Scene& scene, const std::string& clip, double time_s) {
     pose_cameras(deformers.nodes, pose.cameras);
     pose_lights(deformers.nodes, pose.lights);
     pose.meshes = deform(scene, deformers);
+    if (read) add_sequences(scene, time_s, read, pose.meshes);
     return pose;
 }
 

@@ -1,5 +1,6 @@
 // pose.hpp -- a scene at one time of one clip.
 #pragma once
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,9 +37,14 @@ struct ClipInfo {
 // The clips of a scene, in the order of its files. Files that lack a clip of the name play their first one.
 std::vector<ClipInfo> clips(const Scene& scene);
 
+// Reads the vertices of one file of a FileSequence: 3 numbers for each vertex of all its meshes, in their order. May throw
+// Error.
+using FrameVertices = std::function<std::vector<float>(const std::string& file)>;
+
 // The pose of a clip at a time in seconds of its own clock. clip: a name; empty: the first one. Skins act also if there is no
-// clip. The result depends on the arguments alone. Throws Error(usage) if the scene has no clip of this name.
-Pose evaluate(const Scene& scene, const std::string& clip, double time_s);
+// clip. The result depends on the arguments, and the files of sequences, alone. Without `read`, sequences stay at rest. Throws
+// Error(usage) if the scene has no clip of this name, and Error(import_failed) if a file of a sequence has other meshes.
+Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const FrameVertices& read = {});
 
 // The scene in a pose. Its arrays keep their order; meshes may follow where a transform flattens an instance. The result has no
 // motion.

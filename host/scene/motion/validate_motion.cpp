@@ -137,6 +137,17 @@ std::string check_frames(const Scene& s) {
     return {};
 }
 
+std::string check_sequences(const Scene& s) {
+    for (size_t i = 0; i < s.motion.sequences.size(); ++i) {
+        const FileSequence& q = s.motion.sequences[i];
+        if (!within(q.first_mesh, q.mesh_count, s.meshes.size())) return text("sequence", i, "meshes past the last one");
+        if (q.number_count == 0 || !within(q.first_number, q.number_count, s.motion.sequence_numbers.size()))
+            return text("sequence", i, "files past the last one");
+        if (!(q.fps > 0 && q.fps <= 1e6)) return text("sequence", i, "its rate is no positive number");
+    }
+    return {};
+}
+
 std::string check_hung(const Scene& s) {
     const auto bad = [&](rt_u32 node) { return node != RT_NONE && node >= s.motion.nodes.size(); };
     for (size_t i = 0; i < s.instances.size(); ++i) {
@@ -161,7 +172,7 @@ std::string check_hung(const Scene& s) {
 
 std::string validate_motion(const Scene& scene) {
     std::string why = check_nodes(scene.motion);
-    for (const auto check : {check_channels, check_skins, check_morphs, check_frames, check_hung})
+    for (const auto check : {check_channels, check_skins, check_morphs, check_frames, check_sequences, check_hung})
         if (why.empty()) why = check(scene);
     return why;
 }

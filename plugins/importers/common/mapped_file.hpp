@@ -36,6 +36,10 @@ class MappedFile {
     MappedFile& operator=(const MappedFile&) = delete;
 
     std::string_view bytes() const { return {data_, size_}; }
+    // Gives back the memory of what was read so far. Bytes that are asked for again are read again.
+    void forget() const {
+        if (data_) ::madvise(const_cast<char*>(data_), size_, MADV_DONTNEED);
+    }
 
  private:
     const char* data_ = nullptr;

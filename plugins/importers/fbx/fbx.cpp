@@ -24,7 +24,10 @@ rt_scene_info info_of(const Context& context) {
     return info;
 }
 
-int32_t import_document(const rt_host* host, const Document& document, const std::string& path, const rt_scene_sink* sink) {
+int32_t load_file(const rt_host* host, const char* given_path, const double*, const rt_scene_sink* sink) {
+    const std::string path = given_path;
+    const importers::MappedFile file(path);
+    const Document document(file.bytes());
     const int version = document.version();
     if (version > 0 && version < kOldestVersion)
         throw Broken("the file says that it has FBX version " + std::to_string(version) + "; expected 3000 to 7700");
@@ -35,6 +38,7 @@ int32_t import_document(const rt_host* host, const Document& document, const std
     const std::string name = path.substr(folder.size());
     const Context context = {host,
                              *sink,
+                             file,
                              document,
                              objects,
                              templates,
@@ -55,12 +59,6 @@ int32_t import_document(const rt_host* host, const Document& document, const std
     add_deformers(context, nodes, meshes, morphs);
     add_clips(context, nodes, morphs);
     return RT_OK;
-}
-
-int32_t load_file(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
-    const importers::MappedFile file(path);
-    const Document document(file.bytes());
-    return import_document(host, document, path, sink);
 }
 
 // How certain the first bytes are those of an FBX file.

@@ -26,7 +26,7 @@ Layer::Layer(const Document& document, const Node& geometry, const char* element
                : mapping == "AllSame"                            ? all_same
                                                                  : none;
     if (mapping_ == none) guess(counts);
-    if (values_.size() < width_) mapping_ = none;
+    if (mapping_ == none || values_.size() < width_) *this = Layer();
 }
 
 // Tells the mapping by the count of elements.

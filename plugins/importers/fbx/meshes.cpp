@@ -112,9 +112,7 @@ void read_layers(const Document& document, const Node& geometry, MeshData& mesh)
     VertexCopies copies(mesh, !normals.empty(), !uvs.empty());
     const auto or_zero = [](const float* values) { return values ? values : zeros; };
     for_corners(mesh, [&](const Corner& c) {
-        mesh.indices[c.corner] =
-            copies.vertex(static_cast<rt_u32>(c.vertex), or_zero(normals.empty() ? nullptr : normals.at(c)),
-                          or_zero(uvs.empty() ? nullptr : uvs.at(c)));
+        mesh.indices[c.corner] = copies.vertex(static_cast<rt_u32>(c.vertex), or_zero(normals.at(c)), or_zero(uvs.at(c)));
     });
 }
 
@@ -239,6 +237,7 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
             data[i - first] = MeshData();
         }
         first = end;
+        context.file.forget();
         rt::progress(context.host, 0.1f + 0.8f * static_cast<float>(first) / static_cast<float>(wanted.size()));
     }
     for (const auto& [node, mesh] : shown) show(context, nodes[node], meshes[mesh].id);

@@ -11,37 +11,15 @@ namespace {
 // Binary files write "Cube", 0, 1, "Model". Source: Blender developer blog.
 constexpr std::string_view kSeparator{"\0\1", 2};
 
-// Replaces bytes that are no UTF-8 (motionbuilder_cube_7700_binary has some), which JSON cannot hold, and control characters.
-std::string valid_utf8(const std::string& text) {
-    std::string out;
-    for (size_t i = 0; i < text.size();) {
-        const unsigned char c = static_cast<unsigned char>(text[i]);
-        const size_t length = c < 0x80                ? 1
-                              : c >= 0xC2 && c < 0xE0 ? 2
-                              : c >= 0xE0 && c < 0xF0 ? 3
-                              : c >= 0xF0 && c < 0xF5 ? 4
-                                                      : 0;
-        bool good = length > 0 && i + length <= text.size();
-        for (size_t k = 1; good && k < length; ++k) good = (static_cast<unsigned char>(text[i + k]) & 0xC0) == 0x80;
-        if (good && length == 3)
-            good = !(c == 0xE0 && static_cast<unsigned char>(text[i + 1]) < 0xA0) &&
-                   !(c == 0xED && static_cast<unsigned char>(text[i + 1]) > 0x9F);
-        if (good && length == 4)
-            good = !(c == 0xF0 && static_cast<unsigned char>(text[i + 1]) < 0x90) &&
-                   !(c == 0xF4 && static_cast<unsigned char>(text[i + 1]) > 0x8F);
-        out += c < 0x20 || c == 0x7F ? " " : good ? text.substr(i, length) : "?";
-        i += good ? length : 1;
-    }
-    return out;
-}
-
 }  // namespace
 
 std::string plain_name(const Document& document, std::string_view name) {
-    if (document.is_binary()) return valid_utf8(std::string(name.substr(0, name.find(kSeparator))));
     const size_t colons = name.find("::");
-    if (colons != name.npos) name.remove_prefix(colons + 2);
-    return valid_utf8(without_entities(name));
+    if (!document.is_binary() && colons != name.npos) name.remove_prefix(colons + 2);
+    std::string out = document.is_binary() ? std::string(name.substr(0, name.find(kSeparator))) : without_entities(name);
+    std::replace_if(
+        out.begin(), out.end(), [](char c) { return (c >= 0 && c < ' ') || c == 0x7F; }, ' ');
+    return out;
 }
 
 Objects::Objects(const Document& document) : document_(document) {

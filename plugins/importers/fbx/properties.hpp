@@ -1,13 +1,13 @@
 // properties.hpp -- the properties of an object: its own, else those of its class's template.
 #pragma once
-#include <array>
 #include <unordered_map>
 
+#include "../common/matrix.hpp"
 #include "objects.hpp"
 
 namespace fbx_import {
 
-using Vec3 = std::array<double, 3>;
+using namespace importers;
 
 class Properties {
  public:

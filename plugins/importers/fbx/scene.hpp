@@ -2,6 +2,7 @@
 #pragma once
 #include <map>
 
+#include "../common/mapped_file.hpp"
 #include "rt_plugin.hpp"
 #include "transform.hpp"
 
@@ -10,6 +11,7 @@ namespace fbx_import {
 struct Context {
     const rt_host* host;
     const rt_scene_sink& sink;
+    const importers::MappedFile& file;
     const Document& document;
     const Objects& objects;
     const Templates& templates;

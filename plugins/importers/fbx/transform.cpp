@@ -5,50 +5,6 @@
 
 namespace fbx_import {
 
-Transform multiply(const Transform& a, const Transform& b) {
-    Transform m{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column) {
-            double sum = column == 3 ? a[4 * row + 3] : 0;
-            for (int k = 0; k < 3; ++k) sum += a[4 * row + k] * b[4 * k + column];
-            m[4 * row + column] = sum;
-        }
-    }
-    return m;
-}
-
-Transform transposed(const Transform& m) {
-    return {m[0], m[4], m[8], 0, m[1], m[5], m[9], 0, m[2], m[6], m[10], 0};
-}
-
-Transform translation(const Vec3& by) {
-    return {1, 0, 0, by[0], 0, 1, 0, by[1], 0, 0, 1, by[2]};
-}
-
-Transform scaling(const Vec3& by) {
-    return {by[0], 0, 0, 0, 0, by[1], 0, 0, 0, 0, by[2], 0};
-}
-
-Transform rotation(const Vec3& degrees, rt_u32 order) {
-    // The axes in the order in which they turn, of RT_ROTATE_XYZ and its successors.
-    static constexpr int axes[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 2, 0}, {1, 0, 2}, {2, 0, 1}, {2, 1, 0}};
-    Transform out = kIdentity;
-    for (const int axis : axes[order < 6 ? order : 0]) {
-        const double angle = std::fmod(degrees[axis], 360.0) * 0.017453292519943295, c = std::cos(angle), s = std::sin(angle);
-        const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-        Transform turn = kIdentity;
-        turn[5 * u] = turn[5 * v] = c;
-        turn[4 * u + v] = -s;
-        turn[4 * v + u] = s;
-        out = multiply(turn, out);
-    }
-    return out;
-}
-
-bool is_finite(const Transform& m) {
-    return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(static_cast<float>(x)); });
-}
-
 bool matrix_of(const std::vector<double>& numbers, Transform& out) {
     if (numbers.size() < 16) return false;
     for (int row = 0; row < 3; ++row) {

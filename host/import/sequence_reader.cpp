@@ -1,0 +1,19 @@
+#include "import/sequence_reader.hpp"
+
+namespace clarity::import {
+
+SequenceReader::SequenceReader(const PluginRegistry& plugins, ImportOptions options, Progress& progress)
+    : plugins_(plugins), options_(std::move(options)), progress_(progress) {
+    options_.log_warnings = false;  // the first file of the sequence has said them
+}
+
+std::vector<float> SequenceReader::operator()(const std::string& file) {
+    for (const auto& [known, positions] : kept_)
+        if (known == file) return positions;
+    constexpr size_t kMostKept = 2;
+    while (kept_.size() >= kMostKept) kept_.pop_front();
+    kept_.emplace_back(file, import_scene(plugins_, {file}, options_, progress_).positions);
+    return kept_.back().second;
+}
+
+}  // namespace clarity::import
