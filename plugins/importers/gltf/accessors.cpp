@@ -230,7 +230,7 @@ std::string_view Accessors::buffer(size_t index) {
         try {
             out.file = std::make_unique<MappedFile>(document_.folder() + name);
         } catch (const Error& error) {
-            throw Error(uri.path() + ": " + in_quotes(name) + ": " + error.what() + "; copy it beside the scene");
+            uri.refuse("a file in the scene's folder, or data; " + std::string(error.what()));
         }
         out.bytes = out.file->bytes();
     }

@@ -198,7 +198,9 @@ TEST_F(Gltf, ReadsChunksAndFilesBesideTheScene) {
                        std::string("buffers[0].uri: found '") + uri + "', expected the name of a file in the scene's folder");
     }
     text["buffers"][0]["uri"] = "none.bin";
-    expect_refused(text.dump(), "buffers[0].uri: 'none.bin': cannot open the file: No such file");
+    expect_refused(
+        text.dump(),
+        "buffers[0].uri: found 'none.bin', expected a file in the scene's folder, or data; cannot open the file: No such file");
 }
 
 TEST_F(Gltf, NamesTheLineOfBrokenJson) {
