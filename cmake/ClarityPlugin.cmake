@@ -30,6 +30,9 @@ function(clarity_add_plugin kind id)
     set(libraries ${CMAKE_BINARY_DIR}/lib/clarity/plugins/${folder})
   endif()
   add_library(${target} MODULE ${sources})
+  if(kind STREQUAL importer AND COMMAND clarity_unity) # builders are measured, so each of their files is compiled as it stands
+    clarity_unity(${target} ${sources})
+  endif()
   set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${id} C_VISIBILITY_PRESET hidden CXX_VISIBILITY_PRESET hidden
     LIBRARY_OUTPUT_DIRECTORY ${libraries} LINK_DEPENDS ${CLARITY_PLUGIN_EXPORTS})
   target_compile_features(${target} PRIVATE cxx_std_17)

@@ -318,6 +318,11 @@ constexpr rt_instance_desc instance(rt_u32 mesh, const char* name = nullptr) {
     return {sizeof(rt_instance_desc), name, mesh, RT_NONE, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, 0, 0};
 }
 
+// Tells the user of something that was left out: `info` and the window show it.
+inline void warn(const rt_scene_sink& sink, const std::string& text) {
+    sink.warn(sink.ctx, text.c_str());
+}
+
 // Returns an id that the sink gave, or throws Stopped if it gave none: rt::id(sink->mesh(sink->ctx, &mesh)). Do not use it for
 // textures: a texture may be missing without an error.
 inline rt_u32 id(rt_u32 answer) {

@@ -89,7 +89,8 @@ size_t decode_base64(std::string_view text, std::string& out) {
 
 // `count` elements in a view.
 struct Accessors::Range {
-    const Component* component = nullptr;
+    uint64_t component_type = 0;  // as the file codes it
+    size_t component_bytes = 0;
     size_t components = 0;
     uint64_t count = 0;
     size_t stride = 0;
@@ -99,7 +100,7 @@ struct Accessors::Range {
     template <class T>
     void copy(T* out) const {
         if (count == 0 || !first) return;
-        switch (component->code) {
+        switch (component_type) {
             case 5120:
                 return convert<int8_t>(first, stride, components, count, is_normalized, out);
             case 5121:
@@ -140,7 +141,9 @@ Elements<T> Accessors::read(const Value& reference, std::string_view types, uint
     const Value accessor = accessors_[reference.index(accessors_)];
     Range range;
     range.components = type_of(accessor, types, reference);
-    range.component = &component_of(accessor, integers_only);
+    const Component& component = component_of(accessor, integers_only);
+    range.component_type = component.code;
+    range.component_bytes = component.bytes;
     range.count = accessor["count"].count();
     range.is_normalized = accessor.has("normalized") && accessor["normalized"].json() == true;
     if (count != kAnyCount && range.count != count)
@@ -165,7 +168,9 @@ void Accessors::read_sparse(const Value& sparse, Range values, Elements<T>& out)
     Range places;
     places.components = 1;
     places.count = values.count;
-    places.component = &component_of(sparse["indices"], true);
+    const Component& component = component_of(sparse["indices"], true);
+    places.component_type = component.code;
+    places.component_bytes = component.bytes;
     bind(sparse["indices"], places);
     bind(sparse["values"], values);
     std::vector<uint32_t> where(places.count);
@@ -183,7 +188,7 @@ void Accessors::read_sparse(const Value& sparse, Range values, Elements<T>& out)
 void Accessors::bind(const Value& owner, Range& range) {
     const Value reference = owner["bufferView"], view = views_[reference.index(views_)];
     const std::string_view bytes = this->view(reference);
-    const uint64_t offset = owner.count("byteOffset", 0), element = range.component->bytes * range.components;
+    const uint64_t offset = owner.count("byteOffset", 0), element = range.component_bytes * range.components;
     const uint64_t stride = view.count("byteStride", element);
     if (stride < element || stride > 65536)
         view["byteStride"].refuse(std::to_string(element) + ", the size of an element of " + owner.path() + ", to 65536");

@@ -141,7 +141,7 @@ class Animation {
         const size_t sampler = channel["sampler"].index(samplers_);
         if (path == Path::other) {
             const std::string text = target.path() + " moves what KHR_animation_pointer names; it is left out";
-            sink_.warn(sink_.ctx, text.c_str());
+            rt::warn(sink_, text);
         }
         if (!node || path == Path::other) return;
         if (!seen_.insert({*node, path}).second)

@@ -84,7 +84,7 @@ rt_u32 Materials::add(const Value& material) {
     const bool shines = emission[0] > 0 || emission[1] > 0 || emission[2] > 0;
     if (shines && material.has("emissiveTexture")) {
         const std::string text = material.path() + " shines as a picture says (emissiveTexture); that light is left out";
-        sink_.warn(sink_.ctx, text.c_str());
+        rt::warn(sink_, text);
     } else {
         store(emission, strength, 1000, out.emission);
     }
@@ -112,7 +112,7 @@ rt_u32 Materials::texture(const Value& info) {
     if (!image) {
         // Only an extension names an image, of a kind that the host does not read (WebP, KTX).
         const std::string text = texture.path() + " has no 'source', so the material stays without it";
-        return sink_.warn(sink_.ctx, text.c_str()), RT_NONE;
+        return rt::warn(sink_, text), RT_NONE;
     }
     if (!image_ids_[*image]) image_ids_[*image] = add_image(images_[*image]);
     return *image_ids_[*image];

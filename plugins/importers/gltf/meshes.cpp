@@ -10,10 +10,6 @@ namespace {
 constexpr size_t kNone = size_t(-1);
 enum Mode : uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kStrip, kFan };
 
-void warn(const rt_scene_sink& sink, const std::string& text) {
-    sink.warn(sink.ctx, text.c_str());
-}
-
 }  // namespace
 
 struct Meshes::Geometry {
@@ -59,11 +55,11 @@ const std::vector<rt_u32>& Meshes::morphs(size_t node) const {
 }
 
 void Meshes::report() const {
-    if (copies_left_out_) warn(sink_, "copies by EXT_mesh_gpu_instancing are left out: one of each is there");
+    if (copies_left_out_) rt::warn(sink_, "copies by EXT_mesh_gpu_instancing are left out: one of each is there");
     if (triangles_ == 0) {
-        warn(sink_, "contains no polygons" + std::string(points_and_lines_ ? " (points and lines were skipped)" : ""));
+        rt::warn(sink_, "contains no polygons" + std::string(points_and_lines_ ? " (points and lines were skipped)" : ""));
     } else if (points_and_lines_ > 0) {
-        warn(sink_, "points and lines are left out: " + std::to_string(points_and_lines_) + " primitives of meshes");
+        rt::warn(sink_, "points and lines are left out: " + std::to_string(points_and_lines_) + " primitives of meshes");
     }
 }
 
@@ -174,8 +170,8 @@ void Meshes::add_faces(const Value& primitive, rt_u32 first, uint64_t count, Geo
     const uint64_t mode = primitive.count("mode", kTriangles);
     const size_t n = corners.size(), step = mode == kTriangles ? 3 : 1;
     if (mode == kTriangles && n % 3 != 0)
-        warn(sink_, primitive.path() + ": found " + std::to_string(n) +
-                        " corners, expected three for each triangle; the rest is left out");
+        rt::warn(sink_, primitive.path() + ": found " + std::to_string(n) +
+                            " corners, expected three for each triangle; the rest is left out");
     size_t added = 0, usable = 0;
     for (size_t i = 0; i + 2 < n; i += step, ++added) {
         // Specification, section 3.7.2.1: every other triangle of a strip is turned, so that all show the same side.
@@ -189,7 +185,7 @@ void Meshes::add_faces(const Value& primitive, rt_u32 first, uint64_t count, Geo
     if (!found.empty()) {
         const std::string expected = "one below " + std::to_string(count) + ", its number of vertices";
         if (usable == 0) primitive.refuse(found, expected);
-        warn(sink_, primitive.path() + ": found " + found + ", expected " + expected);
+        rt::warn(sink_, primitive.path() + ": found " + found + ", expected " + expected);
     }
     if (added > 0) g.materials.insert(g.materials.end(), added, materials_.id(primitive));
 }

@@ -21,10 +21,6 @@ std::string label(const Value& value) {
     return value.has("name") ? in_quotes(value["name"].text()) : value.path();
 }
 
-void warn(const rt_scene_sink& sink, const std::string& text) {
-    sink.warn(sink.ctx, text.c_str());
-}
-
 }  // namespace
 
 void add_cameras(const Document& document, const NodeTree& tree, const rt_scene_sink& sink) {
@@ -47,7 +43,7 @@ void add_cameras(const Document& document, const NodeTree& tree, const rt_scene_
         }
         double fov_y = camera.object("perspective").number("yfov", 0);
         if (!(fov_y > 0.001) || fov_y > 3.1) {
-            warn(sink, "the camera " + label(camera) + " has no angle of view (orthographic?): 45 degrees are used");
+            rt::warn(sink, "the camera " + label(camera) + " has no angle of view (orthographic?): 45 degrees are used");
             fov_y = 0.7853982;
         }
         out.fov_y_rad = static_cast<float>(fov_y);
@@ -69,7 +65,7 @@ void add_lights(const Document& document, const NodeTree& tree, const rt_host* h
         const std::string type = light["type"].text();
         if (type != "directional" && type != "point" && type != "spot")
             light["type"].refuse("'directional', 'point' or 'spot'");
-        if (type == "spot") warn(sink, "the spot light " + label(light) + " became a point light");
+        if (type == "spot") rt::warn(sink, "the spot light " + label(light) + " became a point light");
         rt_light_desc out{};
         out.struct_bytes = sizeof out;
         out.kind = type == "directional" ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT;
