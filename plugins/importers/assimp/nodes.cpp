@@ -10,21 +10,7 @@ Transform from_assimp(const aiMatrix4x4& m) {
     return {m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4};
 }
 
-enum class Part { whole, pivot, geometric, geometric_inverse };
-
 }  // namespace
-
-Transform multiply(const Transform& a, const Transform& b) {
-    Transform m{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column) {
-            double sum = column == 3 ? a[4 * row + 3] : 0;
-            for (int k = 0; k < 3; ++k) sum += a[4 * row + k] * b[4 * k + column];
-            m[4 * row + column] = sum;
-        }
-    }
-    return m;
-}
 
 std::array<double, 3> transform_vector(const Transform& m, const aiVector3D& v) {
     std::array<double, 3> r{};
@@ -36,10 +22,6 @@ std::array<double, 3> transform_point(const Transform& m, const aiVector3D& p) {
     std::array<double, 3> r = transform_vector(m, p);
     for (int row = 0; row < 3; ++row) r[row] += m[4 * row + 3];
     return r;
-}
-
-bool is_finite(const Transform& m) {
-    return std::all_of(m.begin(), m.end(), [](double x) { return std::isfinite(static_cast<float>(x)); });
 }
 
 NodeTree::NodeTree(const aiScene& scene) {

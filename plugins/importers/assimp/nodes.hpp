@@ -7,15 +7,16 @@
 #include <unordered_map>
 #include <vector>
 
+#include "../common/matrix.hpp"
+
 namespace assimp_import {
 
-// A 3x4 matrix, row-major, in double precision, so that chains of many small rotations stay exact to float precision.
-using Transform = std::array<double, 12>;
-inline constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-Transform multiply(const Transform& a, const Transform& b);  // applies b first, then a
+using importers::is_finite;
+using importers::kIdentity;
+using importers::multiply;
+using importers::Transform;
 std::array<double, 3> transform_point(const Transform& m, const aiVector3D& p);
 std::array<double, 3> transform_vector(const Transform& m, const aiVector3D& v);
-bool is_finite(const Transform& m);
 
 struct PlacedNode {
     const aiNode* node = nullptr;

@@ -9,18 +9,6 @@
 namespace gltf_import {
 namespace {
 
-Transform multiply(const Transform& a, const Transform& b) {
-    Transform m{};
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column) {
-            double sum = column == 3 ? a[4 * row + 3] : 0;
-            for (int k = 0; k < 3; ++k) sum += a[4 * row + k] * b[4 * k + column];
-            m[4 * row + column] = sum;
-        }
-    }
-    return m;
-}
-
 // What a node has: either `matrix`, or the other three. The file's matrices are column-major.
 struct Local {
     std::array<double, 3> translation, scale;

@@ -5,14 +5,15 @@
 #include <string>
 #include <vector>
 
+#include "../common/matrix.hpp"
 #include "document.hpp"
 #include "rt_plugin.h"
 
 namespace gltf_import {
 
-// A 3x4 matrix, row-major, in double precision, so that chains of many small rotations stay exact to float precision.
-using Transform = std::array<double, 12>;
-inline constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+using importers::kIdentity;
+using importers::multiply;
+using importers::Transform;
 
 // Infinite if the number is too large for a float.
 float to_float(double x);
