@@ -93,6 +93,7 @@ std::string shortened(std::string text) {
 void run(const Check& check) {
     const auto start = std::chrono::steady_clock::now();
     const Step step = [&](const std::string& what, double limit_s) {
+        worker::take_crash_signals();
         worker::send_message(
             kChannelFd, {MessageKind::running, 0, static_cast<float>(limit_s), check.name + '\n' + check.tried + '\n' + what});
     };

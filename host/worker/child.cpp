@@ -127,10 +127,7 @@ void prepare_last_words() {
     if (kHasCrashReports) return;
     const stack_t stack = {signal_stack, 0, sizeof signal_stack};
     sigaltstack(&stack, nullptr);
-    struct sigaction action {};
-    action.sa_sigaction = on_crash;
-    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
-    for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
+    take_crash_signals();
 }
 
 void send_log(LogLevel level, const std::string& text) {
@@ -178,6 +175,14 @@ bool ChannelProgress::report(float fraction) {
     }
     send_message(kChannelFd, {MessageKind::progress, 0, fraction, {}});
     return !cancelled();
+}
+
+void take_crash_signals() {
+    if (kHasCrashReports) return;
+    struct sigaction action {};
+    action.sa_sigaction = on_crash;
+    action.sa_flags = SA_SIGINFO | SA_ONSTACK;
+    for (const int signal : {SIGSEGV, SIGBUS}) sigaction(signal, &action, nullptr);
 }
 
 void name_memory(const void* begin, size_t bytes, const std::string& name) {

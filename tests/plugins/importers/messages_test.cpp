@@ -150,6 +150,9 @@ TEST_P(Messages, CanBeActedOn) {
     options.log_warnings = false;
     static const PluginRegistry plugins = PluginRegistry::discover();
     const int count = options.in_process ? CLARITY_MUTATIONS : CLARITY_MUTATIONS / 2;
+    // A file of which only faces without corners are left is sound to its importer; the host refuses it, and says what the
+    // faces lack.
+    const std::regex faceless("nothing of it can be used: \\d+ of \\d+ faces .*");
     const std::regex place("(line \\d+, column \\d+|byte \\d+|[a-zA-Z_0-9.\\[\\]]+|the top level).*: found .*, expected .*");
     const TemporaryFolder folder;
     int refused = 0;
@@ -167,7 +170,8 @@ TEST_P(Messages, CanBeActedOn) {
             expect_readable(message);
             if (seed.has_places && bytes.size() > 0) {
                 const std::string reason = message.substr(at == message.npos ? 0 : at + name.size() + 2);
-                EXPECT_TRUE(std::regex_match(reason, place)) << "without place, found or expected: " << message;
+                EXPECT_TRUE(std::regex_match(reason, place) || std::regex_match(reason, faceless))
+                    << "without place, found or expected: " << message;
             }
         }
         if (HasFailure()) {
