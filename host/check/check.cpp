@@ -13,10 +13,10 @@
 #include <nlohmann/json.hpp>
 
 #include "base/elapsed.hpp"
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
+#include "base/files/temporary_folder.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
-#include "base/temporary_folder.hpp"
 #include "check/oclgrind.hpp"
 #include "worker/child.hpp"
 #include "worker/supervisor.hpp"

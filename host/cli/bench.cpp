@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "base/error.hpp"
+#include "base/files/output_file.hpp"
 #include "base/log.hpp"
-#include "base/output_file.hpp"
 #include "bench/output/output.hpp"
 #include "bench/output/rows_file.hpp"
 #include "bench/report/report.hpp"

@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
 #include "base/printable.hpp"
 #include "check/check.hpp"
 #include "cli/commands.hpp"

@@ -17,10 +17,10 @@
 #include <vector>
 
 #include "base/error.hpp"
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
+#include "base/files/read_file.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
-#include "base/read_file.hpp"
 #include "cli/commands.hpp"
 #include "plugin/plugin_check.hpp"
 

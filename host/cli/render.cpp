@@ -12,10 +12,10 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "base/file_watch.hpp"
-#include "base/frame_path.hpp"
+#include "base/files/file_watch.hpp"
+#include "base/files/frame_path.hpp"
+#include "base/files/output_file.hpp"
 #include "base/log.hpp"
-#include "base/output_file.hpp"
 #include "cli/commands.hpp"
 #include "cli/frame_range.hpp"
 #include "cli/interrupt.hpp"

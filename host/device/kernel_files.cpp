@@ -7,9 +7,9 @@
 #include <mutex>
 
 #include "base/error.hpp"
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
+#include "base/files/read_file.hpp"
 #include "base/log.hpp"
-#include "base/read_file.hpp"
 #include "device/kernel_includes.hpp"
 
 namespace clarity {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "base/file_watch.hpp"
+#include "base/files/file_watch.hpp"
 #include "device/kernel_files.hpp"
 
 namespace clarity {

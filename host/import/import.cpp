@@ -1,11 +1,11 @@
 #include "import/import.hpp"
 
 #include "base/error.hpp"
-#include "base/frame_path.hpp"
+#include "base/files/frame_path.hpp"
 #include "base/log.hpp"
 #include "import/file_access.hpp"
 #include "import/import_in_worker.hpp"
-#include "import/scene_builder.hpp"
+#include "import/sink/scene_builder.hpp"
 
 namespace clarity::import {
 namespace {

@@ -10,10 +10,10 @@
 #include <new>
 
 #include "base/error.hpp"
-#include "base/frame_path.hpp"
+#include "base/files/frame_path.hpp"
 #include "base/log.hpp"
 #include "import/import.hpp"
-#include "import/scene_builder.hpp"
+#include "import/sink/scene_builder.hpp"
 #include "import/wire.hpp"
 #include "worker/child.hpp"
 #include "worker/sandbox.hpp"

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <set>
 
-#include "base/read_file.hpp"
+#include "base/files/read_file.hpp"
 #include "plugin/registry.hpp"
 
 namespace clarity {

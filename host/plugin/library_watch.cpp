@@ -12,10 +12,10 @@
 #include <thread>
 
 #include "base/error.hpp"
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
+#include "base/files/read_file.hpp"
+#include "base/files/temporary_folder.hpp"
 #include "base/log.hpp"
-#include "base/read_file.hpp"
-#include "base/temporary_folder.hpp"
 
 namespace clarity {
 namespace {

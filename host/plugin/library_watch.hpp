@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "base/file_watch.hpp"
+#include "base/files/file_watch.hpp"
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
 

@@ -12,7 +12,7 @@
 #include <filesystem>
 #include <set>
 
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
 #include "base/log.hpp"
 #include "base/lower.hpp"
 #include "plugin/elf_file.hpp"

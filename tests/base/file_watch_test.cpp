@@ -1,5 +1,5 @@
 // file_watch_test.cpp -- every save is one change, however it is made; a save of the same content is none.
-#include "base/file_watch.hpp"
+#include "base/files/file_watch.hpp"
 
 #include <gtest/gtest.h>
 

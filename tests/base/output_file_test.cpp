@@ -1,5 +1,5 @@
 // Files appear complete or not at all, also if the writer is killed in the middle.
-#include "base/output_file.hpp"
+#include "base/files/output_file.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

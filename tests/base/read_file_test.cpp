@@ -1,5 +1,5 @@
 // Whole files are read up to a limit. Pipes and devices, which may have no end, are refused.
-#include "base/read_file.hpp"
+#include "base/files/read_file.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <thread>
 
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
 #include "support/scratch.hpp"
 
 namespace clarity {

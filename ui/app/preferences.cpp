@@ -6,9 +6,9 @@
 #include <filesystem>
 
 #include "base/error.hpp"
+#include "base/files/output_file.hpp"
+#include "base/files/read_file.hpp"
 #include "base/log.hpp"
-#include "base/output_file.hpp"
-#include "base/read_file.hpp"
 #include "ui/app/preferences_json.hpp"
 
 namespace clarity::ui {

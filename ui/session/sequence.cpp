@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/frame_path.hpp"
+#include "base/files/frame_path.hpp"
 #include "render/film/image_io.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/session/session.hpp"

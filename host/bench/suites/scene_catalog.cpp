@@ -10,7 +10,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
 #include "bench/suites/gunzip.hpp"
 
 namespace clarity::bench {

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "base/error.hpp"
-#include "base/output_file.hpp"
+#include "base/files/output_file.hpp"
 #include "check/hits/brute_force.hpp"
 #include "check/hits/checked_scene.hpp"
 #include "check/hits/judge.hpp"

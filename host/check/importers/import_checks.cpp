@@ -10,7 +10,7 @@
 #include "base/memory_text.hpp"
 #include "base/numbers.hpp"
 #include "check/process_size.hpp"
-#include "import/scene_builder.hpp"
+#include "import/sink/scene_builder.hpp"
 
 namespace fs = std::filesystem;
 

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
+#include "base/files/output_file.hpp"
+#include "base/files/read_file.hpp"
 #include "base/lower.hpp"
-#include "base/output_file.hpp"
-#include "base/read_file.hpp"
 
 namespace fs = std::filesystem;
 

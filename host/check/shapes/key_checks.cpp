@@ -6,10 +6,10 @@
 #include <random>
 
 #include "base/error.hpp"
-#include "base/output_file.hpp"
+#include "base/files/output_file.hpp"
 #include "check/process_size.hpp"
 #include "check/shapes/shape_values.hpp"
-#include "import/scene_builder.hpp"
+#include "import/sink/scene_builder.hpp"
 
 namespace clarity::check {
 namespace {

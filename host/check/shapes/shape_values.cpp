@@ -5,7 +5,7 @@
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "import/shape_parts.hpp"
+#include "import/sink/shape_parts.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity::check {

@@ -7,7 +7,7 @@
 #include <filesystem>
 
 #include "base/error.hpp"
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
 #include "base/log.hpp"
 #include "base/printable.hpp"
 #include "plugin/known_libraries.hpp"

@@ -6,7 +6,7 @@
 #include <exception>
 
 #include "base/error.hpp"
-#include "base/output_file.hpp"
+#include "base/files/output_file.hpp"
 
 // Static, because the window links the stb library too.
 #define STB_IMAGE_WRITE_STATIC

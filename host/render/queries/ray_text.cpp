@@ -7,9 +7,9 @@
 #include <cstring>
 
 #include "base/error.hpp"
+#include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
 #include "base/printable.hpp"
-#include "base/read_file.hpp"
 
 namespace clarity {
 namespace {

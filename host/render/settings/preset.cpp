@@ -3,8 +3,8 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.hpp"
-#include "base/output_file.hpp"
-#include "base/read_file.hpp"
+#include "base/files/output_file.hpp"
+#include "base/files/read_file.hpp"
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "base/error.hpp"
-#include "base/frame_path.hpp"
+#include "base/files/frame_path.hpp"
 #include "scene/motion/deform.hpp"
 
 namespace clarity {

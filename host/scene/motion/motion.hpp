@@ -66,7 +66,7 @@ struct VertexFrames {
 
 // Numbered files, each with all vertices of the same meshes at another time. They are read when a pose needs them.
 struct FileSequence {
-    std::string pattern;  // absolute, with a run of #: see base/frame_path.hpp
+    std::string pattern;  // absolute, with a run of #: see base/files/frame_path.hpp
     rt_u32 first_mesh = 0, mesh_count = 0;
     rt_u32 first_number = 0, number_count = 0;  // in sequence_numbers
     double fps = 24;                            // file n is at n / fps

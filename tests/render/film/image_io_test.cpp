@@ -1,6 +1,6 @@
 // Pictures are read back exactly, by readers that are not the program's. A write that fails leaves nothing behind.
 #include "render/film/image_io.hpp"
-#include "base/frame_path.hpp"
+#include "base/files/frame_path.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

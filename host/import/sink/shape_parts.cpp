@@ -1,11 +1,11 @@
-#include "import/shape_parts.hpp"
+#include "import/sink/shape_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "import/mesh_copy.hpp"
+#include "import/sink/mesh_copy.hpp"
 #include "plugin/host_services.hpp"
 
 namespace clarity::import {

@@ -1,4 +1,4 @@
-#include "base/library_files.hpp"
+#include "base/files/library_files.hpp"
 
 #include <dlfcn.h>
 

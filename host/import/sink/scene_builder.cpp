@@ -1,4 +1,4 @@
-#include "import/scene_builder.hpp"
+#include "import/sink/scene_builder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <tuple>
 
 #include "base/error.hpp"
-#include "base/frame_path.hpp"
-#include "base/read_file.hpp"
-#include "import/mesh_copy.hpp"
-#include "import/scene_sink.hpp"
-#include "import/texture.hpp"
+#include "base/files/frame_path.hpp"
+#include "base/files/read_file.hpp"
+#include "import/sink/mesh_copy.hpp"
+#include "import/sink/scene_sink.hpp"
+#include "import/sink/texture.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
 

@@ -1,6 +1,6 @@
 #include <algorithm>
 
-#include "import/file_content.hpp"
+#include "import/sink/file_content.hpp"
 #include "scene/motion/matrix.hpp"
 
 namespace clarity::import {

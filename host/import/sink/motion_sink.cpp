@@ -1,10 +1,10 @@
-#include "import/motion_sink.hpp"
+#include "import/sink/motion_sink.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
-#include "import/mesh_copy.hpp"
+#include "import/sink/mesh_copy.hpp"
 
 namespace clarity::import {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "import/file_content.hpp"
+#include "import/sink/file_content.hpp"
 #include "rt_plugin.h"
 #include "scene/motion/node_transform.hpp"
 

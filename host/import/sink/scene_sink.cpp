@@ -1,11 +1,11 @@
-#include "import/scene_sink.hpp"
+#include "import/sink/scene_sink.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.hpp"
-#include "import/shape_parts.hpp"
-#include "import/texture.hpp"
+#include "import/sink/shape_parts.hpp"
+#include "import/sink/texture.hpp"
 #include "plugin/abi_struct.hpp"
 
 namespace clarity::import {

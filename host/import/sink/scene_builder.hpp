@@ -7,8 +7,8 @@
 
 #include "base/progress.hpp"
 #include "import/file_access.hpp"
-#include "import/file_content.hpp"
 #include "import/importer_choice.hpp"
+#include "import/sink/file_content.hpp"
 #include "plugin/registry.hpp"
 #include "scene/scene.hpp"
 #include "scene/triangulate.hpp"

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "import/mesh_copy.hpp"
-#include "import/scene_builder.hpp"
+#include "import/sink/mesh_copy.hpp"
+#include "import/sink/scene_builder.hpp"
 
 namespace clarity::import {
 namespace {

@@ -1,4 +1,4 @@
-#include "base/file_watch.hpp"
+#include "base/files/file_watch.hpp"
 
 #include <fcntl.h>
 #include <poll.h>

@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "import/mesh_copy.hpp"
-#include "import/motion_sink.hpp"
-#include "import/scene_builder.hpp"
+#include "import/sink/mesh_copy.hpp"
+#include "import/sink/motion_sink.hpp"
+#include "import/sink/scene_builder.hpp"
 #include "plugin/host_services.hpp"
 #include "rt_plugin.h"
 

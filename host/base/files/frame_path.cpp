@@ -1,4 +1,4 @@
-#include "base/frame_path.hpp"
+#include "base/files/frame_path.hpp"
 
 #include <algorithm>
 #include <charconv>

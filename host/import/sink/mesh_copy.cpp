@@ -1,4 +1,4 @@
-#include "import/mesh_copy.hpp"
+#include "import/sink/mesh_copy.hpp"
 
 #include <algorithm>
 #include <cmath>

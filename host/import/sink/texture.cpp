@@ -1,4 +1,4 @@
-#include "import/texture.hpp"
+#include "import/sink/texture.hpp"
 
 #include <climits>
 #include <cstring>
