@@ -47,8 +47,8 @@ typedef struct rt_refit_output {
     void *const *slots; /* as `build` or the last `refit` left them; no other thread reads or writes them during the call */
     void *ctx;
     /* The expected cost of a ray that hits the box of a changed group, by the same measure each time, such as the surface area
-     * heuristic. The host compares it with that of other refits of the same build. Call it once for each changed group, or never;
-     * 0: no ray hits a point or a line. [any thread of parallel_for] */
+     * heuristic. The host compares it with that of other refits of the same build. Call it once for each changed group whose cost is
+     * known. It is finite; 0: no ray hits a point or a line. [any thread of parallel_for] */
     void (*cost)(void *ctx, rt_u32 group, double cost);
 } rt_refit_output;
 

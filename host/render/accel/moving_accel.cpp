@@ -255,6 +255,7 @@ void MovingAccel::call(Buffer& buffer, const std::vector<uint8_t>& changed, Prog
         if (!changed[g]) continue;
         expected += primitives_of_group_[g];
         boxes_[g] = {};
+        cost_[g] = 0;
         buffer.version[g] = 0;
     }
     std::vector<void*> slots;

@@ -36,7 +36,7 @@ class CompressedRefit {
             box.add(bounds, bounds + 3);
             any = true;
         }
-        return {splat(any ? unit_scale(box) : 1.0f)};
+        return RefitUnit(any ? unit_scale(box) : 1);
     }
     template <class Each>
     void subtrees(uint32_t group, Each&& each) const {
@@ -45,13 +45,21 @@ class CompressedRefit {
                                                           : static_cast<uint32_t>(in_->slot_counts[0]);
         each(RefitSubtree{root, nodes_[root].first_child, end});
     }
+    // The descendants of the children follow each other in the order in which the tree was built, not in that of the slots.
     uint32_t children(const RefitSubtree& tree, RefitSubtree out[kWidth]) const {
         const cwbvh_node& node = nodes_[tree.node];
         const uint32_t count = bits_of(CWBVH_INNER(&node));
+        // A node without child nodes begins where the next one does, and comes before it.
+        const auto rank = [&](uint32_t child) {
+            return uint64_t{nodes_[child].first_child} << 1 | (CWBVH_INNER(&nodes_[child]) != 0);
+        };
         for (uint32_t i = 0; i < count; ++i) {
             const uint32_t child = node.first_child + i;
-            out[i] = {child, nodes_[child].first_child, i + 1 < count ? nodes_[child + 1].first_child : tree.end};
+            uint32_t at = i;
+            for (; at > 0 && rank(out[at - 1].node) > rank(child); --at) out[at] = out[at - 1];
+            out[at] = {child, nodes_[child].first_child, 0};
         }
+        for (uint32_t i = 0; i < count; ++i) out[i].end = i + 1 < count ? out[i + 1].first : tree.end;
         return count;
     }
     void add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {

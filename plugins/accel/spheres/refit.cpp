@@ -29,7 +29,7 @@ class SpheresRefit {
 
     RefitUnit unit(uint32_t group) const {
         const float radius = nodes_[in_->roots[group]].radius;
-        return {splat(radius > 1 / FLT_MAX ? std::min(1 / radius, FLT_MAX) : FLT_MAX)};
+        return RefitUnit(radius > 0 ? 1 / radius : 1);
     }
     template <class Each>
     void subtrees(uint32_t group, Each&& each) const {

@@ -6,6 +6,7 @@
 // threads is a few nodes, which the calling thread does in the end.
 #pragma once
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "clarity_bvh/refit/refit_box.hpp"
@@ -158,9 +159,10 @@ class Refit {
         layout_.finish(group, box);
         sums[0] += sum_of(areas.nodes);
         sums[1] += sum_of(areas.primitives);
-        const double whole = sum_of(unit.area(box));
-        const double cost = costs_.node * (whole + sums[0]) + costs_.primitive * sums[1];
-        if (out_->cost) out_->cost(out_->ctx, group, whole > 0 ? cost / whole : 0);
+        const double whole = box.empty() ? 0 : sum_of(unit.area(box));
+        const double sum = costs_.node * (whole + sums[0]) + costs_.primitive * sums[1], cost = whole > 0 ? sum / whole : 0;
+        // Areas overflow if a group has grown by more than 10^19 at once: then the cost is not known.
+        if (out_->cost && std::isfinite(cost)) out_->cost(out_->ctx, group, cost);
     }
 
     const rt_host* const host_;

@@ -19,7 +19,7 @@ class BinaryRefit {
         Bounds box;
         if (root.child0 != kEmpty) box.add(root.box0, root.box0 + 3);
         if (root.child1 != kEmpty) box.add(root.box1, root.box1 + 3);
-        return {splat(root.child0 == kEmpty ? 1.0f : unit_scale(box))};
+        return RefitUnit(root.child0 == kEmpty ? 1 : unit_scale(box));
     }
     template <class Each>
     void subtrees(uint32_t group, Each&& each) const {

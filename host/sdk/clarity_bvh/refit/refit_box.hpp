@@ -16,6 +16,12 @@ struct RefitBox {
         lo = min(lo, load_any(prim.lo));
         hi = max(hi, load_any(prim.hi));
     }
+    bool empty() const {
+        alignas(16) float low[4], high[4];
+        store(low, lo);
+        store(high, hi);
+        return low[0] > high[0];
+    }
     // Writes lo.xyz, hi.xyz and leaves the number behind them as it is.
     void write(float box[7]) const {
         const float behind = box[6];
@@ -30,9 +36,11 @@ struct RefitAreas {
     Vec4 nodes = splat(0.0f), primitives = splat(0.0f);
 };
 
-// The unit of areas in a group: the square of this length. Then they do not overflow for huge coordinates.
+// The unit of areas in a group: the square of a length, so that they neither overflow for huge coordinates nor vanish for tiny ones.
+// per_length: 1 by that length, as unit_scale() gives it; of a box without extent 1 is taken.
 struct RefitUnit {
-    Vec4 per_side = splat(1.0f);
+    explicit RefitUnit(float per_length = 1) : per_side(splat(per_length < FLT_MAX ? per_length : 1)) {}
+    Vec4 per_side;
     Vec4 area(const RefitBox& box) const {
         const Vec4 side = xyz(box.hi - box.lo) * per_side;  // the fourth lanes may be denormals, which are slow to multiply
         return side * turned(side);

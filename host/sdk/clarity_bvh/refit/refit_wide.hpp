@@ -29,7 +29,7 @@ class WideRefit {
             box.add(bounds, bounds + 3);
             any = true;
         }
-        return {splat(any ? unit_scale(box) : 1.0f)};
+        return RefitUnit(any ? unit_scale(box) : 1);
     }
     template <class Each>
     void subtrees(uint32_t group, Each&& each) const {
