@@ -4,8 +4,8 @@
 
 namespace clarity {
 
-// The extension `refit` of a structure; refit is nullptr if it has none of a version that this host knows. The tables of plugins
-// are the registry's copies.
+// The extension `refit` of a structure; refit is nullptr if it has none of a version that this host knows. The tables of
+// plugins are the registry's copies.
 rt_refit refit_of(const rt_plugin& plugin);
 
 }  // namespace clarity

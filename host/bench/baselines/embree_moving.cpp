@@ -1,4 +1,5 @@
-// embree_moving.cpp -- Embree's dynamic scenes: geometry of quality REFIT, LOW or MEDIUM, whose vertices are in a shared buffer.
+// embree_moving.cpp -- Embree's dynamic scenes: geometry of quality REFIT, LOW or MEDIUM, whose vertices are in a shared
+// buffer.
 #include <embree3/rtcore.h>
 
 #include <atomic>
@@ -20,7 +21,8 @@ class EmbreeMoving : public MovingBaseline {
         scene_ = rtcNewScene(device_);
         const bool refits = quality == "refit";
         rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_DYNAMIC);
-        rtcSetSceneBuildQuality(scene_, quality == "low" ? RTC_BUILD_QUALITY_LOW : RTC_BUILD_QUALITY_MEDIUM);
+        // Only a scene of low quality has a tree for each geometry, and thus refits it.
+        rtcSetSceneBuildQuality(scene_, quality == "medium" ? RTC_BUILD_QUALITY_MEDIUM : RTC_BUILD_QUALITY_LOW);
         geometry_ = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
         rtcSetGeometryBuildQuality(geometry_, refits             ? RTC_BUILD_QUALITY_REFIT
                                               : quality == "low" ? RTC_BUILD_QUALITY_LOW
@@ -53,7 +55,8 @@ class EmbreeMoving : public MovingBaseline {
 
  private:
     [[noreturn]] static void fail(RTCError error) {
-        throw Error(Exit::failed, "Embree cannot build a dynamic scene: error " + std::to_string(error) + "; --no-peers leaves it out");
+        throw Error(Exit::failed,
+                    "Embree cannot build a dynamic scene: error " + std::to_string(error) + "; --no-peers leaves it out");
     }
     static bool count_bytes(void* sum, ssize_t bytes, bool) {
         *static_cast<std::atomic<int64_t>*>(sum) += bytes;

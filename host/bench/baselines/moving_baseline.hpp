@@ -17,8 +17,8 @@ class MovingBaseline {
     virtual uint64_t bytes() const = 0;
 };
 
-// Embree with one mesh in a dynamic scene. quality: "refit" keeps the tree of a build of medium quality; "low" and "medium" build
-// anew at each update. The mesh must outlive it. nullptr: this program was built without Embree. Throws Error(failed).
+// Embree with one mesh in a dynamic scene. quality: "refit" keeps the tree of a build of medium quality; "low" and "medium"
+// build anew at each update. The mesh must outlive it. nullptr: this program was built without Embree. Throws Error(failed).
 std::unique_ptr<MovingBaseline> make_moving_baseline(const BaselineMesh& mesh, const std::string& quality, unsigned threads);
 
 }  // namespace clarity::bench

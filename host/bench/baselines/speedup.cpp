@@ -26,7 +26,9 @@ const BenchRecord* best_baseline(const std::vector<BenchRecord>& rows, const Ben
     const BenchRecord* best = nullptr;
     for (const BenchRecord& row : rows) {
         if (row.baseline.empty() || !measured(row)) continue;
-        if ((row.measure == "build" || row.measure == "rebuild") && !ends_with(row.baseline, " " + like_quality(ours.accel_params))) continue;
+        if ((row.measure == "build" || row.measure == "rebuild") &&
+            !ends_with(row.baseline, " " + like_quality(ours.accel_params)))
+            continue;
         if (!best || speed(row) > speed(*best)) best = &row;
     }
     return best;

@@ -34,7 +34,12 @@ class MotionCase {
  public:
     MotionCase(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
                const MeasureRules& rules, Progress& progress)
-        : fixture_(fixture), plugins_(plugins), request_(request), case_(c), rules_(rules), progress_(progress),
+        : fixture_(fixture),
+          plugins_(plugins),
+          request_(request),
+          case_(c),
+          rules_(rules),
+          progress_(progress),
           state_(fixture, c, progress) {}
 
     std::vector<BenchRecord> run() {
@@ -102,7 +107,8 @@ class MotionCase {
         mover.moved.accel.reset();
     }
 
-    // time_ms: from vertices in place to the finished structure, as the baseline is timed. wall_ms: with the copy of the vertices.
+    // time_ms: from vertices in place to the finished structure, as the baseline is timed. wall_ms: with the copy of the
+    // vertices.
     void add_refit(const rt_plugin& plugin, const Settings& settings, Entry& entry) {
         const std::shared_ptr<Mover> mover = make_mover(plugin, settings);
         const bool in_place = std::all_of(poses_[0].meshes.begin(), poses_[0].meshes.end(),
@@ -178,7 +184,8 @@ class MotionCase {
         };
         entry.finish = [=](BenchRecord& row) {
             std::vector<float> distances;
-            for (const rt_hit& hit : held.frames->trace_rays(*held.prepared, rays_.rays, RayQuery{})) distances.push_back(hit.t);
+            for (const rt_hit& hit : held.frames->trace_rays(*held.prepared, rays_.rays, RayQuery{}))
+                distances.push_back(hit.t);
             state_.agreement.check_hits(row, rays_, distances);
         };
         set_ray_counts(entry.row, rays_);
@@ -197,7 +204,8 @@ class MotionCase {
     }
 
     void add_baseline(const std::string& quality) {
-        if (fixture_.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || !baselines_cannot(*fixture_.scene()).empty()) return;
+        if (fixture_.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || !baselines_cannot(*fixture_.scene()).empty())
+            return;
         Entry& entry = state_.add_entry();
         entry.row.baseline = entry.row.variant = "embree " + quality;
         describe_host(entry.row, fixture_.baseline_threads());

@@ -9,7 +9,8 @@
 namespace clarity::bench {
 
 std::string moving_table(const BenchReport& report) {
-    TextTable table({"scene", "motion", "", "triangles", "ms", "Mtri/s", "Mrays/s", "B/tri", "SAH", "spread %", "x baseline"}, 3);
+    TextTable table({"scene", "motion", "", "triangles", "ms", "Mtri/s", "Mrays/s", "B/tri", "SAH", "spread %", "x baseline"},
+                    3);
     for (const BenchRecord& r : report.records) {
         if (r.suite != "moving" || r.status != RowStatus::ok) continue;
         char spread[16];
@@ -19,9 +20,10 @@ std::string moving_table(const BenchReport& report) {
                    short_number(r.bytes_per_triangle), short_number(r.sah_cost), spread,
                    ratio_text(r.speedup.ratio, r.speedup.spread, "same")});
     }
-    return table.empty() ? std::string()
-                         : "moving: all vertices move; a refit or a build from vertices in place to the finished structure, p50\n" +
-                               table.text(26) + "\n";
+    return table.empty()
+               ? std::string()
+               : "moving: all vertices move; a refit or a build from vertices in place to the finished structure, p50\n" +
+                     table.text(26) + "\n";
 }
 
 }  // namespace clarity::bench

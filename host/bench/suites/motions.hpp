@@ -8,8 +8,8 @@
 
 namespace clarity::bench {
 
-// "wave": vertices go up and down by 3 % of the scene's size. "twist": a turn about the upright axis, by up to a right angle from the
-// bottom to the top.
+// "wave": vertices go up and down by 3 % of the scene's size. "twist": a turn about the upright axis, by up to a right angle
+// from the bottom to the top.
 const std::vector<std::string>& motion_names();
 
 // The scene in a phase of a motion, 0..1. Instances stay where they are.

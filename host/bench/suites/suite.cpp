@@ -393,7 +393,8 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "large", "cpu", "devices", "moving", "quick"};
+    static const std::vector<std::string> names = {"thesis", "packets", "accel",  "scale", "large",
+                                                   "cpu",    "devices", "moving", "quick"};
     return names;
 }
 

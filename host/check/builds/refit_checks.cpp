@@ -140,8 +140,9 @@ class RefitCheck {
                 const rt_slot& slot = plugin_.accel->slots[s];
                 for (size_t i = 0; i < writer[s].size(); ++i) {
                     if (before[i] == after[i]) continue;
-                    const std::string where = std::string("slot ") + slot.name + ", element " + std::to_string(i / slot.elem_bytes) +
-                                              ", byte " + std::to_string(i % slot.elem_bytes);
+                    const std::string where = std::string("slot ") + slot.name + ", element " +
+                                              std::to_string(i / slot.elem_bytes) + ", byte " +
+                                              std::to_string(i % slot.elem_bytes);
                     if (g == group_count) return "no group is changed, but the refit wrote to " + where;
                     if (writer[s][i] != RT_NONE)
                         return "refits of group " + std::to_string(writer[s][i]) + " and of group " + std::to_string(g) +
@@ -166,7 +167,8 @@ class RefitCheck {
             const RefitRun run = run_refit(plugin_, params_, built.result, second.scene(), groups, schedule);
             std::string why = failure_of(run);
             if (why.empty()) why = difference(one.result, run.result, *plugin_.accel);
-            if (!why.empty()) return std::string("the result ") + schedule_text(schedule) + " is another than with one thread: " + why;
+            if (!why.empty())
+                return std::string("the result ") + schedule_text(schedule) + " is another than with one thread: " + why;
         }
         const RefitRun between = run_refit(plugin_, params_, built.result, first.scene(), groups, Schedule::program);
         if (std::string why = failure_of(between); !why.empty()) return why;
@@ -190,9 +192,12 @@ class RefitCheck {
 }  // namespace
 
 const std::vector<Movement>& movements() {
-    static const std::vector<Movement> all = {{"at rest", at_rest},    {"as a wave", as_wave},
-                                              {"twisted", twisted},      {"scattered", scattered},
-                                              {"in one plane", in_plane},  {"at one point", at_point},
+    static const std::vector<Movement> all = {{"at rest", at_rest},
+                                              {"as a wave", as_wave},
+                                              {"twisted", twisted},
+                                              {"scattered", scattered},
+                                              {"in one plane", in_plane},
+                                              {"at one point", at_point},
                                               {"a million times as large", grown}};
     return all;
 }

@@ -178,7 +178,8 @@ RefitRun run_refit(const rt_plugin& plugin, const ParameterValues& params, const
     run.why = asked.missing();
     if (const std::string overrun = overrun_of(run.result); run.why.empty() && !overrun.empty())
         run.why = "the refit wrote beyond the end of " + overrun;
-    if (run.why.empty() && costs.wrong) run.why = "the refit reported a cost that is negative or no number, or of a group that is not there";
+    if (run.why.empty() && costs.wrong)
+        run.why = "the refit reported a cost that is negative or no number, or of a group that is not there";
     return run;
 }
 

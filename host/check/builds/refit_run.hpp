@@ -1,4 +1,5 @@
-// refit_run.hpp -- refits a finished build on guarded memory, with primitives from a moved scene, and watches what the plugin asks for.
+// refit_run.hpp -- refits a finished build on guarded memory, with primitives from a moved scene, and watches what the plugin
+// asks for.
 #pragma once
 #include <string>
 #include <vector>

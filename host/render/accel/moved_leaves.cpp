@@ -12,7 +12,7 @@ namespace clarity {
 namespace {
 
 constexpr uint32_t kLeavesPerTask = 1u << 12;  // leaves that one task looks up
-constexpr uint32_t kCornersAhead = 16;        // how many leaves ahead vertices are prefetched
+constexpr uint32_t kCornersAhead = 16;         // how many leaves ahead vertices are prefetched
 
 }  // namespace
 
@@ -40,7 +40,8 @@ rt_u32 GroupOfRef::find(rt_u32 ref, rt_u32& first, rt_u32& count) const {
     first = ref;
     count = 1;
     if (RT_REF_KIND(ref) != RT_REF_TRIANGLE) return 0;
-    auto next = std::upper_bound(ranges_.begin(), ranges_.end(), ref, [](rt_u32 r, const Range& range) { return r < range.first; });
+    auto next =
+        std::upper_bound(ranges_.begin(), ranges_.end(), ref, [](rt_u32 r, const Range& range) { return r < range.first; });
     first = std::prev(next)->first;
     count = (next == ranges_.end() ? triangle_count_ : next->first) - first;
     return std::prev(next)->group;
@@ -61,61 +62,63 @@ int32_t MovedLeaves::prims(void* ctx, uint64_t first, uint64_t count, rt_prim* p
 void MovedLeaves::pack(uint64_t first, uint64_t count, rt_prim* prims) {
     auto* const leaves = static_cast<rt_packed_prim*>(accel_.leaves.data()) + first;
     const rt_u32* const corners = corners_ + 3 * first;
+    const float* const positions = positions_;
     const Row far = Row{} + FLT_MAX;
     Row all_lo = far, all_hi = -far;
     rt_u32 group = RT_NONE, ref_first = 0, ref_count = 0;
-    const auto flush = [&] {
-        if (group == RT_NONE) return;
-        Bounds box;
-        box.add(reinterpret_cast<const float*>(&all_lo));
-        box.add(reinterpret_cast<const float*>(&all_hi));
-        add(group, box);
-        all_lo = far;
-        all_hi = -far;
-    };
     for (uint64_t i = 0; i < count; ++i) {
         const rt_u32* const ahead = corners + 3 * std::min<uint64_t>(i + kCornersAhead, count - 1);
-        for (int k = 0; k < 3; ++k) __builtin_prefetch(positions_ + 3 * size_t(ahead[k]));
+        for (int k = 0; k < 3; ++k) __builtin_prefetch(positions + 3 * size_t(ahead[k]));
         const rt_u32 ref = leaves[i].ref;
-        if (ref - ref_first >= ref_count) {
-            flush();
+        if (__builtin_expect(ref - ref_first >= ref_count, 0)) {
+            add(group, all_lo, all_hi);
+            all_lo = far;
+            all_hi = -far;
             group = groups_.find(ref, ref_first, ref_count);
         }
         Row lo, hi, name;
-        if (RT_REF_KIND(ref) == RT_REF_TRIANGLE) {
-            Row old[3];
-            std::memcpy(old, &leaves[i], sizeof old);
-            const Row a = load_row(positions_ + 3 * size_t(corners[3 * i])), b = load_row(positions_ + 3 * size_t(corners[3 * i + 1])),
-                      c = load_row(positions_ + 3 * size_t(corners[3 * i + 2]));
-            const Row leaf[3] = {named_as(a, old[0]), named_as(b, old[1]), named_as(c, old[2])};
-            std::memcpy(&leaves[i], leaf, sizeof leaf);
+        if (__builtin_expect(RT_REF_KIND(ref) == RT_REF_TRIANGLE, 1)) {
+            float* const leaf = leaves[i].a;
+            name = load_row(leaf);
+            const Row a = load_row(positions + 3 * size_t(corners[3 * i])),
+                      b = load_row(positions + 3 * size_t(corners[3 * i + 1])),
+                      c = load_row(positions + 3 * size_t(corners[3 * i + 2]));
+            store_row(leaf, named_as(a, name));
+            store_row(leaf + 4, named_as(b, load_row(leaf + 4)));
+            store_row(leaf + 8, named_as(c, load_row(leaf + 8)));
             lo = least(least(a, b), c);
             hi = most(most(a, b), c);
-            name = old[0];
         } else {
-            if (RT_REF_KIND(ref) == RT_REF_INSTANCE) leaves[i] = accel_.scene.instance_leaves[RT_REF_INDEX(ref)];
-            const rt_prim box = box_of(accel_.scene, leaves[i]);
-            Row rows[2];
-            std::memcpy(rows, &box, sizeof rows);
-            lo = least(rows[0], rows[1]);
-            hi = most(rows[0], rows[1]);
-            name = rows[0];
+            pack_other(leaves[i], lo, hi, name);
         }
         // A transform may have made a coordinate infinite or no number: the box is then as large as it can be.
         lo = least(most(lo, -far), far);
         hi = most(least(hi, far), -far);
         all_lo = least(lo, all_lo);
         all_hi = most(hi, all_hi);
-        const Row prim[2] = {named_as(lo, name), named_as(hi, Row{})};
-        std::memcpy(&prims[i], prim, sizeof prim);
+        store_row(prims[i].lo, named_as(lo, name));
+        store_row(prims[i].hi, named_as(hi, Row{}));
     }
-    flush();
+    add(group, all_lo, all_hi);
 }
 
-void MovedLeaves::add(rt_u32 group, const Bounds& box) {
+// A primitive that is no triangle: its box.
+void MovedLeaves::pack_other(rt_packed_prim& leaf, Row& lo, Row& hi, Row& name) const {
+    if (RT_REF_KIND(leaf.ref) == RT_REF_INSTANCE) leaf = accel_.scene.instance_leaves[RT_REF_INDEX(leaf.ref)];
+    const rt_prim box = box_of(accel_.scene, leaf);
+    name = load_row(box.lo);
+    lo = least(name, load_row(box.hi));
+    hi = most(name, load_row(box.hi));
+}
+
+void MovedLeaves::add(rt_u32 group, Row lo, Row hi) {
+    if (group == RT_NONE) return;
+    float bounds[8];
+    store_row(bounds, lo);
+    store_row(bounds + 4, hi);
     const std::lock_guard<std::mutex> lock(mutex_);
-    boxes_[group].add(box.min.data());
-    boxes_[group].add(box.max.data());
+    boxes_[group].add(bounds);
+    boxes_[group].add(bounds + 4);
 }
 
 }  // namespace clarity

@@ -1,7 +1,7 @@
 // moved_leaves.hpp -- packs the primitives of a structure again where they have moved to, while the plugin refits its tree.
 //
-// The plugin asks for the boxes of some hundred primitives at a time (rt_refit_input::prims). They are packed into the host's leaves
-// in the same step, so that each is read and written once: 12 B of vertex numbers, three vertices, and 48 B each way.
+// The plugin asks for the boxes of some hundred primitives at a time (rt_refit_input::prims). They are packed into the host's
+// leaves in the same step, so that each is read and written once: 12 B of vertex numbers, three vertices, and 48 B each way.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "render/accel/accel_build.hpp"
+#include "render/accel/rows.hpp"
 #include "rt_refit.h"
 
 namespace clarity {
@@ -35,8 +36,8 @@ class GroupOfRef {
 // Serves one call of a plugin. Thread-safe.
 class MovedLeaves {
  public:
-    // leaves: those of `accel`, which are written. positions: of all vertices, 3 numbers each, in the space of their groups, and one
-    // more float at the end. boxes: receives those of the groups.
+    // leaves: those of `accel`, which are written. positions: of all vertices, 3 numbers each, in the space of their groups,
+    // and one more float at the end. boxes: receives those of the groups.
     MovedLeaves(AccelData& accel, const UninitializedVector<rt_u32>& corners, const float* positions, const GroupOfRef& groups,
                 std::vector<Bounds>& boxes);
     // rt_refit_input::prims; ctx: this object.
@@ -45,7 +46,8 @@ class MovedLeaves {
 
  private:
     void pack(uint64_t first, uint64_t count, rt_prim* prims);
-    void add(rt_u32 group, const Bounds& box);
+    void pack_other(rt_packed_prim& leaf, Row& lo, Row& hi, Row& name) const;
+    void add(rt_u32 group, Row lo, Row hi);
 
     AccelData& accel_;
     const rt_u32* const corners_;

@@ -16,7 +16,7 @@ namespace clarity {
 namespace {
 
 constexpr uint32_t kPerTask = 1u << 13;  // vertices or instances that one task takes
-constexpr size_t kKeptStructures = 3;            // structures
+constexpr size_t kKeptStructures = 3;    // structures
 
 template <class Body>
 void each_chunk(size_t count, Body&& body) {
@@ -26,7 +26,7 @@ void each_chunk(size_t count, Body&& body) {
 
 AlignedBytes copy_of(const AlignedBytes& from) {
     AlignedBytes copy(from.bytes(), false);
-    const auto *in = static_cast<const char*>(from.data());
+    const auto* in = static_cast<const char*>(from.data());
     auto* const out = static_cast<char*>(copy.data());
     constexpr size_t kPiece = size_t{1} << 20;
     parallel_for(static_cast<uint32_t>((from.bytes() + kPiece - 1) / kPiece), [&](uint32_t i) {
@@ -64,8 +64,8 @@ std::string name_of(const Instance& instance, size_t number) {
 // A structure, and the moves that its groups have followed.
 struct MovingAccel::Buffer {
     std::shared_ptr<AccelData> accel;
-    std::vector<uint64_t> version;    // of each group; 0: unknown
-    uint64_t instances_version = 0;   // the move whose transforms it has
+    std::vector<uint64_t> version;   // of each group; 0: unknown
+    uint64_t instances_version = 0;  // the move whose transforms it has
 };
 
 MovingAccel::MovingAccel(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built)
@@ -137,7 +137,8 @@ void MovingAccel::transform_vertices(rt_u32 mesh, const float* object, const Aff
 float* MovingAccel::vertices(rt_u32 mesh) {
     if (!started_ || mesh >= flat_instance_.size()) return nullptr;
     const rt_u32 flat = flat_instance_[mesh];
-    if (flat == RT_NONE ? built_->scene.group_of_mesh[mesh] == 0 : instances_[flat].world_from_object != kIdentity) return nullptr;
+    if (flat == RT_NONE ? built_->scene.group_of_mesh[mesh] == 0 : instances_[flat].world_from_object != kIdentity)
+        return nullptr;
     return positions_.data() + 3 * size_t(scene_->meshes[mesh].first_vertex);
 }
 
@@ -216,7 +217,8 @@ void MovingAccel::set_vertices(rt_u32 mesh, const float* object) {
 MovingAccel::Buffer& MovingAccel::spare() {
     Buffer* best = nullptr;
     for (const auto& buffer : buffers_)
-        if (buffer->accel.use_count() == 1 && (!best || buffer->instances_version > best->instances_version)) best = buffer.get();
+        if (buffer->accel.use_count() == 1 && (!best || buffer->instances_version > best->instances_version))
+            best = buffer.get();
     if (best) {
         // The last other owner may have let go of it on another thread: what it read comes before what is written here.
         std::atomic_thread_fence(std::memory_order_acquire);
@@ -296,7 +298,8 @@ void MovingAccel::call(Buffer& buffer, const std::vector<uint8_t>& changed, Prog
     for (size_t g = 0; g < changed.size(); ++g) {
         if (!changed[g]) continue;
         buffer.version[g] = version_[g];
-        result.groups.push_back({static_cast<rt_u32>(g), primitives_of_group_[g], cost_[g], started_ ? built_cost_[g] : cost_[g]});
+        result.groups.push_back(
+            {static_cast<rt_u32>(g), primitives_of_group_[g], cost_[g], started_ ? built_cost_[g] : cost_[g]});
     }
     result.refitted += expected;
 }

@@ -1,6 +1,9 @@
 // rows.hpp -- four numbers of a leaf or prim in one register: three coordinates, and the bits of an integer behind them.
 #pragma once
 #include <cstring>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #include "rt_plugin.h"
 
@@ -15,6 +18,9 @@ inline Row load_row(const float* p) {
     std::memcpy(&row, p, sizeof row);
     return row;
 }
+inline void store_row(float* p, Row row) {
+    std::memcpy(p, &row, sizeof row);
+}
 // A point whose fourth number is 0, with this integer behind it.
 inline Row named(Row point, rt_u32 name) {
     return reinterpret_cast<Row>(reinterpret_cast<RowBits>(point) | RowBits{0, 0, 0, name});
@@ -25,11 +31,20 @@ inline Row named_as(Row point, Row other) {
     return reinterpret_cast<Row>((reinterpret_cast<RowBits>(point) & ~kName) | (reinterpret_cast<RowBits>(other) & kName));
 }
 // Comparisons with NaN are false: the second operand is taken.
+#ifdef __SSE2__
+inline Row least(Row a, Row b) {
+    return _mm_min_ps(a, b);
+}
+inline Row most(Row a, Row b) {
+    return _mm_max_ps(a, b);
+}
+#else
 inline Row least(Row a, Row b) {
     return a < b ? a : b;
 }
 inline Row most(Row a, Row b) {
     return a > b ? a : b;
 }
+#endif
 
 }  // namespace clarity

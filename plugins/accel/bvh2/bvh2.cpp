@@ -33,8 +33,7 @@ static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are e
 }  // namespace
 }  // namespace bvh2
 
-const rt_plugin rt_plugin_v1 =
-    rt::with_extensions(rt::accel_plugin("bvh2", "Binary BVH (binned SAH)", "1.0.0",
-                                         "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies",
-                                         bvh2::kParams, bvh2::kAccel),
-                        bvh2::kExtensions);
+const rt_plugin rt_plugin_v1 = rt::with_extensions(
+    rt::accel_plugin("bvh2", "Binary BVH (binned SAH)", "1.0.0",
+                     "Wald 2007, On fast Construction of SAH-based Bounding Volume Hierarchies", bvh2::kParams, bvh2::kAccel),
+    bvh2::kExtensions);

@@ -58,7 +58,9 @@ static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are e
 }  // namespace
 }  // namespace bvh4
 
-const rt_plugin rt_plugin_v1 = rt::with_extensions(rt::accel_plugin("bvh4", "4-wide BVH for GPUs (binned SAH, collapsed)", "1.0.0",
-                                                "Wald, Benthin, Boulos 2008, Getting Rid of Packets: Efficient SIMD "
-                                                "Single-Ray Traversal using Multi-branching BVHs",
-                                                bvh4::kParams, bvh4::kAccel), bvh4::kExtensions);
+const rt_plugin rt_plugin_v1 =
+    rt::with_extensions(rt::accel_plugin("bvh4", "4-wide BVH for GPUs (binned SAH, collapsed)", "1.0.0",
+                                         "Wald, Benthin, Boulos 2008, Getting Rid of Packets: Efficient SIMD "
+                                         "Single-Ray Traversal using Multi-branching BVHs",
+                                         bvh4::kParams, bvh4::kAccel),
+                        bvh4::kExtensions);

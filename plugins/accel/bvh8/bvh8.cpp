@@ -65,7 +65,9 @@ static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are e
 }  // namespace
 }  // namespace bvh8
 
-const rt_plugin rt_plugin_v1 = rt::with_extensions(rt::accel_plugin("bvh8", "8-wide BVH (binned SAH)", "1.0.0",
-                                                "Wald, Benthin, Boulos 2008, Getting Rid of Packets: Efficient SIMD "
-                                                "Single-Ray Traversal using Multi-branching BVHs",
-                                                bvh8::kParams, bvh8::kAccel), bvh8::kExtensions);
+const rt_plugin rt_plugin_v1 =
+    rt::with_extensions(rt::accel_plugin("bvh8", "8-wide BVH (binned SAH)", "1.0.0",
+                                         "Wald, Benthin, Boulos 2008, Getting Rid of Packets: Efficient SIMD "
+                                         "Single-Ray Traversal using Multi-branching BVHs",
+                                         bvh8::kParams, bvh8::kAccel),
+                        bvh8::kExtensions);

@@ -49,7 +49,9 @@ static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are e
 }  // namespace
 }  // namespace cwbvh
 
-const rt_plugin rt_plugin_v1 = rt::with_extensions(rt::accel_plugin("cwbvh", "Compressed 8-wide BVH for GPUs (binned SAH)", "1.0.0",
-                                                "Ylitie, Karras, Laine 2017, Efficient Incoherent Ray Traversal on GPUs "
-                                                "Through Compressed Wide BVHs",
-                                                cwbvh::kParams, cwbvh::kAccel), cwbvh::kExtensions);
+const rt_plugin rt_plugin_v1 =
+    rt::with_extensions(rt::accel_plugin("cwbvh", "Compressed 8-wide BVH for GPUs (binned SAH)", "1.0.0",
+                                         "Ylitie, Karras, Laine 2017, Efficient Incoherent Ray Traversal on GPUs "
+                                         "Through Compressed Wide BVHs",
+                                         cwbvh::kParams, cwbvh::kAccel),
+                        cwbvh::kExtensions);

@@ -34,7 +34,8 @@ class SpheresRefit {
     template <class Each>
     void subtrees(uint32_t group, Each&& each) const {
         const uint32_t head = in_->roots[group];
-        for (uint32_t at = head + 1; at < nodes_[head].skip; at = nodes_[at].skip) each(RefitSubtree{at, at + 1, nodes_[at].skip});
+        for (uint32_t at = head + 1; at < nodes_[head].skip; at = nodes_[at].skip)
+            each(RefitSubtree{at, at + 1, nodes_[at].skip});
     }
     uint32_t children(const RefitSubtree& tree, RefitSubtree out[kWidth]) const {
         if (nodes_[tree.node].count > 0) return 0;

@@ -194,5 +194,6 @@ static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are e
 }  // namespace
 }  // namespace spheres
 
-const rt_plugin rt_plugin_v1 =
-    rt::with_extensions(rt::accel_plugin("spheres", "Bounding spheres (thesis)", "1.0.0", nullptr, spheres::kParams, spheres::kAccel), spheres::kExtensions);
+const rt_plugin rt_plugin_v1 = rt::with_extensions(
+    rt::accel_plugin("spheres", "Bounding spheres (thesis)", "1.0.0", nullptr, spheres::kParams, spheres::kAccel),
+    spheres::kExtensions);

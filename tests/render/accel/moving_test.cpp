@@ -57,7 +57,8 @@ ScenePtr rings() {
 
 Pose pose_of(const Scene& scene) {
     Pose pose;
-    for (const Instance& instance : scene.instances) pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
+    for (const Instance& instance : scene.instances)
+        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
     pose.cameras = scene.cameras;
     pose.lights = scene.lights;
     return pose;
@@ -67,9 +68,12 @@ Pose waved(const Scene& scene, float phase) {
     Pose pose = pose_of(scene);
     for (rt_u32 m = 0; m < scene.meshes.size(); ++m) {
         const Mesh& mesh = scene.meshes[m];
-        PosedMesh posed{m, {scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex),
-                            scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex + mesh.vertex_count)}, {}};
-        for (size_t v = 0; v < posed.positions.size(); v += 3) posed.positions[v + 1] += 0.6f * std::sin(3 * posed.positions[v] + phase);
+        PosedMesh posed{m,
+                        {scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex),
+                         scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex + mesh.vertex_count)},
+                        {}};
+        for (size_t v = 0; v < posed.positions.size(); v += 3)
+            posed.positions[v + 1] += 0.6f * std::sin(3 * posed.positions[v] + phase);
         pose.meshes.push_back(std::move(posed));
     }
     for (size_t i = 2; i < pose.instances.size(); ++i) pose.instances[i].world_from_object[11] += std::sin(phase + float(i));
@@ -86,10 +90,12 @@ std::string bytes_of(const AlignedBytes& bytes) {
     return {static_cast<const char*>(bytes.data()), bytes.bytes()};
 }
 void expect_same(const AccelData& a, const AccelData& b) {
-    for (size_t s = 0; s < a.slots.size(); ++s) EXPECT_TRUE(bytes_of(a.slots[s].memory) == bytes_of(b.slots[s].memory)) << "slot " << s;
+    for (size_t s = 0; s < a.slots.size(); ++s)
+        EXPECT_TRUE(bytes_of(a.slots[s].memory) == bytes_of(b.slots[s].memory)) << "slot " << s;
     EXPECT_TRUE(bytes_of(a.leaves) == bytes_of(b.leaves));
     ASSERT_EQ(a.instances.size(), b.instances.size());
-    for (size_t i = 0; i < a.instances.size(); ++i) EXPECT_EQ(std::memcmp(&a.instances[i], &b.instances[i], sizeof(rt_instance)), 0) << i;
+    for (size_t i = 0; i < a.instances.size(); ++i)
+        EXPECT_EQ(std::memcmp(&a.instances[i], &b.instances[i], sizeof(rt_instance)), 0) << i;
     EXPECT_EQ(a.scene.bounds.min, b.scene.bounds.min);
     EXPECT_EQ(a.scene.bounds.max, b.scene.bounds.max);
 }
@@ -149,7 +155,8 @@ TEST(MovingAccel, LeavesAndInstancesAreThoseOfAFreshBuild) {
     }
 }
 
-std::vector<rt_hit> trace(const ScenePtr& scene, const std::shared_ptr<const AccelData>& accel, const std::vector<rt_ray>& rays) {
+std::vector<rt_hit> trace(const ScenePtr& scene, const std::shared_ptr<const AccelData>& accel,
+                          const std::vector<rt_ray>& rays) {
     Progress progress;
     Workbench& bench = Workbench::get();
     const auto prepared = prepare_queries(const_cast<Device&>(bench.device()), scene, accel, {}, progress);

@@ -31,7 +31,8 @@ struct RefitCosts {
 //   subtrees(group, each)           calls each(RefitSubtree) for the trees of a group, in any order
 //   children(subtree, RefitSubtree out[kWidth])   returns how many children are nodes, ascending
 //   add_positions(node, first, end) widens the range of positions in leaf order by those of the node's own leaves
-//   update(node, node_box, leaf_box, unit, areas) writes the boxes of the node's children, adds their areas, and returns the box
+//   update(node, node_box, leaf_box, unit, areas) writes the boxes of the node's children, adds their areas, and returns the
+//   box
 //                                   around them. node_box(child) and leaf_box(first, count) give the boxes of its children
 //   finish(group, box)              writes what stands above the trees of a group
 //   unit(group)                     RefitUnit of a group, from its boxes before the refit
@@ -174,7 +175,8 @@ class Refit {
     rt_prim top_prims_[kPrims];
 };
 
-// Where the nodes of each group end, if they stand together, group by group: the first node of the next group. roots: in any order.
+// Where the nodes of each group end, if they stand together, group by group: the first node of the next group. roots: in any
+// order.
 class GroupEnds {
  public:
     GroupEnds(const rt_refit_input* in, uint64_t node_count) : end_(static_cast<uint32_t>(node_count)) {

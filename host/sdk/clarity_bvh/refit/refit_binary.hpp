@@ -1,7 +1,8 @@
-// refit_binary.hpp -- refits binary nodes in depth-first order, as pack_binary.hpp writes them. A plugin's node must have the layout
-// of Node.
+// refit_binary.hpp -- refits binary nodes in depth-first order, as pack_binary.hpp writes them. A plugin's node must have the
+// layout of Node.
 //
-// Work for a triangle with leaves of four: about 0.6 nodes are read and written, 64 bytes each way, besides what the host moves.
+// Work for a triangle with leaves of four: about 0.6 nodes are read and written, 64 bytes each way, besides what the host
+// moves.
 #pragma once
 #include "clarity_bvh/refit/refit.hpp"
 #include "clarity_bvh/topology.hpp"

@@ -36,8 +36,8 @@ struct RefitAreas {
     Vec4 nodes = splat(0.0f), primitives = splat(0.0f);
 };
 
-// The unit of areas in a group: the square of a length, so that they neither overflow for huge coordinates nor vanish for tiny ones.
-// per_length: 1 by that length, as unit_scale() gives it; of a box without extent 1 is taken.
+// The unit of areas in a group: the square of a length, so that they neither overflow for huge coordinates nor vanish for tiny
+// ones. per_length: 1 by that length, as unit_scale() gives it; of a box without extent 1 is taken.
 struct RefitUnit {
     explicit RefitUnit(float per_length = 1) : per_side(splat(per_length < FLT_MAX ? per_length : 1)) {}
     Vec4 per_side;

@@ -1,7 +1,7 @@
 // refit_wide.hpp -- refits wide nodes with whole boxes in depth-first order, as wide_tree.hpp writes them.
 //
-// Work for a triangle: about 0.05 nodes of eight children or 0.15 of four are read and written, 11 or 20 bytes each way, besides what
-// the host moves.
+// Work for a triangle: about 0.05 nodes of eight children or 0.15 of four are read and written, 11 or 20 bytes each way,
+// besides what the host moves.
 #pragma once
 #include "clarity_bvh/refit/refit.hpp"
 #include "clarity_bvh/topology.hpp"
