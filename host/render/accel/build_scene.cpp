@@ -241,7 +241,8 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
 }
 
 // How each mesh is placed. A mesh that is placed once is flattened into the world, because rays would only take longer
-// through a tree of its own. A reflected mesh is not flattened, because that would turn its triangles inside out.
+// through a tree of its own. A reflected mesh is not flattened, because that would turn its triangles inside out. One that
+// moves need not be, so that its tree can move without the world's.
 struct Placement {
     std::vector<Affine> inverse;  // of each instance
     std::vector<bool> flat;       // for each instance: it is flattened
@@ -250,7 +251,7 @@ struct Placement {
     uint64_t world_prims = 0, refs = 0;
 };
 
-Placement place(const Scene& scene) {
+Placement place(const Scene& scene, const std::vector<bool>& apart) {
     Placement out;
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
@@ -264,7 +265,9 @@ Placement place(const Scene& scene) {
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
         if (!instance.visible) continue;
         const bool singular = !invert(instance.world_from_object, out.inverse[i]);
-        out.flat[i] = (uses[instance.mesh] == 1 && !mirrors(instance.world_from_object)) || singular || count == 0;
+        const bool together =
+            uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !(i < apart.size() && apart[i]);
+        out.flat[i] = together || singular || count == 0;
         if (out.flat[i]) {
             out.world_prims += count;
             out.refs += count;
@@ -325,7 +328,7 @@ rt_prim box_of_instance(const Bounds& box, const Affine& world, const Affine& ob
 }
 
 SceneCounts count_scene(const Scene& scene) {
-    const Placement placement = place(scene);
+    const Placement placement = place(scene, {});
     SceneCounts counts;
     counts.triangles = placement.refs;
     counts.references = placement.world_prims;
@@ -334,9 +337,9 @@ SceneCounts count_scene(const Scene& scene) {
     return counts;
 }
 
-BuildScene make_build_scene(const Scene& scene, Progress& progress) {
+BuildScene make_build_scene(const Scene& scene, Progress& progress, const std::vector<bool>& apart) {
     BuildScene out;
-    const Placement placement = place(scene);
+    const Placement placement = place(scene, apart);
     const std::vector<Affine>& inverse = placement.inverse;
     const std::vector<bool>& flat = placement.flat;
     const std::vector<rt_u32>& group_of_mesh = placement.group_of_mesh;

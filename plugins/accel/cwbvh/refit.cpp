@@ -9,8 +9,16 @@ namespace {
 
 using namespace clarity::bvh;
 
+// Number of bits. Without an instruction for it, as in the base set of x86-64, __builtin_popcount() would be a function's call.
 uint32_t bits_of(uint32_t mask) {
-    return static_cast<uint32_t>(__builtin_popcount(mask));
+    mask -= mask >> 1 & 0x55555555u;
+    mask = (mask & 0x33333333u) + (mask >> 2 & 0x33333333u);
+    return ((mask + (mask >> 4)) & 0x0F0F0F0Fu) * 0x01010101u >> 24;
+}
+// The same of a slot's primitives, which are set from the lowest bit on.
+uint32_t primitives_of(uint32_t nibble) {
+    constexpr uint8_t kCounts[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+    return kCounts[nibble];
 }
 
 // The descendants of a node stand together: first its children, then the descendants of each (compress.hpp).
@@ -62,11 +70,12 @@ class CompressedRefit {
         for (uint32_t i = 0; i < count; ++i) out[i].end = i + 1 < count ? out[i + 1].first : tree.end;
         return count;
     }
-    void add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
+    uint64_t add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
         const uint32_t count = bits_of(nodes_[at].primitives);
-        if (count == 0) return;
+        if (count == 0) return 0;
         first = std::min<uint64_t>(first, nodes_[at].first_leaf);
         end = std::max<uint64_t>(end, nodes_[at].first_leaf + count);
+        return count;
     }
     template <class NodeBox, class LeafBox>
     RefitBox update(uint32_t at, NodeBox&& node_box, LeafBox&& leaf_box, const RefitUnit& unit, RefitAreas& areas) const {
@@ -75,7 +84,7 @@ class CompressedRefit {
         RefitBox whole;
         uint32_t child = node.first_child, first = node.first_leaf;
         for (uint32_t slot = 0; slot < kWidth; ++slot) {
-            const uint32_t primitives = node.primitives >> 4 * slot & 15u, count = bits_of(primitives);
+            const uint32_t count = primitives_of(node.primitives >> 4 * slot & 15u);
             const bool inner = CWBVH_INNER(&node) >> slot & 1u;
             boxes.child[slot] = inner || count > 0 ? 0 : kEmpty;
             if (!inner && count == 0) continue;

@@ -44,11 +44,12 @@ class SpheresRefit {
         out[1] = {second, second + 1, tree.end};
         return 2;
     }
-    void add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
+    uint64_t add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
         const spheres_node& node = nodes_[at];
-        if (node.count == 0) return;
+        if (node.count == 0) return 0;
         first = std::min<uint64_t>(first, node.first);
         end = std::max<uint64_t>(end, uint64_t{node.first} + node.count);
+        return node.count;
     }
     template <class NodeBox, class LeafBox>
     RefitBox update(uint32_t at, NodeBox&& node_box, LeafBox&& leaf_box, const RefitUnit& unit, RefitAreas& areas) const {

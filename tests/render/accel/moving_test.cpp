@@ -12,6 +12,7 @@
 #include "plugin/extensions.hpp"
 #include "render/queries/query_scene.hpp"
 #include "render/queries/ray_queries.hpp"
+#include "render/settings/accel_choice.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
 
@@ -231,6 +232,40 @@ TEST(MovingAccel, OnlyWhatMovedIsRefitted) {
     EXPECT_EQ(placed.groups[0].group, 0u);
     const auto fresh = std::make_shared<const Scene>(posed(*rings(), pose));
     EXPECT_EQ(placed.accel->scene.bounds.max, build(fresh, *Workbench::get().plugins().accel("bvh2"))->scene.bounds.max);
+}
+
+TEST(MovingAccel, AMeshThatIsKeptApartMovesAlone) {
+    Progress progress;
+    const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh8");
+    BuildTarget target;
+    target.apart.assign(rings()->instances.size(), false);
+    target.apart[1] = true;
+    MovingAccel moving(
+        rings(), std::make_shared<AccelData>(build_accel(*rings(), plugin, default_parameters(plugin), progress, target)));
+    moving.move(pose_of(*rings()), progress);
+    Pose pose = pose_of(*rings());
+    pose.meshes.push_back(waved(*rings(), 1).meshes[1]);
+    const MovedAccel deformed = moving.move(pose, progress);
+    ASSERT_EQ(deformed.groups.size(), 2u) << "its own tree, and the world that holds its instance";
+    EXPECT_EQ(deformed.groups[0].primitives, rings()->meshes[1].triangle_count);
+}
+
+TEST(MovingAccel, TreesOfAllParametersGiveTheBytesOfTheBuild) {
+    Progress progress;
+    const PluginRegistry& plugins = Workbench::get().plugins();
+    for (const char* choice :
+         {"bvh2,max_leaf=1", "bvh2,max_leaf=7,builder=morton", "bvh4,max_leaf=1", "bvh4,builder=morton", "bvh8,max_leaf=1",
+          "bvh8,builder=morton", "cwbvh,max_leaf=1", "cwbvh,builder=morton", "spheres,top_level=true",
+          "spheres,lone_spheres=true", "spheres,max_depth=0", "spheres,max_leaf=256", "spheres,max_leaf=1"}) {
+        SCOPED_TRACE(choice);
+        Settings settings;
+        choose_accel(plugins, choice, settings);
+        const auto built = std::make_shared<AccelData>(
+            build_accel(*rings(), *plugins.accel(settings.accel), settings.accel_params, progress, {}));
+        MovingAccel moving(rings(), built);
+        ASSERT_TRUE(moving.move(waved(*rings(), 1), progress).accel);
+        expect_same(*moving.move(pose_of(*rings()), progress).accel, *built);
+    }
 }
 
 TEST(MovingAccel, CostsTellHowMuchATreeHasSuffered) {

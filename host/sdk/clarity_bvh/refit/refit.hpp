@@ -30,9 +30,9 @@ struct RefitCosts {
 //   kBlock                          nodes of a subtree that one sweep takes
 //   subtrees(group, each)           calls each(RefitSubtree) for the trees of a group, in any order
 //   children(subtree, RefitSubtree out[kWidth])   returns how many children are nodes, ascending
-//   add_positions(node, first, end) widens the range of positions in leaf order by those of the node's own leaves
-//   update(node, node_box, leaf_box, unit, areas) writes the boxes of the node's children, adds their areas, and returns the
-//   box
+//   add_positions(node, first, end) widens the range of positions in leaf order by those of the node's own leaves; returns how
+//   many update(node, node_box, leaf_box, unit, areas) writes the boxes of the node's children, adds their areas, and returns
+//   the box
 //                                   around them. node_box(child) and leaf_box(first, count) give the boxes of its children
 //   finish(group, box)              writes what stands above the trees of a group
 //   unit(group)                     RefitUnit of a group, from its boxes before the refit
@@ -116,10 +116,11 @@ class Refit {
     RefitBox sweep(const RefitSubtree& tree, Worker& worker) {
         if (tree.size() <= Layout::kBlock) {
             uint64_t first = ~uint64_t{0}, end = 0;
-            layout_.add_positions(tree.node, first, end);
-            for (uint32_t at = tree.first; at < tree.end; ++at) layout_.add_positions(at, first, end);
-            if (first >= end) first = end;
-            if (end - first <= kPrims) return sweep_block(tree, worker, first, end);
+            uint64_t count = layout_.add_positions(tree.node, first, end);
+            for (uint32_t at = tree.first; at < tree.end; ++at) count += layout_.add_positions(at, first, end);
+            if (count == 0) first = end;
+            // Positions between those of the subtree would belong to another one.
+            if (count <= kPrims && end - first == count) return sweep_block(tree, worker, first, end);
         }
         return update_above(tree, worker.unit, worker.areas, worker.prims,
                             [&](const RefitSubtree& child) { return sweep(child, worker); });

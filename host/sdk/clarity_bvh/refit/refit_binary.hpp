@@ -34,12 +34,15 @@ class BinaryRefit {
         if (!is_leaf(node.child1)) out[count++] = {node.child1, node.child1 + 1, tree.end};
         return count;
     }
-    void add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
+    uint64_t add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
+        uint64_t count = 0;
         for (const uint32_t child : {nodes_[at].child0, nodes_[at].child1}) {
             if (!is_leaf(child) || child == kEmpty) continue;
             first = std::min<uint64_t>(first, leaf_first(child));
             end = std::max<uint64_t>(end, leaf_first(child) + leaf_count(child));
+            count += leaf_count(child);
         }
+        return count;
     }
     template <class NodeBox, class LeafBox>
     RefitBox update(uint32_t at, NodeBox&& node_box, LeafBox&& leaf_box, const RefitUnit& unit, RefitAreas& areas) const {

@@ -48,13 +48,16 @@ class WideRefit {
         for (uint32_t i = 0; i < count; ++i) out[i].end = i + 1 < count ? out[i + 1].node : tree.end;
         return count;
     }
-    void add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
+    uint64_t add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
+        uint64_t count = 0;
         for (uint32_t slot = 0; slot < kWidth; ++slot) {
             const uint32_t child = rows_.child(at, slot);
             if (!is_leaf(child) || child == kEmpty) continue;
             first = std::min<uint64_t>(first, leaf_first(child));
             end = std::max<uint64_t>(end, leaf_first(child) + leaf_count(child));
+            count += leaf_count(child);
         }
+        return count;
     }
     template <class NodeBox, class LeafBox>
     RefitBox update(uint32_t at, NodeBox&& node_box, LeafBox&& leaf_box, const RefitUnit& unit, RefitAreas& areas) const {
