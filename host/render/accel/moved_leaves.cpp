@@ -71,10 +71,13 @@ void MovedLeaves::pack(uint64_t first, uint64_t count, rt_prim* prims) {
         for (int k = 0; k < 3; ++k) __builtin_prefetch(positions + 3 * size_t(ahead[k]));
         const rt_u32 ref = leaves[i].ref;
         if (__builtin_expect(ref - ref_first >= ref_count, 0)) {
-            add(group, all_lo, all_hi);
-            all_lo = far;
-            all_hi = -far;
-            group = groups_.find(ref, ref_first, ref_count);
+            const rt_u32 next = groups_.find(ref, ref_first, ref_count);
+            if (next != group) {
+                add(group, all_lo, all_hi);
+                all_lo = far;
+                all_hi = -far;
+                group = next;
+            }
         }
         Row lo, hi, name;
         if (__builtin_expect(RT_REF_KIND(ref) == RT_REF_TRIANGLE, 1)) {

@@ -15,13 +15,13 @@
 namespace clarity {
 namespace {
 
-constexpr uint32_t kPerTask = 1u << 13;  // vertices or instances that one task takes
-constexpr size_t kKeptStructures = 3;    // structures
+constexpr uint32_t kVerticesPerTask = 1u << 13, kInstancesPerTask = 1u << 9;
+constexpr size_t kKeptStructures = 3;  // structures
 
 template <class Body>
-void each_chunk(size_t count, Body&& body) {
-    parallel_for(static_cast<uint32_t>((count + kPerTask - 1) / kPerTask),
-                 [&](uint32_t c) { body(size_t{kPerTask} * c, std::min(count, size_t{kPerTask} * (c + 1))); });
+void each_chunk(size_t count, uint32_t size, Body&& body) {
+    parallel_for(static_cast<uint32_t>((count + size - 1) / size),
+                 [&](uint32_t c) { body(size_t{size} * c, std::min(count, size_t{size} * (c + 1))); });
 }
 
 AlignedBytes copy_of(const AlignedBytes& from) {
@@ -122,7 +122,7 @@ void MovingAccel::transform_vertices(rt_u32 mesh, const float* object, const Aff
     const Mesh& range = scene_->meshes[mesh];
     float* const out = positions_.data() + 3 * size_t(range.first_vertex);
     const bool moves = world && *world != kIdentity;
-    each_chunk(range.vertex_count, [&](size_t begin, size_t end) {
+    each_chunk(range.vertex_count, kVerticesPerTask, [&](size_t begin, size_t end) {
         if (!moves) {
             std::copy(object + 3 * begin, object + 3 * end, out + 3 * begin);
             return;
@@ -154,8 +154,9 @@ std::string MovingAccel::place(const Pose& pose) {
     if (pose.instances.size() != instances_.size())
         return "the pose has " + std::to_string(pose.instances.size()) + " instances, the structure " +
                std::to_string(instances_.size());
-    std::vector<rt_u32> moved;
-    Affine inverse;
+    moved_.clear();
+    inverses_.clear();
+    Affine inverse = kIdentity;
     for (size_t i = 0; i < instances_.size(); ++i) {
         const PosedInstance& next = pose.instances[i];
         const Instance& instance = scene_->instances[i];
@@ -165,7 +166,8 @@ std::string MovingAccel::place(const Pose& pose) {
         if (next.visible && !invert(next.world_from_object, inverse)) return name_of(instance, i) + " is scaled to nothing";
         if (next.visible && build.number_of_instance[i] == RT_NONE && mirrors(next.world_from_object))
             return name_of(instance, i) + " is mirrored";
-        moved.push_back(static_cast<rt_u32>(i));
+        moved_.push_back(static_cast<rt_u32>(i));
+        inverses_.push_back(inverse);
     }
     for (const PosedMesh& mesh : pose.meshes)
         if (mesh.mesh >= scene_->meshes.size() || mesh.positions.size() != 3 * size_t(scene_->meshes[mesh.mesh].vertex_count))
@@ -173,14 +175,14 @@ std::string MovingAccel::place(const Pose& pose) {
 
     is_posed_.assign(scene_->meshes.size(), 0);
     for (const PosedMesh& mesh : pose.meshes) is_posed_[mesh.mesh] = 1;
-    for (const rt_u32 i : moved) {
-        const rt_u32 mesh = instances_[i].mesh, number = build.number_of_instance[i];
+    for (size_t k = 0; k < moved_.size(); ++k) {
+        const rt_u32 i = moved_[k], mesh = instances_[i].mesh, number = build.number_of_instance[i];
         instances_[i].world_from_object = pose.instances[i].world_from_object;
         if (!instances_[i].visible || scene_->meshes[mesh].triangle_count == 0) continue;
         version_[0] = moves_ + 1;
         if (number != RT_NONE) {
             world_from_object_[number] = instances_[i].world_from_object;
-            invert(world_from_object_[number], object_from_world_[number]);
+            object_from_world_[number] = inverses_[k];
         } else if (!is_posed_[mesh]) {
             transform_vertices(mesh, vertices_at_rest(mesh), &instances_[i].world_from_object);
         }
@@ -204,7 +206,7 @@ void MovingAccel::set_vertices(rt_u32 mesh, const float* object) {
     if (!world || *world == kIdentity) {
         const float* const now = positions_.data() + 3 * size_t(scene_->meshes[mesh].first_vertex);
         std::atomic<bool> same{true};
-        each_chunk(scene_->meshes[mesh].vertex_count, [&](size_t begin, size_t end) {
+        each_chunk(scene_->meshes[mesh].vertex_count, kVerticesPerTask, [&](size_t begin, size_t end) {
             if (same && std::memcmp(now + 3 * begin, object + 3 * begin, 3 * (end - begin) * sizeof(float)) != 0) same = false;
         });
         if (same) return;
@@ -235,7 +237,7 @@ MovingAccel::Buffer& MovingAccel::spare() {
 // Writes transforms and boxes of the instances.
 void MovingAccel::place_instances(AccelData& accel) {
     BuildScene& scene = accel.scene;
-    each_chunk(scene.instances.size(), [&](size_t begin, size_t end) {
+    each_chunk(scene.instances.size(), kInstancesPerTask, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const rt_u32 group = scene.group_of_instance[i];
             const Affine &world = world_from_object_[i], &object = object_from_world_[i];

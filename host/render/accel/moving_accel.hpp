@@ -96,6 +96,8 @@ class MovingAccel {
     UninitializedVector<float> positions_;         // in the space of their groups, then one more
     std::vector<Bounds> boxes_;                    // of the groups
     std::vector<rt_u32> flat_instance_;            // for each mesh: the instance that flattens it, or RT_NONE
+    std::vector<rt_u32> moved_;                    // instances that the pose moves
+    std::vector<Affine> inverses_;                 // of their transforms
     std::vector<uint8_t> is_posed_, is_deformed_;  // for each mesh: by the pose that is taken over, and by the last one
     std::vector<uint64_t> version_;                // of each group: the number of the move that changed it last
     std::vector<double> cost_, built_cost_;        // of the groups
