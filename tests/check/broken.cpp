@@ -258,7 +258,7 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
         }
         if (is("refit_ignores_group") && g + 1 < in->group_count) nodes[in->roots[g + 1]].box[0] -= 1;
     }
-    if (is("refit_race")) {
+    if (is("refit_race") && in->group_count > 0 && in->changed[0]) {
         rt_u32 shared = 0;
         rt::parallel_for(host, 1000, [&](rt_u32 i) { shared = shared * 31 + i; });
         nodes[0].box[5] += float(shared % 1000) * 1e-3f;

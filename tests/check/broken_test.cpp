@@ -89,7 +89,7 @@ const Defect kDefects[] = {
     {"leaf_off_by_three", "hits.random", {"wrong"}},
     // refits
     {"refit_forgets_parent", "builds.refit", {"after the refit", "is in no volume"}},
-    {"refit_rounds_inwards", "builds.refit", {"after the refit", "rounded to the wrong side"}},
+    {"refit_rounds_inwards", "builds.refit", {"after the refit", "no volume"}},
     {"refit_skips", "builds.refit", {"never asked for", "positions in leaf order"}},
     {"refit_asks_twice", "builds.refit", {"asked twice for position"}},
     {"refit_of_all", "builds.refit", {"is in a group that is not changed"}},
