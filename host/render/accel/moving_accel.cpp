@@ -322,8 +322,15 @@ MovedAccel MovingAccel::refit_into_spare(Progress& progress) {
         buffer.accel->scene.bounds = boxes_[0];
     }
     buffer.instances_version = moves_;
-    for (size_t g = 0; started_ && g < cost_.size(); ++g)
-        if (built_cost_[g] > 0) result.worst_cost_ratio = std::max(result.worst_cost_ratio, cost_[g] / built_cost_[g]);
+    double now = 0, then = 0;
+    for (size_t g = 0; started_ && g < cost_.size(); ++g) {
+        if (!(built_cost_[g] > 0)) continue;
+        result.worst_cost_ratio = std::max(result.worst_cost_ratio, cost_[g] / built_cost_[g]);
+        now += static_cast<double>(primitives_of_group_[g]) * cost_[g];
+        then += static_cast<double>(primitives_of_group_[g]) * built_cost_[g];
+    }
+    for (auto& [label, value] : buffer.accel->stats)
+        if (label == "sah_cost" && then > 0) value = built_->stat(label) * now / then;
     result.accel = buffer.accel;
     return result;
 }

@@ -283,7 +283,9 @@ TEST(MovingAccel, CostsTellHowMuchATreeHasSuffered) {
         for (rt_u32 v = 0; v < 3 * rings()->meshes[0].vertex_count; ++v) mesh.positions.push_back(any(random));
         pose.meshes.push_back(mesh);
         EXPECT_GT(moving.move(pose, progress).worst_cost_ratio, 2);
-        EXPECT_NEAR(moving.move(pose_of(*rings()), progress).worst_cost_ratio, 1, 1e-6);
+        const MovedAccel back = moving.move(pose_of(*rings()), progress);
+        EXPECT_NEAR(back.worst_cost_ratio, 1, 1e-6);
+        EXPECT_NEAR(back.accel->stat("sah_cost"), built->stat("sah_cost"), 1e-6);
     }
 }
 
