@@ -82,6 +82,7 @@ TEST(Moving, RowsOfAllMeasures) {
     BenchOptions options;
     options.devices = {Workbench::get().device().info()};
     options.rules.max_spread = 100;
+    options.rules.min_rounds = options.rules.max_rounds = 3;
     const PluginRegistry& plugins = Workbench::get().plugins();
     Progress progress;
     const BenchReport report =
