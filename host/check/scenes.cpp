@@ -235,6 +235,44 @@ Scene mixed_scene() {
     return std::move(make.scene);
 }
 
+Scene rippled(Scene mixed) {
+    // How far a point moves, of a region of this radius around this centre.
+    const auto moved = [](float* p, const Point& center, float radius) {
+        float q[3];
+        for (int k = 0; k < 3; ++k) q[k] = (p[k] - center[k]) / radius;
+        for (int k = 0; k < 3; ++k) p[k] += 0.3f * radius * std::sin(5 * q[(k + 1) % 3] - 4 * q[(k + 2) % 3] + float(k));
+    };
+    const auto nearest = [](const float* p) {
+        const Region* best = nullptr;
+        float least = 4;  // radii
+        for (const Region& region : mixed_regions()) {
+            float d2 = 0;
+            for (int k = 0; k < 3; ++k) d2 += (p[k] - region.center[k]) * (p[k] - region.center[k]);
+            if (std::sqrt(d2) / region.radius < least) least = std::sqrt(d2) / region.radius, best = &region;
+        }
+        return best;
+    };
+    std::vector<int> uses(mixed.meshes.size(), 0);
+    for (const Instance& instance : mixed.instances) ++uses[instance.mesh];
+    for (size_t m = 0; m < mixed.meshes.size(); ++m)
+        for (rt_u32 v = 0; v < mixed.meshes[m].vertex_count; ++v) {
+            float* const p = &mixed.positions[3 * size_t(mixed.meshes[m].first_vertex + v)];
+            if (uses[m] > 1)
+                moved(p, {0, 0, 0}, 1);  // in its own space
+            else if (const Region* region = nearest(p))
+                moved(p, region->center, region->radius);
+        }
+    for (Instance& instance : mixed.instances) {
+        Affine& m = instance.world_from_object;
+        float at[3] = {m[3], m[7], m[11]};
+        const Region* const region = uses[instance.mesh] > 1 ? nearest(at) : nullptr;
+        if (!region) continue;
+        moved(at, region->center, region->radius);
+        for (int k = 0; k < 3; ++k) m[4 * k + 3] = at[k];
+    }
+    return mixed;
+}
+
 std::vector<NamedScene> small_scenes() {
     std::vector<NamedScene> scenes;
     const auto add = [&](const char* name, auto fill) {

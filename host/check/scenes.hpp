@@ -23,6 +23,8 @@ struct Region {
 // lane count does.
 Scene mixed_scene();
 const std::vector<Region>& mixed_regions();
+// The mixed scene with other vertices and instances: each region's content moves within it, by up to a third of its radius.
+Scene rippled(Scene mixed);
 
 // Small scenes for builders.
 struct NamedScene {

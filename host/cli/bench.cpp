@@ -126,7 +126,7 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
     const BenchRequest request = make_request(command);
     if (request.suites.empty() && request.files.empty() && !request.breakdown && command.join_files.empty())
         throw Error(Exit::usage,
-                    "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, quick) or a scene file");
+                    "bench: name a suite (thesis, packets, accel, scale, large, cpu, devices, moving, quick) or a scene file");
     check_outputs(command);
     const Suite suite = make_suite(request, SceneCatalog(), plugins);
     if (command.list) {

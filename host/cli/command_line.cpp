@@ -204,7 +204,8 @@ void add_bench(CLI::App& app, BenchCommand& bench) {
     app.add_option("what", bench.what,
                    "thesis (its six tests, then and now), packets, accel (every structure and peer), scale, large (up to 100 M "
                    "triangles), cpu (side by side with the best of each peer), devices (one picture by one, two, ... of "
-                   "--device), quick (a minute); or scene files, with a suite: instead of its own")
+                   "--device), moving (refits and rebuilds while all vertices move), quick (a minute); or scene files, with a "
+                   "suite: instead of its own")
         ->type_name("SUITE|SCENE");
     single(app.add_option("--device", bench.device, "As `clarity devices` lists them; several with commas, or all"))
         ->type_name("D[,D...]");

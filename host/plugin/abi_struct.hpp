@@ -9,6 +9,7 @@
 #include <string>
 
 #include "rt_plugin.h"
+#include "rt_refit.h"
 
 namespace clarity {
 
@@ -66,6 +67,10 @@ template <>
 inline constexpr uint32_t kLeastBytes<rt_morph_desc> = 40;
 template <>
 inline constexpr uint32_t kLeastBytes<rt_vertex_frames> = 32;
+
+// Extensions have sizes of their own.
+template <>
+inline constexpr uint32_t kLeastBytes<rt_refit> = 16;
 
 // More than any struct of the ABI will have, and far less than a random word is likely to hold.
 inline constexpr uint32_t kMostBytes = 4096;

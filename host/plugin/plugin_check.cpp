@@ -179,6 +179,10 @@ std::string check_extensions(const rt_plugin& plugin) {
         if (e->data_bytes > 0 && !e->data)
             return std::string("extension '") + e->name + "' has data_bytes " + std::to_string(e->data_bytes) +
                    ", but its data is NULL";
+        if (std::strcmp(e->name, RT_REFIT) != 0 || e->version != RT_REFIT_VERSION) continue;
+        if (std::string why = check_bytes<rt_refit>("rt_refit", e->data_bytes, "data_bytes"); !why.empty()) return why;
+        if (!plugin.accel) return "extension 'refit' belongs to acceleration structures only";
+        if (!static_cast<const rt_refit*>(e->data)->refit) return "extension 'refit': its function refit is NULL";
     }
     return {};
 }

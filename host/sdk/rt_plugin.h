@@ -592,8 +592,8 @@ typedef struct rt_importer {
 /* ---- the description ------------------------------------------------------------------------------------------------------ */
 
 /* Something that a plugin offers beyond this file, such as refitting or building on the device. Extensions are frozen one by one,
- * each in a header of its own that names the struct behind `data`. Names without a dot belong to Clarity; it has none yet. A host
- * ignores extensions and versions that it does not know. */
+ * each in a header of its own that names the struct behind `data`: rt_refit.h. Names without a dot belong to Clarity. A host ignores
+ * extensions and versions that it does not know. */
 typedef struct rt_extension {
     const char *name;  /* NULL ends the array */
     rt_u32 version;

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "rt_plugin.h"
+#include "rt_refit.h"
 
 namespace rt {
 
@@ -260,6 +261,26 @@ inline void root(const rt_topology_output* out, rt_u32 group, rt_u32 node) {
 inline void stat(const rt_topology_output* out, const char* label, double value) {
     out->stat(out->ctx, label, value);
 }
+
+// ---- refit ------------------------------------------------------------------------------------------------------------------
+
+using Refit = int32_t (*)(const rt_host*, const rt_refit_input*, const rt_refit_output*);
+// The extension `refit` (rt_refit.h), for with_extensions() below:
+//   constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
+//   constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
+constexpr rt_refit refit(Refit call) {
+    return {sizeof(rt_refit), 0, call};
+}
+constexpr rt_extension extension(const rt_refit& data) {
+    return {RT_REFIT, RT_REFIT_VERSION, sizeof data, &data};
+}
+constexpr rt_extension kNoMoreExtensions = {nullptr, 0, 0, nullptr};
+
+// Fetches the primitives at `count` positions in leaf order. Throws Stopped if there are no such positions.
+inline void prims(const rt_refit_input* in, uint64_t first, uint64_t count, rt_prim* prims) {
+    if (in->prims(in->ctx, first, count, prims) != RT_OK) throw Stopped();
+}
+
 // ---- shapes -----------------------------------------------------------------------------------------------------------------
 
 // The keys of a shape. Without a default, a key is required.

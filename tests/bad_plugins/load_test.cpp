@@ -96,6 +96,8 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"small_slot", {"rt_slot has slot_bytes 16", "has 24"}},
         Refusal{"small_extension", {"rt_extension has extension_bytes 8", "has 24"}},
         Refusal{"extension_without_data", {"'refit'", "data_bytes 16", "NULL"}},
+        Refusal{"small_refit", {"rt_refit has data_bytes 8", "has 16"}},
+        Refusal{"refit_without_function", {"'refit'", "function refit is NULL"}},
         Refusal{"endless_extensions", {"extensions", "at the end"}},
         Refusal{"later_contract", {"version 2 of the kernel contract", "offers 1", "update clarity"}},
         Refusal{"no_contract", {"version 0 of the kernel contract", "offers 1", "RT_KERNEL_CONTRACT"}},

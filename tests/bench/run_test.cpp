@@ -70,4 +70,38 @@ TEST_F(Run, KeepsItsRowsWhenTheyCannotBeWritten) {
     EXPECT_EQ(report.failure, "a.json: cannot be written: the disk is full");
 }
 
+// Refits, builds and rays of a scene that moves: all rows are complete, and rays hit the same after a refit and after a build.
+TEST(Moving, RowsOfAllMeasures) {
+    BenchRequest request;
+    request.suites = {"moving"};
+    request.files = {source_file("scenes/thesis/models/ball.obj")};
+    request.accels = {"bvh8"};
+    request.settings = {{"size", "32x24"}};
+    request.only = {"wave"};
+    request.time_limit_s = 20;
+    BenchOptions options;
+    options.devices = {Workbench::get().device().info()};
+    options.rules.max_spread = 100;
+    options.rules.min_rounds = options.rules.max_rounds = 3;
+    const PluginRegistry& plugins = Workbench::get().plugins();
+    Progress progress;
+    const BenchReport report =
+        run_bench(plugins, request, make_suite(request, SceneCatalog("", ""), plugins), options, progress);
+    EXPECT_EQ(report.failure, "");
+    size_t refits = 0, rays = 0;
+    for (const BenchRecord& r : report.records) {
+        EXPECT_EQ(r.status, RowStatus::ok) << r.case_name << ", " << r.name() << ": " << r.why;
+        if (r.measure == "refit") {
+            ++refits;
+            EXPECT_GT(r.mtris_per_s, 0) << r.name();
+            EXPECT_GT(r.bytes_per_triangle, 0) << r.name();
+        } else if (r.measure != "rebuild") {
+            ++rays;
+            EXPECT_GT(r.hits, 0u) << r.name();
+        }
+    }
+    EXPECT_GE(refits, 1u);
+    EXPECT_EQ(rays, 4u) << "primary and diffuse, built and refitted";
+}
+
 }  // namespace

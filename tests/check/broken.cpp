@@ -222,6 +222,50 @@ int32_t levels(const rt_host*, const rt_built* built, rt_u32 group, rt_u32 level
     return RT_OK;
 }
 
+// Nodes in the order of their making: children after their parents, group by group.
+int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_output* out) {
+    auto* const nodes = static_cast<broken_node*>(out->slots[0]);
+    const auto node_count = rt_u32(in->slot_counts[0]);
+    if (is("refit_throws")) throw std::runtime_error("the refit gave up");
+    for (rt_u32 g = 0; g < in->group_count; ++g) {
+        if (!in->changed[g] && !is("refit_of_all")) continue;
+        const rt_u32 end = g + 1 < in->group_count ? in->roots[g + 1] : node_count;
+        for (rt_u32 at = end; at-- > in->roots[g];) {
+            broken_node& node = nodes[at];
+            if (node.count == BROKEN_EMPTY) continue;
+            if (is("refit_forgets_parent") && node.count == 0 && at % 5 == 2) continue;
+            Box box;
+            if (node.count > 0) {
+                std::vector<rt_prim> prims(node.count);
+                if (is("refit_skips") && node.first == 9) continue;
+                rt::prims(in, node.first, node.count, prims.data());
+                if (is("refit_asks_twice")) rt::prims(in, node.first, 1, prims.data());
+                for (const rt_prim& prim : prims) box.add(prim);
+            } else {
+                for (rt_u32 child = node.first; child < node.first + 2; ++child)
+                    for (int k = 0; k < 3; ++k) {
+                        box.lo[k] = std::fmin(box.lo[k], nodes[child].box[k]);
+                        box.hi[k] = std::fmax(box.hi[k], nodes[child].box[3 + k]);
+                    }
+            }
+            if (is("refit_rounds_inwards") && node.count > 0)
+                for (float& hi : box.hi) hi = std::nextafter(hi, -INFINITY);
+            for (int k = 0; k < 3; ++k) {
+                // Never smaller than it was: boxes of earlier poses stay in it.
+                node.box[k] = is("refit_only_grows") ? std::fmin(node.box[k], box.lo[k]) : box.lo[k];
+                node.box[3 + k] = is("refit_only_grows") ? std::fmax(node.box[3 + k], box.hi[k]) : box.hi[k];
+            }
+        }
+        if (is("refit_ignores_group") && g + 1 < in->group_count) nodes[in->roots[g + 1]].box[0] -= 1;
+    }
+    if (is("refit_race") && in->group_count > 0 && in->changed[0]) {
+        rt_u32 shared = 0;
+        rt::parallel_for(host, 1000, [&](rt_u32 i) { shared = shared * 31 + i; });
+        nodes[0].box[5] += float(shared % 1000) * 1e-3f;
+    }
+    return RT_OK;
+}
+
 constexpr rt_cl_file kFiles[] = {
 #include "broken.inc"
 };
@@ -229,6 +273,10 @@ constexpr rt_slot kSlots[] = {rt::slot<broken_node>("broken_nodes", "broken_node
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "broken_types.h"), rt::file(kFiles, "broken.cl"),
                                       rt::guarded<build>, rt::guarded<levels>, rt::Traits());
 
+constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
+
 }  // namespace
 
-const rt_plugin rt_plugin_v1 = rt::accel_plugin("broken", "A defect: " STRING(DEFECT), "1.0.0", nullptr, kParams, kAccel);
+const rt_plugin rt_plugin_v1 = rt::with_extensions(
+    rt::accel_plugin("broken", "A defect: " STRING(DEFECT), "1.0.0", nullptr, kParams, kAccel), kExtensions);

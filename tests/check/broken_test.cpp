@@ -53,6 +53,16 @@ const Defect kDefects[] = {
     {"leaf_reaches_too_far", "hits.instances", {"behind the last leaf"}},
     {"leaf_far_outside", "hits.random", {"crashed (segmentation fault", "while tracing"}},
     {"leaf_off_by_three", "hits.random", {"wrong"}},
+    // refits
+    {"refit_forgets_parent", "builds.refit", {"after the refit", "is in no volume"}},
+    {"refit_rounds_inwards", "builds.refit", {"after the refit", "no volume"}},
+    {"refit_skips", "builds.refit", {"never asked for", "positions in leaf order"}},
+    {"refit_asks_twice", "builds.refit", {"asked twice for position"}},
+    {"refit_of_all", "builds.refit", {"is in a group that is not changed"}},
+    {"refit_ignores_group", "builds.refit", {"wrote outside of its group"}},
+    {"refit_only_grows", "builds.refit", {"depends on the pose before"}},
+    {"refit_race", "builds.refit", {"another than with one thread"}},
+    {"refit_throws", "builds.refit", {"the refit gave up"}},
     // kernels
     {"octant", "hits.octants", {"direction signs (-,+,-)"}},
     {"any_forgets_t_max", "hits.limits", {"any-hit", "nothing is between t_min and t_max"}},

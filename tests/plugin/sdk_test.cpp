@@ -117,6 +117,18 @@ static_assert(kTree.struct_bytes == sizeof(rt_accel) && kTree.layout[0] == 'b' &
 constexpr rt_plugin kPlugin = rt::accel_plugin("a", "A", "1", nullptr, kParams, kAccel);
 static_assert(kPlugin.abi_version == RT_ABI_VERSION && kPlugin.param_count == 1 && kPlugin.accel == &kAccel &&
               !kPlugin.importer && kPlugin.param_bytes == sizeof(rt_param) && !kPlugin.extensions);
+// The extension refit is frozen: fields are appended behind these.
+static_assert(sizeof(rt_refit) == 16 && offsetof(rt_refit, refit) == 8);
+static_assert(sizeof(rt_refit_input) == 72 && offsetof(rt_refit_input, changed) == 8 && offsetof(rt_refit_input, roots) == 16 &&
+              offsetof(rt_refit_input, slot_counts) == 24 && offsetof(rt_refit_input, leaf_count) == 32 &&
+              offsetof(rt_refit_input, params) == 40 && offsetof(rt_refit_input, ctx) == 48 &&
+              offsetof(rt_refit_input, prims) == 56 && offsetof(rt_refit_input, leaves) == 64);
+static_assert(sizeof(rt_refit_output) == 32 && offsetof(rt_refit_output, slots) == 8 && offsetof(rt_refit_output, ctx) == 16 &&
+              offsetof(rt_refit_output, cost) == 24);
+constexpr rt_refit kRefit = rt::refit(nullptr);
+constexpr rt_extension kRefits[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
+static_assert(kRefits[0].version == 1 && kRefits[0].data_bytes == 16 && kRefits[1].name == nullptr);
+
 constexpr rt_extension kExtensions[] = {{"org.example.paint", 2, 0, nullptr}, {nullptr, 0, 0, nullptr}};
 static_assert(rt::with_extensions(kPlugin, kExtensions).extensions == kExtensions &&
               rt::with_extensions(kPlugin, kExtensions).extension_bytes == sizeof(rt_extension));

@@ -1,5 +1,7 @@
 #include "bench/baselines/baseline.hpp"
 
+#include "bench/baselines/moving_baseline.hpp"
+
 #ifdef CLARITY_HAVE_EMBREE
 #include "bench/baselines/embree_baseline.hpp"
 #endif
@@ -51,5 +53,11 @@ std::vector<BaselineKind> baseline_kinds(std::string* why) {
     return {};
 #endif
 }
+
+#ifndef CLARITY_HAVE_EMBREE
+std::unique_ptr<MovingBaseline> make_moving_baseline(const BaselineMesh&, const std::string&, unsigned) {
+    return nullptr;
+}
+#endif
 
 }  // namespace clarity::bench

@@ -26,7 +26,9 @@ const BenchRecord* best_baseline(const std::vector<BenchRecord>& rows, const Ben
     const BenchRecord* best = nullptr;
     for (const BenchRecord& row : rows) {
         if (row.baseline.empty() || !measured(row)) continue;
-        if (row.measure == "build" && !ends_with(row.baseline, " " + like_quality(ours.accel_params))) continue;
+        if ((row.measure == "build" || row.measure == "rebuild") &&
+            !ends_with(row.baseline, " " + like_quality(ours.accel_params)))
+            continue;
         if (!best || speed(row) > speed(*best)) best = &row;
     }
     return best;
@@ -39,8 +41,12 @@ std::string like_quality(const std::string& accel) {
     return accel.find("builder=spatial") != std::string::npos ? "high" : "medium";
 }
 
+bool is_build(const BenchRecord& record) {
+    return record.measure == "build" || record.measure == "rebuild" || record.measure == "refit";
+}
+
 double speed(const BenchRecord& record) {
-    if (record.measure == "build") return record.mtris_per_s;
+    if (is_build(record)) return record.mtris_per_s;
     return is_picture(record) ? record.fps : record.mrays_per_s;
 }
 

@@ -15,6 +15,8 @@ std::string like_quality(const std::string& accel);
 // The speed of a row: million triangles a second for builds, frames a second for pictures, million rays a second for rays. 0:
 // not measured.
 double speed(const BenchRecord& record);
+// True for rows that make a structure: their speed is in triangles a second.
+bool is_build(const BenchRecord& record);
 
 // Relative spread of the times from which speed() is computed.
 double speed_spread(const BenchRecord& record);

@@ -1,6 +1,7 @@
 #include "bench/cases/entry.hpp"
 
 #include "base/error.hpp"
+#include "bench/baselines/speedup.hpp"
 #include "bench/run/failure.hpp"
 
 namespace clarity::bench {
@@ -50,9 +51,10 @@ void set_result(BenchRecord& row, const Measured& measured) {
 void set_rates(BenchRecord& row) {
     if (row.status != RowStatus::ok) return;
     const double ms = row.time_ms.median;
-    if (row.measure != "build" && row.wall_ms.median > 0) row.fps = 1000 / row.wall_ms.median;
-    if (row.measure == "build") row.mtris_per_s = ms > 0 ? double(row.triangles) / ms / 1000 : 0;
-    if (row.measure != "build" && ms > 0) row.mrays_per_s = double(row.rays()) / ms / 1000;
+    const bool builds = is_build(row);
+    if (!builds && row.wall_ms.median > 0) row.fps = 1000 / row.wall_ms.median;
+    if (builds) row.mtris_per_s = ms > 0 ? double(row.triangles) / ms / 1000 : 0;
+    if (!builds && ms > 0) row.mrays_per_s = double(row.rays()) / ms / 1000;
 }
 
 }  // namespace clarity::bench

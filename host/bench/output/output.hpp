@@ -21,6 +21,8 @@ std::string bench_table(const BenchReport& report);
 std::string breakdown_table(const BenchReport& report);
 // Part of bench_table(): pictures rendered by several devices, compared with those of one.
 std::string devices_table(const BenchReport& report);
+// Part of bench_table(): models that move.
+std::string moving_table(const BenchReport& report);
 // Part of bench_table(): our speed compared with the fastest baseline's.
 std::string speedup_table(const BenchReport& report);
 

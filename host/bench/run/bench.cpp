@@ -9,6 +9,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "bench/baselines/speedup.hpp"
 #include "bench/cases/case_runner.hpp"
 #include "bench/cases/entry.hpp"
 #include "bench/run/failure.hpp"
@@ -29,7 +30,7 @@ std::string row_text(const BenchRecord& row) {
                       static_cast<unsigned long long>(row.rays_dropped + row.rays_secondary));
     else if (row.time_ms.n == 0)
         std::snprintf(text, sizeof text, "counted");
-    else if (row.measure == "build")
+    else if (is_build(row))
         std::snprintf(text, sizeof text, "%.2f ms, %.2f Mtris/s", row.time_ms.median, row.mtris_per_s);
     else if (row.measure == "moving")
         std::snprintf(text, sizeof text, "%.3f ms, %.1f fps", row.wall_ms.median, row.fps);

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
+#include "bench/suites/motions.hpp"
 #include "render/settings/accel_choice.hpp"
 
 namespace clarity::bench {
@@ -60,6 +61,7 @@ class Planner {
         if (name == "large") return large();
         if (name == "cpu") return cpu();
         if (name == "devices") return devices();
+        if (name == "moving") return moving();
         if (name == "quick") return quick();
         std::string known;
         for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
@@ -322,6 +324,38 @@ class Planner {
         }
     }
 
+    // Models whose vertices all move. Structures that do not refit say so in their rows.
+    void moving() {
+        std::vector<BenchScene> own = {catalog_.project("thesis/aim_100k")};
+        for (const BenchScene& scene : catalog_.shared()) own.push_back(scene);
+        const std::vector<size_t> scenes = chosen_or(own);
+        limit(240.0 * double(scenes.size()));
+        std::vector<Variant> variants;
+        for (const Variant& variant : every_accel())
+            if (!tests_everything(variant)) variants.push_back(variant);
+        for (const size_t scene : scenes)
+            for (const std::string& motion : motion_names())
+                for (const char* measure : {"refit", "rebuild", "primary", "diffuse"}) {
+                    BenchCase& c = add_case("moving", scene, motion + " " + measure, measure);
+                    c.motion = motion;
+                    const bool rays = c.measure != "refit" && c.measure != "rebuild";
+                    for (Variant variant : variants) {
+                        if (!rays) {
+                            c.variants.push_back(variant);
+                            continue;
+                        }
+                        const std::string name = variant.label;
+                        variant.label = name + ", built";
+                        c.variants.push_back(variant);
+                        variant.label = name + ", refitted";
+                        variant.refitted = true;
+                        c.variants.push_back(variant);
+                    }
+                    if (request_.baselines && c.measure == "refit") c.baseline_qualities = {"refit"};
+                    if (request_.baselines && c.measure == "rebuild") c.baseline_qualities = {"low", "medium"};
+                }
+    }
+
     void quick() {
         limit(55);
         const auto frame_case = [&](size_t scene) {
@@ -359,7 +393,8 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel", "scale", "large", "cpu", "devices", "quick"};
+    static const std::vector<std::string> names = {"thesis", "packets", "accel",  "scale", "large",
+                                                   "cpu",    "devices", "moving", "quick"};
     return names;
 }
 

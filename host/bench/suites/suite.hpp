@@ -33,6 +33,7 @@ struct Variant {
     std::string accel;                                          // ID[,key=value...]
     std::vector<std::pair<std::string, std::string>> settings;  // override those of the request
     bool cpu_only = false;                                      // needs several lanes, or too much private memory for a GPU
+    bool refitted = false;    // of rays in a motion: the structure was refitted, not built, for the moved scene
     bool overlapped = false;  // of moving: copy each picture to the host while the next one is traced
 };
 
@@ -41,11 +42,12 @@ enum class Timing { timed, counted_only };
 struct BenchCase {
     std::string suite, name;
     std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture |
-                          // moving
+                          // moving | refit | rebuild
     size_t scene = 0;     // index into Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene
     Timing timing = Timing::timed;
+    std::string motion;    // of suite moving: see motions.hpp
     bool mirrors = false;  // of breakdown: replace all materials by the half mirrors of the baselines' frame
 };
 

@@ -8,6 +8,7 @@
 #include "base/numbers.hpp"
 #include "check/builds/build_run.hpp"
 #include "check/builds/pack_checks.hpp"
+#include "check/builds/refit_checks.hpp"
 #include "check/builds/result_checks.hpp"
 #include "check/process_size.hpp"
 #include "check/scenes.hpp"
@@ -289,6 +290,7 @@ std::vector<Check> build_checks(const rt_plugin& plugin, bool quick) {
         {"builds.parameters", "builds with all parameters at the ends of their ranges",
          [=](const Step& step) { return parameters(*inputs, step, quick); }},
         {"builds.pack", "packs trees of other builders", [=](const Step& step) { return pack(*inputs, step); }},
+        refit_check(plugin, quick),
         {"builds.memory", "slots are not larger than what is in them", [=](const Step& step) { return memory(*inputs, step); }},
         {"builds.leaks", "no memory, file or thread is left behind by build after build",
          [=](const Step& step) { return leaks(*inputs, step, quick); }},

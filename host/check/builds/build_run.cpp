@@ -17,21 +17,6 @@
 namespace clarity::check {
 namespace {
 
-// Answers a certain report with "cancelled".
-class CancelAt : public Progress {
- public:
-    explicit CancelAt(unsigned at) : at_(at) {}
-    bool report(float) override {
-        if (++reports_ == at_) cancel();
-        return !cancelled();
-    }
-    unsigned reports() const { return reports_; }
-
- private:
-    const unsigned at_;
-    std::atomic<unsigned> reports_{0};
-};
-
 using Body = void (*)(void*, rt_u32);
 thread_local bool inside_loop = false;  // nested loops run on the thread of their caller
 
@@ -94,6 +79,27 @@ const char* schedule_text(Schedule schedule) {
     return "";
 }
 
+rt_host scheduled(const rt_host& host, Schedule schedule) {
+    rt_host own = host;
+    switch (schedule) {
+        case Schedule::program:
+            break;
+        case Schedule::forward:
+            own.parallel_for = scheduled_for<Schedule::forward>;
+            break;
+        case Schedule::backward:
+            own.parallel_for = scheduled_for<Schedule::backward>;
+            break;
+        case Schedule::shuffled2:
+            own.parallel_for = scheduled_for<Schedule::shuffled2>;
+            break;
+        case Schedule::shuffled7:
+            own.parallel_for = scheduled_for<Schedule::shuffled7>;
+            break;
+    }
+    return own;
+}
+
 BuildCase::BuildCase(std::string name, const Scene& scene) : name_(std::move(name)) {
     Progress progress;
     build_ = make_build_scene(scene, progress);
@@ -110,23 +116,7 @@ BuildRun BuildCase::execute(const rt_plugin& plugin, const ParameterValues& para
     CancelAt progress(cancel_after);
     HostServices services({}, progress);
     GuardedOutput output(plugin, static_cast<rt_u32>(build_.groups.size()), services);
-    rt_host host = *services.host();
-    switch (schedule) {
-        case Schedule::program:
-            break;
-        case Schedule::forward:
-            host.parallel_for = scheduled_for<Schedule::forward>;
-            break;
-        case Schedule::backward:
-            host.parallel_for = scheduled_for<Schedule::backward>;
-            break;
-        case Schedule::shuffled2:
-            host.parallel_for = scheduled_for<Schedule::shuffled2>;
-            break;
-        case Schedule::shuffled7:
-            host.parallel_for = scheduled_for<Schedule::shuffled7>;
-            break;
-    }
+    const rt_host host = scheduled(*services.host(), schedule);
     input_->params = params;
     const rt_build_input input = input_->table();
     const auto start = std::chrono::steady_clock::now();

@@ -1,9 +1,11 @@
 // build_run.hpp -- runs a builder on guarded memory, with a schedule of its parallel loops that the check chooses.
 #pragma once
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "base/progress.hpp"
 #include "plugin/parameters.hpp"
 #include "render/accel/build_scene.hpp"
 #include "render/accel/guarded_build.hpp"
@@ -20,6 +22,23 @@ enum class Schedule {
     shuffled7   // seven threads, which often wait for each other
 };
 const char* schedule_text(Schedule schedule);
+// The services of `host`, with loops that run so.
+rt_host scheduled(const rt_host& host, Schedule schedule);
+
+// Answers a certain report with "cancelled". at: its number; 0: none.
+class CancelAt : public Progress {
+ public:
+    explicit CancelAt(unsigned at) : at_(at) {}
+    bool report(float) override {
+        if (++reports_ == at_) cancel();
+        return !cancelled();
+    }
+    unsigned reports() const { return reports_; }
+
+ private:
+    const unsigned at_;
+    std::atomic<unsigned> reports_{0};
+};
 
 struct BuildRun {
     int32_t status = RT_FAILED;

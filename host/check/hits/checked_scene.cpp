@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "check/builds/refit_run.hpp"
 #include "check/builds/result_checks.hpp"
 #include "render/accel/topology_check.hpp"
 #include "render/queries/query_scene.hpp"
@@ -39,13 +40,23 @@ std::string Variant::options() const {
     return "--lanes " + std::to_string(lanes) + (debug ? " --debug true" : "") + (portable ? " --portable true" : "");
 }
 
-CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device)
+CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device,
+                           const Scene* rest)
     : scene_(std::make_shared<const Scene>(std::move(scene))), case_("mixed", *scene_), device_(std::move(device)) {
     const ParameterValues params = default_parameters(plugin);
-    run_ = case_.run(plugin, params, Schedule::program);
+    const std::unique_ptr<const BuildCase> rest_case(rest ? new BuildCase("mixed", *rest) : nullptr);
+    const BuildCase& built = rest_case ? *rest_case : case_;
+    run_ = built.run(plugin, params, Schedule::program);
     if (layout && run_.why.empty() && !run_.cancelled) {
         const BuildRun tree = std::move(run_);
-        run_ = case_.pack(*layout, topology_of(tree.result));
+        run_ = built.pack(*layout, topology_of(tree.result));
+    }
+    if (rest && run_.why.empty() && !run_.cancelled) {
+        const rt_plugin& refits = layout ? *layout : plugin;
+        RefitRun moved = run_refit(refits, layout ? default_parameters(refits) : params, run_.result, case_.scene(),
+                                   std::vector<uint8_t>(case_.scene().groups.size(), 1), Schedule::program);
+        if (!moved.why.empty()) throw Error(Exit::failed, moved.why + " (see builds.refit)");
+        run_.result = std::move(moved.result);
     }
     if (run_.cancelled) run_.why = "said that it was cancelled, but nobody had cancelled it";
     if (run_.why.empty()) {
@@ -73,13 +84,7 @@ CheckedScene::CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Sce
     auto* leaves = static_cast<rt_packed_prim*>(leaves_.data());
     const auto* refs = static_cast<const rt_u32*>(result.refs.data());
     const BuildScene& build = case_.scene();
-    for (uint64_t i = 0; i < result.leaf_count; ++i) {
-        const rt_u32 index = RT_REF_INDEX(refs[i]);
-        leaves[i] = RT_REF_KIND(refs[i]) == RT_REF_TRIANGLE  ? build.triangles[index]
-                    : RT_REF_KIND(refs[i]) == RT_REF_SPHERE  ? build.spheres[index]
-                    : RT_REF_KIND(refs[i]) == RT_REF_POLYGON ? build.polygons[index]
-                                                             : build.instance_leaves[index];
-    }
+    for (uint64_t i = 0; i < result.leaf_count; ++i) leaves[i] = packed_of(build, refs[i]);
     for (uint64_t i = 0; i < kLeafPadding; ++i) leaves[result.leaf_count + i] = trap(static_cast<int>(i % 3));
     leaves_.make_read_only();
     accel->leaves = AlignedBytes::borrow(leaves_.data(), leaves_.bytes());

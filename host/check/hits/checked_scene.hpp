@@ -31,8 +31,10 @@ constexpr rt_u32 kTrapPrim = 0x40000000u;  // an instance adds the first number 
 class CheckedScene {
  public:
     // Builds the structure. layout: what packs and traces it if the plugin builds a topology, otherwise nullptr. Throws Error
-    // with the reason if the build fails.
-    CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device);
+    // with the reason if the build fails. rest: the same scene in another pose, if the structure is built in that one and
+    // refitted to `scene`; otherwise nullptr.
+    CheckedScene(const rt_plugin& plugin, const rt_plugin* layout, Scene scene, std::shared_ptr<Device> device,
+                 const Scene* rest = nullptr);
     const BuildScene& build_scene() const { return case_.scene(); }
     const Device& device() const { return *device_; }
     // Compiles on first use. Throws Error.

@@ -13,6 +13,7 @@
 #include "check/hits/report_picture.hpp"
 #include "check/oclgrind.hpp"
 #include "check/scenes.hpp"
+#include "plugin/extensions.hpp"
 #include "render/queries/ray_text.hpp"
 
 namespace clarity::check {
@@ -25,9 +26,10 @@ constexpr size_t kRays = 2400, kQuickRays = 800;  // of a set
 // Everything that the checks of one structure share.
 class Bench {
  public:
+    // refits: the structure is built for the mixed scene at rest, and refitted to a moved one.
     Bench(const rt_plugin& plugin, const rt_plugin* layout, std::function<std::shared_ptr<Device>()> open,
-          const HitsOptions& options)
-        : plugin_(plugin), layout_(layout), options_(options), open_(std::move(open)) {}
+          const HitsOptions& options, bool refits = false)
+        : plugin_(plugin), layout_(layout), options_(options), open_(std::move(open)), refits_(refits) {}
 
     const HitsOptions& options() const { return options_; }
     std::vector<Variant> variants() const {
@@ -43,7 +45,9 @@ class Bench {
             step("opening the device", kCompileLimit_s);
             device_ = open_();
             step("building the mixed scene", kCompileLimit_s);
-            scene_ = std::make_unique<CheckedScene>(plugin_, layout_, mixed_scene(), device_);
+            const Scene rest = mixed_scene();
+            scene_ = refits_ ? std::make_unique<CheckedScene>(plugin_, layout_, rippled(rest), device_, &rest)
+                             : std::make_unique<CheckedScene>(plugin_, layout_, rest, device_);
         }
         return *scene_;
     }
@@ -78,6 +82,7 @@ class Bench {
     const rt_plugin* const layout_;
     const HitsOptions options_;
     const std::function<std::shared_ptr<Device>()> open_;
+    const bool refits_;
     std::shared_ptr<Device> device_;
     std::unique_ptr<CheckedScene> scene_;
     std::vector<std::string> compiled_;
@@ -174,6 +179,20 @@ Outcome trace_set(Bench& bench, const std::string& name, const Step& step) {
     return first;
 }
 
+// The same rays on a structure that was refitted.
+Outcome refit(Bench& bench, const Step& step) {
+    size_t rays = 0;
+    for (const char* name : {"hits.random", "hits.instances"}) {
+        Outcome outcome = trace_set(bench, name, step);
+        if (outcome.kind == Outcome::Kind::failed) {
+            outcome.found = "after a refit, rays of " + std::string(name) + ": " + outcome.found;
+            return outcome;
+        }
+        rays += bench.set(name, step).rays.size();
+    }
+    return Outcome::passed(std::to_string(rays) + " rays, nearest and any, are right after a refit");
+}
+
 Outcome strange_set(Bench& bench, const std::string& name, const Step& step) {
     const RaySet& set = bench.set(name, step);
     std::vector<rt_ray> sane;
@@ -265,6 +284,14 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
         else
             checks.push_back({name, set.tried, [=](const Step& step) { return trace_set(*bench, name, step); }});
     }
+    HitsOptions one = options;  // the programs are those of the other checks, so one of them says enough
+    one.quick = true;
+    one.lanes.resize(1);
+    const auto refitted = std::make_shared<Bench>(plugin, layout, open, one, true);
+    const bool refits = refit_of(layout ? *layout : plugin).refit != nullptr;
+    checks.push_back({"hits.refit", "rays in a scene that moved after the build", [=](const Step& step) {
+                          return refits ? refit(*refitted, step) : Outcome::skipped("the plugin does not offer `refit`");
+                      }});
     return checks;
 }
 

@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "base/parallel_for.hpp"
 #include "render/accel/memory_plan.hpp"
+#include "render/accel/rows.hpp"
 
 namespace clarity {
 namespace {
@@ -47,13 +48,6 @@ void widen(rt_prim& prim, float relative) {
     }
 }
 
-// Four numbers of a leaf or prim in one register: three coordinates, and the bits of an integer.
-using Row = float __attribute__((vector_size(16)));
-using Bits = rt_u32 __attribute__((vector_size(16)));
-Row named(Row point, rt_u32 name) {
-    return reinterpret_cast<Row>(reinterpret_cast<Bits>(point) | Bits{0, 0, 0, name});
-}
-
 // Writes the triangles of one mesh as refs from first_ref on, transformed unless `world` is nullptr. Returns their bounds.
 Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, rt_u32 material, rt_u32 first_prim,
                      rt_u32 first_ref, rt_u32 run, uint64_t prim_at, BuildScene& out) {
@@ -85,8 +79,6 @@ Bounds add_triangles(const Scene& scene, const Mesh& mesh, const Affine* world, 
                     corner[c] = Row{position[0], position[1], position[2], 0};
                 }
             }
-            static_assert(sizeof(rt_packed_prim) == 3 * sizeof(Row) && sizeof(rt_prim) == 2 * sizeof(Row),
-                          "rows of four numbers");
             Row lo = corner[1] < corner[0] ? corner[1] : corner[0], hi = corner[0] < corner[1] ? corner[1] : corner[0];
             lo = corner[2] < lo ? corner[2] : lo;
             hi = hi < corner[2] ? corner[2] : hi;
@@ -114,12 +106,8 @@ void add_spheres(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at
         leaf.b[0] = sphere.radius;
         leaf.material = sphere.material;
         leaf.prim = next_prim++;
-        rt_prim prim = empty_prim(leaf.ref, run);
-        for (int k = 0; k < 3; ++k) {
-            prim.lo[k] = sphere.center[k] - sphere.radius;
-            prim.hi[k] = sphere.center[k] + sphere.radius;
-        }
-        widen(prim, 1e-6f);
+        rt_prim prim = box_of(out, leaf);
+        prim.mesh = run;
         grow(out.bounds, prim);
         out.spheres.push_back(leaf);
         out.prims[at++] = prim;
@@ -151,20 +139,12 @@ void add_polygons(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& a
         leaf.prim = next_prim++;
         out.polygon_table.push_back({static_cast<rt_u32>(out.polygon_corners.size() / 3), polygon.corner_count});
         out.polygon_corners.insert(out.polygon_corners.end(), corners, corners + 3 * size_t(polygon.corner_count));
-        rt_prim prim = empty_prim(leaf.ref, run);
-        for (rt_u32 c = 0; c < polygon.corner_count; ++c) grow(prim, corners + 3 * c);
-        widen(prim, 1e-6f);
+        rt_prim prim = box_of(out, leaf);
+        prim.mesh = run;
         grow(out.bounds, prim);
         out.polygons.push_back(leaf);
         out.prims[at++] = prim;
     }
-}
-
-// Whether a transform contains a reflection (negative determinant).
-bool mirrors(const Affine& m) {
-    const double x = double(m[5]) * m[10] - double(m[6]) * m[9], y = double(m[6]) * m[8] - double(m[4]) * m[10],
-                 z = double(m[4]) * m[9] - double(m[5]) * m[8];
-    return m[0] * x + m[1] * y + m[2] * z < 0;
 }
 
 // The largest float that is not above a number; below, the smallest that is not below it.
@@ -214,15 +194,11 @@ rt_prim placed_box(const rt_prim& box, const Affine& world, const Affine& object
     return prim;
 }
 
-// The box of a placed mesh.
-rt_prim instance_prim(const BuildScene& scene, rt_u32 group, const Affine& world, const Affine& object_from_world,
-                      rt_u32 index) {
-    rt_prim box = empty_prim(RT_REF_INSTANCE | index, index);
-    for (rt_u32 i = 0; i < scene.groups[group].count; ++i) {
-        grow(box, scene.prims[scene.groups[group].first + i].lo);
-        grow(box, scene.prims[scene.groups[group].first + i].hi);
-    }
-    return placed_box(box, world, object_from_world);
+// The box of a group's primitives.
+Bounds bounds_of(const BuildScene& scene, rt_u32 group) {
+    Bounds box;
+    for (rt_u32 i = 0; i < scene.groups[group].count; ++i) grow(box, scene.prims[scene.groups[group].first + i]);
+    return box;
 }
 
 // Kernels of shapes compute a point's height above the surface with about this many roundings of numbers of the shape's size.
@@ -265,7 +241,8 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
 }
 
 // How each mesh is placed. A mesh that is placed once is flattened into the world, because rays would only take longer
-// through a tree of its own. A reflected mesh is not flattened, because that would turn its triangles inside out.
+// through a tree of its own. A reflected mesh is not flattened, because that would turn its triangles inside out. One that
+// moves need not be, so that its tree can move without the world's.
 struct Placement {
     std::vector<Affine> inverse;  // of each instance
     std::vector<bool> flat;       // for each instance: it is flattened
@@ -274,7 +251,7 @@ struct Placement {
     uint64_t world_prims = 0, refs = 0;
 };
 
-Placement place(const Scene& scene) {
+Placement place(const Scene& scene, const std::vector<bool>& apart) {
     Placement out;
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
@@ -288,7 +265,9 @@ Placement place(const Scene& scene) {
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
         if (!instance.visible) continue;
         const bool singular = !invert(instance.world_from_object, out.inverse[i]);
-        out.flat[i] = (uses[instance.mesh] == 1 && !mirrors(instance.world_from_object)) || singular || count == 0;
+        const bool together =
+            uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !(i < apart.size() && apart[i]);
+        out.flat[i] = together || singular || count == 0;
         if (out.flat[i]) {
             out.world_prims += count;
             out.refs += count;
@@ -305,8 +284,51 @@ Placement place(const Scene& scene) {
 
 }  // namespace
 
+bool mirrors(const Affine& m) {
+    const double x = double(m[5]) * m[10] - double(m[6]) * m[9], y = double(m[6]) * m[8] - double(m[4]) * m[10],
+                 z = double(m[4]) * m[9] - double(m[5]) * m[8];
+    return m[0] * x + m[1] * y + m[2] * z < 0;
+}
+
+rt_prim box_of(const BuildScene& scene, const rt_packed_prim& packed) {
+    rt_prim prim = empty_prim(packed.ref, 0);
+    switch (RT_REF_KIND(packed.ref)) {
+        case RT_REF_SPHERE:
+            for (int k = 0; k < 3; ++k) {
+                prim.lo[k] = packed.a[k] - packed.b[0];
+                prim.hi[k] = packed.a[k] + packed.b[0];
+            }
+            widen(prim, 1e-6f);
+            return prim;
+        case RT_REF_POLYGON: {
+            const rt_polygon& polygon = scene.polygon_table[RT_REF_INDEX(packed.ref)];
+            const float* const corners = &scene.polygon_corners[3 * size_t(polygon.first)];
+            for (rt_u32 c = 0; c < polygon.count; ++c) grow(prim, corners + 3 * size_t(c));
+            widen(prim, 1e-6f);
+            return prim;
+        }
+        case RT_REF_TRIANGLE:
+            grow(prim, packed.c);
+            break;
+        default:
+            break;  // instances and shapes hold their boxes
+    }
+    grow(prim, packed.a);
+    grow(prim, packed.b);
+    return prim;
+}
+
+rt_prim box_of_instance(const Bounds& box, const Affine& world, const Affine& object_from_world, rt_u32 number) {
+    rt_prim prim = empty_prim(RT_REF_INSTANCE | number, number);
+    if (!box.empty) {
+        grow(prim, box.min.data());
+        grow(prim, box.max.data());
+    }
+    return placed_box(prim, world, object_from_world);
+}
+
 SceneCounts count_scene(const Scene& scene) {
-    const Placement placement = place(scene);
+    const Placement placement = place(scene, {});
     SceneCounts counts;
     counts.triangles = placement.refs;
     counts.references = placement.world_prims;
@@ -315,9 +337,9 @@ SceneCounts count_scene(const Scene& scene) {
     return counts;
 }
 
-BuildScene make_build_scene(const Scene& scene, Progress& progress) {
+BuildScene make_build_scene(const Scene& scene, Progress& progress, const std::vector<bool>& apart) {
     BuildScene out;
-    const Placement placement = place(scene);
+    const Placement placement = place(scene, apart);
     const std::vector<Affine>& inverse = placement.inverse;
     const std::vector<bool>& flat = placement.flat;
     const std::vector<rt_u32>& group_of_mesh = placement.group_of_mesh;
@@ -342,17 +364,24 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     out.triangles.resize(refs);
     out.attribute_triangle.resize(refs);
 
+    out.group_of_mesh = group_of_mesh;
+    out.first_ref_of_group.assign(placement.group_count, 0);
+    out.number_of_instance.assign(scene.instances.size(), RT_NONE);
+
     // Instanced meshes come first, because instances need their boxes.
     rt_u32 next_ref = 0;
     for (size_t m = 0; m < scene.meshes.size(); ++m)
         if (group_of_mesh[m]) {
             add_triangles(scene, scene.meshes[m], nullptr, RT_NONE, 0, next_ref, static_cast<rt_u32>(m),
                           out.groups[group_of_mesh[m]].first, out);
+            out.first_ref_of_group[group_of_mesh[m]] = next_ref;
             next_ref += scene.meshes[m].triangle_count;
         }
+    out.first_ref_of_group[0] = next_ref;
     uint64_t at = 0;
     rt_u32 next_prim = 0;
     std::vector<rt_prim> instance_prims;
+    std::vector<Bounds> group_boxes(placement.group_count);
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
@@ -375,7 +404,8 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             placed.first_prim = next_prim;
             placed.material = instance.material;
             const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
-            rt_prim prim = instance_prim(out, group, instance.world_from_object, inverse[i], index);
+            if (group_boxes[group].empty) group_boxes[group] = bounds_of(out, group);
+            rt_prim prim = box_of_instance(group_boxes[group], instance.world_from_object, inverse[i], index);
             prim.mesh = static_cast<rt_u32>(i);
             grow(out.bounds, prim);
             instance_prims.push_back(prim);
@@ -384,6 +414,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             std::copy_n(prim.hi, 3, leaf.b);
             leaf.ref = prim.ref;
             out.instance_leaves.push_back(leaf);
+            out.number_of_instance[i] = index;
             out.instances.push_back(placed);
             out.group_of_instance.push_back(group);
             out.world_from_object.push_back(instance.world_from_object);

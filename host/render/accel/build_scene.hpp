@@ -28,6 +28,10 @@ struct BuildScene {
     std::vector<float> polygon_corners;  // 3 floats a corner
     std::vector<rt_plane> planes;
     Bounds bounds;  // of the world's group, that is of everything but planes
+    // Where the Scene's meshes and instances are in here, for scenes that move.
+    std::vector<rt_u32> group_of_mesh;       // 0: its triangles are in the world's group, or nowhere
+    std::vector<rt_u32> first_ref_of_group;  // ref of the group's first triangle; the others follow
+    std::vector<rt_u32> number_of_instance;  // in `instances`; RT_NONE: flattened, or not visible
 };
 // True if a builder of that scene was given such a ref.
 inline bool is_known_ref(rt_u32 ref, const BuildScene& scene) {
@@ -46,7 +50,15 @@ inline bool is_known_ref(rt_u32 ref, const BuildScene& scene) {
     }
     return false;
 }
-// Converts a scene. Throws Error(failed) if it has too many triangles, and Cancelled.
-BuildScene make_build_scene(const Scene& scene, Progress& progress);
+// The box of a primitive, as builders get it. `packed` is what leaves hold of it.
+rt_prim box_of(const BuildScene& scene, const rt_packed_prim& packed);
+// The box in the world of an instance of what lies in `box`, with the ref of this number.
+rt_prim box_of_instance(const Bounds& box, const Affine& world_from_object, const Affine& object_from_world, rt_u32 number);
+// Whether a transform contains a reflection (negative determinant): such an instance is never flattened.
+bool mirrors(const Affine& world_from_object);
+
+// Converts a scene. apart: for each instance whether its mesh gets a group of its own, though it is placed once; empty: none.
+// Throws Error(failed) if it has too many triangles, and Cancelled.
+BuildScene make_build_scene(const Scene& scene, Progress& progress, const std::vector<bool>& apart = {});
 
 }  // namespace clarity

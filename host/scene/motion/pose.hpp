@@ -37,6 +37,9 @@ struct ClipInfo {
 // The clips of a scene, in the order of its files. Files that lack a clip of the name play their first one.
 std::vector<ClipInfo> clips(const Scene& scene);
 
+// For each instance: whether a clip moves or shows it, or its mesh deforms.
+std::vector<bool> moving_instances(const Scene& scene);
+
 // Reads the vertices of one file of a FileSequence: 3 numbers for each vertex of all its meshes, in their order. May throw
 // Error.
 using FrameVertices = std::function<std::vector<float>(const std::string& file)>;

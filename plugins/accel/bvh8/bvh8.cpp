@@ -8,6 +8,7 @@
 #include "clarity_bvh/wide/wide_levels.hpp"
 #include "incoherent.hpp"
 #include "pack.hpp"
+#include "refit.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "bvh8_types.h"
 
@@ -57,12 +58,16 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
 
 constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build_tree>, rt::guarded<levels>, kTraits,
                                       rt::guarded<pack_trees<pack, BVH8_LEAF_MAX>>);
+constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 
 }  // namespace
 }  // namespace bvh8
 
-const rt_plugin rt_plugin_v1 = rt::accel_plugin("bvh8", "8-wide BVH (binned SAH)", "1.0.0",
-                                                "Wald, Benthin, Boulos 2008, Getting Rid of Packets: Efficient SIMD "
-                                                "Single-Ray Traversal using Multi-branching BVHs",
-                                                bvh8::kParams, bvh8::kAccel);
+const rt_plugin rt_plugin_v1 =
+    rt::with_extensions(rt::accel_plugin("bvh8", "8-wide BVH (binned SAH)", "1.0.0",
+                                         "Wald, Benthin, Boulos 2008, Getting Rid of Packets: Efficient SIMD "
+                                         "Single-Ray Traversal using Multi-branching BVHs",
+                                         bvh8::kParams, bvh8::kAccel),
+                        bvh8::kExtensions);

@@ -8,6 +8,7 @@
 #include "clarity_bvh/parameters.hpp"
 #include "compressed_levels.hpp"
 #include "pack.hpp"
+#include "refit.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "cwbvh_types.h"
 
@@ -41,12 +42,16 @@ int32_t build_tree(const rt_host* host, const rt_build_input* input, const rt_bu
 constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build_tree>, rt::guarded<levels>,
                                       rt::Traits().merit(0.5f, 1.35f), rt::guarded<pack_trees<pack, CWBVH_LEAF_MAX>>);
 
+constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 
 }  // namespace
 }  // namespace cwbvh
 
-const rt_plugin rt_plugin_v1 = rt::accel_plugin("cwbvh", "Compressed 8-wide BVH for GPUs (binned SAH)", "1.0.0",
-                                                "Ylitie, Karras, Laine 2017, Efficient Incoherent Ray Traversal on GPUs "
-                                                "Through Compressed Wide BVHs",
-                                                cwbvh::kParams, cwbvh::kAccel);
+const rt_plugin rt_plugin_v1 =
+    rt::with_extensions(rt::accel_plugin("cwbvh", "Compressed 8-wide BVH for GPUs (binned SAH)", "1.0.0",
+                                         "Ylitie, Karras, Laine 2017, Efficient Incoherent Ray Traversal on GPUs "
+                                         "Through Compressed Wide BVHs",
+                                         cwbvh::kParams, cwbvh::kAccel),
+                        cwbvh::kExtensions);

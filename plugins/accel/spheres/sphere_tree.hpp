@@ -25,6 +25,9 @@ struct Item {
 };
 Item make_item(const rt_prim& prim);
 
+// Radius of a leaf that every ray enters. It is finite, so that the ray test computes no NaN.
+constexpr float kEverywhere = 1e30f;
+
 struct Rules {
     uint32_t max_leaf, max_depth;
 };

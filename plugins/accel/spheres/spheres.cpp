@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "refit.hpp"
 #include "sphere_tree.hpp"
 
 namespace spheres {
@@ -23,9 +24,6 @@ constexpr rt_param kParams[] = {
         "Without effect under a tree above meshes",
         false),
 };
-
-// Radius of a leaf that every ray enters. It is finite, so that the ray test computes no NaN.
-constexpr float kEverywhere = 1e30f;
 
 // The primitives of one mesh within a group.
 struct Run {
@@ -188,11 +186,14 @@ constexpr rt_cl_file kFiles[] = {
 constexpr rt_slot kSlots[] = {rt::slot<spheres_node>("spheres_nodes", "spheres_node")};
 constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "spheres_types.h"), rt::file(kFiles, "spheres.cl"),
                                       rt::guarded<build>, rt::guarded<levels>, rt::Traits().merit(0.3f, 0));
+constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
 static_assert(sizeof(spheres_node) == 32, "two nodes to a cache line");
 static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
 
 }  // namespace
 }  // namespace spheres
 
-const rt_plugin rt_plugin_v1 =
-    rt::accel_plugin("spheres", "Bounding spheres (thesis)", "1.0.0", nullptr, spheres::kParams, spheres::kAccel);
+const rt_plugin rt_plugin_v1 = rt::with_extensions(
+    rt::accel_plugin("spheres", "Bounding spheres (thesis)", "1.0.0", nullptr, spheres::kParams, spheres::kAccel),
+    spheres::kExtensions);

@@ -12,6 +12,22 @@ namespace {
 
 constexpr GridRule kRule{32768.0f, 1.0f / 128.0f, -100, 112};
 
+TEST(Grid, FourPlanesAtOnceAreTheSame) {
+    std::mt19937 random(4);
+    std::uniform_real_distribution<float> any(-7, 100);
+    const Grid grid = Grid::around(kRule, -7, 100);
+    for (int i = 0; i < 1000; ++i) {
+        const float planes[4] = {any(random), any(random), any(random), any(random)};
+        int low[4], high[4];
+        grid.lower_four(planes, low);
+        grid.upper_four(planes, high);
+        for (int k = 0; k < 4; ++k) {
+            EXPECT_EQ(low[k], grid.lower(planes[k])) << planes[k];
+            EXPECT_EQ(high[k], grid.upper(planes[k])) << planes[k];
+        }
+    }
+}
+
 }  // namespace
 
 TEST(Grid, PlanesBoundCoordinates) {

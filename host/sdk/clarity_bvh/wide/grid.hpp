@@ -3,6 +3,9 @@
 #pragma once
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+
+#include "clarity_bvh/base/vec4.hpp"
 
 namespace clarity::bvh {
 
@@ -26,8 +29,8 @@ class Grid {
         : origin_(origin),
           exponent_(exponent),
           margin_(double{rule.margin}),
-          cell_(std::ldexp(1.0, exponent)),
-          per_cell_(std::ldexp(1.0, -exponent)),
+          cell_(power_of_two(exponent)),
+          per_cell_(power_of_two(-exponent)),
           base_(origin + rule.bias * cell_) {}
 
     // True if the axis is so long, or so far away, that no grid holds it. The origin is then NaN.
@@ -40,10 +43,56 @@ class Grid {
         const double at = (plane - base_) * per_cell_ + margin_;
         return static_cast<int>(at) + (static_cast<int>(at) < at);
     }
+    // The bytes of four coordinates.
+    void lower_four(const float* planes, int* bytes) const {
+#ifdef CLARITY_BVH_SSE2
+        const auto two = [&](const float* p) { return _mm_cvttpd_epi32(_mm_sub_pd(cells(p), both(margin_))); };
+        store_four(bytes, two(planes), two(planes + 2));
+#else
+        for (int i = 0; i < 4; ++i) bytes[i] = lower(planes[i]);
+#endif
+    }
+    void upper_four(const float* planes, int* bytes) const {
+#ifdef CLARITY_BVH_SSE2
+        const auto two = [&](const float* p) {
+            const __m128d at = _mm_add_pd(cells(p), both(margin_));
+            const __m128i whole = _mm_cvttpd_epi32(at);
+            // A lane of the comparison is -1 if there is a rest.
+            const __m128d rest = _mm_cmplt_pd(_mm_cvtepi32_pd(whole), at);
+            return _mm_sub_epi32(whole, _mm_shuffle_epi32(_mm_castpd_si128(rest), _MM_SHUFFLE(3, 3, 2, 0)));
+        };
+        store_four(bytes, two(planes), two(planes + 2));
+#else
+        for (int i = 0; i < 4; ++i) bytes[i] = upper(planes[i]);
+#endif
+    }
     // The coordinate of a byte, in double precision: its rounding error is far below any sensible margin.
-    double plane(uint32_t byte) const { return base_ + cell_ * byte; }
+    double plane(uint32_t byte) const {
+        return base_ + cell_ * byte;
+    }
 
  private:
+#ifdef CLARITY_BVH_SSE2
+    static __m128d both(double x) {
+        return _mm_set1_pd(x);
+    }
+    static void store_four(int* p, __m128i a, __m128i b) {
+        _mm_storeu_si128(reinterpret_cast<__m128i*>(p), _mm_unpacklo_epi64(a, b));
+    }
+    // Two coordinates in cells from byte 0 on.
+    __m128d cells(const float* planes) const {
+        const __m128 two = _mm_castsi128_ps(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(planes)));
+        return _mm_mul_pd(_mm_sub_pd(_mm_cvtps_pd(two), both(base_)), both(per_cell_));
+    }
+#endif
+    // 2^exponent, for exponents of normal numbers. std::ldexp() takes ten times as long.
+    static double power_of_two(int exponent) {
+        const uint64_t bits = static_cast<uint64_t>(exponent + 1023) << 52;
+        double power;
+        std::memcpy(&power, &bits, sizeof power);
+        return power;
+    }
+
     float origin_;
     int exponent_;
     double margin_, cell_, per_cell_, base_;  // base_: coordinate of byte 0

@@ -1,0 +1,252 @@
+#include "bench/cases/motion.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cstring>
+#include <thread>
+
+#include "base/elapsed.hpp"
+#include "base/error.hpp"
+#include "base/parallel_for.hpp"
+#include "bench/baselines/moving_baseline.hpp"
+#include "bench/baselines/speedup.hpp"
+#include "bench/cases/case_state.hpp"
+#include "bench/cases/ray_entries.hpp"
+#include "bench/run/bench.hpp"
+#include "bench/suites/motions.hpp"
+#include "render/accel/moving_accel.hpp"
+#include "render/frame/preparer.hpp"
+
+namespace clarity::bench {
+namespace {
+
+// Poses that follow each other again and again. The last one is that of the traced rays.
+constexpr double kPhases[] = {0.1, 0.35};
+
+void copy_positions(const float* from, size_t count, float* to) {
+    constexpr size_t kPiece = size_t{1} << 16;
+    parallel_for(static_cast<uint32_t>((count + kPiece - 1) / kPiece), [&](uint32_t i) {
+        std::memcpy(to + i * kPiece, from + i * kPiece, std::min(kPiece, count - i * kPiece) * sizeof(float));
+    });
+}
+
+class MotionCase {
+ public:
+    MotionCase(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
+               const MeasureRules& rules, Progress& progress)
+        : fixture_(fixture),
+          plugins_(plugins),
+          request_(request),
+          case_(c),
+          rules_(rules),
+          progress_(progress),
+          state_(fixture, c, progress) {}
+
+    std::vector<BenchRecord> run() {
+        const Scene& scene = *fixture_.scene();
+        for (const double phase : kPhases) {
+            poses_.push_back(moved_pose(scene, case_.motion, phase));
+            if (case_.measure != "refit") moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
+        }
+        for (const Variant& variant : case_.variants) {
+            Entry& entry = state_.add_entry();
+            run_or_mark_failed(entry, [&](BenchRecord&) { add(variant, entry); });
+        }
+        for (const std::string& quality : case_.baseline_qualities) add_baseline(quality);
+        measure_entries(state_.entries, rules_, progress_);
+        std::vector<BenchRecord> rows;
+        for (Entry& entry : state_.entries) {
+            run_or_mark_failed(entry, entry.finish);
+            set_rates(entry.row);
+            rows.push_back(std::move(entry.row));
+        }
+        compare_with_baselines(rows);
+        return rows;
+    }
+
+ private:
+    struct Mover {
+        std::shared_ptr<const AccelData> built, now;
+        std::unique_ptr<MovingAccel> accel;
+        MovedAccel moved;
+        size_t next = 0;
+    };
+
+    void add(const Variant& variant, Entry& entry) {
+        const Settings settings = variant_settings(plugins_, request_, variant);
+        const rt_plugin& plugin = *plugins_.accel(settings.accel);
+        BenchRecord& row = entry.row;
+        row.variant = variant.label;
+        row.accel = settings.accel;
+        row.accel_params = parameters_text(plugin, settings.accel_params);
+        if (case_.measure == "refit" || case_.measure == "rebuild")
+            describe_host(row, std::thread::hardware_concurrency());
+        else
+            describe(row, fixture_.device(0));
+        if (case_.measure == "refit")
+            add_refit(plugin, settings, entry);
+        else if (case_.measure == "rebuild")
+            add_rebuild(plugin, settings, entry);
+        else
+            add_rays(plugin, settings, entry, variant.refitted);
+    }
+
+    std::shared_ptr<Mover> make_mover(const rt_plugin& plugin, const Settings& settings) {
+        auto mover = std::make_shared<Mover>();
+        mover->built = std::make_shared<const AccelData>(
+            build_accel(*fixture_.scene(), plugin, settings.accel_params, progress_, fixture_.target_of(plugin)));
+        mover->accel = std::make_unique<MovingAccel>(fixture_.scene(), mover->built);
+        if (!mover->accel->cannot().empty()) throw Error(Exit::usage, mover->accel->cannot());
+        for (const Pose& pose : poses_) move(*mover, pose);
+        return mover;
+    }
+    void move(Mover& mover, const Pose& pose) {
+        mover.moved = mover.accel->move(pose, progress_);
+        if (!mover.moved.accel) throw Error(Exit::failed, "the structure cannot follow: " + mover.moved.why);
+        mover.now = mover.moved.accel;
+        mover.moved.accel.reset();
+    }
+
+    // time_ms: from vertices in place to the finished structure, as the baseline is timed. wall_ms: with the copy of the
+    // vertices.
+    void add_refit(const rt_plugin& plugin, const Settings& settings, Entry& entry) {
+        const std::shared_ptr<Mover> mover = make_mover(plugin, settings);
+        const bool in_place = std::all_of(poses_[0].meshes.begin(), poses_[0].meshes.end(),
+                                          [&](const PosedMesh& mesh) { return mover->accel->vertices(mesh.mesh) != nullptr; });
+        entry.once = [=] {
+            const Pose& pose = poses_[mover->next++ % poses_.size()];
+            const auto begin = std::chrono::steady_clock::now();
+            if (in_place) {
+                for (const PosedMesh& mesh : pose.meshes) {
+                    copy_positions(mesh.positions.data(), mesh.positions.size(), mover->accel->vertices(mesh.mesh));
+                    mover->accel->touch(mesh.mesh);
+                }
+                mover->moved = mover->accel->refit(progress_);
+                mover->now = std::move(mover->moved.accel);
+            } else {
+                move(*mover, pose);
+            }
+            return Sample{mover->moved.ms, ms_since(begin)};
+        };
+        entry.finish = [=](BenchRecord& row) {
+            describe(row, *mover->built);
+            row.accel_bytes = mover->built->bytes + mover->accel->state_bytes();
+            row.bytes_per_triangle = double(row.accel_bytes) / double(row.triangles);
+            row.sah_cost *= mover->moved.worst_cost_ratio;
+        };
+    }
+
+    void add_rebuild(const rt_plugin& plugin, const Settings& settings, Entry& entry) {
+        const auto last = std::make_shared<BenchRecord>(entry.row);
+        const auto next = std::make_shared<size_t>(0);
+        entry.once = [=, &plugin] {
+            const auto begin = std::chrono::steady_clock::now();
+            const AccelData built = build_accel(*moved_[(*next)++ % moved_.size()], plugin, settings.accel_params, progress_,
+                                                fixture_.target_of(plugin));
+            describe(*last, built);
+            return Sample{built.build_ms + built.pack_ms, ms_since(begin)};
+        };
+        entry.finish = [=](BenchRecord& row) {
+            row.build_ms = last->build_ms;
+            row.pack_ms = last->pack_ms;
+            row.accel_bytes = last->accel_bytes;
+            row.bytes_per_triangle = last->bytes_per_triangle;
+            row.nodes = last->nodes;
+            row.sah_cost = last->sah_cost;
+        };
+    }
+
+    // Rays in the last pose, on a structure that was refitted or built for it.
+    void add_rays(const rt_plugin& plugin, const Settings& settings, Entry& entry, bool refitted) {
+        const std::shared_ptr<const Scene>& scene = moved_.back();
+        std::shared_ptr<const AccelData> accel;
+        if (refitted)
+            accel = make_mover(plugin, settings)->now;
+        else
+            accel = std::make_shared<const AccelData>(
+                build_accel(*scene, plugin, settings.accel_params, progress_, fixture_.target_of(plugin)));
+        Fixture::Held held;
+        held.prepared = Preparer(plugins_, fixture_.opened(0)).prepare(scene, settings, progress_, accel);
+        held.frames = std::make_shared<FrameRenderer>(fixture_.opened(0));
+        describe(entry.row, *held.prepared);
+        if (rays_.rays.empty()) make_rays(held);
+        const auto lanes = static_cast<unsigned>(held.prepared->settings.lanes);
+        std::shared_ptr<const RayBlocks>& packed = state_.packed[lanes];
+        if (!packed) packed = std::make_shared<const RayBlocks>(rays_.rays, lanes);
+        entry.once = [=, blocks = packed] {
+            Sample sample;
+            sample.time_ms = held.frames->trace_rays(*held.prepared, *blocks, RayQuery{rays_.any_hit, false, true});
+            const RayTuning tuning = held.frames->ray_tuning();
+            sample.trial = tuning.trial;
+            sample.settled = tuning.settled;
+            sample.variant = tuning.variant;
+            return sample;
+        };
+        entry.finish = [=](BenchRecord& row) {
+            std::vector<float> distances;
+            for (const rt_hit& hit : held.frames->trace_rays(*held.prepared, rays_.rays, RayQuery{}))
+                distances.push_back(hit.t);
+            state_.agreement.check_hits(row, rays_, distances);
+        };
+        set_ray_counts(entry.row, rays_);
+    }
+    void make_rays(const Fixture::Held& held) {
+        const Settings settings = variant_settings(plugins_, request_, {});
+        const View& view = fixture_.view();
+        rays_ = camera_rays(view.camera, settings.width, settings.height);
+        if (case_.measure == rays_.kind) return;
+        const std::vector<rt_hit> hits = held.frames->trace_rays(*held.prepared, rays_.rays, RayQuery{});
+        const RaySet primary = std::move(rays_);
+        rays_ = {};
+        if (view.lights.empty()) throw Error(Exit::usage, "no " + case_.measure + " rays: the scene has no light");
+        for (RaySet& set : secondary_rays(*moved_.back(), view.lights[0], primary, hits, settings.width, settings.height))
+            if (set.kind == case_.measure) rays_ = std::move(set);
+    }
+
+    void add_baseline(const std::string& quality) {
+        if (fixture_.baseline_threads() == 0 || baseline_kinds(nullptr).empty() || !baselines_cannot(*fixture_.scene()).empty())
+            return;
+        Entry& entry = state_.add_entry();
+        entry.row.baseline = entry.row.variant = "embree " + quality;
+        describe_host(entry.row, fixture_.baseline_threads());
+        run_or_mark_failed(entry, [&](BenchRecord&) {
+            const std::shared_ptr<MovingBaseline> baseline =
+                make_moving_baseline(fixture_.baseline_mesh(), quality, fixture_.baseline_threads());
+            if (!baseline) throw Error(Exit::usage, "this program was built without Embree (libembree-dev): no peers");
+            const auto moved = std::make_shared<std::vector<BaselineMesh>>();
+            for (const Pose& pose : poses_) moved->push_back(make_baseline_mesh(posed(*fixture_.scene(), pose)));
+            const auto next = std::make_shared<size_t>(0);
+            entry.once = [=] {
+                const BaselineMesh& mesh = (*moved)[(*next)++ % moved->size()];
+                const auto begin = std::chrono::steady_clock::now();
+                copy_positions(mesh.positions.data(), mesh.positions.size(), baseline->positions());
+                const double ms = baseline->update_ms();
+                return Sample{ms, ms_since(begin)};
+            };
+            entry.finish = [=](BenchRecord& row) {
+                row.accel_bytes = baseline->bytes();
+                row.bytes_per_triangle = double(row.accel_bytes) / double(row.triangles);
+            };
+        });
+    }
+
+    Fixture& fixture_;
+    const PluginRegistry& plugins_;
+    const BenchRequest& request_;
+    const BenchCase& case_;
+    const MeasureRules& rules_;
+    Progress& progress_;
+    CaseState state_;
+    std::vector<Pose> poses_;
+    std::vector<std::shared_ptr<const Scene>> moved_;
+    RaySet rays_;
+};
+
+}  // namespace
+
+std::vector<BenchRecord> measure_motion(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
+                                        const BenchCase& c, const MeasureRules& rules, Progress& progress) {
+    return MotionCase(fixture, plugins, request, c, rules, progress).run();
+}
+
+}  // namespace clarity::bench

@@ -1,0 +1,23 @@
+// refit_checks.hpp -- whether a structure's `refit` follows primitives that moved (rt_refit.h).
+#pragma once
+#include <string>
+#include <vector>
+
+#include "check/builds/build_run.hpp"
+#include "check/steps.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity::check {
+
+// A motion of all vertices and instances of a scene.
+struct Movement {
+    const char* name;
+    Scene (*move)(Scene scene);
+};
+// At rest, a wave, a twist, scattered, in one plane, at one point, and a million times as large.
+const std::vector<Movement>& movements();
+
+// The check of one structure.
+Check refit_check(const rt_plugin& plugin, bool quick);
+
+}  // namespace clarity::check

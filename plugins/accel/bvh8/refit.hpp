@@ -1,0 +1,9 @@
+// refit.hpp -- the extension `refit` of bvh8: new volumes for primitives that moved, in the same tree.
+#pragma once
+#include "rt_plugin.hpp"
+
+namespace bvh8 {
+
+int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_output* out);
+
+}  // namespace bvh8

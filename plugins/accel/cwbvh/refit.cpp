@@ -1,0 +1,128 @@
+#include "refit.hpp"
+
+#include "clarity_bvh/parameters.hpp"
+#include "clarity_bvh/refit/refit.hpp"
+#include "quantize.hpp"
+
+namespace cwbvh {
+namespace {
+
+using namespace clarity::bvh;
+
+// Number of bits. Without an instruction for it, as in the base set of x86-64, __builtin_popcount() would be a function's call.
+uint32_t bits_of(uint32_t mask) {
+    mask -= mask >> 1 & 0x55555555u;
+    mask = (mask & 0x33333333u) + (mask >> 2 & 0x33333333u);
+    return ((mask + (mask >> 4)) & 0x0F0F0F0Fu) * 0x01010101u >> 24;
+}
+// The same of a slot's primitives, which are set from the lowest bit on.
+uint32_t primitives_of(uint32_t nibble) {
+    constexpr uint8_t kCounts[16] = {0, 1, 1, 2, 1, 2, 2, 3, 1, 2, 2, 3, 2, 3, 3, 4};
+    return kCounts[nibble];
+}
+
+// The descendants of a node stand together: first its children, then the descendants of each (compress.hpp).
+class CompressedRefit {
+ public:
+    static constexpr uint32_t kWidth = 8, kBlock = 64;
+
+    CompressedRefit(cwbvh_node* nodes, const rt_refit_input* in) : nodes_(nodes), in_(in) {}
+
+    RefitUnit unit(uint32_t group) const {
+        const cwbvh_node& root = nodes_[in_->roots[group]];
+        Bounds box;
+        bool any = false;
+        for (uint32_t slot = 0; slot < kWidth; ++slot) {
+            if (!(CWBVH_INNER(&root) >> slot & 1u) && !(root.primitives >> 4 * slot & 15u)) continue;
+            double lo[3], hi[3];
+            box_of(root, slot, lo, hi);
+            float bounds[6];
+            for (int a = 0; a < 3; ++a) {
+                bounds[a] = static_cast<float>(std::max(lo[a], -double{FLT_MAX}));
+                bounds[3 + a] = static_cast<float>(std::min(hi[a], double{FLT_MAX}));
+            }
+            box.add(bounds, bounds + 3);
+            any = true;
+        }
+        return RefitUnit(any ? unit_scale(box) : 1);
+    }
+    template <class Each>
+    void subtrees(uint32_t group, Each&& each) const {
+        const uint32_t root = in_->roots[group];
+        const uint32_t end = group + 1 < in_->group_count ? nodes_[in_->roots[group + 1]].first_child
+                                                          : static_cast<uint32_t>(in_->slot_counts[0]);
+        each(RefitSubtree{root, nodes_[root].first_child, end});
+    }
+    // The descendants of the children follow each other in the order in which the tree was built, not in that of the slots.
+    uint32_t children(const RefitSubtree& tree, RefitSubtree out[kWidth]) const {
+        const cwbvh_node& node = nodes_[tree.node];
+        const uint32_t count = bits_of(CWBVH_INNER(&node));
+        // A node without child nodes begins where the next one does, and comes before it.
+        const auto rank = [&](uint32_t child) {
+            return uint64_t{nodes_[child].first_child} << 1 | (CWBVH_INNER(&nodes_[child]) != 0);
+        };
+        for (uint32_t i = 0; i < count; ++i) {
+            const uint32_t child = node.first_child + i;
+            uint32_t at = i;
+            for (; at > 0 && rank(out[at - 1].node) > rank(child); --at) out[at] = out[at - 1];
+            out[at] = {child, nodes_[child].first_child, 0};
+        }
+        for (uint32_t i = 0; i < count; ++i) out[i].end = i + 1 < count ? out[i + 1].first : tree.end;
+        return count;
+    }
+    uint64_t add_positions(uint32_t at, uint64_t& first, uint64_t& end) const {
+        const uint32_t count = bits_of(nodes_[at].primitives);
+        if (count == 0) return 0;
+        first = std::min<uint64_t>(first, nodes_[at].first_leaf);
+        end = std::max<uint64_t>(end, nodes_[at].first_leaf + count);
+        return count;
+    }
+    template <class NodeBox, class LeafBox>
+    RefitBox update(uint32_t at, NodeBox&& node_box, LeafBox&& leaf_box, const RefitUnit& unit, RefitAreas& areas) const {
+        cwbvh_node& node = nodes_[at];
+        cwbvh::WideNode boxes;  // only its planes, and which slots are empty
+        RefitBox whole;
+        uint32_t child = node.first_child, first = node.first_leaf;
+        for (uint32_t slot = 0; slot < kWidth; ++slot) {
+            const uint32_t count = primitives_of(node.primitives >> 4 * slot & 15u);
+            const bool inner = CWBVH_INNER(&node) >> slot & 1u;
+            boxes.child[slot] = inner || count > 0 ? 0 : kEmpty;
+            if (!inner && count == 0) continue;
+            RefitBox fresh;
+            if (inner) {
+                fresh = node_box(child++);
+                areas.nodes = areas.nodes + unit.area(fresh);
+            } else {
+                fresh = leaf_box(first, count);
+                first += count;
+                areas.primitives = areas.primitives + unit.area(fresh) * splat(static_cast<float>(count));
+            }
+            whole.add(fresh);
+            alignas(16) float bounds[8];
+            store(bounds, fresh.lo);
+            store(bounds + 4, fresh.hi);
+            for (uint32_t k = 0; k < 3; ++k) {
+                boxes.plane[k][slot] = bounds[k];
+                boxes.plane[3 + k][slot] = bounds[4 + k];
+            }
+        }
+        quantize(boxes, node);
+        return whole;
+    }
+    void finish(uint32_t, const RefitBox&) const {}
+
+ private:
+    cwbvh_node* const nodes_;
+    const rt_refit_input* const in_;
+};
+
+}  // namespace
+
+int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_output* out) {
+    CompressedRefit layout(static_cast<cwbvh_node*>(out->slots[0]), in);
+    const Rules rules = wide_rules(in->params);
+    Refit<CompressedRefit>(host, in, out, layout, {rules.traversal_cost, rules.intersection_cost}).run();
+    return RT_OK;
+}
+
+}  // namespace cwbvh

@@ -1,0 +1,342 @@
+// moving_test.cpp -- structures that follow the poses of their scene by refits.
+#include "render/accel/moving_accel.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <random>
+#include <set>
+
+#include "base/error.hpp"
+#include "plugin/extensions.hpp"
+#include "render/queries/query_scene.hpp"
+#include "render/queries/ray_queries.hpp"
+#include "render/settings/accel_choice.hpp"
+#include "support/generated.hpp"
+#include "support/workbench.hpp"
+
+namespace clarity::test {
+namespace {
+
+Affine moved_to(float x, float y, float z) {
+    return {1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z};
+}
+
+rt_u32 add_mesh(Scene& scene, const TriangleMesh& mesh) {
+    Mesh range;
+    range.first_vertex = scene.vertex_count();
+    range.first_triangle = scene.triangle_count();
+    range.vertex_count = static_cast<rt_u32>(mesh.positions.size() / 3);
+    range.triangle_count = range.polygon_count = static_cast<rt_u32>(mesh.triangles.size() / 3);
+    scene.positions.insert(scene.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    for (const rt_u32 v : mesh.triangles) scene.triangles.push_back(range.first_vertex + v);
+    scene.triangle_materials.resize(scene.triangles.size() / 3, 0);
+    scene.meshes.push_back(range);
+    return static_cast<rt_u32>(scene.meshes.size() - 1);
+}
+void place(Scene& scene, rt_u32 mesh, const Affine& world_from_object) {
+    Instance instance;
+    instance.mesh = mesh;
+    instance.world_from_object = world_from_object;
+    instance.name = "placed " + std::to_string(scene.instances.size());
+    scene.instances.push_back(instance);
+}
+
+// A ring that is placed once where it is, a ball that is placed once elsewhere, a box that is placed many times, and a sphere.
+ScenePtr rings() {
+    static const ScenePtr scene = [] {
+        Scene s = scene_of(torus(2, 0.7, 48, 32));
+        place(s, add_mesh(s, uv_sphere(1, 24, 16)), moved_to(4, 1, 0));
+        const rt_u32 cube = add_mesh(s, box(0.5));
+        for (int i = 0; i < 12; ++i) place(s, cube, moved_to(-5 + float(i), 3, 1));
+        s.spheres.push_back({{0, -3, 0}, 0.5f, 0});
+        return shared_scene(std::move(s));
+    }();
+    return scene;
+}
+
+Pose pose_of(const Scene& scene) {
+    Pose pose;
+    for (const Instance& instance : scene.instances)
+        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
+    pose.cameras = scene.cameras;
+    pose.lights = scene.lights;
+    return pose;
+}
+// All vertices follow a wave, and the instances from number 2 on move.
+Pose waved(const Scene& scene, float phase) {
+    Pose pose = pose_of(scene);
+    for (rt_u32 m = 0; m < scene.meshes.size(); ++m) {
+        const Mesh& mesh = scene.meshes[m];
+        PosedMesh posed{m,
+                        {scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex),
+                         scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex + mesh.vertex_count)},
+                        {}};
+        for (size_t v = 0; v < posed.positions.size(); v += 3)
+            posed.positions[v + 1] += 0.6f * std::sin(3 * posed.positions[v] + phase);
+        pose.meshes.push_back(std::move(posed));
+    }
+    for (size_t i = 2; i < pose.instances.size(); ++i) pose.instances[i].world_from_object[11] += std::sin(phase + float(i));
+    return pose;
+}
+
+std::shared_ptr<const AccelData> build(const ScenePtr& scene, const rt_plugin& plugin) {
+    Progress progress;
+    const rt_plugin& layout = Workbench::get().plugins().layout_of(plugin);
+    return std::make_shared<AccelData>(build_accel(*scene, plugin, default_parameters(plugin), progress, {&layout}));
+}
+
+std::string bytes_of(const AlignedBytes& bytes) {
+    return {static_cast<const char*>(bytes.data()), bytes.bytes()};
+}
+void expect_same(const AccelData& a, const AccelData& b) {
+    for (size_t s = 0; s < a.slots.size(); ++s)
+        EXPECT_TRUE(bytes_of(a.slots[s].memory) == bytes_of(b.slots[s].memory)) << "slot " << s;
+    EXPECT_TRUE(bytes_of(a.leaves) == bytes_of(b.leaves));
+    ASSERT_EQ(a.instances.size(), b.instances.size());
+    for (size_t i = 0; i < a.instances.size(); ++i)
+        EXPECT_EQ(std::memcmp(&a.instances[i], &b.instances[i], sizeof(rt_instance)), 0) << i;
+    EXPECT_EQ(a.scene.bounds.min, b.scene.bounds.min);
+    EXPECT_EQ(a.scene.bounds.max, b.scene.bounds.max);
+}
+
+std::vector<const rt_plugin*> refitting() {
+    std::vector<const rt_plugin*> plugins;
+    for (const rt_plugin* plugin : Workbench::get().plugins().accels())
+        if (refit_of(*plugin).refit) plugins.push_back(plugin);
+    return plugins;
+}
+
+TEST(MovingAccel, OurTreesOfferIt) {
+    std::set<std::string> ids;
+    for (const rt_plugin* plugin : refitting()) ids.insert(plugin->id);
+    for (const char* id : {"bvh2", "bvh4", "bvh8", "cwbvh", "spheres"}) EXPECT_TRUE(ids.count(id)) << id;
+}
+
+TEST(MovingAccel, ThePoseOfTheBuildGivesTheBytesOfTheBuild) {
+    Progress progress;
+    for (const rt_plugin* plugin : refitting()) {
+        SCOPED_TRACE(plugin->id);
+        const auto built = build(rings(), *plugin);
+        MovingAccel moving(rings(), built);
+        const MovedAccel moved = moving.move(pose_of(*rings()), progress);
+        ASSERT_TRUE(moved.accel) << moved.why;
+        expect_same(*moved.accel, *built);
+        EXPECT_DOUBLE_EQ(moved.worst_cost_ratio, 1);
+        // There and back again.
+        ASSERT_TRUE(moving.move(waved(*rings(), 1), progress).accel);
+        expect_same(*moving.move(pose_of(*rings()), progress).accel, *built);
+    }
+}
+
+TEST(MovingAccel, LeavesAndInstancesAreThoseOfAFreshBuild) {
+    Progress progress;
+    const Scene moved_scene = posed(*rings(), waved(*rings(), 2));
+    const BuildScene fresh = make_build_scene(moved_scene, progress);
+    for (const rt_plugin* plugin : refitting()) {
+        SCOPED_TRACE(plugin->id);
+        MovingAccel moving(rings(), build(rings(), *plugin));
+        const MovedAccel moved = moving.move(waved(*rings(), 2), progress);
+        ASSERT_TRUE(moved.accel) << moved.why;
+        const auto* leaves = static_cast<const rt_packed_prim*>(moved.accel->leaves.data());
+        for (uint64_t i = 0; i < moved.accel->leaf_count; ++i) {
+            const rt_u32 index = RT_REF_INDEX(leaves[i].ref);
+            const rt_packed_prim& expected = RT_REF_KIND(leaves[i].ref) == RT_REF_TRIANGLE ? fresh.triangles[index]
+                                             : RT_REF_KIND(leaves[i].ref) == RT_REF_SPHERE ? fresh.spheres[index]
+                                                                                           : fresh.instance_leaves[index];
+            ASSERT_EQ(std::memcmp(&leaves[i], &expected, sizeof expected), 0) << "leaf " << i;
+        }
+        for (size_t i = 0; i < fresh.instances.size(); ++i)
+            EXPECT_EQ(std::memcmp(moved.accel->instances[i].object_from_world, fresh.instances[i].object_from_world, 48), 0);
+        EXPECT_EQ(moved.accel->scene.bounds.min, fresh.bounds.min);
+        EXPECT_EQ(moved.accel->scene.bounds.max, fresh.bounds.max);
+        EXPECT_EQ(moved.groups.size(), 2u);
+        EXPECT_EQ(moved.refitted, moved.accel->leaf_count);
+    }
+}
+
+std::vector<rt_hit> trace(const ScenePtr& scene, const std::shared_ptr<const AccelData>& accel,
+                          const std::vector<rt_ray>& rays) {
+    Progress progress;
+    Workbench& bench = Workbench::get();
+    const auto prepared = prepare_queries(const_cast<Device&>(bench.device()), scene, accel, {}, progress);
+    RayQueries queries(bench.shared_device());
+    std::vector<rt_hit> hits;
+    queries.trace(*prepared, RayBlocks(rays, prepared->layout.lanes), {}, &hits);
+    return hits;
+}
+
+TEST(MovingAccel, RaysHitWhatTheyHitInAFreshBuild) {
+    Progress progress;
+    const auto moved_scene = std::make_shared<const Scene>(posed(*rings(), waved(*rings(), 3)));
+    std::mt19937 random(3);
+    std::normal_distribution<float> any;
+    std::vector<rt_ray> rays;
+    for (int i = 0; i < 4000; ++i) {
+        rt_ray ray{{8 * any(random), 8 * any(random), 8 * any(random)}, 0, {}, INFINITY};
+        float length = 0;
+        for (int k = 0; k < 3; ++k) length += std::pow(ray.direction[k] = 2 * any(random) - ray.origin[k], 2.0f);
+        for (float& d : ray.direction) d /= std::sqrt(length);
+        rays.push_back(ray);
+    }
+    size_t hit = 0;
+    for (const rt_plugin* plugin : refitting()) {
+        SCOPED_TRACE(plugin->id);
+        MovingAccel moving(rings(), build(rings(), *plugin));
+        const auto refitted = trace(moved_scene, moving.move(waved(*rings(), 3), progress).accel, rays);
+        const auto fresh = trace(moved_scene, build(moved_scene, *plugin), rays);
+        hit = 0;
+        for (size_t i = 0; i < rays.size(); ++i) {
+            EXPECT_EQ(refitted[i].t, fresh[i].t) << "ray " << i;
+            hit += std::isfinite(fresh[i].t);
+        }
+    }
+    EXPECT_GT(hit, rays.size() / 10);
+}
+
+TEST(MovingAccel, ResultsStayAsTheyAreWhileSomeoneHoldsThem) {
+    Progress progress;
+    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    const auto first = moving.move(waved(*rings(), 1), progress).accel;
+    const std::string leaves = bytes_of(first->leaves), nodes = bytes_of(first->slots[0].memory);
+    for (int i = 2; i < 6; ++i) moving.move(waved(*rings(), float(i)), progress);
+    EXPECT_TRUE(bytes_of(first->leaves) == leaves);
+    EXPECT_TRUE(bytes_of(first->slots[0].memory) == nodes);
+}
+
+TEST(MovingAccel, MemoryIsUsedAgain) {
+    Progress progress;
+    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    std::set<const AccelData*> different;
+    std::shared_ptr<const AccelData> shown;
+    for (int i = 0; i < 10; ++i) {
+        shown = moving.move(waved(*rings(), float(i)), progress).accel;
+        different.insert(shown.get());
+    }
+    EXPECT_LE(different.size(), 2u);
+    // Buffers that lag behind by several poses are brought up to date.
+    const auto now = moving.move(pose_of(*rings()), progress).accel;
+    expect_same(*now, *build(rings(), *Workbench::get().plugins().accel("bvh2")));
+}
+
+TEST(MovingAccel, OnlyWhatMovedIsRefitted) {
+    Progress progress;
+    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    moving.move(pose_of(*rings()), progress);
+    Pose pose = pose_of(*rings());
+    EXPECT_EQ(moving.move(pose, progress).refitted, 0u);
+    pose.instances[5].world_from_object = moved_to(0, 6, 0);
+    const MovedAccel placed = moving.move(pose, progress);
+    ASSERT_EQ(placed.groups.size(), 1u) << "the instanced mesh itself stays";
+    EXPECT_EQ(placed.groups[0].group, 0u);
+    const auto fresh = std::make_shared<const Scene>(posed(*rings(), pose));
+    EXPECT_EQ(placed.accel->scene.bounds.max, build(fresh, *Workbench::get().plugins().accel("bvh2"))->scene.bounds.max);
+}
+
+TEST(MovingAccel, AMeshThatIsKeptApartMovesAlone) {
+    Progress progress;
+    const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh8");
+    BuildTarget target;
+    target.apart.assign(rings()->instances.size(), false);
+    target.apart[1] = true;
+    MovingAccel moving(
+        rings(), std::make_shared<AccelData>(build_accel(*rings(), plugin, default_parameters(plugin), progress, target)));
+    moving.move(pose_of(*rings()), progress);
+    Pose pose = pose_of(*rings());
+    pose.meshes.push_back(waved(*rings(), 1).meshes[1]);
+    const MovedAccel deformed = moving.move(pose, progress);
+    ASSERT_EQ(deformed.groups.size(), 2u) << "its own tree, and the world that holds its instance";
+    EXPECT_EQ(deformed.groups[0].primitives, rings()->meshes[1].triangle_count);
+}
+
+TEST(MovingAccel, TreesOfAllParametersGiveTheBytesOfTheBuild) {
+    Progress progress;
+    const PluginRegistry& plugins = Workbench::get().plugins();
+    for (const char* choice :
+         {"bvh2,max_leaf=1", "bvh2,max_leaf=7,builder=morton", "bvh4,max_leaf=1", "bvh4,builder=morton", "bvh8,max_leaf=1",
+          "bvh8,builder=morton", "cwbvh,max_leaf=1", "cwbvh,builder=morton", "spheres,top_level=true",
+          "spheres,lone_spheres=true", "spheres,max_depth=0", "spheres,max_leaf=256", "spheres,max_leaf=1"}) {
+        SCOPED_TRACE(choice);
+        Settings settings;
+        choose_accel(plugins, choice, settings);
+        const auto built = std::make_shared<AccelData>(
+            build_accel(*rings(), *plugins.accel(settings.accel), settings.accel_params, progress, {}));
+        MovingAccel moving(rings(), built);
+        ASSERT_TRUE(moving.move(waved(*rings(), 1), progress).accel);
+        expect_same(*moving.move(pose_of(*rings()), progress).accel, *built);
+    }
+}
+
+TEST(MovingAccel, CostsTellHowMuchATreeHasSuffered) {
+    Progress progress;
+    for (const rt_plugin* plugin : refitting()) {
+        if (std::string(plugin->id) == "spheres") continue;  // its cost counts the surface of spheres
+        SCOPED_TRACE(plugin->id);
+        const auto built = build(rings(), *plugin);
+        MovingAccel moving(rings(), built);
+        moving.move(pose_of(*rings()), progress);
+        Pose pose = pose_of(*rings());
+        PosedMesh mesh{0, {}, {}};
+        std::mt19937 random(1);
+        std::uniform_real_distribution<float> any(-3, 3);
+        for (rt_u32 v = 0; v < 3 * rings()->meshes[0].vertex_count; ++v) mesh.positions.push_back(any(random));
+        pose.meshes.push_back(mesh);
+        EXPECT_GT(moving.move(pose, progress).worst_cost_ratio, 2);
+        const MovedAccel back = moving.move(pose_of(*rings()), progress);
+        EXPECT_NEAR(back.worst_cost_ratio, 1, 1e-6);
+        EXPECT_NEAR(back.accel->stat("sah_cost"), built->stat("sah_cost"), 1e-6);
+    }
+}
+
+TEST(MovingAccel, SaysWhenABuildIsNeeded) {
+    Progress progress;
+    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    const auto refused = [&](auto&& change, const char* why) {
+        Pose pose = pose_of(*rings());
+        change(pose);
+        const MovedAccel moved = moving.move(pose, progress);
+        EXPECT_FALSE(moved.accel) << why;
+        EXPECT_NE(moved.why.find(why), std::string::npos) << moved.why;
+    };
+    refused([](Pose& pose) { pose.instances[3].visible = false; }, "`placed 3` is hidden");
+    refused([](Pose& pose) { pose.instances[1].world_from_object[0] = -1; }, "`placed 1` is mirrored");
+    refused([](Pose& pose) { pose.instances[3].world_from_object[0] = 0; }, "`placed 3` is scaled to nothing");
+    refused([](Pose& pose) { pose.instances.pop_back(); }, "instances");
+    refused([](Pose& pose) { pose.meshes.push_back({0, {0, 0, 0}, {}}); }, "another number of vertices");
+    MovingAccel linear(rings(), build(rings(), *Workbench::get().plugins().accel("linear")));
+    EXPECT_NE(linear.move(pose_of(*rings()), progress).why.find("does not offer `refit`"), std::string::npos);
+}
+
+TEST(MovingAccel, VerticesMayBeWrittenInPlace) {
+    Progress progress;
+    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    EXPECT_EQ(moving.vertices(0), nullptr) << "before the first move";
+    moving.move(pose_of(*rings()), progress);
+    EXPECT_EQ(moving.vertices(1), nullptr) << "it is transformed";
+    float* const vertices = moving.vertices(0);
+    ASSERT_NE(vertices, nullptr);
+    const Pose pose = waved(*rings(), 4);
+    std::copy(pose.meshes[0].positions.begin(), pose.meshes[0].positions.end(), vertices);
+    moving.touch(0);
+    const auto in_place = moving.refit(progress).accel;
+    Pose same = pose_of(*rings());
+    same.meshes.push_back(pose.meshes[0]);
+    MovingAccel other(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    expect_same(*in_place, *other.move(same, progress).accel);
+}
+
+TEST(MovingAccel, GoesOnAfterACancelledMove) {
+    class Cancelling : public Progress {
+        bool report(float) override { return cancel(), false; }
+    };
+    Progress progress;
+    Cancelling cancelling;
+    MovingAccel moving(rings(), build(rings(), *Workbench::get().plugins().accel("bvh2")));
+    moving.move(pose_of(*rings()), progress);
+    EXPECT_THROW(moving.move(waved(*rings(), 1), cancelling), Cancelled);
+    expect_same(*moving.move(pose_of(*rings()), progress).accel, *build(rings(), *Workbench::get().plugins().accel("bvh2")));
+}
+
+}  // namespace
+}  // namespace clarity::test
