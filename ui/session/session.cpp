@@ -338,6 +338,10 @@ bool Session::behind() const {
     return ready_ && !prepares_same(ready_->request, desired_request());
 }
 
+bool Session::not_in_force() const {
+    return behind() && is_posted(desired_request()) && !worker_.activity().busy;
+}
+
 bool Session::idle() const {
     return !worker_.activity().busy && is_posted(desired_request()) && !moving_ && !playback_.playing() && frames_.idle() &&
            !inspector_.busy() && pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();

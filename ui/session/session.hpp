@@ -124,6 +124,8 @@ class Session {
     bool idle() const;
     // Whether the desired state differs from what the picture was prepared with: work is under way, or it failed.
     bool behind() const;
+    // Whether what was asked for last failed or was cancelled, so that it will not come by itself.
+    bool not_in_force() const;
     double frames_per_second(unsigned side = 0) const;
     double mrays_per_second(unsigned side = 0) const;
     std::string frame_rate_line() const;

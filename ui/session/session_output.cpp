@@ -26,7 +26,7 @@ uint64_t Session::save_picture(const std::string& path) {
 }
 
 Preset Session::desired_preset(View base) const {
-    Preset preset{desired.main.device, desired.main.settings, {}, {}};
+    Preset preset{desired.main.device, desired.main.settings, {}};
     if (preset.settings.aov != "color") preset.settings.spp = 1;  // as in post_frame()
     if (desired.pose.time_s) {
         preset.pose = desired.pose;

@@ -108,7 +108,7 @@ void draw_marks(ImDrawList& list, const Rect& track, const TimelineScale& scale,
         const std::string text = std::to_string(frame);
         const float width = font->CalcTextSizeA(size, FLT_MAX, 0, text.c_str()).x;
         const float left = std::clamp(x - width / 2, track.x, std::max(track.x, track.x + track.width - width));
-        list.AddText(font, size, {std::floor(left), std::floor(track.y + 2 * ui)}, color(colors::kDim), text.c_str());
+        list.AddText(font, size, {std::floor(left), std::floor(track.y + 6 * ui)}, color(colors::kDim), text.c_str());
     }
 }
 

@@ -21,7 +21,7 @@ inline constexpr const char* kCompareNames[] = {"Wipe", "Side by side", "Differe
 struct Bookmark {
     std::string name;
     Camera camera;
-    PoseTime pose;
+    PoseTime pose{};
 };
 
 // What the file browser is open for.

@@ -19,7 +19,7 @@ struct Preset {
     std::string device;       // "": the default device
     Settings settings;        // with accel_params filled in
     std::vector<Word> edits;  // of the scene that is open; see edit.hpp
-    PoseTime pose;            // without a time: at rest
+    PoseTime pose{};          // without a time: at rest
 };
 
 // Returns the preset as JSON text.
