@@ -167,7 +167,9 @@ TEST_F(Timeline, PlaysAndSteps) {
     EXPECT_TRUE(wrapped);
     window->key("Escape");
     window->settle();
-    EXPECT_FALSE(timeline(*window)["playing"]);
+    now = timeline(*window);
+    EXPECT_FALSE(now["playing"]);
+    EXPECT_NEAR(double(now["time_s"]) * 24, std::round(double(now["time_s"]) * 24), 1e-9);
 
     // Loop and speed are steps of undo, times are not.
     EXPECT_EQ(window->state()["undo"], "Speed");

@@ -30,7 +30,7 @@ void App::draw() {
     draw_progress_hud(viewport, *session_);
     draw_message_hud(viewport, *session_, state_);
     draw_file_browser(viewport, *session_, state_);
-    draw_keys_hud(viewport, state_);
+    draw_keys_hud({0, 0, left, above}, state_);
 }
 
 void App::upload_picture() {

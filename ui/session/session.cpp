@@ -88,6 +88,9 @@ std::vector<std::string> Session::files() const {
 }
 
 void Session::cancel() {
+    // Of a scene that plays only the next pose is being prepared.
+    if (playback_.playing() && ready_ && prepares_same_but_pose(ready_->request, desired_request()))
+        return playback_.pause(desired);
     worker_.cancel();
     if (!ready_) return;
     const PrepareRequest& was = ready_->request;
@@ -309,7 +312,7 @@ void Session::show_first_pose() {
     try {
         const ClipInfo clip = find_clip(*ready_->loaded->scene, pose.clip);
         playback_.choose(desired, clip.name);
-        if (pose.time_s) desired.pose.time_s = pose.time_s;
+        desired.pose.time_s = pose.time_s.value_or(clip.begin_s);
     } catch (const Error& error) {
         report(error.what());
     }

@@ -53,7 +53,7 @@ class Session {
 
     // Replaces the scene once the files are imported. Until then, and if the import fails, the old scene stays.
     void open(std::vector<std::string> files);
-    // Cancels preparation and sets the desired state back to what is on the screen.
+    // Cancels preparation and sets the desired state back to what is on the screen. A scene that plays is paused.
     void cancel();
     void reset_view();
     void adopt_view(const EditedView& edited);
