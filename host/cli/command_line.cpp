@@ -169,7 +169,7 @@ void add_check(CLI::App& app, CheckCommand& command) {
         ->type_name("PLUGIN")
         ->required();
     app.add_option("--only", command.options.only,
-                   "Only checks whose name begins so, such as hits, builds.refs or keys; may be repeated")
+                   "Only checks with names that begin with this, such as hits, builds.refs or keys; may be repeated")
         ->type_name("NAME")
         ->allow_extra_args(false);
     app.add_option("--lanes", command.options.lanes,

@@ -1,6 +1,6 @@
-// flatten.cpp -- meshes whose instances flatten them.
+#include "scene/flatten.hpp"
+
 #include "base/error.hpp"
-#include "scene/scene.hpp"
 
 namespace clarity {
 

@@ -1,16 +1,13 @@
-// scene.cpp -- bounds, areas and the framing camera of a scene, and the default material.
+// scene.cpp -- bounds and areas of a scene, and the default material.
 #include "scene/scene.hpp"
 
 #include <algorithm>
 #include <cmath>
+
 #include "scene/vec.hpp"
 
 namespace clarity {
 namespace {
-
-Vec to_vec(const float* p) {
-    return {p[0], p[1], p[2]};
-}
 
 Vec linear(const Affine& m, const Vec& v) {
     return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[4] * v[0] + m[5] * v[1] + m[6] * v[2],
@@ -190,48 +187,6 @@ rt_material default_material() {
     m.ior = 1.5f;
     m.texture = RT_NONE;
     return m;
-}
-
-Camera framing_camera(const Scene& scene, float aspect) {
-    Camera camera;
-    camera.name = "framing";
-    const int up_axis = scene.up_axis < 3 ? static_cast<int>(scene.up_axis) : 1;
-    Vec up{}, front{};
-    up[up_axis] = 1;
-    // Programs with Z up look along +Y from the front, all others along -Z.
-    if (up_axis == 2) {
-        front[1] = -1;
-    } else {
-        front[2] = 1;
-    }
-    const Bounds box = scene.bounds();
-    Vec center{}, half{};
-    for (int i = 0; i < 3 && !box.empty; ++i) {
-        center[i] = 0.5 * (double(box.min[i]) + box.max[i]);
-        half[i] = 0.5 * (double(box.max[i]) - box.min[i]);
-    }
-    const double raise = 0.35;  // slope; 19 degrees above the horizon
-    const Vec forward = normalized({-front[0] - raise * up[0], -front[1] - raise * up[1], -front[2] - raise * up[2]});
-    const Vec right = normalized(cross(forward, up)), above = cross(right, forward);
-    const double tan_y = std::tan(0.5 * camera.fov_y_rad);
-    const double tan_x = tan_y * (aspect > 0 && std::isfinite(aspect) ? double(aspect) : 1.0);
-    // The smallest distance at which all eight corners of the box are inside the frustum.
-    double distance = 0;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec offset = {corner & 1 ? half[0] : -half[0], corner & 2 ? half[1] : -half[1], corner & 4 ? half[2] : -half[2]};
-        const double beside = std::max(std::abs(dot(offset, right)) / tan_x, std::abs(dot(offset, above)) / tan_y);
-        distance = std::max(distance, beside - dot(offset, forward));
-    }
-    // The bounds are a point or empty (planes only), so they give no distance: take eye level in a scene in metres.
-    const bool pointlike = !(distance > 0);
-    distance = pointlike ? 5 : 1.05 * distance;
-    for (int i = 0; i < 3; ++i) {
-        const double lift = box.empty ? up[i] : 0;
-        camera.eye[i] = static_cast<float>(center[i] - distance * forward[i] + lift);
-        camera.target[i] = static_cast<float>(center[i] + lift);
-        camera.up[i] = static_cast<float>(up[i]);
-    }
-    return camera;
 }
 
 }  // namespace clarity

@@ -155,16 +155,6 @@ rt_material default_material();
 std::string validate(const Scene& scene);
 std::string validate_motion(const Scene& scene);  // of its motion alone; validate() calls it
 
-// Copies the meshes of instances whose transforms flatten them, in the flattened form, because an instance needs a transform
-// that can be inverted. Throws Error(import_failed) if the scene cannot hold the copies.
-void bake_flattened_instances(Scene& scene);
-
-// Replaces an unusable up vector or field of view. Returns false if the camera has no view direction.
-bool make_sound(Camera& camera);
-
-// A camera which shows the whole scene from the front and slightly from above.
-Camera framing_camera(const Scene& scene, float aspect);
-
 // ---- transforms
 std::array<float, 3> transform_point(const Affine& m, const float* p);
 Affine multiply(const Affine& a, const Affine& b);  // applies b first, then a

@@ -25,8 +25,11 @@ inline double length(const Vec& a) {
 inline Vec normalized(const Vec& a) {
     return (1 / length(a)) * a;
 }
+inline Vec to_vec(const float* three) {
+    return {three[0], three[1], three[2]};
+}
 inline Vec to_vec(const std::array<float, 3>& a) {
-    return {a[0], a[1], a[2]};
+    return to_vec(a.data());
 }
 inline std::array<float, 3> to_floats(const Vec& a) {
     return {static_cast<float>(a[0]), static_cast<float>(a[1]), static_cast<float>(a[2])};

@@ -9,6 +9,7 @@
 #include "plugin/parameters.hpp"
 #include "plugin/registry.hpp"
 #include "render/accel/accel_build.hpp"
+#include "rt_plugin.hpp"
 
 namespace {
 
@@ -120,6 +121,51 @@ TEST(GoodBuilder, CanBeCancelled) {
     clarity::Progress progress;
     progress.cancel();
     EXPECT_THROW(build("cancelled_by_nobody", progress), clarity::Cancelled);
+}
+
+// A tree of one leaf a group.
+int32_t one_leaf_each(const rt_host*, const rt_build_input* in, const rt_topology_output* out) {
+    uint64_t total = 0;
+    for (rt_u32 g = 0; g < in->group_count; ++g) total += in->groups[g].count;
+    rt_topology_node* nodes = rt::nodes(out, in->group_count);
+    rt_u32* refs = rt::refs(out, total);
+    rt_u32 next = 0;
+    for (rt_u32 g = 0; g < in->group_count; ++g) {
+        nodes[g].left = next;
+        nodes[g].right = RT_TOPOLOGY_LEAF | in->groups[g].count;
+        for (rt_u32 i = 0; i < in->groups[g].count; ++i) refs[next++] = in->prims[in->groups[g].first + i].ref;
+        rt::root(out, g, g);
+    }
+    return RT_OK;
+}
+
+// Packing is a stranger's code as much as building is: the first time it runs in a worker process.
+TEST(BadPacker, CrashIsOneClearError) {
+    constexpr rt_accel accel = rt::topology("bad_packer", one_leaf_each, {});
+    const rt_plugin leaves = rt::accel_plugin("one_leaf_each", "One leaf a group", "1.0", nullptr, accel);
+    const clarity::PluginRecord packer = clarity::load_plugin(std::string(BAD_PLUGINS) + "/bad_packer.so");
+    ASSERT_NE(packer.plugin, nullptr) << packer.why;
+    clarity::BuildTarget target;
+    target.layout = packer.plugin;
+    target.place = clarity::BuildPlace::worker;
+    clarity::Progress progress;
+    try {
+        clarity::build_accel(sample_scene(), leaves, {}, progress, target);
+        FAIL() << "the build was taken";
+    } catch (const clarity::Error& e) {
+        const std::string what = e.what();
+        EXPECT_EQ(what.find("accel bad_packer, which packs the tree of one_leaf_each: the builder crashed (segmentation fault"),
+                  0u)
+            << what;
+    }
+    clarity::Scene one_group = sample_scene();
+    one_group.instances.erase(one_group.instances.begin() + 1);  // each mesh is placed once
+    const clarity::AccelData packed = clarity::build_accel(one_group, leaves, {}, progress, target);
+    EXPECT_EQ(packed.leaf_count, 4u) << "three triangles and a sphere";
+    ASSERT_EQ(packed.slots.size(), 1u);
+    const auto* run = static_cast<const rt_u32*>(packed.slots[0].memory.data());
+    EXPECT_EQ(run[0], 0u);
+    EXPECT_EQ(run[1], 4u);
 }
 
 TEST(BadBuilders, AllAreTested) {

@@ -1,9 +1,7 @@
 // broken_test.cpp -- each broken plugin is found by the check that it is a case for, with the right reason.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "cli/run_program.hpp"
+#include "check/run_check.hpp"
 #include "support/scratch.hpp"
 
 #define STB_IMAGE_STATIC
@@ -15,43 +13,11 @@
 
 namespace {
 
-struct Defect {
-    const char* library;
-    const char* check;               // that must fail
-    std::vector<const char*> words;  // of what it found
-    const char* lanes = "1";         // with which it is tried
-};
-void PrintTo(const Defect& defect, std::ostream* out) {
-    *out << defect.library;
-}
-
-std::string library(const std::string& name) {
-    return std::string(BROKEN_PLUGINS) + "/" + name + ".so";
-}
-
-nlohmann::json checked(const std::vector<std::string>& words, int exit_code) {
-    std::vector<std::string> all = {"check", "--quick", "--json"};
-    all.insert(all.end(), words.begin(), words.end());
-    RunOptions options;
-    options.limit_s = 300;
-    const ProgramResult result = run_program(all, options);
-    EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
-    return nlohmann::json::parse(result.out, nullptr, false);
-}
-
 class Broken : public testing::TestWithParam<Defect> {};
 
 TEST_P(Broken, IsFound) {
     const Defect& defect = GetParam();
-    const nlohmann::json results = checked({library(defect.library), "--only", defect.check, "--lanes", defect.lanes}, 1);
-    ASSERT_TRUE(results.is_array() && results.size() >= 1) << results;
-    const nlohmann::json* failed = nullptr;
-    for (const auto& result : results)
-        if (result["status"] == "failed") failed = &result;
-    ASSERT_NE(failed, nullptr) << results.dump(2);
-    EXPECT_EQ((*failed)["check"], defect.check);
-    const std::string found = (*failed)["found"];
-    for (const char* word : defect.words) EXPECT_NE(found.find(word), std::string::npos) << word << "\nin: " << found;
+    expect_found(check(defect.library, {"--only", defect.check, "--lanes", defect.lanes}, 1), defect);
 }
 
 const Defect kDefects[] = {
@@ -103,8 +69,7 @@ const Defect kDefects[] = {
     {"reads_beyond_slot", "hits.random", {"crashed (segmentation fault", "beyond the end of slot broken_nodes"}},
     {"small_stack", "hits.stack", {"stack was full"}},
 };
-INSTANTIATE_TEST_SUITE_P(Plugins, Broken, testing::ValuesIn(kDefects),
-                         [](const testing::TestParamInfo<Defect>& info) { return info.param.library; });
+INSTANTIATE_TEST_SUITE_P(Plugins, Broken, testing::ValuesIn(kDefects), name_of);
 
 struct Counts {
     size_t red = 0, grey = 0;
@@ -128,8 +93,7 @@ Counts colors_of(const std::string& path) {
 TEST(Report, APictureShowsWhichPixelsDiffer) {
     const Scratch scratch;
     const std::string folder = scratch.path("report");
-    const nlohmann::json results =
-        checked({library("octant"), "--only", "hits.octants", "--lanes", "4", "--report", folder}, 1);
+    const nlohmann::json results = check("octant", {"--only", "hits.octants", "--lanes", "4", "--report", folder}, 1);
     ASSERT_EQ(results.size(), 1u) << results;
     const std::string picture = folder + "/broken.hits.octants.png", report = results[0]["report"];
     EXPECT_NE(report.find("broken.hits.octants.rays"), std::string::npos) << report;
@@ -146,7 +110,7 @@ TEST(Report, APictureShowsWhichPixelsDiffer) {
 
 // Without a defect the same plugin passes: so the tests above fail because of the defect.
 TEST(Sound, PluginPasses) {
-    const nlohmann::json results = checked({library("none")}, 0);
+    const nlohmann::json results = check("none", {}, 0);
     ASSERT_TRUE(results.is_array());
     EXPECT_GE(results.size(), 20u);
     for (const auto& result : results) EXPECT_NE(result["status"], "failed") << result.dump(2);

@@ -1,23 +1,12 @@
 // importer_test.cpp -- `clarity check` of importers: each defect is found by its check, and ours are accused of nothing.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "cli/run_program.hpp"
+#include "check/run_check.hpp"
 #include "support/scratch.hpp"
 
 namespace {
 
 using nlohmann::json;
-
-struct Defect {
-    const char* library;
-    const char* check;
-    const char* words;  // of what was found
-};
-void PrintTo(const Defect& defect, std::ostream* out) {
-    *out << defect.library;
-}
 
 class ImporterCheck : public testing::Test {
  protected:
@@ -29,15 +18,9 @@ class ImporterCheck : public testing::Test {
         scratch_.write("one.tri", "1\n0 0 0  1 0 0  0 1 0\n");
         scratch_.write("row.tri.json", R"({"triangles": 40, "area": 20, "bbox": [[0, 0, 0], [79, 1, 0]]})");
     }
-    json check(const std::string& library, int exit_code, const std::string& only = {}) {
-        std::vector<std::string> words = {
-            "check", std::string(BROKEN_PLUGINS) + "/" + library + ".so", "--quick", "--json", "--samples", scratch_.path("")};
-        if (!only.empty()) words.insert(words.end(), {"--only", only});
-        RunOptions options;
-        options.limit_s = 120;
-        const ProgramResult result = run_program(words, options);
-        EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
-        return json::parse(result.out, nullptr, false);
+    json results_of(const std::string& library, int exit_code, std::vector<std::string> words = {}) {
+        words.insert(words.end(), {"--samples", scratch_.path("")});
+        return check(library, words, exit_code);
     }
     Scratch scratch_;
 };
@@ -46,28 +29,23 @@ class BrokenImporter : public ImporterCheck, public testing::WithParamInterface<
 
 TEST_P(BrokenImporter, IsFound) {
     const Defect& defect = GetParam();
-    const json results = check(std::string("importer_") + defect.library, 1, defect.check);
-    ASSERT_TRUE(results.is_array() && results.size() == 1) << results.dump(2);
-    EXPECT_EQ(results[0]["status"], "failed");
-    const std::string found = results[0]["found"];
-    EXPECT_NE(found.find(defect.words), std::string::npos) << found;
+    expect_found(results_of(std::string("importer_") + defect.library, 1, {"--only", defect.check}), defect);
 }
 
 const Defect kDefects[] = {
-    {"drops_last", "imports.truth", "has 39 triangles, not 40"},
-    {"trusts_count", "imports.hostile", "crashed"},
-    {"crashes", "imports.hostile", "crashed (segmentation fault"},
-    {"endless", "imports.hostile", "did not come to an end within"},
-    {"keeps_state", "imports.state", "keeps state"},
-    {"ignores_cancel", "imports.cancel", "must return RT_CANCELLED soon"},
-    {"leaks", "imports.leaks", "it leaks memory"},
-    {"sure_of_all", "imports.table", "it would take files of other importers"},
+    {"drops_last", "imports.truth", {"has 39 triangles, not 40"}},
+    {"trusts_count", "imports.hostile", {"crashed"}},
+    {"crashes", "imports.hostile", {"crashed (segmentation fault"}},
+    {"endless", "imports.hostile", {"did not come to an end within"}},
+    {"keeps_state", "imports.state", {"keeps state"}},
+    {"ignores_cancel", "imports.cancel", {"must return RT_CANCELLED soon"}},
+    {"leaks", "imports.leaks", {"it leaks memory"}},
+    {"sure_of_all", "imports.table", {"it would take files of other importers"}},
 };
-INSTANTIATE_TEST_SUITE_P(Plugins, BrokenImporter, testing::ValuesIn(kDefects),
-                         [](const testing::TestParamInfo<Defect>& info) { return info.param.library; });
+INSTANTIATE_TEST_SUITE_P(Plugins, BrokenImporter, testing::ValuesIn(kDefects), name_of);
 
 TEST_F(ImporterCheck, SoundOnePasses) {
-    const json results = check("importer_none", 0);
+    const json results = results_of("importer_none", 0);
     ASSERT_TRUE(results.is_array());
     EXPECT_EQ(results.size(), 7u);
     for (const json& result : results) EXPECT_EQ(result["status"], "passed") << result.dump(2);

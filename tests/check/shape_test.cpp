@@ -1,31 +1,9 @@
 // shape_test.cpp -- each broken shape is found by the check that it is a case for, with the right reason.
 #include <gtest/gtest.h>
 
-#include <nlohmann/json.hpp>
-
-#include "cli/run_program.hpp"
+#include "check/run_check.hpp"
 
 namespace {
-
-struct Defect {
-    const char* library;             // shape_NAME.so
-    const char* check;               // that must fail
-    std::vector<const char*> words;  // of what it found
-    const char* lanes = "1";         // with which it is tried
-};
-void PrintTo(const Defect& defect, std::ostream* out) {
-    *out << defect.library;
-}
-
-nlohmann::json checked(const std::string& name, std::vector<std::string> words, int exit_code) {
-    std::vector<std::string> all = {"check", "--quick", "--json", std::string(BROKEN_PLUGINS) + "/shape_" + name + ".so"};
-    all.insert(all.end(), words.begin(), words.end());
-    RunOptions options;
-    options.limit_s = 120;
-    const ProgramResult result = run_program(all, options);
-    EXPECT_EQ(result.exit_code, exit_code) << result.out << result.err;
-    return nlohmann::json::parse(result.out, nullptr, false);
-}
 
 class BrokenShape : public testing::TestWithParam<Defect> {};
 
@@ -33,15 +11,7 @@ TEST_P(BrokenShape, IsFound) {
     const Defect& defect = GetParam();
     std::vector<std::string> words = {"--only", defect.check, "--lanes", "1"};
     if (defect.lanes != std::string("1")) words.insert(words.end(), {"--lanes", defect.lanes});
-    const nlohmann::json results = checked(defect.library, words, 1);
-    ASSERT_TRUE(results.is_array() && results.size() >= 1) << results;
-    const nlohmann::json* failed = nullptr;
-    for (const auto& result : results)
-        if (result["status"] == "failed") failed = &result;
-    ASSERT_NE(failed, nullptr) << results.dump(2);
-    EXPECT_EQ((*failed)["check"], defect.check);
-    const std::string found = (*failed)["found"];
-    for (const char* word : defect.words) EXPECT_NE(found.find(word), std::string::npos) << word << "\nin: " << found;
+    expect_found(check(std::string("shape_") + defect.library, words, 1), defect);
 }
 
 const Defect kDefects[] = {
@@ -76,12 +46,11 @@ const Defect kDefects[] = {
     {"wrong_uv", "surface.uv", {"not within 0 and 1"}},
     {"inexact", "surface.leaving", {"make s->error larger"}},
 };
-INSTANTIATE_TEST_SUITE_P(Plugins, BrokenShape, testing::ValuesIn(kDefects),
-                         [](const testing::TestParamInfo<Defect>& info) { return info.param.library; });
+INSTANTIATE_TEST_SUITE_P(Plugins, BrokenShape, testing::ValuesIn(kDefects), name_of);
 
 // Without a defect the same plugin passes: so the tests above fail because of the defect.
 TEST(SoundShape, Passes) {
-    const nlohmann::json results = checked("none", {}, 0);
+    const nlohmann::json results = check("shape_none", {}, 0);
     ASSERT_TRUE(results.is_array());
     EXPECT_GE(results.size(), 15u);
     for (const auto& result : results) EXPECT_NE(result["status"], "failed") << result.dump(2);

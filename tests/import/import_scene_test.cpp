@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 
+#include "scene/camera.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {

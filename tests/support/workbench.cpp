@@ -8,6 +8,13 @@
 namespace clarity::test {
 namespace {
 
+std::vector<std::array<int, 2>> packets() {
+    if (quick()) return {{1, 1}, {3, 5}, {8, 8}};
+    return {{1, 1}, {2, 2}, {3, 5}, {4, 4}, {8, 8}};
+}
+
+}  // namespace
+
 // Most of a test's time is the compiler's: seconds for each structure, lane count and class of packets. Quick tests take the
 // structure that users of this device get without asking, `linear`, the widest and the narrowest lanes, and three packets.
 bool quick() {
@@ -18,13 +25,6 @@ bool quick() {
 std::vector<int> lane_counts() {
     return quick() ? std::vector<int>{1, 16} : std::vector<int>{1, 4, 8, 16};
 }
-
-std::vector<std::array<int, 2>> packets() {
-    if (quick()) return {{1, 1}, {3, 5}, {8, 8}};
-    return {{1, 1}, {2, 2}, {3, 5}, {4, 4}, {8, 8}};
-}
-
-}  // namespace
 
 Workbench::Workbench()
     : plugins_(PluginRegistry::discover()),

@@ -48,6 +48,11 @@ class Workbench {
     FrameRenderer frames_;
 };
 
+// CLARITY_QUICK_TESTS is set.
+bool quick();
+// The numbers of lanes that tests of kernels try.
+std::vector<int> lane_counts();
+
 // Settings by key: make_settings({{"accel", "bvh2"}, {"lanes", "16"}, {"packet", "4x4"}, {"size", "256x192"}}).
 Settings make_settings(const std::vector<std::pair<std::string, std::string>>& pairs);
 

@@ -157,14 +157,14 @@ BuildRun BuildCase::run(const rt_plugin& plugin, const ParameterValues& params, 
                         unsigned cancel_after) const {
     return execute(plugin, params, schedule, cancel_after,
                    [&](const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-                       return run_builder(plugin, host, input, out);
+                       return run_builder(plugin, host, input, nullptr, out);
                    });
 }
 
 BuildRun BuildCase::pack(const rt_plugin& layout, const rt_topology& tree) const {
     return execute(layout, default_parameters(layout), Schedule::program, 0,
                    [&](const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
-                       return layout.accel->pack(host, input, &tree, out);
+                       return run_builder(layout, host, input, &tree, out);
                    });
 }
 

@@ -17,9 +17,6 @@ constexpr double kInf = INFINITY;
 double largest(const Vec& a) {
     return std::max({std::fabs(a[0]), std::fabs(a[1]), std::fabs(a[2])});
 }
-Vec vec(const float* p) {
-    return {p[0], p[1], p[2]};
-}
 
 struct Ray {
     Vec o, d;
@@ -91,7 +88,7 @@ void add_face(const Ray& ray, const Passing& p, Contact contact, std::vector<Con
 
 void add_triangle(const Ray& ray, const Across& across, const rt_packed_prim& prim, Contact contact,
                   std::vector<Contact>& contacts) {
-    const Vec corners[3] = {vec(prim.a), vec(prim.b), vec(prim.c)};
+    const Vec corners[3] = {to_vec(prim.a), to_vec(prim.b), to_vec(prim.c)};
     // Most triangles are far from the ray: a quick look first.
     const Vec middle = (1.0 / 3) * (corners[0] + corners[1] + corners[2]);
     double reach = 0;
@@ -119,12 +116,12 @@ void add_polygon(const Ray& ray, const Across& across, const BuildScene& scene, 
                  std::vector<Contact>& contacts) {
     const rt_polygon& polygon = scene.polygon_table[RT_REF_INDEX(prim.ref)];
     std::vector<Vec> corners;
-    for (rt_u32 i = 0; i < polygon.count; ++i) corners.push_back(vec(&scene.polygon_corners[3 * size_t(polygon.first + i)]));
-    add_face(ray, pass_face(ray, across, corners.data(), corners.size(), vec(prim.a), vec(prim.b)), contact, contacts);
+    for (rt_u32 i = 0; i < polygon.count; ++i) corners.push_back(to_vec(&scene.polygon_corners[3 * size_t(polygon.first + i)]));
+    add_face(ray, pass_face(ray, across, corners.data(), corners.size(), to_vec(prim.a), to_vec(prim.b)), contact, contacts);
 }
 
 void add_sphere(const Ray& ray, const rt_packed_prim& prim, Contact contact, std::vector<Contact>& contacts) {
-    const Vec center = vec(prim.a), from = center - ray.o;
+    const Vec center = to_vec(prim.a), from = center - ray.o;
     const double radius = prim.b[0], dd = ray.length_d * ray.length_d, middle = dot(from, ray.d) / dd;
     const double away = length(from - middle * ray.d);
     const double blur = ray.blur + kRounding * (largest(center) + radius + length(from));
@@ -163,7 +160,7 @@ const Contact* Truth::of(rt_i32 prim, rt_i32 instance) const {
 
 Truth BruteForce::trace(const rt_ray& given) const {
     Truth truth;
-    Ray ray{vec(given.origin), vec(given.direction), given.t_min, given.t_max, 0, 0};
+    Ray ray{to_vec(given.origin), to_vec(given.direction), given.t_min, given.t_max, 0, 0};
     ray.length_d = length(ray.d);
     ray.blur = kRounding * largest(ray.o);
     const Across across(ray);

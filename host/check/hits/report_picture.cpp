@@ -6,6 +6,7 @@
 #include "check/hits/brute_force.hpp"
 #include "check/hits/judge.hpp"
 #include "render/film/image_io.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity::check {
 namespace {
@@ -16,25 +17,18 @@ constexpr double kHalfHeight = 0.3;  // tangent of half the vertical angle of vi
 
 // One ray for each pixel, the top row first.
 std::vector<rt_ray> rays_around(const rt_ray& ray) {
-    double w[3], u[3], v[3], length = 0;
-    for (int k = 0; k < 3; ++k) length += double(ray.direction[k]) * double(ray.direction[k]);
-    length = std::sqrt(length);
-    for (int k = 0; k < 3; ++k) w[k] = double(ray.direction[k]) / length;
-    const bool upright = std::fabs(w[1]) < 0.9;  // otherwise x is up
-    const double up[3] = {upright ? 0.0 : 1.0, upright ? 1.0 : 0.0, 0};
-    for (int k = 0; k < 3; ++k) u[k] = w[(k + 1) % 3] * up[(k + 2) % 3] - w[(k + 2) % 3] * up[(k + 1) % 3];
-    const double across = std::sqrt(u[0] * u[0] + u[1] * u[1] + u[2] * u[2]);
-    for (double& x : u) x /= across;
-    for (int k = 0; k < 3; ++k) v[k] = u[(k + 1) % 3] * w[(k + 2) % 3] - u[(k + 2) % 3] * w[(k + 1) % 3];
+    const Vec along = to_vec(ray.direction), w = normalized(along);
+    const Vec u = normalized(cross(w, std::fabs(w[1]) < 0.9 ? Vec{0, 1, 0} : Vec{1, 0, 0})), v = cross(u, w);
     std::vector<rt_ray> rays;
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) {
             const double right = kHalfHeight * (2 * (x + 0.5) - kWidth) / kHeight;
             const double above = kHalfHeight * (kHeight - 2 * (y + 0.5)) / kHeight;
             rt_ray pixel = ray;
-            if (right != 0 || above != 0)
-                for (int k = 0; k < 3; ++k)
-                    pixel.direction[k] = static_cast<float>(length * (w[k] + right * u[k] + above * v[k]));
+            if (right != 0 || above != 0) {
+                const Vec turned = length(along) * (w + right * u + above * v);
+                for (size_t k = 0; k < 3; ++k) pixel.direction[k] = static_cast<float>(turned[k]);
+            }
             rays.push_back(pixel);
         }
     return rays;

@@ -10,28 +10,18 @@
 #include "render/queries/query_scene.hpp"
 #include "render/queries/ray_queries.hpp"
 #include "render/queries/ray_text.hpp"
+#include "scene/motion/matrix.hpp"
 
 namespace clarity::check {
 namespace {
 
-// Turns about an axis of no particular direction, and stretches.
-Affine placement(const Vec3& at, double degrees, const Vec3& scale) {
-    const Vec3 a = unit({1, 2, -0.5});
-    const double c = std::cos(degrees * 0.017453292519943295), s = std::sin(degrees * 0.017453292519943295);
-    const double turned[3][3] = {{0, -a[2], a[1]}, {a[2], 0, -a[0]}, {-a[1], a[0], 0}};
-    Affine m{};
-    for (size_t i = 0; i < 3; ++i) {
-        for (size_t j = 0; j < 3; ++j)
-            m[4 * i + j] = static_cast<float>(((i == j ? c : 0) + s * turned[i][j] + (1 - c) * a[i] * a[j]) * scale[j]);
-        m[4 * i + 3] = static_cast<float>(at[i]);
-    }
-    return m;
-}
-
-Vec3 turned(const Affine& m, const Vec3& v) {
-    Vec3 r;
-    for (size_t i = 0; i < 3; ++i) r[i] = double(m[4 * i]) * v[0] + double(m[4 * i + 1]) * v[1] + double(m[4 * i + 2]) * v[2];
-    return r;
+// Stretches, then turns about an axis of no particular direction.
+Affine placement(const Vec& at, double degrees, const Vec& scale) {
+    const double half = degrees * 0.5 * 0.017453292519943295;
+    const Vec axis = std::sin(half) * normalized({1, 2, -0.5});
+    Matrix m = rotation({axis[0], axis[1], axis[2], std::cos(half)}) * scaling(scale);
+    for (size_t i = 0; i < 3; ++i) m[4 * i + 3] = at[i];
+    return to_affine(m);
 }
 
 // All trials, each placed in several ways, far enough from each other.
@@ -49,7 +39,7 @@ PlacedShapes place_all(const std::vector<ShapeTrial>& trials, const std::vector<
     scene.shape_kinds = trials.front().scene.shape_kinds;
     struct Way {
         double degrees;
-        Vec3 scale;
+        Vec scale;
         double row;
     };
     const Way ways[] = {{0, {1, 1, 1}, 0}, {40, {1, 1, 1}, 3}, {-110, {0.5, -1.5, 0.8}, 7}, {25, {0.05, 0.05, 0.05}, 10}};
@@ -88,21 +78,20 @@ std::vector<Aimed> aim(const std::vector<TouchedPart>& parts, const PlacedShapes
         for (size_t p = 0; p < parts.size(); ++p) {
             if (parts[p].trial != placed.trial[s]) continue;
             const Shape& shape = placed.scene.shapes[s];
-            const Affine& m = shape.world_from_object;
-            const Vec3 origin = {m[3], m[7], m[11]};
+            const Matrix m = to_matrix(shape.world_from_object);
             size_t taken = 0;
             for (const Touch& touch : parts[p].touches) {
                 if (!touch.is_smooth || touch.is_second || touch.cosine < 0.3 || !(touch.hit.t > 0) || touch.ray.t_min < 0)
                     continue;
                 if (++taken > 60) break;
-                const Vec3 d = vec3(touch.ray.direction);
+                const Vec d = to_vec(touch.ray.direction);
                 const double before = std::min(double(touch.hit.t), 0.3 * double(parts[p].subject.size) / length(d));
                 // Each third ray comes from far away. t_min keeps it from other shapes.
                 const double farther = taken % 3 == 2 ? 300 * double(parts[p].subject.size) / length(d) : 0;
-                const Vec3 way = turned(m, d), at = turned(m, touch.at) + origin, from = at - (before + farther) * way;
+                const Vec way = direction(m, d), at = point(m, touch.at), from = at - (before + farther) * way;
                 Aimed aimed{ray_of(from, way, farther), p, static_cast<rt_i32>(s), 0, 0, shape.part_count == 1};
-                const Vec3 dw = vec3(aimed.ray.direction);
-                aimed.t = dot(at - vec3(aimed.ray.origin), dw) / dot(dw, dw);
+                const Vec dw = to_vec(aimed.ray.direction);
+                aimed.t = dot(at - to_vec(aimed.ray.origin), dw) / dot(dw, dw);
                 double largest = 0;
                 for (size_t k = 0; k < 3; ++k) largest = std::max({largest, std::fabs(at[k]), std::fabs(from[k])});
                 // Rounding must not move the ray beyond the neighbours that made the touch smooth.

@@ -6,6 +6,7 @@
 
 #include "base/error.hpp"
 #include "base/numbers.hpp"
+#include "check/oclgrind.hpp"
 #include "check/shapes/placed_checks.hpp"
 #include "check/shapes/shape_bench.hpp"
 #include "check/shapes/surface_checks.hpp"
@@ -21,7 +22,7 @@ std::string t_text(const rt_ray& ray, const ProbeHit& hit) {
 }
 
 bool from_behind(const TouchedPart& part, size_t touch) {
-    return dot(vec3(part.surfaces[touch].normal), vec3(part.touches[touch].ray.direction)) > 0;
+    return dot(to_vec(part.surfaces[touch].normal), to_vec(part.touches[touch].ray.direction)) > 0;
 }
 
 Outcome kernels_compile(ShapeBench& bench, const Step& step) {
@@ -55,7 +56,7 @@ Outcome within_box(ShapeBench& bench, const Step& step) {
                                        subject.what);
             if (!is_hit(ray, answers[i])) continue;
             ++hits;
-            const Vec3 at = point_of(ray, answers[i].t);
+            const Vec at = point_of(ray, answers[i].t);
             double outside = 0;
             for (size_t k = 0; k < 3; ++k)
                 outside = std::max({outside, double(subject.lo[k]) - at[k], at[k] - double(subject.hi[k])});
@@ -85,15 +86,15 @@ Outcome met_again(ShapeBench& bench, const Step& step) {
             const Touch& touch = part.touches[i];
             if (!touch.is_smooth || touch.cosine < 0.3) continue;
             for (int k = 0; k < 4; ++k) {
-                Vec3 way = k == 0   ? unit(vec3(touch.ray.direction))
-                           : k == 1 ? -1.0 * unit(vec3(touch.ray.direction))
-                                    : random_direction(random);
+                Vec way = k == 0   ? normalized(to_vec(touch.ray.direction))
+                          : k == 1 ? -1.0 * normalized(to_vec(touch.ray.direction))
+                                   : random_direction(random);
                 const double cosine = std::fabs(dot(way, touch.across));
                 if (cosine < 0.3) continue;
                 const double away = (0.05 + 1.2 * std::uniform_real_distribution<double>(0, 1)(random)) * double(subject.size);
                 rt_ray ray = ray_of(touch.at - away * way, std::exp2(k - 2) * way);
-                const Vec3 d = vec3(ray.direction);
-                const double t = dot(touch.at - vec3(ray.origin), d) / dot(d, d), about = slack / (cosine * length(d));
+                const Vec d = to_vec(ray.direction);
+                const double t = dot(touch.at - to_vec(ray.origin), d) / dot(d, d), about = slack / (cosine * length(d));
                 ray.t_min = static_cast<float>(t - about);
                 rays.push_back(ray);
                 expected.push_back(t);
@@ -106,7 +107,7 @@ Outcome met_again(ShapeBench& bench, const Step& step) {
         findings.tried(rays.size());
         for (size_t i = 0; i < rays.size(); ++i) {
             if (is_hit(rays[i], answers[i]) && std::fabs(double(answers[i].t) - expected[i]) <= 1.01 * room[i]) continue;
-            const bool behind = dot(vec3(part.surfaces[of[i]].normal), vec3(rays[i].direction)) > 0;
+            const bool behind = dot(to_vec(part.surfaces[of[i]].normal), to_vec(rays[i].direction)) > 0;
             findings.wrong(subject, rays[i], behind,
                            "found " + t_text(rays[i], answers[i]) + ", but ray " + ray_text(part.touches[of[i]].ray) +
                                " meets the surface there, at t " + exact_text(static_cast<float>(expected[i])));
@@ -141,7 +142,7 @@ Outcome same_for_any_length(ShapeBench& bench, const Step& step) {
         const std::vector<ProbeHit> answers = bench.first_probe(step).hits(subject, rays);
         findings.tried(rays.size());
         for (size_t i = 0; i < rays.size(); ++i) {
-            const double room = slack_of(subject) / (0.3 * length(vec3(rays[i].direction)));
+            const double room = slack_of(subject) / (0.3 * length(to_vec(rays[i].direction)));
             if (is_hit(rays[i], answers[i]) && std::fabs(double(answers[i].t) - expected[i]) <= room) continue;
             findings.wrong(
                 subject, rays[i], from_behind(part, of[i]),
@@ -222,9 +223,9 @@ Outcome grazing(ShapeBench& bench, const Step& step) {
         std::vector<rt_ray> rays;
         for (const Touch& touch : part.touches) {
             if (!touch.is_smooth) continue;
-            const Vec3 along = unit(cross(touch.across, random_direction(random)));
+            const Vec along = normalized(cross(touch.across, random_direction(random)));
             const double lifts[] = {0, 1e-7, -1e-7, 1e-5, -1e-5};
-            const Vec3 at = touch.at + lifts[rays.size() % 5] * double(subject.size) * touch.across;
+            const Vec at = touch.at + lifts[rays.size() % 5] * double(subject.size) * touch.across;
             rays.push_back(ray_of(at - double(subject.size) * along, along));
         }
         step("tracing rays along " + subject.what, kShapeTrace_s);
@@ -237,7 +238,7 @@ Outcome grazing(ShapeBench& bench, const Step& step) {
                 return Outcome::failed("a ray along the surface has a distance that is no number: ray " + ray_text(rays[i]) +
                                        " at " + subject.what);
             if (!is_hit(rays[i], answers[i])) continue;
-            const Vec3 at = point_of(rays[i], answers[i].t);
+            const Vec at = point_of(rays[i], answers[i].t);
             points.push_back({{float(at[0]), float(at[1]), float(at[2])}, answers[i].u, answers[i].v});
             of.push_back(i);
         }
@@ -278,13 +279,13 @@ Outcome at_ends(ShapeBench& bench, const Step& step) {
                                            ray_text(rays[i]) + " at " + subject.what +
                                            "; narrow the key's range, or refuse such values");
                 if (!is_hit(rays[i], answers[i])) continue;
-                const Vec3 at = point_of(rays[i], answers[i].t);
+                const Vec at = point_of(rays[i], answers[i].t);
                 points.push_back({{float(at[0]), float(at[1]), float(at[2])}, answers[i].u, answers[i].v});
                 of.push_back(i);
             }
             const std::vector<ProbeSurface> surfaces = bench.first_probe(step).surfaces(subject, points);
             for (size_t i = 0; i < points.size(); ++i) {
-                const Vec3 n = vec3(surfaces[i].normal);
+                const Vec n = to_vec(surfaces[i].normal);
                 if (std::isfinite(dot(n, n)) && dot(n, n) > 0 && std::isfinite(surfaces[i].height)) continue;
                 return Outcome::failed(values.what + ": normal or height of a hit are no numbers: ray " +
                                        ray_text(rays[of[i]]) + " at " + subject.what +
@@ -310,8 +311,7 @@ std::vector<Check> shape_access_checks(const rt_plugin& plugin, const std::funct
     few.lanes.resize(1);
     few.quick = true;
     const auto bench = std::make_shared<ShapeBench>(plugin, nullptr, open, few);
-    return {{"accesses.oclgrind", "every access to memory, looked at by oclgrind",
-             [=](const Step& step) { return accesses(*bench, step); }}};
+    return {{kAccessCheck, kAccessTried, [=](const Step& step) { return accesses(*bench, step); }}};
 }
 
 std::vector<Check> shape_checks(const rt_plugin& plugin, const rt_plugin* accel,

@@ -14,8 +14,8 @@ std::string number(double x) {
 
 // How the host sees a point of a surface: the errors that it adds for a shape which is not placed elsewhere (RT_PLACED_ERROR
 // and RT_ORIGIN_ERROR of surface.h).
-double error_of(const ProbeSurface& surface, const Vec3& at) {
-    const Vec3 n = unit(vec3(surface.normal));
+double error_of(const ProbeSurface& surface, const Vec& at) {
+    const Vec n = normalized(to_vec(surface.normal));
     double products = 0, largest = 0;
     for (size_t k = 0; k < 3; ++k) {
         products += std::fabs(n[k] * at[k]);
@@ -37,8 +37,8 @@ Outcome surface_height(ShapeBench& bench, const Step& step) {
             const Touch& touch = part.touches[i];
             const ProbeSurface& surface = part.surfaces[i];
             findings.tried();
-            const Vec3 normal = vec3(surface.normal);
-            const bool behind = dot(normal, vec3(touch.ray.direction)) > 0;
+            const Vec normal = to_vec(surface.normal);
+            const bool behind = dot(normal, to_vec(touch.ray.direction)) > 0;
             if (!std::isfinite(surface.height) || !std::isfinite(surface.error) || !std::isfinite(dot(normal, normal)) ||
                 !(dot(normal, normal) > 0)) {
                 findings.wrong(subject, touch.ray, behind, "normal, height or error are no numbers, or the normal is 0");
@@ -53,7 +53,7 @@ Outcome surface_height(ShapeBench& bench, const Step& step) {
             }
             if (!touch.is_smooth || lift < 20 * slack_of(subject) * 0.25) continue;
             for (const double sign : {1.0, -1.0}) {
-                const Vec3 at = touch.at + sign * lift * unit(normal);
+                const Vec at = touch.at + sign * lift * normalized(normal);
                 points.push_back({{float(at[0]), float(at[1]), float(at[2])}, touch.hit.u, touch.hit.v});
                 of.push_back(i);
             }
@@ -64,7 +64,7 @@ Outcome surface_height(ShapeBench& bench, const Step& step) {
             const double expected = i % 2 ? -lift : lift;
             if (std::fabs(double(found[i].height) - expected) <= 0.3 * lift) continue;
             const Touch& touch = part.touches[of[i]];
-            findings.wrong(subject, touch.ray, dot(vec3(part.surfaces[of[i]].normal), vec3(touch.ray.direction)) > 0,
+            findings.wrong(subject, touch.ray, dot(to_vec(part.surfaces[of[i]].normal), to_vec(touch.ray.direction)) > 0,
                            "a point that is " + number(expected) + " from the hit at t " + exact_text(touch.hit.t) +
                                " along the normal has the height " + exact_text(found[i].height));
         }
@@ -85,11 +85,11 @@ Outcome surface_normal(ShapeBench& bench, const Step& step) {
         for (size_t i = 0; i < part.touches.size(); ++i) {
             const Touch& touch = part.touches[i];
             if (touch.is_smooth) {
-                const Vec3 n = vec3(part.surfaces[i].normal);
+                const Vec n = to_vec(part.surfaces[i].normal);
                 slanted.tried();
                 // Differences are exact where the ray comes steeply.
                 if (touch.cosine > 0.3 && !(std::fabs(dot(n, touch.across)) >= 0.98 * length(n)))
-                    slanted.wrong(subject, touch.ray, dot(n, vec3(touch.ray.direction)) > 0,
+                    slanted.wrong(subject, touch.ray, dot(n, to_vec(touch.ray.direction)) > 0,
                                   "normal " + exact_text(part.surfaces[i].normal[0]) + " " +
                                       exact_text(part.surfaces[i].normal[1]) + " " + exact_text(part.surfaces[i].normal[2]) +
                                       ", but neighbouring hits show " + number(touch.across[0]) + " " +
@@ -108,14 +108,14 @@ Outcome surface_normal(ShapeBench& bench, const Step& step) {
             ++from_outside;
             behind.push_back(touch.ray);
             firsts.push_back(i);
-            if (dot(vec3(part.surfaces[i].normal), vec3(touch.ray.direction)) > 0) {
+            if (dot(to_vec(part.surfaces[i].normal), to_vec(touch.ray.direction)) > 0) {
                 if (face_away++ == 0) first_away = i;
             }
         }
         // Whether each has another hit behind: at most one in a hundred has none, at an edge.
         for (size_t i = 0; i < behind.size(); ++i)
             behind[i].t_min = static_cast<float>(double(part.touches[firsts[i]].hit.t) +
-                                                 2 * neighbour_distance(subject) / length(vec3(behind[i].direction)));
+                                                 2 * neighbour_distance(subject) / length(to_vec(behind[i].direction)));
         step("looking behind the hits of " + subject.what, kShapeTrace_s);
         const std::vector<ProbeHit> next = bench.first_probe(step).hits(subject, behind);
         for (size_t i = 0; i < behind.size(); ++i) once += !is_hit(behind[i], next[i]);
@@ -159,15 +159,15 @@ Outcome surface_leaving(ShapeBench& bench, const Step& step) {
         for (size_t i = 0; i < part.touches.size(); ++i) {
             const Touch& touch = part.touches[i];
             const ProbeSurface& surface = part.surfaces[i];
-            const Vec3 n = vec3(surface.normal);
+            const Vec n = to_vec(surface.normal);
             if (!touch.is_smooth || !(dot(n, n) > 0) || !std::isfinite(dot(n, n))) continue;
             const double error = error_of(surface, touch.at);
             for (const double side : {1.0, -1.0}) {
-                Vec3 way = random_direction(random);
-                const double cosine = side * dot(way, unit(n));
+                Vec way = random_direction(random);
+                const double cosine = side * dot(way, normalized(n));
                 if (std::fabs(cosine) < 0.1) continue;
                 if (cosine < 0) way = -1.0 * way;
-                const Vec3 from = touch.at + (side * error - double(surface.height)) * unit(n);
+                const Vec from = touch.at + (side * error - double(surface.height)) * normalized(n);
                 rays.push_back(ray_of(from, way));
                 near.push_back(std::min(30 * error / std::fabs(cosine), neighbour_distance(subject)));
             }

@@ -16,36 +16,36 @@ class Around {
     }
     double share() { return std::uniform_real_distribution<double>(0, 1)(random_); }
     // grown: the box's width and this share of the part's size on either side.
-    Vec3 inside(double grown = 0) {
-        Vec3 p;
+    Vec inside(double grown = 0) {
+        Vec p;
         for (size_t k = 0; k < 3; ++k) p[k] = lo_[k] - grown * size_ + (hi_[k] - lo_[k] + 2 * grown * size_) * share();
         return p;
     }
-    Vec3 beside() { return 0.5 * (lo_ + hi_) + size_ * (0.6 + 1.4 * share()) * random_direction(random_); }
+    Vec beside() { return 0.5 * (lo_ + hi_) + size_ * (0.6 + 1.4 * share()) * random_direction(random_); }
     size_t axis() { return std::min<size_t>(static_cast<size_t>(3 * share()), 2); }
     double size() const { return size_; }
 
  private:
     std::mt19937& random_;
     const double size_;
-    Vec3 lo_{}, hi_{};
+    Vec lo_{}, hi_{};
 };
 
 }  // namespace
 
-Vec3 across(const Vec3& direction) {
-    return unit(cross(direction, std::fabs(direction[0]) < 0.6 * length(direction) ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
+Vec across(const Vec& direction) {
+    return normalized(cross(direction, std::fabs(direction[0]) < 0.6 * length(direction) ? Vec{1, 0, 0} : Vec{0, 1, 0}));
 }
 
-Vec3 random_direction(std::mt19937& random) {
+Vec random_direction(std::mt19937& random) {
     std::normal_distribution<double> normal;
-    Vec3 v;
+    Vec v;
     do v = {normal(random), normal(random), normal(random)};
     while (dot(v, v) < 1e-6);
-    return unit(v);
+    return normalized(v);
 }
 
-rt_ray ray_of(const Vec3& origin, const Vec3& direction, double t_min) {
+rt_ray ray_of(const Vec& origin, const Vec& direction, double t_min) {
     rt_ray ray{};
     for (size_t k = 0; k < 3; ++k) {
         ray.origin[k] = static_cast<float>(origin[k]);
@@ -60,8 +60,8 @@ std::vector<rt_ray> rays_at(const ShapeSubject& subject, size_t count, std::mt19
     Around around(subject, random);
     std::vector<rt_ray> rays;
     for (size_t i = 0; rays.size() < count; ++i) {
-        const Vec3 target = around.inside();
-        Vec3 from = around.beside(), along;
+        const Vec target = around.inside();
+        Vec from = around.beside(), along;
         switch (i % 6) {
             case 0:  // from inside of the box, in any direction
                 from = around.inside();
@@ -88,7 +88,7 @@ std::vector<rt_ray> rays_at(const ShapeSubject& subject, size_t count, std::mt19
                 along = target - from;
         }
         if (!(length(along) > 0)) continue;
-        along = std::exp2(6 * around.share() - 3) * unit(along);
+        along = std::exp2(6 * around.share() - 3) * normalized(along);
         rays.push_back(ray_of(from, along, i % 7 == 3 ? -0.5 * around.size() / length(along) : 0));
     }
     return rays;
@@ -110,22 +110,23 @@ std::vector<Touch> touches_of(ShapeProbe& probe, const ShapeSubject& subject, co
     std::vector<rt_ray> behind;
     for (const Touch& touch : touches) {
         behind.push_back(touch.ray);
-        behind.back().t_min = static_cast<float>(double(touch.hit.t) + 2 * step / length(vec3(touch.ray.direction)));
+        behind.back().t_min = static_cast<float>(double(touch.hit.t) + 2 * step / length(to_vec(touch.ray.direction)));
     }
     add(behind, true);
 
     std::vector<rt_ray> neighbours;
     for (const Touch& touch : touches) {
-        const Vec3 d = vec3(touch.ray.direction), a = across(d), b = unit(cross(d, a));
-        for (const Vec3& aside : {a, -1.0 * a, b, -1.0 * b}) {
-            neighbours.push_back(ray_of(vec3(touch.ray.origin) + step * aside, d, double(touch.hit.t) - 10 * step / length(d)));
+        const Vec d = to_vec(touch.ray.direction), a = across(d), b = normalized(cross(d, a));
+        for (const Vec& aside : {a, -1.0 * a, b, -1.0 * b}) {
+            neighbours.push_back(
+                ray_of(to_vec(touch.ray.origin) + step * aside, d, double(touch.hit.t) - 10 * step / length(d)));
         }
     }
     const std::vector<ProbeHit> beside = probe.hits(subject, neighbours);
     for (size_t i = 0; i < touches.size(); ++i) {
         Touch& touch = touches[i];
-        const double d = length(vec3(touch.ray.direction));
-        Vec3 points[4];
+        const double d = length(to_vec(touch.ray.direction));
+        Vec points[4];
         bool all = true;
         for (size_t k = 0; k < 4; ++k) {
             const size_t n = 4 * i + k;
@@ -138,10 +139,10 @@ std::vector<Touch> touches_of(ShapeProbe& probe, const ShapeSubject& subject, co
             return std::fabs(double(beside[4 * i + k].t) + double(beside[4 * i + k + 1].t) - 2 * double(touch.hit.t)) * d;
         };
         if (bend(0) > 0.1 * step || bend(2) > 0.1 * step) continue;
-        const Vec3 n = cross(points[0] - points[1], points[2] - points[3]);
+        const Vec n = cross(points[0] - points[1], points[2] - points[3]);
         if (!(length(n) > 0)) continue;
-        touch.across = unit(n);
-        touch.cosine = -dot(touch.across, vec3(touch.ray.direction)) / d;
+        touch.across = normalized(n);
+        touch.cosine = -dot(touch.across, to_vec(touch.ray.direction)) / d;
         if (touch.cosine < 0) {
             touch.across = -1.0 * touch.across;
             touch.cosine = -touch.cosine;

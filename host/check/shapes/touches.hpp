@@ -1,47 +1,22 @@
 // touches.hpp -- rays at one part of a shape, and what is known of the surface where they meet it: by differences between
 // neighbouring rays, without a word of the shape's own surface function.
 #pragma once
-#include <array>
 #include <cmath>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "check/shapes/shape_probe.hpp"
+#include "scene/vec.hpp"
 
 namespace clarity::check {
 
-using Vec3 = std::array<double, 3>;
-inline Vec3 operator+(const Vec3& a, const Vec3& b) {
-    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-inline Vec3 operator-(const Vec3& a, const Vec3& b) {
-    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
-inline Vec3 operator*(double s, const Vec3& a) {
-    return {s * a[0], s * a[1], s * a[2]};
-}
-inline double dot(const Vec3& a, const Vec3& b) {
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-inline Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-inline double length(const Vec3& a) {
-    return std::sqrt(dot(a, a));
-}
-inline Vec3 unit(const Vec3& a) {
-    return (1 / length(a)) * a;
-}
-inline Vec3 vec3(const float* p) {
-    return {p[0], p[1], p[2]};
-}
 // A unit vector across another one.
-Vec3 across(const Vec3& direction);
-Vec3 random_direction(std::mt19937& random);
-rt_ray ray_of(const Vec3& origin, const Vec3& direction, double t_min = 0);
-inline Vec3 point_of(const rt_ray& ray, double t) {
-    return vec3(ray.origin) + t * vec3(ray.direction);
+Vec across(const Vec& direction);
+Vec random_direction(std::mt19937& random);
+rt_ray ray_of(const Vec& origin, const Vec& direction, double t_min = 0);
+inline Vec point_of(const rt_ray& ray, double t) {
+    return to_vec(ray.origin) + t * to_vec(ray.direction);
 }
 
 // Whether the answer is a hit, as the host sees it.
@@ -56,10 +31,10 @@ std::vector<rt_ray> rays_at(const ShapeSubject& subject, size_t count, std::mt19
 struct Touch {
     rt_ray ray;
     ProbeHit hit;
-    Vec3 at{};
+    Vec at{};
     bool is_second = false;  // behind a nearer hit
     bool is_smooth = false;  // neighbouring rays meet the same sheet of the surface, which is flat at that scale
-    Vec3 across{};           // unit; across the surface, on the ray's side. Of smooth touches
+    Vec across{};            // unit; across the surface, on the ray's side. Of smooth touches
     double cosine = 0;       // of the angle between ray and `across`
 };
 // Distance between neighbouring rays.

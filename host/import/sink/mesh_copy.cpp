@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "scene/usable.hpp"
+
 namespace clarity::import {
 namespace {
 
@@ -59,7 +61,7 @@ void copy_attribute(const float* from, rt_u32 stride, rt_u32 first, rt_u32 count
     float* values = to.data() + size_t(width) * first;
     if (copy_strided(from, stride, count, width, values)) return;
     for (rt_u32 i = 0; i < count; ++i, values += width) {
-        if (!std::all_of(values, values + width, is_usable)) std::fill(values, values + width, 0.f);
+        if (!are_usable(values, width)) std::fill(values, values + width, 0.f);
     }
 }
 
@@ -157,7 +159,7 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
     if (m.vertex_count > 0 && !copy_strided(m.positions, m.position_stride, m.vertex_count, 3, positions)) {
         unusable.resize(m.vertex_count, false);
         for (rt_u32 i = 0; i < m.vertex_count; ++i, positions += 3) {
-            unusable[i] = !std::all_of(positions, positions + 3, is_usable);
+            unusable[i] = !are_usable(positions, 3);
             if (unusable[i]) std::fill(positions, positions + 3, 0.f);
         }
     }

@@ -10,13 +10,6 @@
 
 namespace clarity::import {
 
-// Larger coordinates are treated as not finite, so that areas of boxes, and their sums over all primitives, fit in a float.
-inline constexpr float kMaxCoordinate = 1e15f;
-
-inline bool is_usable(float coordinate) {
-    return coordinate <= kMaxCoordinate && coordinate >= -kMaxCoordinate;
-}
-
 // Number of faces in one file, and of those that were left out, by reason.
 struct FaceCount {
     uint64_t all = 0, not_finite = 0, out_of_range = 0;

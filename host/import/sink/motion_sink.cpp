@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "import/sink/mesh_copy.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity::import {
 namespace {
@@ -22,12 +22,6 @@ std::string of(uint64_t id, size_t count) {
     return std::to_string(id) + " of " + std::to_string(count) + " is unknown: pass an id that the sink returned";
 }
 
-bool finite(const double* values, uint64_t count) {
-    return std::all_of(values, values + count, [](double value) { return std::abs(value) <= double(kMaxCoordinate); });
-}
-bool finite(const float* values, uint64_t count) {
-    return std::all_of(values, values + count, is_usable);
-}
 bool in_order(const double* times, uint64_t count) {
     return std::all_of(times, times + count, [](double t) { return std::abs(t) <= kMostSeconds; }) &&
            std::is_sorted(times, times + count);
@@ -66,8 +60,9 @@ rt_u32 MotionSink::node(const rt_node_desc& d, std::string name) {
            "node '" + node.name + "': rotation_order " + std::to_string(d.rotation_order) + " or inherit " +
                std::to_string(d.inherit) + " is unknown");
     for (auto* matrix : {&values.before_rotation, &values.after_rotation, &values.after_scale}) fill_in(*matrix);
-    const bool good = finite(values.translation, 3) && finite(values.rotation, 4) && finite(values.scale, 3) &&
-                      finite(values.before_rotation, 12) && finite(values.after_rotation, 12) && finite(values.after_scale, 12);
+    const bool good = are_usable(values.translation, 3) && are_usable(values.rotation, 4) && are_usable(values.scale, 3) &&
+                      are_usable(values.before_rotation, 12) && are_usable(values.after_rotation, 12) &&
+                      are_usable(values.after_scale, 12);
     if (!good) {
         const rt_u32 parent = values.parent;
         values = {};
@@ -159,8 +154,8 @@ void MotionSink::channel(const rt_channel_desc& d, const std::vector<rt_u32>& ca
         demand(content_.nodes[c.target].values.rotation_order != RT_ROTATE_QUATERNION,
                "channel: the rotation of a node with RT_ROTATE_QUATERNION is keyed as a whole: RT_ALL_COMPONENTS");
     const uint64_t values = d.key_count * c.width();
-    if (!in_order(d.times_s, d.key_count) || !finite(d.values, values) || (d.handles && !finite(d.handles, 4 * values)) ||
-        c.target == RT_NONE) {
+    if (!in_order(d.times_s, d.key_count) || !are_usable(d.values, values) ||
+        (d.handles && !are_usable(d.handles, 4 * values)) || c.target == RT_NONE) {
         ++lost_channels_;
         return;
     }
@@ -184,7 +179,7 @@ rt_u32 MotionSink::morph(const rt_morph_desc& d, std::string name, const std::ve
     Morph morph;
     morph.name = std::move(name);
     morph.mesh = mesh_of(d.mesh, meshes, "morph");
-    morph.weight = finite(&d.weight, 1) ? d.weight : 0;
+    morph.weight = are_usable(&d.weight, 1) ? d.weight : 0;
     demand(d.target_count == 0 || d.targets, "morph '" + morph.name + "': it has targets, but no array of them");
     Motion& motion = scene_.motion;
     morph.first_target = static_cast<rt_u32>(motion.morph_targets.size());
@@ -193,8 +188,9 @@ rt_u32 MotionSink::morph(const rt_morph_desc& d, std::string name, const std::ve
         const rt_morph_target& from = d.targets[i];
         demand(from.count == 0 || from.positions, "morph '" + morph.name + "': a target has no positions");
         const auto outside = [&](rt_u32 v) { return v >= vertex_count; };
-        const bool good = finite(&from.weight, 1) && from.weight != 0 && from.count <= vertex_count &&
-                          finite(from.positions, 3 * from.count) && (!from.normals || finite(from.normals, 3 * from.count)) &&
+        const bool good = are_usable(&from.weight, 1) && from.weight != 0 && from.count <= vertex_count &&
+                          are_usable(from.positions, 3 * from.count) &&
+                          (!from.normals || are_usable(from.normals, 3 * from.count)) &&
                           !(from.vertices && std::any_of(from.vertices, from.vertices + from.count, outside));
         if (!good) {
             ++lost_morphs_;
@@ -235,7 +231,7 @@ void MotionSink::skin(const rt_skin_desc& d, const std::vector<rt_u32>& meshes) 
         bone.node = node_of(d.bones[b].node, "bone");
         demand(bone.node != RT_NONE, "skin: bone " + std::to_string(b) + " has no node");
         std::copy_n(d.bones[b].bone_from_mesh, 12, bone.bone_from_mesh);
-        if (!finite(bone.bone_from_mesh, 12)) {
+        if (!are_usable(bone.bone_from_mesh, 12)) {
             std::copy(kIdentityMatrix.begin(), kIdentityMatrix.end(), bone.bone_from_mesh);
             ++lost_weights_;
         }
@@ -276,7 +272,7 @@ void MotionSink::vertex_frames(const rt_vertex_frames& d, const std::vector<rt_u
     Motion& motion = scene_.motion;
     for (const VertexFrames& other : motion.frames)
         demand(other.mesh != frames.mesh, "vertex frames: the mesh has some already");
-    if (!in_order(d.times_s, d.frame_count) || !finite(d.positions, numbers)) {
+    if (!in_order(d.times_s, d.frame_count) || !are_usable(d.positions, numbers)) {
         ++lost_frames_;
         return;
     }

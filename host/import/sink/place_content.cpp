@@ -2,8 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "import/sink/mesh_copy.hpp"
 #include "import/sink/scene_builder.hpp"
+#include "scene/camera.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity::import {
 namespace {
@@ -29,11 +30,6 @@ bool normalize(std::array<float, 3>& v) {
     if (!(length > 0) || !std::isfinite(length)) return false;
     for (float& x : v) x = static_cast<float>(x / length);
     return true;
-}
-
-template <class Array>
-bool usable(const Array& values) {
-    return std::all_of(std::begin(values), std::end(values), is_usable);
 }
 
 }  // namespace
@@ -63,7 +59,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
         if (own.node == RT_NONE) instance.node_from_object = own.world_from_object;
         hang(instance.node);
         if (instance.node != RT_NONE) instance.root = own.root == RT_NONE ? root : own.root + first_node;
-        if (usable(instance.world_from_object)) {
+        if (are_usable(instance.world_from_object)) {
             into.instances.push_back(std::move(instance));
         } else {
             ++lost;
@@ -74,7 +70,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
         const float scale = mean_scale(m, uniform);
         Sphere sphere = {transform_point(m, own.center.data()), own.radius * scale, material_of(own.material)};
         if (!uniform) warn(from, "a sphere is scaled differently along its axes; it stays a sphere, of the mean radius");
-        if (usable(sphere.center) && is_usable(sphere.radius) && sphere.radius > 0) {
+        if (are_usable(sphere.center) && is_usable(sphere.radius) && sphere.radius > 0) {
             into.spheres.push_back(sphere);
         } else {
             ++lost;
@@ -107,7 +103,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
             const std::array<float, 3> p = transform_point(m, &own.corners[i]);
             std::copy(p.begin(), p.end(), polygon.corners.begin() + static_cast<std::ptrdiff_t>(i));
         }
-        if (usable(polygon.corners) && invertible) {
+        if (are_usable(polygon.corners) && invertible) {
             into.polygons.push_back(std::move(polygon));
         } else {
             ++lost;
@@ -117,7 +113,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
         shape.material = material_of(shape.material);
         shape.world_from_object = multiply(m, shape.world_from_object);
         Affine back;
-        if (usable(shape.world_from_object) && invert(shape.world_from_object, back)) {
+        if (are_usable(shape.world_from_object) && invert(shape.world_from_object, back)) {
             into.shapes.push_back(shape);
         } else {
             ++lost;
@@ -136,7 +132,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
             hang(light.node);
             std::array<float, 3> moved =
                 light.values.kind == RT_LIGHT_POINT ? transform_point(m, p) : transform_direction(m, p);
-            const bool good = usable(moved) && (light.values.kind == RT_LIGHT_POINT || normalize(moved));
+            const bool good = are_usable(moved) && (light.values.kind == RT_LIGHT_POINT || normalize(moved));
             std::copy(moved.begin(), moved.end(), p);
             if (good) (is_root ? into.lights : into.included_lights).push_back(std::move(light));
         }

@@ -14,6 +14,8 @@
 #include "import/sink/texture.hpp"
 #include "plugin/host_services.hpp"
 #include "plugin/parameters.hpp"
+#include "scene/flatten.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity::import {
 namespace {
@@ -82,7 +84,7 @@ void SceneBuilder::add_root(const std::string& path) {
 void SceneBuilder::set_info(const rt_scene_info& info) {
     if (open_.size() != 1) return;
     const auto take_color = [](const float* from, std::array<float, 3>& to, bool& known) {
-        if (!from || known || !std::all_of(from, from + 3, is_usable)) return;
+        if (!from || known || !are_usable(from, 3)) return;
         std::copy(from, from + 3, to.begin());
         known = true;
     };

@@ -7,19 +7,14 @@
 #include "import/sink/shape_parts.hpp"
 #include "import/sink/texture.hpp"
 #include "plugin/abi_struct.hpp"
+#include "scene/camera.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity::import {
 namespace {
 
 constexpr rt_u32 kFailed = RT_NONE;
 
-template <size_t n>
-bool usable(const float (&values)[n]) {
-    return std::all_of(values, values + n, is_usable);
-}
-bool usable(const float* values, size_t count) {
-    return std::all_of(values, values + count, is_usable);
-}
 double squared_length(const float* v) {
     return double(v[0]) * v[0] + double(v[1]) * v[1] + double(v[2]) * v[2];
 }
@@ -60,7 +55,7 @@ rt_material kernel_material(const rt_material_desc& d) {
 // Clamps values to what the shading can handle. Returns false if a value was not a number; it is replaced by the default.
 bool make_sound(rt_material& m) {
     const rt_material usual = default_material();
-    const bool good = usable(m.color) && usable(m.emission) && usable(m.specular) && is_usable(m.reflect) &&
+    const bool good = are_usable(m.color) && are_usable(m.emission) && are_usable(m.specular) && is_usable(m.reflect) &&
                       is_usable(m.refract) && is_usable(m.shininess) && is_usable(m.ior);
     const auto repair = [](float& value, float otherwise) { value = is_usable(value) ? value : otherwise; };
     for (int i = 0; i < 3; ++i) {
@@ -270,7 +265,7 @@ rt_u32 SceneSink::instance(const rt_instance_desc& d) {
         instance.visible = node.visible;
     }
     const rt_u32 id = static_cast<rt_u32>(content_.instances.size() + lost_instances_);
-    if (usable(d.world_from_object) && usable(instance.world_from_object.data(), 12)) {
+    if (are_usable(d.world_from_object) && are_usable(instance.world_from_object.data(), 12)) {
         content_.instances.push_back(std::move(instance));
     } else {
         ++lost_instances_;
@@ -280,7 +275,7 @@ rt_u32 SceneSink::instance(const rt_instance_desc& d) {
 
 rt_u32 SceneSink::sphere(const float* center, float radius, rt_u32 material) {
     Sphere sphere;
-    if (!usable(center, 3) || !is_usable(radius) || !(radius > 0)) {
+    if (!are_usable(center, 3) || !is_usable(radius) || !(radius > 0)) {
         return fail("sphere " + std::to_string(content_.spheres.size()) + ": needs a finite centre and a radius above 0");
     }
     if (!scene_material(material, "sphere", 0, sphere.material)) return kFailed;
@@ -292,7 +287,7 @@ rt_u32 SceneSink::sphere(const float* center, float radius, rt_u32 material) {
 
 rt_u32 SceneSink::plane(const float* normal, float offset, rt_u32 material) {
     Plane plane;
-    const double length = usable(normal, 3) ? std::sqrt(squared_length(normal)) : 0;
+    const double length = are_usable(normal, 3) ? std::sqrt(squared_length(normal)) : 0;
     if (!(length > 0) || !is_usable(offset) || !is_usable(static_cast<float>(offset / length))) {
         return fail("plane " + std::to_string(content_.planes.size()) +
                     ": needs a finite normal that is not zero, and an offset");
@@ -311,7 +306,7 @@ rt_u32 SceneSink::polygon(const float* corners, rt_u32 corner_count, rt_u32 mate
     if (corner_count < 3) return fail(what + ": " + std::to_string(corner_count) + " corners, expected at least 3");
     if (corner_count > 1u << 24)
         return fail(what + ": " + std::to_string(corner_count) + " corners are more than a polygon can have");
-    if (!usable(corners, 3 * size_t(corner_count))) return fail(what + ": a corner is not a finite number");
+    if (!are_usable(corners, 3 * size_t(corner_count))) return fail(what + ": a corner is not a finite number");
     if (!scene_material(material, what.c_str(), 0, polygon.material)) return kFailed;
     polygon.corners.assign(corners, corners + 3 * size_t(corner_count));
     content_.polygons.push_back(std::move(polygon));
@@ -337,7 +332,7 @@ rt_u32 SceneSink::light(const rt_light_desc& d) {
         const Vec placed = d.kind == RT_LIGHT_POINT ? point(node, at) : direction(node, at);
         for (int i = 0; i < 3; ++i) values.position[i] = static_cast<float>(placed[i]);
     }
-    bool good = usable(values.position) && usable(values.color);
+    bool good = are_usable(values.position) && are_usable(values.color);
     if (good && values.kind == RT_LIGHT_DIRECTIONAL) {
         const double length = std::sqrt(squared_length(values.position));
         good = length > 0;
@@ -387,7 +382,7 @@ int32_t SceneSink::load(const rt_load& d) {
     }
     Placement placement;
     placement.name = clean_name(d.name);
-    if (!usable(d.world_from_object)) {
+    if (!are_usable(d.world_from_object)) {
         fail("load '" + clean_name(d.path) + "': its transform is not finite");
         return RT_FAILED;
     }

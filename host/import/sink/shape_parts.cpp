@@ -5,8 +5,8 @@
 #include <cstdio>
 
 #include "base/error.hpp"
-#include "import/sink/mesh_copy.hpp"
 #include "plugin/host_services.hpp"
+#include "scene/usable.hpp"
 
 namespace clarity::import {
 namespace {
@@ -77,7 +77,7 @@ class Parts {
         for (int k = 0; k < 3; ++k)
             if (!is_usable(lo[k]) || !is_usable(hi[k]) || lo[k] > hi[k])
                 return fail("gave a box that is not finite, too large or inside out");
-        if (!std::all_of(numbers, numbers + count, is_usable) || !std::all_of(more, more + more_count, is_usable))
+        if (!are_usable(numbers, count) || !are_usable(more, more_count))
             return fail("gave a number that is not finite or too large");
         std::copy_n(lo, 3, part.min.begin());
         std::copy_n(hi, 3, part.max.begin());

@@ -153,7 +153,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
 
     HostBuild built = run_build(plugin, name_of(plugin, plugin), input.group_count, progress,
                                 [&](const rt_host* host, const rt_build_output* out) {
-                                    return call_builder(plugin, target.place, host, &input, out, progress);
+                                    return call_builder(plugin, target.place, host, &input, nullptr, out, progress);
                                 });
     data.stats = std::move(built.result.stats);
     data.build_ms = built.ms;
@@ -165,9 +165,10 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
         const HostBuild tree = std::move(built);
         const rt_topology topology = topology_of(tree.result);
         input.params = own.data();
-        built = run_build(
-            layout, name_of(plugin, layout), input.group_count, progress,
-            [&](const rt_host* host, const rt_build_output* out) { return layout.accel->pack(host, &input, &topology, out); });
+        built = run_build(layout, name_of(plugin, layout), input.group_count, progress,
+                          [&](const rt_host* host, const rt_build_output* out) {
+                              return call_builder(layout, target.place, host, &input, &topology, out, progress);
+                          });
         data.stats.insert(data.stats.end(), built.result.stats.begin(), built.result.stats.end());
         data.build_ms += built.ms;
     }

@@ -74,7 +74,7 @@ class BuildSupervisor : public worker::Supervisor {
 };
 
 int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, const rt_host* host, const rt_build_input* input,
-                        const rt_build_output* out, Progress& progress) {
+                        const rt_topology* tree, const rt_build_output* out, Progress& progress) {
     uint64_t prims = 0;
     for (rt_u32 g = 0; g < input->group_count; ++g)
         prims = std::max<uint64_t>(prims, uint64_t(input->groups[g].first) + input->groups[g].count);
@@ -83,7 +83,7 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
         worker::WorkerProcess process(
             worker::worker_program(), "build-worker",
             {"--library", library, "--memory", std::to_string(memory), "--parent", std::to_string(getpid())}, Exit::failed);
-        std::string why = write_builder_input(process.result(), *input, prims, plugin.param_count);
+        std::string why = write_builder_input(process.result(), *input, prims, plugin.param_count, tree);
         if (!why.empty()) throw Error(Exit::failed, why);
         worker::send_message(process.channel(), {worker::MessageKind::proceed, 0, 0, {}});
         BuildSupervisor(process, plugin, library, prims, memory, progress).follow();
@@ -102,11 +102,11 @@ int32_t build_in_worker(const rt_plugin& plugin, const std::string& library, con
 }  // namespace
 
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
-                     const rt_build_output* out, Progress& progress) {
+                     const rt_topology* tree, const rt_build_output* out, Progress& progress) {
     const std::string library = place == BuildPlace::here || std::getenv(worker::kWorkerVariable) ? "" : library_of(plugin);
     if (library.empty() || (place == BuildPlace::automatic && is_known_library(library)))
-        return run_builder(plugin, host, input, out);
-    const int32_t status = build_in_worker(plugin, library, host, input, out, progress);
+        return run_builder(plugin, host, input, tree, out);
+    const int32_t status = build_in_worker(plugin, library, host, input, tree, out, progress);
     if (status == RT_OK) remember_library(library);
     return status;
 }

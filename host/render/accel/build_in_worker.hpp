@@ -15,7 +15,7 @@ enum class BuildPlace {
 // Calls run_builder() with these arguments, here or in a worker process, where a crash, an endless loop or a call of exit
 // ends only the worker. Same result and same meaning. Throws Cancelled. progress: the one behind `host`.
 int32_t call_builder(const rt_plugin& plugin, BuildPlace place, const rt_host* host, const rt_build_input* input,
-                     const rt_build_output* out, Progress& progress);
+                     const rt_topology* tree, const rt_build_output* out, Progress& progress);
 
 // Main function of the worker (`clarity build-worker ...`, which people do not call).
 int build_worker_main(int argc, char** argv);

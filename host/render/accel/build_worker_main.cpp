@@ -73,7 +73,7 @@ void build(const Arguments& arguments) {
     const rt_build_input& table = input->table();
     services.check(static_cast<int>(Exit::failed), [&] {
         const ScopedFpMode floats;
-        return run_builder(plugin, services.host(), &table, output.table());
+        return run_builder(plugin, services.host(), &table, input->tree(), output.table());
     });
     const std::string overrun = overrun_of(output.result());
     if (!overrun.empty())

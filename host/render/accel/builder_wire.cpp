@@ -13,6 +13,7 @@ namespace {
 
 struct InputHead {
     uint64_t bytes, prim_count, triangle_count;  // bytes: of the whole input, a multiple of kAlign
+    uint64_t node_count, ref_count;              // of the tree to be packed; no node: there is none
     uint32_t group_count, param_count;
     rt_device device;
 };
@@ -104,19 +105,32 @@ void put_text(std::string& bytes, const std::string& text) {
 
 }  // namespace
 
-std::string write_builder_input(int fd, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count) {
+std::string write_builder_input(int fd, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
+                                const rt_topology* tree) {
     const uint64_t triangles = input.geometry ? input.geometry->triangle_count : 0;
-    InputHead head{sizeof head, prim_count, triangles, input.group_count, param_count, *input.device};
-    const uint64_t params_bytes = param_count * sizeof(double), groups_bytes = input.group_count * sizeof(rt_group),
-                   prims_bytes = prim_count * sizeof(rt_prim), triangles_bytes = triangles * sizeof(rt_packed_prim);
-    const uint64_t used = sizeof head + params_bytes + groups_bytes + prims_bytes + triangles_bytes;
+    InputHead head{sizeof head,       prim_count,  triangles,    tree ? tree->node_count : 0, tree ? tree->ref_count : 0,
+                   input.group_count, param_count, *input.device};
+    struct Piece {
+        const void* data;
+        uint64_t bytes;
+    };
+    std::vector<Piece> pieces = {{input.params, param_count * sizeof(double)},
+                                 {input.groups, input.group_count * sizeof(rt_group)},
+                                 {input.prims, prim_count * sizeof(rt_prim)}};
+    if (triangles > 0) pieces.push_back({input.geometry->triangles, triangles * sizeof(rt_packed_prim)});
+    if (tree) {
+        pieces.push_back({tree->nodes, tree->node_count * sizeof(rt_topology_node)});
+        pieces.push_back({tree->refs, tree->ref_count * sizeof(rt_u32)});
+        pieces.push_back({tree->roots, tree->group_count * sizeof(rt_u32)});
+    }
+    uint64_t used = sizeof head;
+    for (const Piece& piece : pieces) used += piece.bytes;
     head.bytes = (used + kAlign - 1) / kAlign * kAlign;
+    const std::string padding(head.bytes - used, '\0');
+    pieces.push_back({padding.data(), padding.size()});
     std::string why = write_all(fd, &head, sizeof head);
-    if (why.empty()) why = write_all(fd, input.params, params_bytes);
-    if (why.empty()) why = write_all(fd, input.groups, groups_bytes);
-    if (why.empty()) why = write_all(fd, input.prims, prims_bytes);
-    if (why.empty() && triangles) why = write_all(fd, input.geometry->triangles, triangles_bytes);
-    if (why.empty()) why = write_all(fd, std::string(head.bytes - used, '\0').data(), head.bytes - used);
+    for (const Piece& piece : pieces)
+        if (why.empty()) why = write_all(fd, piece.data, piece.bytes);
     return why;
 }
 
@@ -129,12 +143,19 @@ std::string read_builder_input(int fd, std::unique_ptr<BuilderInput>& input) {
     const void* groups = reader.take(head.group_count * sizeof(rt_group));
     const void* prims = reader.take(head.prim_count * sizeof(rt_prim));
     const void* triangles = reader.take(head.triangle_count * sizeof(rt_packed_prim));
+    const void* nodes = reader.take(head.node_count * sizeof(rt_topology_node));
+    const void* refs = reader.take(head.ref_count * sizeof(rt_u32));
+    const void* roots = reader.take(head.node_count > 0 ? head.group_count * sizeof(rt_u32) : 0);
     if (reader.failed()) return "the input is incomplete";
     std::vector<double> values(head.param_count);
     if (!values.empty()) std::memcpy(values.data(), params, values.size() * sizeof(double));
     input = std::make_unique<BuilderInput>(
         static_cast<const rt_prim*>(prims), head.prim_count, static_cast<const rt_group*>(groups), head.group_count,
         static_cast<const rt_packed_prim*>(triangles), head.triangle_count, std::move(values), head.device);
+    if (head.node_count > 0) {
+        input->set_tree({sizeof(rt_topology), head.group_count, static_cast<const rt_topology_node*>(nodes), head.node_count,
+                         static_cast<const rt_u32*>(refs), head.ref_count, static_cast<const rt_u32*>(roots)});
+    }
     if (lseek(fd, static_cast<off_t>(head.bytes), SEEK_SET) < 0) return std::strerror(errno);
     return {};
 }

@@ -8,8 +8,10 @@
 
 namespace clarity {
 
-// Writes the input into an empty file in memory. Returns an empty text on success, otherwise the reason; so do the others.
-std::string write_builder_input(int fd, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count);
+// Writes the input into an empty file in memory. tree: what is to be packed; nullptr: nothing. Returns an empty text on
+// success, otherwise the reason; so do the others.
+std::string write_builder_input(int fd, const rt_build_input& input, uint64_t prim_count, rt_u32 param_count,
+                                const rt_topology* tree);
 // Reads it in the worker.
 std::string read_builder_input(int fd, std::unique_ptr<BuilderInput>& input);
 

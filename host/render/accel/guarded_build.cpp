@@ -27,6 +27,19 @@ BuilderInput::BuilderInput(const rt_prim* prim_array, uint64_t prims_in_all, con
       prim_count(prims_in_all),
       triangle_count(triangles_in_all) {}
 
+void BuilderInput::set_tree(const rt_topology& tree) {
+    nodes = read_only_copy(tree.nodes, tree.node_count, "the tree's nodes (read-only)");
+    refs = read_only_copy(tree.refs, tree.ref_count, "the tree's refs (read-only)");
+    roots = read_only_copy(tree.roots, tree.group_count, "the tree's roots (read-only)");
+    tree_ = {sizeof tree_,
+             tree.group_count,
+             static_cast<const rt_topology_node*>(nodes.data()),
+             tree.node_count,
+             static_cast<const rt_u32*>(refs.data()),
+             tree.ref_count,
+             static_cast<const rt_u32*>(roots.data())};
+}
+
 const rt_build_input& BuilderInput::table() {
     geometry_ = {sizeof(rt_geometry), static_cast<const rt_packed_prim*>(triangles.data()), triangle_count};
     table_.struct_bytes = sizeof table_;

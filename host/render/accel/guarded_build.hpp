@@ -12,7 +12,7 @@ namespace clarity {
 
 // The input of a builder as this process owns it.
 struct BuilderInput {
-    GuardedBytes prims, groups, triangles;
+    GuardedBytes prims, groups, triangles, nodes, refs, roots;
     std::vector<double> params;
     rt_device device;
     rt_u32 group_count = 0;
@@ -22,12 +22,16 @@ struct BuilderInput {
     BuilderInput(const rt_prim* prim_array, uint64_t prims_in_all, const rt_group* group_array, rt_u32 groups_in_all,
                  const rt_packed_prim* triangle_array, uint64_t triangles_in_all, std::vector<double> values,
                  const rt_device& for_device);
+    // Copies the tree which is to be packed into read-only memory.
+    void set_tree(const rt_topology& tree);
     // The tables that a builder gets. Valid as long as this object.
     const rt_build_input& table();
+    const rt_topology* tree() const { return tree_.nodes ? &tree_ : nullptr; }
 
  private:
     rt_geometry geometry_{};
     rt_build_input table_{};
+    rt_topology tree_{};
 };
 
 using BuilderResult = BuilderResultIn<GuardedBytes>;

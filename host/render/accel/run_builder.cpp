@@ -25,7 +25,9 @@ const rt_accel& built_slots(const rt_plugin& plugin) {
     return plugin.accel->topology ? kTopology : *plugin.accel;
 }
 
-int32_t run_builder(const rt_plugin& plugin, const rt_host* host, const rt_build_input* input, const rt_build_output* out) {
+int32_t run_builder(const rt_plugin& plugin, const rt_host* host, const rt_build_input* input, const rt_topology* tree,
+                    const rt_build_output* out) {
+    if (tree) return plugin.accel->pack(host, input, tree, out);
     if (!plugin.accel->topology) return plugin.accel->build(host, input, out);
     rt_topology_output table{};
     table.struct_bytes = sizeof table;

@@ -1,21 +1,18 @@
 #include "render/frame/frame_constants.hpp"
-#include "render/settings/aov.hpp"
 
 #include <cmath>
 #include <cstring>
 
+#include "render/settings/aov.hpp"
+#include "scene/vec.hpp"
+
 namespace clarity {
 namespace {
 
-using Vec3 = std::array<double, 3>;
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-bool normalize(Vec3& v) {
-    const double length = std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
-    if (!(length > 0)) return false;
-    for (double& x : v) x /= length;
+bool normalize(Vec& v) {
+    const double size = length(v);
+    if (!(size > 0)) return false;
+    for (double& x : v) x /= size;
     return true;
 }
 
@@ -24,16 +21,16 @@ bool normalize(Vec3& v) {
 rt_frame make_frame(const View& view, const Settings& settings, const Layout& layout, const AccelData& accel, unsigned sample) {
     rt_frame frame{};
     const Camera& camera = view.camera;
-    Vec3 w{double(camera.target[0]) - camera.eye[0], double(camera.target[1]) - camera.eye[1],
-           double(camera.target[2]) - camera.eye[2]};
+    Vec w{double(camera.target[0]) - camera.eye[0], double(camera.target[1]) - camera.eye[1],
+          double(camera.target[2]) - camera.eye[2]};
     if (!normalize(w)) w = {0, 0, -1};
-    Vec3 up{camera.up[0], camera.up[1], camera.up[2]};
-    Vec3 u = cross(w, up);
+    Vec up{camera.up[0], camera.up[1], camera.up[2]};
+    Vec u = cross(w, up);
     if (!normalize(u)) {  // the camera looks along `up`: any perpendicular right will do
-        u = cross(w, std::fabs(w[0]) < 0.9 ? Vec3{1, 0, 0} : Vec3{0, 0, 1});
+        u = cross(w, std::fabs(w[0]) < 0.9 ? Vec{1, 0, 0} : Vec{0, 0, 1});
         normalize(u);
     }
-    const Vec3 v = cross(u, w);
+    const Vec v = cross(u, w);
     const double tangent = std::tan(0.5 * camera.fov_y_rad), aspect = double(settings.width) / settings.height;
     for (int k = 0; k < 3; ++k) {
         frame.eye[k] = camera.eye[k];

@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/numbers.hpp"
 #include "render/settings/camera_text.hpp"
+#include "scene/camera.hpp"
 
 namespace clarity {
 namespace {

@@ -33,9 +33,6 @@ Matrix cofactors(const Matrix& m);
 bool invert(const Matrix& m, Matrix& inverse);  // false if m flattens space
 Matrix scaling(const Vec& s);
 
-// The camera where its node has the given transform.
-Camera moved_by(Camera camera, const Matrix& world_from_node);
-
 // A rotation; x, y, z, w.
 using Quaternion = std::array<double, 4>;
 inline constexpr Quaternion kNoRotation = {0, 0, 0, 1};

@@ -6,6 +6,8 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "scene/camera.hpp"
+#include "scene/flatten.hpp"
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
 #include "scene/motion/file_sequence.hpp"
