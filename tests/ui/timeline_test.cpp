@@ -62,7 +62,6 @@ TEST_F(Timeline, ShowsWhatRenderShowsAtThatTime) {
     auto now = timeline(*window);
     EXPECT_EQ(now["clips"], nlohmann::json({"animate"}));
     EXPECT_TRUE(now["time_s"].is_null());
-    EXPECT_EQ(difference(window->picture(), render(""), 0), 0) << "at rest";
     const Pixels rest = window->picture();
 
     // A press on the track shows the frame there.
@@ -116,7 +115,6 @@ TEST_F(Timeline, PlaysAndSteps) {
     window->key("comma");
     window->settle();
     EXPECT_EQ(timeline(*window)["shown_s"], 1.0 / 24);
-    EXPECT_EQ(difference(window->picture(), render("--frames 1"), 0), 0);
     window->click_on("step back");
     window->click_on("step back");
     EXPECT_EQ(timeline(*window)["time_s"], 48.0 / 24) << "from one end to the other";
@@ -133,7 +131,7 @@ TEST_F(Timeline, PlaysAndSteps) {
     ASSERT_TRUE(timeline(*window)["playing"]);
     std::vector<double> shown;
     double last = 0;
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < 14; ++i) {
         usleep(50000);
         const auto now = timeline(*window);
         last = now["time_s"];
@@ -191,7 +189,7 @@ TEST_F(Timeline, PlaysAndSteps) {
 TEST_F(Timeline, ScrubbingWhileStructuresAreBuiltShowsOnlyWholePoses) {
     const auto window = open_moving({"--plugin", SLOW_BUILDER, "--accel", "slow_median"});
     ASSERT_EQ(window->command("moving_fps 0"), "");  // so that all pictures have all pixels
-    constexpr int kTimes = 5;
+    constexpr int kTimes = 4;
     std::vector<Pixels> known = {window->picture()};  // at rest
     const auto time_of = [](int i) { return std::to_string(0.35 * i) + "5"; };
     for (int i = 1; i <= kTimes; ++i) {
@@ -202,7 +200,7 @@ TEST_F(Timeline, ScrubbingWhileStructuresAreBuiltShowsOnlyWholePoses) {
     }
     unsigned random = 7;
     int seen = 0, other = 0;
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 20; ++i) {
         random = random * 1664525u + 1013904223u;
         ASSERT_EQ(window->command("time " + time_of(1 + int(random >> 16) % kTimes)), "");
         const Pixels picture = window->picture();
