@@ -65,6 +65,21 @@ wait idle 300
 screenshot $out/window_large_text.png
 COMMANDS
 
+# The showpiece with a chest that hovers and turns.
+cp -r "$here/../../scenes" "$work/scenes"
+scene=$work/scenes/showpiece.scene
+cat >>"$scene" <<ANIMATED
+animate chest translate  0 -.3 0 -1.8   1 -.3 1.2 -1   2 -.3 0 -1.8
+animate chest rotate     0 0 1 0 8   2 0 1 0 368
+ANIMATED
+shoot 1280x800 1 856x660 <<COMMANDS
+wait idle 300
+loop 0.25 1.5
+time 0.75
+wait idle 300
+screenshot $out/window_timeline.png
+COMMANDS
+
 # stb writes quickly, not tightly.
 if command -v convert >/dev/null; then
     for picture in "$out"/window*.png; do

@@ -127,8 +127,9 @@ void add_trace(CLI::App& app, TraceOptions& trace) {
 void add_pose(CLI::App& app, PoseOptions& pose) {
     single(app.add_option("--time", pose.time_s, "Show the scene at this time of the clip, seconds; default: at rest"))
         ->type_name("SECONDS");
-    single(app.add_option("--clip", pose.clip, "Which clip of the file moves the scene; default: the first one"))
-        ->type_name("NAME");
+    single(app.add_option("--clip", pose.clip,
+                          "Which clip of the file moves the scene, by name or number; default: the first one"))
+        ->type_name("NAME|N");
 }
 
 void add_render(CLI::App& app, RenderOptions& render) {
@@ -138,6 +139,7 @@ void add_render(CLI::App& app, RenderOptions& render) {
     single(app.add_option("--frames", render.frames,
                           "Numbers of the frames to render; frame n shows a scene that moves at n / fps seconds"))
         ->type_name("A-B[/STEP]");
+    app.add_flag("--skip-existing", render.skip_existing, "Leave the pictures that are there already as they are");
     single(app.add_option("--fps", render.fps, "Frames a second; default: those of the clip, else 24"))
         ->type_name("F")
         ->check(CLI::Range(1e-3, 1e6));
@@ -294,12 +296,13 @@ CommandLine parse_command_line(int argc, char** argv) {
 
     add_scene(*view, p.scene);
     add_trace(*view, p.trace);
+    add_pose(*view, p.render.pose);
     single(view->add_option("--keys", p.key_map, "Key map: thesis or viewer (WASD moves the camera)"))
         ->type_name("MAP")
         ->check(CLI::IsMember({"thesis", "viewer"}));
     view->callback([&] {
         line.command = [parsed](const PluginRegistry& registry) {
-            return run_view(registry, {parsed->scene, parsed->trace, parsed->key_map});
+            return run_view(registry, {parsed->scene, parsed->trace, parsed->render.pose, parsed->key_map});
         };
     });
 

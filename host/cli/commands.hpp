@@ -33,6 +33,7 @@ struct TraceWords {
     std::string device;
     Settings settings;
     std::vector<Word> edits;  // of the view, in the order of the command line
+    PoseTime pose;            // of the preset
 };
 // Throws Error(usage) for an unknown plugin, key or value.
 TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions& options);
@@ -43,10 +44,11 @@ struct RenderOptions {
     std::string output;  // .png, .exr or .pfm; a run of # is replaced by the frame's number
     std::string frames;  // A-B[/S]; "": one frame with number 1
     PoseOptions pose;
-    double fps = 0;          // of the frames; 0: the clip's own
-    unsigned repeat = 1;     // how often each picture is traced, for timing
-    std::string stats_file;  // file for the statistics; "-": stdout; "": none
-    bool watch = false;      // render again after each change of a kernel, plugin library or scene file
+    double fps = 0;              // of the frames; 0: the clip's own
+    bool skip_existing = false;  // pictures that are there already are not rendered again
+    unsigned repeat = 1;         // how often each picture is traced, for timing
+    std::string stats_file;      // file for the statistics; "-": stdout; "": none
+    bool watch = false;          // render again after each change of a kernel, plugin library or scene file
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);
@@ -54,6 +56,7 @@ int run_render(const PluginRegistry& plugins, const RenderOptions& options);
 struct ViewCommand {
     SceneOptions scene;
     TraceOptions trace;
+    PoseOptions pose;
     std::string key_map;
 };
 int run_view(const PluginRegistry& plugins, const ViewCommand& options);

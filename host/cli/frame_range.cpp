@@ -1,8 +1,10 @@
 #include "cli/frame_range.hpp"
 
 #include <charconv>
+#include <filesystem>
 
 #include "base/error.hpp"
+#include "base/files/frame_path.hpp"
 
 namespace clarity {
 
@@ -27,6 +29,15 @@ FrameRange parse_frame_range(const std::string& text) {
                     "--frames " + text + ": the last frame comes before the first; write the smaller number first");
     if (range.step < 1) throw Error(Exit::usage, "--frames " + text + ": the step must be at least 1");
     return range;
+}
+
+std::optional<int> next_frame(const FrameRange& range, long from, const std::string& skip) {
+    for (long number = from; number <= range.last; number += range.step) {
+        const int frame = static_cast<int>(number);
+        std::error_code error;
+        if (skip.empty() || !std::filesystem::is_regular_file(frame_path(skip, frame), error)) return frame;
+    }
+    return std::nullopt;
 }
 
 }  // namespace clarity

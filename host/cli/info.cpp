@@ -131,11 +131,12 @@ void print_scene(const Scene& scene, const std::vector<ClipInfo>& animations, co
         row("", (camera.name.empty() ? "(no name)" : printable_line(camera.name)) + fov);
     }
     count_row("animations", animations.size());
-    for (const ClipInfo& clip : animations) {
+    for (size_t i = 0; i < animations.size(); ++i) {
+        const ClipInfo& clip = animations[i];
         char span[96];
         std::snprintf(span, sizeof span, "  %.6g to %.6g s, %u nodes, %u skins, %u morphs", clip.begin_s, clip.end_s,
                       clip.nodes, clip.skins, clip.morphs);
-        row("", (clip.name.empty() ? "(no name)" : printable_line(clip.name)) + span);
+        row("", std::to_string(i) + ' ' + (clip.name.empty() ? "(no name)" : printable_line(clip.name)) + span);
     }
     const Bounds bounds = scene.bounds();
     if (bounds.empty) {

@@ -20,6 +20,7 @@
 #include "cli/frame_range.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/render_progress.hpp"
 #include "cli/render_stats.hpp"
 #include "device/kernel_watch.hpp"
 #include "import/sequence_reader.hpp"
@@ -30,20 +31,6 @@ namespace clarity {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-
-// Progress of a part of the work: report(f) of the part is report(from + f * share) of the whole.
-class PartOf : public Progress {
- public:
-    PartOf(Progress& whole, double from, double share) : whole_(whole), from_(from), share_(share) {}
-    bool report(float fraction) override {
-        if (!whole_.report(float(from_ + share_ * std::max(0.0f, fraction)))) cancel();
-        return !cancelled();
-    }
-
- private:
-    Progress& whole_;
-    const double from_, share_;
-};
 
 // Each repetition stores two times of 8 bytes, and there is one more pass to warm up: with this bound neither memory nor the
 // pass counter comes near its limit.
@@ -62,26 +49,21 @@ void check_options(const RenderOptions& options, const Settings& settings, const
         throw Error(Exit::usage, "--repeat " + std::to_string(options.repeat) + ": expected a number from 1 to " +
                                      std::to_string(kMaxRepeat));
     check_pose(options.pose);
+    if (options.skip_existing && options.watch)
+        throw Error(Exit::usage, "--skip-existing leaves the pictures that --watch is to render again; leave one of them out");
     // The numbers of a camera can be checked without a scene, its name cannot.
     const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
                                                          options.trace.camera.find_first_of("0123456789+-.") != 0);
     make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
 }
 
-// Cancels a round of --watch, without a message, when a saved file has made it obsolete.
-class UntilSaved : public Progress {
- public:
-    UntilSaved(Progress& whole, std::function<bool()> saved) : whole_(whole), saved_(std::move(saved)) {}
-    void stage(const std::string& name) override { whole_.stage(name); }
-    bool report(float fraction) override {
-        if (!whole_.report(fraction) || (saved_ && saved_())) cancel();
-        return !cancelled();
-    }
-
- private:
-    Progress& whole_;
-    const std::function<bool()> saved_;
-};
+// The time and the clip of the options; where they are silent, those of the preset.
+PoseOptions chosen_pose(const RenderOptions& options, const PoseTime& preset) {
+    PoseOptions pose = options.pose;
+    if (!pose.time_s && pose.clip.empty() && options.frames.empty()) pose.time_s = preset.time_s;
+    if (pose.clip.empty()) pose.clip = preset.clip;
+    return pose;
+}
 
 class RenderJob {
  public:
@@ -89,6 +71,7 @@ class RenderJob {
         : options_(options),
           words_(read_trace_options(plugins, options.trace)),
           settings_(words_.settings),
+          pose_(chosen_pose(options, words_.pose)),
           range_(options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames)),
           plugins_(plugins),
           bar_(options.quiet),
@@ -100,6 +83,7 @@ class RenderJob {
     int run() {
         check_options(options_, settings_, range_);
         check_scene(plugins_, options_.scene);
+        if (!next(range_.first)) return static_cast<int>(tell_skipped(0));
         const CancelOnSignal cancel(bar_);
         take_devices(open_devices(choose_devices(words_.device)));
         for (const DeviceInfo& info : stats_.devices) log(LogLevel::debug, "device " + info.id() + " " + info.name);
@@ -112,16 +96,27 @@ class RenderJob {
     Exit round(Progress& progress) {
         if (!file_scene_) import(progress);
         // Frames of a scene that moves show it at times of their own.
-        const bool moving = !options_.frames.empty() && !options_.pose.time_s && moves(*file_scene_);
+        const bool moving = !options_.frames.empty() && !pose_.time_s && moves(*file_scene_);
         MultiFrameRenderer frames(devices_);
-        for (int number = range_.first;; number += range_.step) {
-            if (moving || !scene_) place(moving ? std::optional<int>(number) : std::nullopt);
-            if (moving || number == range_.first) prepare(progress);
-            const bool whole = render(frames, number, progress);
+        long rendered = 0;
+        for (auto number = next(range_.first); number; number = next(long(*number) + range_.step), ++rendered) {
+            if (moving || !scene_) place(moving ? number : std::nullopt);
+            if (moving || rendered == 0) prepare(progress);
+            const bool whole = render(frames, *number, progress);
             if (!whole) return Exit::interrupted;
-            if (number > range_.last - range_.step) break;
         }
-        report();
+        if (rendered > 0) report();
+        return tell_skipped(rendered);
+    }
+
+    std::optional<int> next(long from) const {
+        return next_frame(range_, from, options_.skip_existing ? options_.output : std::string());
+    }
+
+    Exit tell_skipped(long rendered) const {
+        if (const long skipped = range_.count() - rendered; skipped > 0)
+            log(LogLevel::info, std::to_string(skipped) + " of " + std::to_string(range_.count()) +
+                                    " pictures were there already; without --skip-existing they are rendered again");
         return Exit::done;
     }
 
@@ -235,8 +230,8 @@ class RenderJob {
 
     // Takes the scene at the time of a frame, or at the one that the options name.
     void place(std::optional<int> frame) {
-        PoseOptions pose = options_.pose;
-        if (frame) pose.time_s = time_of_frame(*file_scene_, pose.clip, options_.fps, *frame);
+        PoseOptions pose = pose_;
+        if (frame) pose.time_s = time_of_frame(*frame, frame_rate(find_clip(*file_scene_, pose.clip), options_.fps));
         const bool at_rest = !pose.time_s && pose.clip.empty();
         auto scene = at_rest ? file_scene_ : std::make_shared<const Scene>(at_pose(*file_scene_, pose, std::ref(sequences_)));
         const float aspect = float(settings_.width) / float(settings_.height);
@@ -275,12 +270,15 @@ class RenderJob {
         const bool whole = samples == unsigned(settings_.spp);
         bar_.clear();
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
-        if (samples > 0) write(frames, number);
+        // A picture with fewer samples than asked for would be taken for a whole one the next time.
+        const bool keep = samples > 0 && (whole || !options_.skip_existing);
+        if (keep) write(frames, number);
         if (!whole)
             log(LogLevel::warning,
-                "interrupted: " + (samples == 0 ? "no sample was complete, nothing is written"
-                                                : frame_path(options_.output, number) + " holds " + std::to_string(samples) +
-                                                      " of " + std::to_string(settings_.spp) + " samples a pixel"));
+                "interrupted: " + (!keep ? (samples == 0 ? "no sample was complete" : "the picture was not complete") +
+                                               std::string(", nothing is written")
+                                         : frame_path(options_.output, number) + " holds " + std::to_string(samples) + " of " +
+                                               std::to_string(settings_.spp) + " samples a pixel"));
         return whole;
     }
 
@@ -374,6 +372,7 @@ class RenderJob {
     const Clock::time_point begin_ = Clock::now();
     TraceWords words_;
     const Settings& settings_;
+    const PoseOptions pose_;
     const FrameRange range_;
     const PluginRegistry& plugins_;
     ProgressBar bar_;

@@ -17,7 +17,7 @@ TraceWords read_trace_options(const PluginRegistry& plugins, const TraceOptions&
     TraceWords words;
     if (!options.preset.empty()) {
         const Preset preset = load_preset(plugins, options.preset);
-        words = {preset.device, preset.settings, preset.edits};
+        words = {preset.device, preset.settings, preset.edits, preset.pose};
     }
     if (!options.device.empty()) words.device = options.device;
     for (const std::string& pair : options.sets) {

@@ -25,6 +25,7 @@ bool names_samples(const TraceOptions& options) {
 
 int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
     const TraceWords words = read_trace_options(plugins, command.trace);
+    check_pose(command.pose);
     check_scene(plugins, command.scene);
 #ifdef CLARITY_HAVE_UI
     ui::ViewOptions options;
@@ -37,6 +38,7 @@ int run_view(const PluginRegistry& plugins, const ViewCommand& command) {
     options.camera = command.trace.camera;
     options.light = command.trace.light;
     options.import = command.scene.import;
+    options.pose = command.pose.time_s || !command.pose.clip.empty() ? command.pose : words.pose;
     options.key_map = command.key_map;
     return ui::ui_main(options);
 #else

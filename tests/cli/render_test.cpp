@@ -139,6 +139,44 @@ TEST_F(Render, FramesOfAMovingScene) {
     EXPECT_NE(unknown.err.find("animate"), std::string::npos) << unknown.err;
 }
 
+// Clips have numbers, counted from 0; a name counts first.
+TEST_F(Render, ClipsByNumber) {
+    scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    scene_ = scratch_.write("moving.scene",
+                            "camera main eye 0 0 9\nload cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\n");
+    ASSERT_EQ(run_program(words({"-o", out("name.png"), "--time", "1", "--clip", "animate"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("number.png"), "--time", "1", "--clip", "0"})).exit_code, 0);
+    EXPECT_EQ(scratch_.read("out/name.png"), scratch_.read("out/number.png"));
+    const ProgramResult unknown = run_program(words({"-o", out("x.png"), "--time", "1", "--clip", "1"}));
+    EXPECT_EQ(unknown.exit_code, 2);
+    EXPECT_NE(unknown.err.find("0 animate"), std::string::npos) << unknown.err;
+}
+
+// --skip-existing renders what is missing, byte for byte as a whole run does, and leaves the other files alone.
+TEST_F(Render, ExistingFramesAreSkipped) {
+    scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    scene_ = scratch_.write("moving.scene",
+                            "camera main eye 0 0 9\nload cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\n");
+    ASSERT_EQ(run_program(words({"-o", out("all_##.png"), "--frames", "2-6/2", "--fps", "3"})).exit_code, 0);
+    scratch_.write("out/f_04.png", "not touched");
+    const std::vector<std::string> again = {"-o", out("f_##.png"), "--frames", "2-6/2", "--fps", "3", "--skip-existing"};
+    ProgramResult result = run_program(words(again));
+    ASSERT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(scratch_.read("out/f_04.png"), "not touched");
+    EXPECT_EQ(scratch_.read("out/f_02.png"), scratch_.read("out/all_02.png"));
+    EXPECT_EQ(scratch_.read("out/f_06.png"), scratch_.read("out/all_06.png"));
+    EXPECT_NE(result.err.find("1 of 3 pictures"), std::string::npos) << result.err;
+    fs::remove(out("f_06.png"));
+    ASSERT_EQ(run_program(words(again)).exit_code, 0);
+    EXPECT_EQ(scratch_.read("out/f_06.png"), scratch_.read("out/all_06.png"));
+    // If all are there, the scene is not even read.
+    scene_ = scratch_.write("broken.scene", "spher\n");
+    result = run_program(words(again));
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_NE(result.err.find("3 of 3 pictures"), std::string::npos) << result.err;
+    EXPECT_EQ(run_program(words({"-o", out("f_##.png"), "--skip-existing", "--watch"})).exit_code, 2);
+}
+
 // A warning of the importer, and one of --time: each is printed once.
 TEST_F(Render, AWarningIsPrintedOnce) {
     const auto count = [](const std::string& text, const std::string& part) {

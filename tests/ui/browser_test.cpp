@@ -207,6 +207,7 @@ Preferences sample_preferences() {
     Bookmark bookmark{"from above", {}};
     bookmark.camera.eye = {1, 2, 0.1f};
     bookmark.camera.fov_y_rad = 0.5f;
+    bookmark.pose = {1.25, "walk"};
     p.bookmarks["/a.obj"] = {bookmark};
     p.bookmarks["/b.obj\n/c.obj"] = {bookmark, bookmark};
     return p;
@@ -221,6 +222,8 @@ TEST(PreferencesJson, IsReadBackUnchanged) {
     ASSERT_EQ(q.bookmarks.at("/b.obj\n/c.obj").size(), 2u);
     EXPECT_EQ(q.bookmarks.at("/a.obj")[0].name, "from above");
     EXPECT_EQ(q.bookmarks.at("/a.obj")[0].camera.eye, p.bookmarks.at("/a.obj")[0].camera.eye);
+    EXPECT_EQ(q.bookmarks.at("/a.obj")[0].pose.time_s, 1.25);
+    EXPECT_EQ(q.bookmarks.at("/a.obj")[0].pose.clip, "walk");
 }
 
 TEST(PreferencesJson, ValuesAreClampedOrRefused) {

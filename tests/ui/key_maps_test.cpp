@@ -38,9 +38,9 @@ Point times(const Point& a, double f) {
 
 // Returns the name that xdotool uses for a key of the help text.
 std::string x_name(const std::string& help_name) {
-    static const std::map<std::string, std::string> named = {{"\u2190", "Left"}, {"\u2192", "Right"}, {"\u2191", "Up"},
-                                                             {"\u2193", "Down"}, {"PgUp", "Prior"},   {"PgDn", "Next"},
-                                                             {"Esc", "Escape"}};
+    static const std::map<std::string, std::string> named = {
+        {"\u2190", "Left"}, {"\u2192", "Right"}, {"\u2191", "Up"},   {"\u2193", "Down"}, {"PgUp", "Prior"},
+        {"PgDn", "Next"},   {"Esc", "Escape"},   {"Space", "space"}, {",", "comma"},     {".", "period"}};
     if (const auto found = named.find(help_name); found != named.end()) return found->second;
     if (help_name.rfind("Ctrl+", 0) == 0) return "ctrl+" + x_name(help_name.substr(5));
     return help_name.size() == 1 ? std::string(1, char(std::tolower(help_name[0]))) : help_name;
@@ -60,6 +60,7 @@ class KeyMaps : public WindowTest, public ::testing::WithParamInterface<std::str
     void check_saving(const KeyBinding& binding);
     void check_undo();
     void check_views(const KeyBinding& binding);
+    void check_time(const KeyBinding& binding);
 
     std::unique_ptr<WindowDriver> window;
 };
@@ -201,6 +202,33 @@ void KeyMaps::check_views(const KeyBinding& binding) {
     EXPECT_EQ(eyes.back(), eyes.front());
 }
 
+// Plays and steps a scene that moves; in one that does not, the keys do nothing.
+void KeyMaps::check_time(const KeyBinding& binding) {
+    press(binding);
+    EXPECT_EQ(window->query("timeline")["clips"].size(), 0u);
+    // The same scene with a camera that moves: it is traced by the same kernels.
+    const fs::path scenes = fs::path(window->folder()) / "scenes", moving = scenes / "primitives.scene";
+    if (!fs::exists(scenes)) {
+        fs::copy(source_path("scenes"), scenes, fs::copy_options::recursive);
+        std::ofstream(moving, std::ios::app) << "\nanimate main translate 0 0 5 11.8  2 3 5 11.8\n";
+    }
+    ASSERT_EQ(window->command("open " + moving.string()), "");
+    window->settle();
+    if (binding.name == std::string("Space")) {
+        press(binding);
+        EXPECT_TRUE(window->query("timeline")["playing"]);
+        EXPECT_TRUE(window->reaches([&](const nlohmann::json& state) { return state["eye"][0] > 0; }));
+        press(binding);
+        EXPECT_FALSE(window->query("timeline")["playing"]);
+    } else {
+        ASSERT_EQ(window->command("time 0.5"), "");
+        press(binding);
+        EXPECT_EQ(window->query("timeline")["time_s"], (binding.name == std::string(",") ? 11 : 13) / 24.0);
+    }
+    ASSERT_EQ(window->command("open " + source_path("scenes/primitives.scene")), "");
+    window->settle();
+}
+
 void KeyMaps::check_common(const KeyBinding& binding) {
     const std::string key = binding.name;
     if (key == "F") {
@@ -258,6 +286,8 @@ void KeyMaps::check_common(const KeyBinding& binding) {
         EXPECT_TRUE(reaches("show_lights", false));
     } else if (key == "B" || key == "N") {
         check_views(binding);
+    } else if (key == "Space" || key == "," || key == ".") {
+        check_time(binding);
     } else if (key == "G") {
         const Point eye = window->state()["eye"];
         press(binding);

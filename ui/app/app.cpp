@@ -96,6 +96,7 @@ bool App::due() const {
 }
 
 double App::longest_wait() const {
+    if (session_->playback().playing()) return 1.0 / 60;
     if (session_->activity().busy || !overlay_->ready() || session_->moving()) return 1.0 / 30;
     return typing() ? 0.1 : 0.5;  // the cursor of a text field blinks
 }

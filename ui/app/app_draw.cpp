@@ -9,6 +9,7 @@
 #include "ui/hud/hud.hpp"
 #include "ui/hud/keys_hud.hpp"
 #include "ui/panel/panel.hpp"
+#include "ui/viewport/timeline.hpp"
 #include "ui/widgets/theme.hpp"
 
 namespace clarity::ui {
@@ -18,16 +19,18 @@ void App::draw() {
     const float scale = ui_scale();
     const float status = std::round(28 * scale);
     const float panel = state_.panel_visible ? std::round(std::min(state_.panel_width * scale, size.x * 0.6f)) : 0;
-    const Rect viewport{0, 0, std::max(size.x - panel, 1.0f), std::max(size.y - status, 1.0f)};
+    const float left = std::max(size.x - panel, 1.0f), above = std::max(size.y - status, 1.0f);
+    const float timeline = std::min(timeline_height(*session_, left), above - 1);
+    const Rect viewport{0, 0, left, above - timeline};
     pane_->draw(viewport, *session_, *overlay_, state_);
     draw_empty_hint(viewport, *session_);
-    if (state_.panel_visible)
-        draw_panel({size.x - panel, 0, panel, viewport.height}, *session_, *overlay_, state_, window_->gl_text());
-    draw_status_line({0, viewport.height, size.x, status}, *session_, *overlay_, state_);
+    if (state_.panel_visible) draw_panel({size.x - panel, 0, panel, above}, *session_, *overlay_, state_, window_->gl_text());
+    draw_timeline({0, viewport.height, left, timeline}, *session_);
+    draw_status_line({0, above, size.x, status}, *session_, *overlay_, state_);
     draw_progress_hud(viewport, *session_);
     draw_message_hud(viewport, *session_, state_);
     draw_file_browser(viewport, *session_, state_);
-    draw_keys_hud(viewport, state_);
+    draw_keys_hud({0, 0, left, above}, state_);
 }
 
 void App::upload_picture() {

@@ -19,14 +19,28 @@ void toggle_inspector(KeyTarget& to) {
 
 void add_bookmark(KeyTarget& to) {
     auto& bookmarks = to.state.bookmarks;
-    bookmarks.push_back({"view " + std::to_string(bookmarks.size() + 1), to.session.desired.camera});
+    bookmarks.push_back({"view " + std::to_string(bookmarks.size() + 1), to.session.desired.camera, to.session.desired.pose});
 }
 
 void go_to_next_bookmark(KeyTarget& to) {
     std::vector<Camera> cameras;
-    if (to.session.ready()) cameras = to.session.ready()->loaded->scene->cameras;
-    for (const Bookmark& bookmark : to.state.bookmarks) cameras.push_back(bookmark.camera);
-    if (!cameras.empty()) to.session.desired.camera = cameras[to.state.next_bookmark++ % cameras.size()];
+    std::vector<PoseTime> poses;
+    if (to.session.ready()) cameras = to.session.ready()->cameras;
+    poses.resize(cameras.size());
+    for (const Bookmark& bookmark : to.state.bookmarks) {
+        cameras.push_back(bookmark.camera);
+        poses.push_back(bookmark.pose);
+    }
+    if (cameras.empty()) return;
+    const size_t next = to.state.next_bookmark++ % cameras.size();
+    to.session.go_to(cameras[next], poses[next]);
+}
+
+void toggle_playing(KeyTarget& to) {
+    if (to.session.playback().any())
+        to.session.toggle_playing();
+    else
+        to.state.notify("this scene has no clip to play");
 }
 
 void close_or_cancel(KeyTarget& to) {

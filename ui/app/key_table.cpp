@@ -28,6 +28,7 @@ void toggle_level(KeyTarget& to) {
 // Adds the bindings which all presets share.
 void add_common(KeyMap& map) {
     const char* levels = "show that level of the bounding volumes; again: hide";
+    const char* frame = "the frame before, the frame after";
     const char* undo = "undo, redo a setting";
     const KeyBinding common[] = {
         once(GLFW_KEY_1, "1", levels, toggle_level<0>),
@@ -50,6 +51,9 @@ void add_common(KeyMap& map) {
         once(GLFW_KEY_G, "G", "bring what is selected into view, or all", [](KeyTarget& to) { to.session.frame_selection(); }),
         once(GLFW_KEY_B, "B", "bookmark this view", add_bookmark),
         once(GLFW_KEY_N, "N", "next bookmark, or camera of the file", go_to_next_bookmark),
+        once(GLFW_KEY_SPACE, "Space", "play the clip, or pause it", toggle_playing),
+        once(GLFW_KEY_COMMA, ",", frame, [](KeyTarget& to) { to.session.playback().step(to.session.desired, -1); }),
+        once(GLFW_KEY_PERIOD, ".", frame, [](KeyTarget& to) { to.session.playback().step(to.session.desired, 1); }),
         with_ctrl(GLFW_KEY_Z, "Ctrl+Z", undo, [](KeyTarget& to) { to.session.undo(); }),
         with_ctrl(GLFW_KEY_Y, "Ctrl+Y", undo, [](KeyTarget& to) { to.session.redo(); }),
         with_ctrl(GLFW_KEY_O, "Ctrl+O", "open a file", [](KeyTarget& to) { to.state.browser_open = true; }),

@@ -30,14 +30,24 @@ bool read_camera(const Json& json, Camera& camera) {
     return finite(camera.eye) && finite(camera.target) && finite(camera.up) && camera.eye != camera.target;
 }
 
+PoseTime read_pose(const Json& json) {
+    const double time_s = json.at("time_s");
+    PoseTime pose;
+    pose.clip = json.value("clip", "");
+    if (std::isfinite(time_s)) pose.time_s = time_s;
+    return pose;
+}
+
 Json bookmarks_json(const Preferences& p) {
     Json scenes = Json::array();
     for (const std::string& key : p.bookmarked) {
         const auto found = p.bookmarks.find(key);
         if (found == p.bookmarks.end() || found->second.empty()) continue;
         Json views = Json::array();
-        for (const Bookmark& bookmark : found->second)
+        for (const Bookmark& bookmark : found->second) {
             views.push_back({{"name", bookmark.name}, {"camera", camera_json(bookmark.camera)}});
+            if (bookmark.pose.time_s) views.back()["pose"] = {{"clip", bookmark.pose.clip}, {"time_s", *bookmark.pose.time_s}};
+        }
         scenes.push_back({{"scene", key}, {"views", views}});
     }
     return scenes;
@@ -77,7 +87,8 @@ void read_bookmarks(const Json& scenes, Reader& reader, Preferences& p) {
             std::vector<Bookmark> views;
             for (const Json& view : scene.at("views"))
                 reader.entry("a bookmark of " + key, [&] {
-                    Bookmark bookmark{view.value("name", ""), {}};
+                    Bookmark bookmark{view.value("name", ""), {}, {}};
+                    if (view.contains("pose")) bookmark.pose = read_pose(view.at("pose"));
                     if (read_camera(view.at("camera"), bookmark.camera)) views.push_back(bookmark);
                 });
             if (p.bookmarks.emplace(key, std::move(views)).second) p.bookmarked.push_back(key);

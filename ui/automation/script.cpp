@@ -18,6 +18,7 @@
 #include "render/film/image_io.hpp"
 #include "ui/automation/picture_script.hpp"
 #include "ui/automation/scripted_window.hpp"
+#include "ui/automation/time_script.hpp"
 #include "ui/widgets/widgets.hpp"
 
 namespace clarity::ui {
@@ -254,7 +255,7 @@ bool Script::run(ScriptedWindow& window, const std::string& line) {
                     nlohmann::json{{"x", place->x}, {"y", place->y}, {"w", place->width}, {"h", place->height}}.dump().c_str());
     } else if (command == "quit") {
         window.close();
-    } else if (!run_picture_command(window, command, text)) {
+    } else if (!run_picture_command(window, command, text) && !run_time_command(window, command, text)) {
         throw Error(Exit::usage, "no such command");
     }
     return true;

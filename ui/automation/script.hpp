@@ -31,7 +31,7 @@
 //   inspect X Y, pick X Y       traces a pixel's rays; pick also selects what the camera ray hit
 //   inspection                  the traced rays as JSON
 //   find LABEL                  rectangle of this row's widget or list entry, as last drawn: JSON x, y, w, h
-// The commands of picture_script.hpp work as well.
+// The commands of picture_script.hpp and time_script.hpp work as well.
 #pragma once
 #include <deque>
 #include <memory>

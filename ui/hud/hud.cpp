@@ -74,6 +74,8 @@ void draw_progress_hud(const Rect& viewport, Session& session) {
     }
     if (busy_since < 0) busy_since = ImGui::GetTime();
     if (ImGui::GetTime() - busy_since < 0.15) return;
+    // While a scene moves there is always work, but each pose takes a moment only.
+    if (activity.only_pose && activity.seconds < 3) return;
     const float scale = ui_scale(), width = std::min(420 * scale, viewport.width - 32 * scale);
     begin_hud("Progress", {viewport.x + viewport.width / 2, viewport.y + viewport.height - 18 * scale}, {0.5f, 1}, width);
     const float cancel = 72 * scale;

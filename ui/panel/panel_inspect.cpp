@@ -54,7 +54,7 @@ void draw_ray(const Session& session, const Inspection& inspection, const RayChi
     if (state.selected_ray == index) flags |= ImGuiTreeNodeFlags_Selected;
     const RayKind& kind = ray_kinds()[kind_of(ray)];
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const Scene& scene = *inspection.job.ready->loaded->scene;
+    const Scene& scene = *inspection.job.ready->scene;
     const std::vector<std::string> light_names = names_of_lights(session);
     const bool open = ImGui::TreeNodeEx("##ray", flags);
     if (ImGui::IsItemClicked()) state.selected_ray = state.selected_ray == index ? -1 : index;
@@ -86,7 +86,7 @@ void selected_rows(const Session& session, const Inspection& inspection, const U
         return;
     }
     const RayRecord& ray = rays[static_cast<size_t>(state.selected_ray)];
-    for (const auto& [label, value] : ray_facts(ray, *inspection.job.ready->loaded->scene, names_of_lights(session)))
+    for (const auto& [label, value] : ray_facts(ray, *inspection.job.ready->scene, names_of_lights(session)))
         row_text(label.c_str(), value);
 }
 

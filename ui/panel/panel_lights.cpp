@@ -108,7 +108,8 @@ void draw_light_rows(Session& session, UiState& state) {
 
 void draw_bookmark_rows(Session& session, UiState& state) {
     if (button("Bookmark this view", "kept for this scene's file (B); N goes through them", -FLT_MIN))
-        state.bookmarks.push_back({"view " + std::to_string(state.bookmarks.size() + 1), session.desired.camera});
+        state.bookmarks.push_back(
+            {"view " + std::to_string(state.bookmarks.size() + 1), session.desired.camera, session.desired.pose});
     size_t gone = state.bookmarks.size();
     for (size_t i = 0; i < state.bookmarks.size(); ++i) {
         Bookmark& bookmark = state.bookmarks[i];
@@ -120,7 +121,7 @@ void draw_bookmark_rows(Session& session, UiState& state) {
         note_rect("name of bookmark " + std::to_string(i + 1));
         tooltip("click to rename");
         ImGui::SameLine();
-        if (button("Go", "to this view", go)) session.desired.camera = bookmark.camera;
+        if (button("Go", "to this view", go)) session.go_to(bookmark.camera, bookmark.pose);
         note_rect("go to " + bookmark.name);
         ImGui::SameLine();
         if (button("\u00d7", "delete this bookmark", cross)) gone = i;

@@ -182,8 +182,7 @@ void group_rows(const Group& group, Session& session, const UiState& state) {
 }  // namespace
 
 void draw_render_tab(Session& session, VolumeOverlay& overlay, UiState& state) {
-    if (session.behind() && !session.activity().busy)
-        wrapped_text("Not in force: the picture shows the last settings that worked.", colors::kAmber);
+    if (session.not_in_force()) wrapped_text("Not in force: the picture shows the last settings that worked.", colors::kAmber);
     compare_rows(session, state);
     // The two sides have different widget ids, so that an unfinished edit stays with its side.
     ImGui::PushID(session.editing_other ? "b" : "a");

@@ -64,11 +64,11 @@ bool drag3(const char* label, const char* help, float* values, float speed) {
 void camera_rows(Session& session, UiState& state) {
     const auto ready = session.ready();
     Camera& camera = session.desired.camera;
-    if (ready && !ready->loaded->scene->cameras.empty()) {
+    if (ready && !ready->cameras.empty()) {
         row_label("From file", "cameras that the file holds");
         if (ImGui::BeginCombo("##cameras", camera.name.empty() ? "choose" : camera.name.c_str())) {
-            for (size_t i = 0; i < ready->loaded->scene->cameras.size(); ++i) {
-                const Camera& other = ready->loaded->scene->cameras[i];
+            for (size_t i = 0; i < ready->cameras.size(); ++i) {
+                const Camera& other = ready->cameras[i];
                 const std::string name = other.name.empty() ? "camera " + std::to_string(i + 1) : other.name;
                 ImGui::PushID(static_cast<int>(i));
                 if (ImGui::Selectable(name.c_str())) camera = other;

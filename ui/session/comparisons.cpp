@@ -25,14 +25,24 @@ bool prepares_same(const Side& a, const Side& b) {
 
 }  // namespace
 
+bool same_camera(const Camera& a, const Camera& b) {
+    return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
+}
+
+bool same_light(const rt_light& a, const rt_light& b) {
+    return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
 bool same_view(const View& a, const View& b) {
-    const bool cameras = a.camera.eye == b.camera.eye && a.camera.target == b.camera.target && a.camera.up == b.camera.up &&
-                         a.camera.fov_y_rad == b.camera.fov_y_rad;
-    return cameras && a.background == b.background && a.ambient == b.ambient && same_bytes(a.lights, b.lights) &&
-           same_bytes(a.materials, b.materials);
+    return same_camera(a.camera, b.camera) && a.background == b.background && a.ambient == b.ambient &&
+           same_bytes(a.lights, b.lights) && same_bytes(a.materials, b.materials);
 }
 
 bool prepares_same(const PrepareRequest& a, const PrepareRequest& b) {
+    return prepares_same_but_pose(a, b) && same_pose(a.pose, b.pose);
+}
+
+bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b) {
     return a.files_revision == b.files_revision && a.kernel_revision == b.kernel_revision && prepares_same(a.main, b.main) &&
            a.other.has_value() == b.other.has_value() && (!a.other || prepares_same(*a.other, *b.other)) &&
            a.hidden == b.hidden;

@@ -16,9 +16,14 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 bool same_view(const View& a, const View& b);
 
-// Whether two requests prepare the same: equal files, kernels, devices and hidden instances, and equal settings except for
-// those that apply to the next frame at once.
+// Whether two requests prepare the same: equal files, kernels, devices, hidden instances and poses, and equal settings except
+// for those that apply to the next frame at once.
 bool prepares_same(const PrepareRequest& a, const PrepareRequest& b);
+// The same, whatever the poses.
+bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b);
+
+bool same_camera(const Camera& a, const Camera& b);
+bool same_light(const rt_light& a, const rt_light& b);
 
 // Whether two settings trace the same frames, however many samples; and whether they display a traced film in the same way.
 bool traces_same(const Settings& a, const Settings& b);

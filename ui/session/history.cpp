@@ -33,16 +33,23 @@ std::vector<std::string> differences(const DesiredState& a, const DesiredState& 
     if (a.ambient != b.ambient) names.push_back("Ambient light");
     if (!same_bytes(a.materials, b.materials)) names.push_back("Material");
     if (a.hidden != b.hidden) names.push_back("Visibility");
+    if (a.pose.clip != b.pose.clip)
+        names.push_back("Clip");
+    else if (a.loop != b.loop)
+        names.push_back("Loop range");
+    if (a.speed != b.speed) names.push_back("Speed");
     if (a.resolution_scale != b.resolution_scale) names.push_back("Resolution");
     if (a.moving_fps != b.moving_fps) names.push_back("Frames/s while moving");
     return names;
 }
 
-// Restores all but the camera and the flag `continuous`, which is only for measuring.
+// Restores all but the camera, the time within a clip, and the flag `continuous`, which is only for measuring.
 void restore(DesiredState& desired, const DesiredState& from) {
     const Camera camera = desired.camera;
     const bool continuous = desired.continuous;
+    const PoseTime pose = desired.pose;
     desired = from;
+    if (desired.pose.clip == pose.clip) desired.pose = pose;
     desired.camera = camera;
     desired.continuous = continuous;
 }
@@ -72,6 +79,17 @@ void History::forget() {
     known_ = false;
     undo_.clear();
     redo_.clear();
+}
+
+void History::lights_moved(const std::vector<Light>& before, const std::vector<Light>& now) {
+    follow_lights(settled_, before, now);
+    for (DesiredState& step : undo_) follow_lights(step, before, now);
+    for (DesiredState& step : redo_) follow_lights(step, before, now);
+}
+
+void follow_lights(DesiredState& desired, const std::vector<Light>& before, const std::vector<Light>& now) {
+    for (size_t i = 0; i < std::min({desired.lights.size(), before.size(), now.size()}); ++i)
+        if (same_light(desired.lights[i].values, before[i].values)) desired.lights[i].values = now[i].values;
 }
 
 std::string History::undo_name() const {

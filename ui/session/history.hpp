@@ -1,4 +1,5 @@
-// history.hpp -- undo and redo of the desired state, except for the camera, which bookmarks keep.
+// history.hpp -- undo and redo of the desired state, except for the camera, which bookmarks keep, and for the time within a
+// clip.
 #pragma once
 #include <vector>
 
@@ -13,6 +14,9 @@ class History {
     void observe(const DesiredState& desired, bool gesture);
     // Called for a new scene: earlier steps cannot be undone any more.
     void forget();
+    // Called when the lights of the file move with a pose: steps that hold them as they were hold them as they are now, because
+    // undo takes back what the user did.
+    void lights_moved(const std::vector<Light>& before, const std::vector<Light>& now);
     bool can_undo() const { return !undo_.empty(); }
     bool can_redo() const { return !redo_.empty(); }
     // The name of the next step to undo: "Depth", "Structure", "light 1". Empty: there is none.
@@ -27,6 +31,9 @@ class History {
     DesiredState settled_;
     std::vector<DesiredState> undo_, redo_;
 };
+
+// Lights of the file that the user has not changed follow it from one pose to another.
+void follow_lights(DesiredState& desired, const std::vector<Light>& before, const std::vector<Light>& now);
 
 // What differs between two desired states, as a text for the user: "Depth", "3 changes". Empty: nothing that undo would
 // restore.

@@ -35,6 +35,7 @@ Session::Session(const ViewOptions& options, std::function<void()> wake)
       first_camera_(options.camera),
       first_light_(options.light),
       first_edits_(options.edits),
+      first_pose_(options.pose),
       log_(wake),
       wake_(wake),
       kernels_(std::make_unique<KernelWatch>(plugins_.with_kernels(), wake)),
@@ -87,6 +88,9 @@ std::vector<std::string> Session::files() const {
 }
 
 void Session::cancel() {
+    // Of a scene that plays only the next pose is being prepared.
+    if (playback_.playing() && ready_ && prepares_same_but_pose(ready_->request, desired_request()))
+        return playback_.pause(desired);
     worker_.cancel();
     if (!ready_) return;
     const PrepareRequest& was = ready_->request;
@@ -102,6 +106,11 @@ void Session::cancel() {
     else
         desired.other = was.other;
     desired.hidden = was.hidden;
+    playback_.rest(desired);
+    if (was.pose.time_s) {
+        if (was.pose.clip != desired.pose.clip) playback_.choose(desired, was.pose.clip);
+        desired.pose = was.pose;
+    }
     files_ = was.files;
     files_revision_ = was.files_revision;
     // The prepared scene already has these settings, so there is nothing to request, unless its devices were closed meanwhile.
@@ -124,10 +133,19 @@ void Session::follow_main() {
 }
 
 PrepareRequest Session::desired_request() const {
-    PrepareRequest request{files_, files_revision_,  first_camera_, first_light_, desired.main, desired.other,
-                           {},     sources_revision_};
-    // Indices of instances are only valid in the scene that they were chosen in.
-    if (files_revision_ == viewed_files_revision_) request.hidden = desired.hidden;
+    PrepareRequest request;
+    request.files = files_;
+    request.files_revision = files_revision_;
+    request.camera = first_camera_;
+    request.light = first_light_;
+    request.main = desired.main;
+    request.other = desired.other;
+    request.kernel_revision = sources_revision_;
+    // Indices of instances and names of clips are only valid in the scene that they were chosen in.
+    if (files_revision_ == viewed_files_revision_) {
+        request.hidden = desired.hidden;
+        if (desired.pose.time_s) request.pose = desired.pose;
+    }
     return request;
 }
 
@@ -138,6 +156,10 @@ bool Session::is_posted(const PrepareRequest& request) const {
 void Session::post_request() {
     PrepareRequest request = desired_request();
     if (is_posted(request)) return;
+    // One pose is made at a time, when the one before it is being traced: the next is then of the newest time, and no pose is
+    // made which nobody sees.
+    request.only_pose = posted_request_ && prepares_same_but_pose(*posted_request_, request);
+    if (request.only_pose && (worker_.activity().busy || !frames_.begun())) return;
     posted_request_ = request;
     worker_.request(std::move(request));
 }
@@ -154,10 +176,12 @@ void Session::post_frame() {
     job.view = visible_view(edited_view(desired));
     job.continuous = desired.continuous;
     job.resolution_scale = std::clamp(desired.resolution_scale, 0.05f, 4.0f);
-    const bool first = !posted_job_.ready, moved = !first && !same_view(job.view, posted_job_.view);
+    const bool first = !posted_job_.ready;
+    const bool moved = !first && (!same_view(job.view, posted_job_.view) ||
+                                  !same_pose(job.ready->request.pose, posted_job_.ready->request.pose));
     const double now = now_s();
     if (moved) moved_at_s_ = now;
-    moving_ = now - moved_at_s_ < kMovingSeconds && !sequence_.running();
+    moving_ = (now - moved_at_s_ < kMovingSeconds || playback_.playing()) && !sequence_.running();
     job.moving_fps = moving_ ? desired.moving_fps : 0;
     const bool anew = first || moved || job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
                       job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
@@ -178,6 +202,8 @@ void Session::update(bool gesture) {
     take_libraries();
     if (auto why = frames_.take_failure(); !why.empty()) report(why);
     sequence_.update(*this);
+    if (sequence_.running()) playback_.pause(desired);
+    playback_.advance(desired, now_s());
     follow_main();
     if (ready_ && !sequence_.running()) history_.observe(desired, gesture);
     post_request();
@@ -197,6 +223,7 @@ void Session::take_outcomes() {
                 break;
             case Outcome::Kind::failed:
                 report(outcome.message, outcome.details);
+                playback_.pause(desired);
                 if (outcome.files_failed && ready_) {
                     // The worker keeps the old files by itself. A new request would remove the message.
                     const bool asked = is_posted(desired_request());
@@ -248,14 +275,20 @@ void Session::take_libraries() {
 }
 
 void Session::adopt(const std::shared_ptr<const Ready>& ready) {
-    ready_ = ready;
-    if (viewed_files_revision_ == ready->loaded->files_revision) return;
+    const std::shared_ptr<const Ready> before = std::exchange(ready_, ready);
+    if (viewed_files_revision_ == ready->loaded->files_revision) return follow_pose(*before);
     const bool same_files = viewed_files_revision_ != 0 && ready->loaded->files_revision == reread_files_revision_;
     viewed_files_revision_ = ready->loaded->files_revision;
     selection = {};
     const Camera camera = desired.camera;
+    const PoseTime pose = desired.pose;
+    playback_.open(*ready->loaded->scene, desired);
     reset_view();
-    if (same_files) desired.camera = camera;
+    if (same_files) {
+        desired.camera = camera;
+        if (playback_.has(pose.clip)) desired.pose = pose;
+    }
+    show_first_pose();
     if (!ready->loaded->view_error.empty()) report(ready->loaded->view_error);
     first_camera_.clear();
     first_light_.clear();
@@ -271,6 +304,33 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     history_.forget();
 }
 
+// Shows the pose that the command line asks for.
+void Session::show_first_pose() {
+    const PoseTime pose = std::exchange(first_pose_, {});
+    if (!pose.time_s && pose.clip.empty()) return;
+    if (!playback_.any()) return log(LogLevel::warning, "--time: the scene has no clip to play");
+    try {
+        const ClipInfo clip = find_clip(*ready_->loaded->scene, pose.clip);
+        playback_.choose(desired, clip.name);
+        desired.pose.time_s = pose.time_s.value_or(clip.begin_s);
+    } catch (const Error& error) {
+        report(error.what());
+    }
+}
+
+void Session::follow_pose(const Ready& before) {
+    const auto seen_through = [&](const Camera& camera) { return same_camera(camera, desired.camera); };
+    const auto through = std::find_if(before.cameras.begin(), before.cameras.end(), seen_through);
+    const auto number = static_cast<size_t>(through - before.cameras.begin());
+    if (number < std::min(before.cameras.size(), ready_->cameras.size())) desired.camera = ready_->cameras[number];
+    follow_lights(desired, before.lights, ready_->lights);
+    history_.lights_moved(before.lights, ready_->lights);
+}
+
+void Session::toggle_playing() {
+    playback_.playing() ? playback_.pause(desired) : playback_.play(desired);
+}
+
 void Session::report(const std::string& text, const std::string& details) {
     log(LogLevel::error, details.empty() ? text : text + "\n" + details);
     message_ = {text, details};
@@ -281,9 +341,13 @@ bool Session::behind() const {
     return ready_ && !prepares_same(ready_->request, desired_request());
 }
 
+bool Session::not_in_force() const {
+    return behind() && is_posted(desired_request()) && !worker_.activity().busy;
+}
+
 bool Session::idle() const {
-    return !worker_.activity().busy && is_posted(desired_request()) && !moving_ && frames_.idle() && !inspector_.busy() &&
-           pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();
+    return !worker_.activity().busy && is_posted(desired_request()) && !moving_ && !playback_.playing() && frames_.idle() &&
+           !inspector_.busy() && pick_request_ == picked_request_ && !sequence_.running() && picture_ == frames_.latest();
 }
 
 float Session::scene_size() const {

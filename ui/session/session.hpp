@@ -16,6 +16,7 @@
 #include "render/settings/preset.hpp"
 #include "ui/session/history.hpp"
 #include "ui/session/log_buffer.hpp"
+#include "ui/session/playback.hpp"
 #include "ui/session/sequence.hpp"
 #include "ui/session/view_options.hpp"
 #include "ui/threads/desired_state.hpp"
@@ -52,7 +53,7 @@ class Session {
 
     // Replaces the scene once the files are imported. Until then, and if the import fails, the old scene stays.
     void open(std::vector<std::string> files);
-    // Cancels preparation and sets the desired state back to what is on the screen.
+    // Cancels preparation and sets the desired state back to what is on the screen. A scene that plays is paused.
     void cancel();
     void reset_view();
     void adopt_view(const EditedView& edited);
@@ -79,6 +80,10 @@ class Session {
     uint64_t save_picture(const std::string& path);
     void cancel_save(uint64_t number) { frames_.cancel_save(number); }
     Sequence& sequence() { return sequence_; }
+    Playback& playback() { return playback_; }
+    const Playback& playback() const { return playback_; }
+    // Plays the clip, or pauses it.
+    void toggle_playing();
 
     // Traces the rays of a pixel of the newest picture for the inspector.
     void inspect(unsigned x, unsigned y);
@@ -89,6 +94,8 @@ class Session {
     // Moves the camera's target to `point`. The eye's distance to it is multiplied by `nearer`.
     void focus_on(const std::array<float, 3>& point, float nearer = 1);
     void focus_on_instance(rt_u32 instance);
+    // To a bookmarked view. Its time is shown unless the scene plays.
+    void go_to(const Camera& camera, const PoseTime& pose);
     void frame_selection();  // frames the selection, or the whole scene if nothing is selected
     float picture_aspect() const;
     // The materials to edit. They are copied from the scene to `desired` at the first edit.
@@ -105,7 +112,7 @@ class Session {
     std::vector<std::string> files() const;                              // of the scene on the screen
     Activity activity() const { return worker_.activity(); }
     std::vector<float> frame_times(unsigned side = 0) const { return frames_.times(side); }
-    // Whether the camera or a light moved a moment ago, so that pictures may have fewer pixels.
+    // Whether something moves or moved a moment ago, so that pictures may have fewer pixels.
     bool moving() const { return moving_; }
     // Watches the kernel files. A saved change is compiled and used at once.
     const KernelWatch& kernels() const { return *kernels_; }
@@ -117,6 +124,8 @@ class Session {
     bool idle() const;
     // Whether the desired state differs from what the picture was prepared with: work is under way, or it failed.
     bool behind() const;
+    // Whether what was asked for last failed or was cancelled, so that it will not come by itself.
+    bool not_in_force() const;
     double frames_per_second(unsigned side = 0) const;
     double mrays_per_second(unsigned side = 0) const;
     std::string frame_rate_line() const;
@@ -135,16 +144,20 @@ class Session {
     void adopt(const std::shared_ptr<const Ready>& ready);
     void post_request();
     void post_frame();
-    void follow_main();  // copies the shared settings of the main side to the other side
+    void follow_pose(const Ready& before);  // the file's lights, and its camera if the user looks through one
+    void show_first_pose();
+    View first_view() const;  // of the scene in its pose
+    void follow_main();       // copies the shared settings of the main side to the other side
     void take_saved();
     void take_pick();
     PrepareRequest desired_request() const;
     bool is_posted(const PrepareRequest& request) const;
-    Preset desired_preset(const View& base) const;
+    Preset desired_preset(View base) const;
 
     const PluginRegistry& plugins_;
     std::string first_camera_, first_light_;  // from the command line, for the first scene
     std::vector<Word> first_edits_;
+    PoseTime first_pose_;
     std::vector<std::string> files_;  // of the scene that was asked for
     uint64_t files_revision_ = 0, last_files_revision_ = 0;
     std::optional<PrepareRequest> posted_request_;  // none: the next request is posted in any case
@@ -157,6 +170,7 @@ class Session {
     uint64_t message_count_ = 0;
     History history_;
     Sequence sequence_;
+    Playback playback_;
     bool moving_ = false;
     double moved_at_s_ = -1e9;
     uint64_t pick_request_ = 0, picked_request_ = 0;

@@ -25,15 +25,21 @@ uint64_t Session::save_picture(const std::string& path) {
     return frames_.save(path);
 }
 
-Preset Session::desired_preset(const View& base) const {
+Preset Session::desired_preset(View base) const {
     Preset preset{desired.main.device, desired.main.settings, {}};
     if (preset.settings.aov != "color") preset.settings.spp = 1;  // as in post_frame()
+    if (desired.pose.time_s) {
+        preset.pose = desired.pose;
+        // Lights for a scene that has none suit its size, which is another in another pose. So they are always named.
+        if (ready_ && ready_->loaded->scene->lights.empty())
+            for (rt_light& light : base.lights) light.color[0] = -1;
+    }
     if (ready_) preset.edits = edits_between(*ready_->loaded->scene, base, edited_view(desired));
     return preset;
 }
 
 void Session::save_preset(const std::string& path) const {
-    clarity::save_preset(plugins_, desired_preset(ready_ ? ready_->loaded->first_view : View()), path);
+    clarity::save_preset(plugins_, desired_preset(ready_ ? first_view() : View()), path);
 }
 
 void Session::load_preset(const std::string& path) {
@@ -43,11 +49,18 @@ void Session::load_preset(const std::string& path) {
                     path + ": this preset changes the view of a scene, but no scene is open; open the scene first");
     EditedView edited;
     if (ready_) {
-        edited.view = ready_->loaded->first_view;
+        edited.view = first_view();
         for (const Word& word : preset.edits) apply_edit(*ready_->loaded->scene, edited, word.key, word.value);
     }
     desired.main = {preset.device.empty() ? desired.main.device : preset.device, preset.settings};
     if (ready_) adopt_view(edited);
+    if (ready_ && playback_.any()) {
+        playback_.rest(desired);
+        if (preset.pose.time_s && playback_.has(preset.pose.clip)) {
+            playback_.choose(desired, preset.pose.clip);
+            desired.pose.time_s = preset.pose.time_s;
+        }
+    }
     log(LogLevel::info, "preset " + path);
 }
 
@@ -58,7 +71,9 @@ std::string Session::render_command(const std::string& output) const {
     const Settings& s = desired.main.settings;
     const auto scaled = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * desired.resolution_scale))); };
     const int width = scaled(s.width), height = scaled(s.height);
-    preset = desired_preset(make_view(*ready_->loaded->scene, static_cast<float>(width) / static_cast<float>(height)));
+    View base = make_view(*ready_->loaded->scene, static_cast<float>(width) / static_cast<float>(height));
+    for (size_t i = 0; i < ready_->lights.size(); ++i) base.lights[i] = ready_->lights[i].values;
+    preset = desired_preset(base);
     preset.settings.width = width;
     preset.settings.height = height;
     preset.device = ready_->main.devices_text();

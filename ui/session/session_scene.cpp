@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "ui/session/camera_control.hpp"
+#include "ui/session/comparisons.hpp"
 #include "ui/session/session.hpp"
 
 namespace clarity::ui {
@@ -24,7 +25,7 @@ void Session::take_pick() {
     if (!inspection->failure.empty()) return report(inspection->failure);
     selection = {};
     if (!ready_ || inspection->job.ready->loaded != ready_->loaded || inspection->result.rays.empty()) return;
-    const PrimPlace place = place_of_prim(*ready_->loaded->scene, inspection->result.rays.front().prim);
+    const PrimPlace place = place_of_prim(*inspection->job.ready->scene, inspection->result.rays.front().prim);
     if (place.kind == PrimPlace::Kind::none) return;
     selection.prim = inspection->result.rays.front().prim;
     selection.instance = place.instance == RT_NONE ? -1 : static_cast<rt_i32>(place.instance);
@@ -41,14 +42,23 @@ void Session::focus_on(const std::array<float, 3>& point, float nearer) {
 }
 
 void Session::focus_on_instance(rt_u32 instance) {
-    if (!ready_ || instance >= ready_->loaded->scene->instances.size()) return;
-    frame_bounds(desired.camera, instance_bounds(*ready_->loaded->scene, instance), picture_aspect());
+    if (!ready_ || instance >= ready_->scene->instances.size()) return;
+    frame_bounds(desired.camera, instance_bounds(*ready_->scene, instance), picture_aspect());
+}
+
+void Session::go_to(const Camera& camera, const PoseTime& pose) {
+    desired.camera = camera;
+    if (!pose.time_s || playback_.playing() || !playback_.has(pose.clip)) return;
+    if (pose.clip != desired.pose.clip) playback_.choose(desired, pose.clip);
+    desired.pose.time_s = pose.time_s;
 }
 
 void Session::frame_selection() {
     if (!ready_) return;
     if (selection.instance >= 0) return focus_on_instance(static_cast<rt_u32>(selection.instance));
-    if (!ready_->loaded->bounds.empty) frame_bounds(desired.camera, ready_->loaded->bounds, picture_aspect());
+    const bool at_rest = ready_->scene == ready_->loaded->scene;
+    const Bounds bounds = at_rest ? ready_->loaded->bounds : ready_->scene->bounds();
+    if (!bounds.empty) frame_bounds(desired.camera, bounds, picture_aspect());
 }
 
 float Session::picture_aspect() const {
@@ -77,7 +87,20 @@ void Session::hide(rt_u32 instance, bool hidden) {
 }
 
 void Session::reset_view() {
-    if (ready_) adopt_view({ready_->loaded->first_view, {}, {}});
+    if (ready_) adopt_view({first_view(), {}, {}});
+}
+
+View Session::first_view() const {
+    View view = ready_->loaded->first_view;
+    const Scene& rest = *ready_->loaded->scene;
+    for (size_t i = 0; i < rest.cameras.size(); ++i)
+        if (same_camera(view.camera, rest.cameras[i])) {
+            view.camera = ready_->cameras[i];
+            break;
+        }
+    for (size_t i = 0; i < std::min(view.lights.size(), rest.lights.size()); ++i)
+        if (same_light(view.lights[i], rest.lights[i].values)) view.lights[i] = ready_->lights[i].values;
+    return view;
 }
 
 void Session::adopt_view(const EditedView& edited) {

@@ -7,6 +7,7 @@
 #include "plugin/registry.hpp"
 #include "render/settings/edit.hpp"
 #include "render/settings/settings.hpp"
+#include "scene/motion/pose_time.hpp"
 
 namespace clarity::ui {
 
@@ -22,6 +23,7 @@ struct ViewOptions {
     std::string camera;                       // as for --camera: "", a name or "ex,ey,ez,tx,ty,tz[,fov_deg]"
     std::string light;                        // as for --light: "" or "x,y,z"
     std::vector<Word> edits;                  // changes to the view of the first scene
+    PoseTime pose;                            // of the first scene; a clip alone stands for its begin, and may be a number
     import::ImportOptions import;
     std::string key_map;  // "thesis" or "viewer"; "": the remembered one, at first "thesis"
 };

@@ -6,6 +6,7 @@
 
 #include "render/settings/edit.hpp"
 #include "render/settings/settings.hpp"
+#include "scene/motion/pose_time.hpp"
 
 namespace clarity::ui {
 
@@ -33,6 +34,9 @@ struct DesiredState {
     std::array<float, 3> background{}, ambient{};
     std::vector<rt_material> materials;  // the edited materials; empty: those of the scene
     std::vector<rt_u32> hidden;          // indices of instances, ascending
+    PoseTime pose;                       // when the scene is shown; its clip is the chosen one even while the scene is at rest
+    std::array<double, 2> loop{};        // the seconds of the clip that are played, again and again
+    float speed = 1;                     // of the clip's clock while it plays
     bool continuous = false;             // trace again and again, to measure
     float resolution_scale = 1;          // factor for the picture's width and height
     // Target frame rate while something moves, reached by tracing fewer pixels; 0: always trace all pixels.

@@ -51,6 +51,11 @@ bool FrameThread::idle() const {
     return !tracing_ && !traced_ && !wants_work(sample, retrace);
 }
 
+bool FrameThread::begun() const {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return !job_.ready || failed_ || released_ || job_.ready->withdrawn() || job_.revision == begun_revision_;
+}
+
 std::string FrameThread::take_failure() {
     const std::lock_guard<std::mutex> lock(mutex_);
     return std::exchange(failure_, {});
@@ -143,6 +148,7 @@ void FrameThread::run() {
             save = has_saving();
             settle = traced_ && (save || !retrace);  // there is nothing to trace while the images are copied
             tracing_ = true;
+            if (!settle && !save) begun_revision_ = job.revision;
             running_ = std::make_shared<StopProgress>();
             if (sample == 0 && retrace && !save) samples_ = 0;
         }
@@ -198,7 +204,7 @@ void FrameThread::save_waiting() {
 
 // The factor for width and height at which the expected frame time meets job.moving_fps.
 float FrameThread::moving_scale(const FrameJob& job) const {
-    if (job.moving_fps <= 0 || ms_per_pixel_ <= 0 || paced_ != job.ready) return 1;
+    if (job.moving_fps <= 0 || ms_per_pixel_ <= 0 || !paced_ || !traces_alike(*paced_, *job.ready)) return 1;
     const double pixels = double(job.settings.width) * job.settings.height * job.resolution_scale * job.resolution_scale;
     const double expected = ms_per_pixel_ * pixels, budget = 1000.0 / job.moving_fps;
     if (expected <= budget) return 1;
@@ -363,7 +369,7 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     if (retrace) {
         // The first frame of a program is slower than the later ones, so it does not count.
         const double pixels = double(picture->main.settings.width) * picture->main.settings.height;
-        ms_per_pixel_ = paced_ == job.ready ? ms / pixels : 0;
+        ms_per_pixel_ = paced_ && (paced_ == job.ready || traces_alike(*paced_, *job.ready)) ? ms / pixels : 0;
         paced_ = job.ready;
     }
     if (!pending) finish(false);

@@ -32,6 +32,8 @@ class FrameThread {
     std::shared_ptr<const Picture> latest() const;
     // Whether everything that was posted is traced.
     bool idle() const;
+    // Whether the posted job is being traced, or was, or cannot be.
+    bool begun() const;
     // Returns why tracing stopped, and forgets it. Empty: it did not.
     std::string take_failure();
     // The last frame times of a side in milliseconds, oldest first.
@@ -96,6 +98,7 @@ class FrameThread {
     bool stop_ = false, tracing_ = false, failed_ = false, distance_ = false, released_ = false;
     FrameJob job_;
     uint64_t traced_revision_ = 0, shown_revision_ = 0;
+    uint64_t begun_revision_ = 0;  // of the job that was begun last
     bool traced_reduced_ = false;  // the films hold fewer pixels than asked for
     unsigned samples_ = 0;         // number of samples in the films
     std::shared_ptr<StopProgress> running_;

@@ -4,9 +4,10 @@ namespace clarity::ui {
 
 void FrameTimes::add(const std::shared_ptr<const Ready>& of, double ms) {
     constexpr size_t kTimes = 240;
-    if (of_ != of) {
+    const bool same = of_ == of || (of_ && of && traces_alike(*of_, *of));
+    of_ = of;
+    if (!same) {
         ms_.clear();
-        of_ = of;
         cold_ = true;
     } else if (cold_) {
         ms_.clear();

@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 // Keeps the current stage for the window, and wakes the window at most 30 times a second.
 class PrepareWorker::StageProgress : public Progress {
  public:
-    explicit StageProgress(const std::function<void()>& wake) : wake_(wake) {}
+    StageProgress(const std::function<void()>& wake, bool only_pose) : wake_(wake), only_pose_(only_pose) {}
     void stage(const std::string& name) override {
         {
             const std::lock_guard<std::mutex> lock(mutex_);
@@ -40,11 +40,13 @@ class PrepareWorker::StageProgress : public Progress {
     }
     Activity activity() const {
         const std::lock_guard<std::mutex> lock(mutex_);
-        return {true, stage_, fraction_};
+        return {true, stage_, fraction_, only_pose_, ms_since(begin_) * 1e-3};
     }
 
  private:
     const std::function<void()>& wake_;
+    const bool only_pose_;
+    const Clock::time_point begin_ = Clock::now();
     mutable std::mutex mutex_;
     std::string stage_;
     float fraction_ = -1;
@@ -53,9 +55,12 @@ class PrepareWorker::StageProgress : public Progress {
 
 PrepareWorker::PrepareWorker(const PluginRegistry& plugins, import::ImportOptions import, Tracers tracers,
                              std::function<void()> wake)
-    : plugins_(plugins), import_(std::move(import)), tracers_(std::move(tracers)), wake_(std::move(wake)), thread_([this] {
-          run();
-      }) {}
+    : plugins_(plugins),
+      import_(std::move(import)),
+      tracers_(std::move(tracers)),
+      wake_(std::move(wake)),
+      shown_(plugins, import_),
+      thread_([this] { run(); }) {}
 
 PrepareWorker::~PrepareWorker() {
     {
@@ -75,7 +80,7 @@ void PrepareWorker::request(PrepareRequest request) {
         const bool importing = files_revision_ != running_request_.files_revision;
         const bool same_source =
             request.files_revision == running_request_.files_revision && request.main.device == running_request_.main.device;
-        if (running_ && !(importing && same_source)) running_->cancel();
+        if (running_ && !request.only_pose && !(importing && same_source)) running_->cancel();
         waiting_ = std::make_unique<PrepareRequest>(std::move(request));
     }
     changed_.notify_all();
@@ -95,7 +100,7 @@ std::vector<Outcome> PrepareWorker::take() {
 Activity PrepareWorker::activity() const {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (running_) return running_->activity();
-    if (waiting_) return {true, "starting", -1};
+    if (waiting_) return {true, "starting", -1, waiting_->only_pose, 0};
     return {};
 }
 
@@ -135,7 +140,7 @@ void PrepareWorker::run() {
             request = *waiting_;
             running_request_ = request;
             waiting_.reset();
-            progress = running_ = std::make_shared<StageProgress>(wake_);
+            progress = running_ = std::make_shared<StageProgress>(wake_, request.only_pose);
         }
         try {
             handle(request, *progress);
@@ -183,14 +188,18 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
         publish({Outcome::Kind::failed, nullptr, error.what(), error.details(), true, false});
     }
     if (!main_.preparer || !loaded_) return;
-    hide(request);
+    shown_.update(loaded_, request);
     auto ready = std::make_shared<Ready>();
     ready->request = request;
     ready->request.main.device = main_.choice;
     ready->request.files = loaded_->files;
     ready->request.files_revision = loaded_->files_revision;
-    ready->request.hidden = hidden_;
+    ready->request.hidden = shown_.hidden();
+    ready->request.pose = shown_.pose();
     ready->loaded = loaded_;
+    ready->scene = shown_.posed();
+    ready->cameras = shown_.cameras();
+    ready->lights = shown_.lights();
     prepare_sides(request, *ready, whole, progress);
     if (needs_reopen()) {
         // Preparation worked. Now repeat it on reopened devices; the compiler's cache has the programs.
@@ -201,13 +210,13 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
 }
 
 void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress) {
-    ready.main = lend(main_.devices, main_.preparer->prepare(visible_, request.main.settings, progress));
+    ready.main = lend(main_.devices, main_.preparer->prepare(shown_.visible(), request.main.settings, progress));
     ready.other.reset();
     if (!request.other || !other_.preparer) return;
     ready.request.other->device = other_.choice;
     // If the second side cannot be prepared, the first side still changes.
     try {
-        ready.other = lend(other_.devices, other_.preparer->prepare(visible_, request.other->settings, progress));
+        ready.other = lend(other_.devices, other_.preparer->prepare(shown_.visible(), request.other->settings, progress));
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
@@ -249,17 +258,6 @@ void PrepareWorker::renew_devices() {
     if (!other_.preparer) return;
     other_.devices = open_devices(other, main_.devices);
     other_.preparer->open_devices(other_.devices);
-}
-
-// Makes visible_, the scene without its hidden instances. It is kept while scene and hidden instances stay the same, because
-// every new Scene object needs new structures.
-void PrepareWorker::hide(const PrepareRequest& request) {
-    const bool same_files = request.files_revision == loaded_->files_revision;
-    const std::vector<rt_u32>& hidden = same_files ? request.hidden : hidden_;
-    if (visible_ && visible_of_ == loaded_ && hidden_ == hidden) return;
-    hidden_ = same_files ? hidden : std::vector<rt_u32>();
-    visible_of_ = loaded_;
-    visible_ = hidden_.empty() ? loaded_->scene : std::make_shared<const Scene>(without_instances(*loaded_->scene, hidden_));
 }
 
 void PrepareWorker::open_side(const std::string& choice, SideState& state, const SideState& neighbour,

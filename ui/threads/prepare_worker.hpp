@@ -12,6 +12,7 @@
 #include "base/progress.hpp"
 #include "import/import.hpp"
 #include "ui/threads/prepared_scene.hpp"
+#include "ui/threads/shown_scene.hpp"
 
 namespace clarity::ui {
 
@@ -29,7 +30,9 @@ struct Outcome {
 struct Activity {
     bool busy = false;
     std::string stage;
-    float fraction = -1;  // negative: unknown
+    float fraction = -1;     // negative: unknown
+    bool only_pose = false;  // only another pose is prepared
+    double seconds = 0;      // since this request was begun
 };
 
 // The thread. All public members may be called from any thread, and none waits.
@@ -44,7 +47,8 @@ class PrepareWorker {
     PrepareWorker(const PluginRegistry& plugins, import::ImportOptions import, Tracers tracers, std::function<void()> wake);
     ~PrepareWorker();
 
-    // Replaces the waiting request. Running work is cancelled if the new request makes it useless.
+    // Replaces the waiting request. Running work is cancelled if the new request makes it useless. A new pose does not: while
+    // a scene moves, each pose would be cancelled by the next.
     void request(PrepareRequest request);
     // Cancels the running request and drops the waiting one.
     void cancel();
@@ -70,7 +74,6 @@ class PrepareWorker {
     ReadySide lend(const Devices& devices, std::shared_ptr<const MultiPrepared> prepared);
     void open_side(const std::string& choice, SideState& state, const SideState& neighbour, StageProgress& progress);
     void import_files(const PrepareRequest& request, StageProgress& progress);
-    void hide(const PrepareRequest& request);
     void list_all_devices();
     void tried(uint64_t files_revision);  // notes that these files need no further import, even if this one failed
     void publish(Outcome outcome);
@@ -84,9 +87,7 @@ class PrepareWorker {
     SideState main_, other_;
     std::vector<std::weak_ptr<DeviceLoan>> loans_;  // of every side that may still be traced
     std::shared_ptr<const ImportedScene> loaded_;
-    std::shared_ptr<const Scene> visible_;  // visible_of_ without its hidden instances
-    std::shared_ptr<const ImportedScene> visible_of_;
-    std::vector<rt_u32> hidden_;
+    ShownScene shown_;
     uint64_t files_revision_ = 0;  // of the last files that were imported, even if that failed
 
     mutable std::mutex mutex_;

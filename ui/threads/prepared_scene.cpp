@@ -31,6 +31,7 @@ ReadySide::ReadySide(Devices chosen, std::shared_ptr<const MultiPrepared> prepar
     upload_ms = first.upload_ms;
     compile_ms = first.compile_ms;
     compile_cached = first.compile_cached;
+    program = first.program;
     device_bytes = first.on_device->bytes();
     loan = std::make_shared<DeviceLoan>(OnDevices{std::move(chosen), std::move(prepared)});
 }
@@ -39,6 +40,15 @@ bool ReadySide::uses(const DeviceInfo& info) const {
     return std::any_of(devices.begin(), devices.end(), [&](const DeviceInfo& device) {
         return device.platform_index == info.platform_index && device.device_index == info.device_index;
     });
+}
+
+bool traces_alike(const Ready& a, const Ready& b) {
+    const auto same = [](const ReadySide& x, const ReadySide& y) {
+        const auto program = x.program.lock();
+        return program && program == y.program.lock();
+    };
+    return a.loaded == b.loaded && same(a.main, b.main) && a.other.has_value() == b.other.has_value() &&
+           (!a.other || same(*a.other, *b.other));
 }
 
 }  // namespace clarity::ui

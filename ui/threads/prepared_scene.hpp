@@ -21,6 +21,8 @@ struct PrepareRequest {
     std::optional<Side> other;
     std::vector<rt_u32> hidden;    // indices of instances
     uint64_t kernel_revision = 0;  // the kernels are read (again) when it changes
+    PoseTime pose;
+    bool only_pose = false;  // differs from the request before it in nothing else, so that work in hand goes on
 };
 
 // An imported scene, with facts for the window. They are computed on the worker thread, so that the window does not wait.
@@ -71,7 +73,8 @@ struct ReadySide {
     Settings settings;                       // automatic values (0) are replaced by the chosen ones
     double upload_ms = 0, compile_ms = 0;    // milliseconds; 0: shared with an earlier picture
     bool compile_cached = false;
-    uint64_t device_bytes = 0;  // of all buffers of the scene
+    std::weak_ptr<const TraceProgram> program;  // of the first part
+    uint64_t device_bytes = 0;                  // of all buffers of the scene
     std::shared_ptr<DeviceLoan> loan;
     bool uses(const DeviceInfo& device) const;                              // as a whole or in parts
     std::string devices_text() const { return device_list_text(devices); }  // as --device reads it
@@ -82,10 +85,16 @@ struct ReadySide {
 struct Ready {
     PrepareRequest request;
     std::shared_ptr<const ImportedScene> loaded;
+    std::shared_ptr<const Scene> scene;  // what was imported, in its pose. Its own cameras and lights may be of another pose
+    std::vector<Camera> cameras;         // those of the scene, in its pose
+    std::vector<Light> lights;           // likewise
     ReadySide main;
     std::optional<ReadySide> other;
     // Whether its devices were closed. Its picture can still be shown, but not traced.
     bool withdrawn() const { return main.loan->withdrawn() || (other && other->loan->withdrawn()); }
 };
+
+// Whether both run the same programs on the same imported scene, so that their frames take about as long.
+bool traces_alike(const Ready& a, const Ready& b);
 
 }  // namespace clarity::ui

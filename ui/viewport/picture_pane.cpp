@@ -117,9 +117,10 @@ void PicturePane::collect_marks(const Session& session, const UiState& state) {
     const Camera& camera = picture_->job.view.camera;
     const Projection projection(area_, camera);
     LineList marks;
-    const Scene* scene = picture_->job.ready->loaded->scene.get();
+    const Ready& ready = *picture_->job.ready;
+    const std::shared_ptr<const Scene>& scene = ready.scene;
     const Selection& selection = session.selection;
-    if (selection.any() && session.ready() && session.ready()->loaded->scene.get() == scene) {
+    if (selection.any() && session.ready() && session.ready()->loaded == ready.loaded) {
         const bool known = selected_.scene == scene && selected_.selection.instance == selection.instance &&
                            selected_.selection.prim == selection.prim;
         if (!known) selected_ = {scene, selection, selection_box(*scene, selection)};
@@ -132,8 +133,8 @@ void PicturePane::collect_marks(const Session& session, const UiState& state) {
     }
     const auto inspection = session.inspection();
     const bool looking = (state.tab == Tab::inspect && state.panel_visible) || state.inspect_hover || mouse_.rays_asked();
-    rays_shown_ = looking && state.show_rays && inspection && inspection->failure.empty() &&
-                  inspection->job.ready->loaded->scene.get() == scene;
+    rays_shown_ =
+        looking && state.show_rays && inspection && inspection->failure.empty() && inspection->job.ready->scene == scene;
     if (rays_shown_)
         append_ray_lines(inspection->result, projection, session.scene_size() * 0.6f, scale, state.selected_ray, marks);
     if (marks == marks_) return;
@@ -145,7 +146,7 @@ void PicturePane::update_lines(Lines& lines, const PicturePlace& place, const Vo
     const unsigned side = place.side();
     const float scale = ui_scale(), pixels = std::max(ImGui::GetIO().DisplayFramebufferScale.x, 0.1f);
     const Camera& camera = picture_->job.view.camera;
-    const Scene* scene = picture_->job.ready->loaded->scene.get();
+    const std::shared_ptr<const Scene>& scene = picture_->job.ready->scene;
     auto distance = side_of(place).distance;
     // Heat maps have no distances. Those of an earlier picture of the same view are used instead.
     if (distance && !distance->pixels.empty()) {

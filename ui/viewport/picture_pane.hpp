@@ -46,12 +46,12 @@ class PicturePane {
         const FloatImage* distance = nullptr;
         std::shared_ptr<const FloatImage> seen;  // the last known distances; seen_by and seen_scene say for which view
         Camera seen_by;
-        const Scene* seen_scene = nullptr;
+        std::shared_ptr<const Scene> seen_scene;
         unsigned stride = 1;
         bool hides_behind = false, any = false;
     };
     struct Selected {
-        const Scene* scene = nullptr;
+        std::shared_ptr<const Scene> scene;
         Selection selection;
         std::optional<std::array<std::array<float, 3>, 8>> box;
     };

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/motion/pose_time.hpp"
 #include "scene/scene.hpp"
 #include "ui/widgets/key_map.hpp"
 
@@ -16,10 +17,11 @@ inline constexpr int kTabCount = 7;
 enum class CompareMode { wipe, side_by_side, difference };
 inline constexpr const char* kCompareNames[] = {"Wipe", "Side by side", "Difference"};
 
-// A named view of a scene.
+// A named view of a scene, with its time if the scene moves.
 struct Bookmark {
     std::string name;
     Camera camera;
+    PoseTime pose{};
 };
 
 // What the file browser is open for.

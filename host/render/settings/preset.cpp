@@ -5,6 +5,7 @@
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
+#include "base/numbers.hpp"
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
 
@@ -64,6 +65,7 @@ std::string preset_json(const PluginRegistry& plugins, const Preset& preset) {
     // An array, because a light that is set and then switched off has two edits with the same key.
     json["edits"] = Json::array();
     for (const Word& word : preset.edits) json["edits"].push_back({word.key, word.value});
+    if (preset.pose.time_s) json["pose"] = {{"clip", preset.pose.clip}, {"time_s", *preset.pose.time_s}};
     return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -77,8 +79,10 @@ Preset parse_preset(const PluginRegistry& plugins, const std::string& text, cons
             throw Error(Exit::usage,
                         name + ": is a preset of version " + json["clarity_preset"].dump() + "; this program reads 1");
         for (const auto& [key, value] : json.items())
-            if (key != "clarity_preset" && key != "device" && key != "accel" && key != "settings" && key != "edits")
-                throw Error(Exit::usage, name + ": `" + key + "` is not part of a preset (device, accel, settings, edits)");
+            if (key != "clarity_preset" && key != "device" && key != "accel" && key != "settings" && key != "edits" &&
+                key != "pose")
+                throw Error(Exit::usage,
+                            name + ": `" + key + "` is not part of a preset (device, accel, settings, edits, pose)");
         preset.device = json.value("device", std::string());
         if (json.contains("settings"))
             for (const Word& word : words_of(json["settings"], name, "settings"))
@@ -99,6 +103,10 @@ Preset parse_preset(const PluginRegistry& plugins, const std::string& text, cons
                     throw Error(Exit::usage, name + ": " + pair.dump() + " is no edit [\"light.0\", \"off\"]");
                 preset.edits.push_back({pair[0], pair[1]});
             }
+        if (json.contains("pose")) {
+            preset.pose.clip = json["pose"].value("clip", std::string());
+            preset.pose.time_s = json["pose"].at("time_s").get<double>();
+        }
     } catch (const nlohmann::json::exception& error) {
         throw Error(Exit::usage, name + ": is no preset: " + error.what());
     } catch (const Error& error) {
@@ -135,6 +143,10 @@ std::string render_command(const PluginRegistry& plugins, const Preset& preset, 
     for (const Setting& row : settings_table())
         if (const std::string value = row.get(preset.settings); value != row.get(defaults))
             line += " --set " + shell_word(row.key + "=" + value);
+    if (preset.pose.time_s) {
+        line += " --time=" + exact_text(*preset.pose.time_s);
+        if (!preset.pose.clip.empty()) line += " --clip=" + shell_word(preset.pose.clip);
+    }
     for (const Word& word : preset.edits) line += " --set " + shell_word(word.key + "=" + word.value);
     return line;
 }

@@ -2,7 +2,7 @@
 // line.
 //
 //   {"clarity_preset": 1, "device": "0:0", "accel": {"id": "bvh2", "max_leaf": "4"}, "settings": {"depth": "4", ...},
-//    "edits": [["camera", "..."], ["light.0", "off"], ...]}
+//    "edits": [["camera", "..."], ["light.0", "off"], ...], "pose": {"clip": "walk", "time_s": 1.25}}
 #pragma once
 #include <string>
 #include <vector>
@@ -10,6 +10,7 @@
 #include "plugin/registry.hpp"
 #include "render/settings/edit.hpp"
 #include "render/settings/settings.hpp"
+#include "scene/motion/pose_time.hpp"
 
 namespace clarity {
 
@@ -18,6 +19,7 @@ struct Preset {
     std::string device;       // "": the default device
     Settings settings;        // with accel_params filled in
     std::vector<Word> edits;  // of the scene that is open; see edit.hpp
+    PoseTime pose{};          // without a time: at rest
 };
 
 // Returns the preset as JSON text.

@@ -65,6 +65,8 @@ TEST(Preset, RefusesUnknownKeysAndValues) {
         {R"({"clarity_preset": 1, "edits": [["light.0"]]})", "no edit"},
         {R"({"clarity_preset": 1, "edits": 5})", "no edit"},
         {R"({"clarity_preset": 1, "device": 5})", "no preset"},
+        {R"({"clarity_preset": 1, "pose": {"clip": "walk"}})", "no preset"},
+        {R"({"clarity_preset": 1, "pose": {"time_s": "now"}})", "no preset"},
     };
     for (const auto& [json, says] : wrong) {
         try {
@@ -116,6 +118,19 @@ TEST(Settings, NumbersWrittenAsTextAreReadBackBitByBit) {
             EXPECT_EQ(again.scale_max, settings.scale_max);
         }
     }
+}
+
+// A time and a clip. At rest there are neither.
+TEST(Preset, HoldsThePose) {
+    Preset preset = unusual();
+    preset.pose.clip = "walk";
+    EXPECT_EQ(render_command(plugins(), preset, {"a.scene"}, "out.png").find("walk"), std::string::npos);
+    preset.pose.time_s = -1.0 / 3;
+    const Preset back = parse_preset(plugins(), preset_json(plugins(), preset), "pose");
+    EXPECT_EQ(back.pose.time_s, -1.0 / 3);
+    EXPECT_EQ(back.pose.clip, "walk");
+    const std::string line = render_command(plugins(), preset, {"a.scene"}, "out.png");
+    EXPECT_NE(line.find(" --time=-0.3333333333333333 --clip=walk"), std::string::npos) << line;
 }
 
 TEST(RenderCommand, ListsSettingsThatAreNotTheDefault) {
