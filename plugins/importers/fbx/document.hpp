@@ -16,22 +16,22 @@ struct Broken : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Words of the file in quotes, for messages: a few characters, and none that cannot be shown.
+// The start of a text of the file, in quotes, for messages. Characters that cannot be printed become '?'.
 std::string quoted(std::string_view text);
 
 struct Node {
     std::string_view name;
-    std::string_view values;             // of binary files the records of the values, of ASCII files their text
-    uint32_t value_count = 0;            // of binary files, as declared
+    std::string_view values;             // in binary files the records of the values, in ASCII files their text
+    uint32_t value_count = 0;            // in binary files, as declared
     uint32_t first_child = 0, next = 0;  // numbers of nodes; 0: none
 };
 
 struct Value {
     enum Kind { none, integer, real, string, raw, array } kind = none;
-    int64_t whole = 0;      // of an integer; of an ASCII array how many values it declares
-    double number = 0;      // of an integer or real
-    std::string_view text;  // of a string or raw; of an array all that follows its type
-    char type = 0;          // of binary files, the type's letter
+    int64_t whole = 0;      // an integer's; of an ASCII array, how many values it declares
+    double number = 0;      // an integer's or real's
+    std::string_view text;  // a string's or raw's; of an array, all bytes behind its type
+    char type = 0;          // in binary files, the letter of the type
 };
 
 class Document {
@@ -65,6 +65,8 @@ class Document {
     std::vector<T> numbers(const Node* node, std::string_view name) const {
         return numbers<T>(child(node, name));
     }
+    // How many numbers a node has: the count that it declares, or an estimate.
+    uint64_t count(const Node& node) const;
     // The bytes of all texts and raw values. Those of ASCII files are decoded from base64.
     std::string content(const Node& node) const;
 

@@ -5,11 +5,12 @@
 namespace fbx_import {
 namespace {
 
-// Nodes below nodes, at most, and copies of nodes with several parents, at most, for each model of the file.
+// Levels of nodes, at most; and how many times as many nodes as models there may be, because models with several parents are
+// copied.
 constexpr uint32_t kMaxNodeDepth = 1000;
 constexpr size_t kMaxCopies = 16;
 
-// Models that hang from nothing are shown too: MotionBuilder's own cameras do (motionbuilder_cube_7700_binary).
+// Models without a parent are shown too: MotionBuilder's own cameras have none (motionbuilder_cube_7700_binary).
 std::vector<uint32_t> top_models(const Context& context) {
     const Objects& objects = context.objects;
     std::vector<uint32_t> out = objects.below(kRoot, "Model");
@@ -70,7 +71,9 @@ rt_u32 pass(const Context& context, const SceneNode& node, const std::vector<Sce
     std::copy(t.before_rotation.begin(), t.before_rotation.end(), out.before_rotation);
     std::copy(t.after_rotation.begin(), t.after_rotation.end(), out.after_rotation);
     std::copy(t.after_scale.begin(), t.after_scale.end(), out.after_scale);
-    out.flags = node.hidden ? RT_NODE_HIDDEN : 0;
+    const Properties p = context.properties(node.object);
+    if (p.number("Visibility", 1) < 0.5) out.flags |= RT_NODE_HIDDEN;
+    if (p.number("Visibility Inheritance", 1) == 0) out.flags |= RT_NODE_OWN_VISIBILITY;
     return rt::id(context.sink.node(context.sink.ctx, &out));
 }
 
@@ -80,7 +83,7 @@ std::vector<SceneNode> read_nodes(const Context& context) {
     const Objects& objects = context.objects;
     struct Pending {
         uint32_t model, parent, depth;
-        bool leave;  // all below the model is done
+        bool leave;  // everything below the model is done
     };
     std::vector<Pending> stack;
     const std::vector<uint32_t> top = top_models(context);
@@ -109,10 +112,6 @@ std::vector<SceneNode> read_nodes(const Context& context) {
         node.object = at.model;
         node.parent = at.parent;
         node.transform = transform_of(context, at.model);
-        const SceneNode* parent = at.parent == kNoObject ? nullptr : &nodes[at.parent];
-        const Properties p = context.properties(at.model);
-        node.hidden =
-            p.number("Visibility", 1) < 0.5 || (parent && parent->hidden && p.number("Visibility Inheritance", 1) != 0);
         node.id = pass(context, node, nodes);
         nodes.push_back(node);
         const uint32_t index = static_cast<uint32_t>(nodes.size() - 1);

@@ -14,7 +14,7 @@ bool matrix_of(const std::vector<double>& numbers, Transform& out) {
 }
 
 // A node's own transform is T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1. Source: FBX SDK help, "Computing transformation
-// matrices". Pre- and post-rotation always turn in the order xyz, and they and the rotation order count only if RotationActive
+// matrices". Pre- and post-rotation always turn in the order xyz, and like the rotation order they count only if RotationActive
 // is set. Geometric transforms turn in the order xyz. Source: FBX SDK help, "FbxNode"; measured from
 // casegen_rotation_space_7500_ascii and max_geometry_transform_7700_ascii.
 NodeTransform node_transform(const Properties& p) {

@@ -1,4 +1,4 @@
-// transform.hpp -- matrices, and what moves a node.
+// transform.hpp -- matrices of the file, and the transform of a node.
 #pragma once
 #include "../common/matrix.hpp"
 
