@@ -7,6 +7,15 @@
 namespace fbx_import {
 namespace {
 
+// A matrix of 16 numbers as the file writes them, column by column; false if there are fewer.
+bool matrix_of(const std::vector<double>& numbers, Transform& out) {
+    if (numbers.size() < 16) return false;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) out[4 * row + column] = numbers[4 * column + row];
+    }
+    return true;
+}
+
 // The host's vertices of each vertex of the file: itself, and its copies.
 class Copies {
  public:
@@ -122,7 +131,7 @@ void Deformers::add_bone(const Node& cluster, uint32_t bone) {
     const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const SceneNode& n) { return n.object == bone; });
     Transform bind = kIdentity;
     if (indices.empty() || node == nodes_.end() || !matrix_of(document_.numbers<double>(&cluster, "Transform"), bind)) return;
-    bind = multiply(bind, nodes_[mesh_.node].transform.geometry);
+    bind = multiply(bind, nodes_[mesh_.node].geometry);
     if (!is_finite(bind)) throw Broken(document_.place(cluster) + ": the matrix of a bone is not finite");
     rt_bone out{};
     out.node = node->id;

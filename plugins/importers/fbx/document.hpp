@@ -43,7 +43,7 @@ class Document {
     bool is_binary() const { return binary_; }
     bool is_big_endian() const { return big_endian_; }
 
-    class Children;
+    struct Children;
     Children children(const Node& node) const;
     const Node& root() const { return nodes_[0]; }
     const Node* child(const Node* node,
@@ -85,29 +85,18 @@ class Document {
     std::vector<Node> nodes_ = std::vector<Node>(1);
 };
 
-class Document::Children {
- public:
-    struct Iterator {
-        const Document* document;
-        uint32_t at;
-        const Node& operator*() const { return document->nodes_[at]; }
-        Iterator& operator++() {
-            at = document->nodes_[at].next;
-            return *this;
-        }
-        bool operator!=(const Iterator& other) const { return at != other.at; }
-    };
-    Children(const Document& document, uint32_t first) : document_(document), first_(first) {}
-    Iterator begin() const { return {&document_, first_}; }
-    Iterator end() const { return {&document_, 0}; }
-
- private:
-    const Document& document_;
-    uint32_t first_;
+// The child nodes of a node, for range-based loops: the range is its own iterator.
+struct Document::Children {
+    const Document* document;
+    uint32_t at;
+    Children begin() const { return *this; }
+    Children end() const { return {document, 0}; }
+    const Node& operator*() const { return document->nodes_[at]; }
+    void operator++() { at = document->nodes_[at].next; }
+    bool operator!=(const Children& other) const { return at != other.at; }
 };
-
 inline Document::Children Document::children(const Node& node) const {
-    return {*this, node.first_child};
+    return {this, node.first_child};
 }
 
 // The values of a node, one after the other.

@@ -160,9 +160,9 @@ std::vector<uint32_t> meshes_of(const Context& context, uint32_t model) {
 }
 
 void show(const Context& context, const SceneNode& node, rt_u32 mesh) {
-    const Transform& into_node = node.transform.geometry;
     rt_instance_desc out = rt::instance(mesh, context.objects[node.object].name.c_str());
-    std::transform(into_node.begin(), into_node.end(), out.world_from_object, [](double x) { return static_cast<float>(x); });
+    std::transform(node.geometry.begin(), node.geometry.end(), out.world_from_object,
+                   [](double x) { return static_cast<float>(x); });
     out.node = node.id;
     rt::id(context.sink.instance(context.sink.ctx, &out));
 }

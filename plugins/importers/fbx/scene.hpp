@@ -4,8 +4,8 @@
 
 #include "../common/mapped_file.hpp"
 #include "../common/texture_path.hpp"
+#include "properties.hpp"
 #include "rt_plugin.hpp"
-#include "transform.hpp"
 
 namespace fbx_import {
 
@@ -28,9 +28,8 @@ struct Context {
 // A model of the file below one of its parents; a model with several parents becomes several nodes.
 struct SceneNode {
     uint32_t object = kNoObject;
-    uint32_t parent = kNoObject;  // number of a node
-    NodeTransform transform;
-    rt_u32 id = 0;  // the host's
+    rt_u32 id = 0;       // the host's
+    Transform geometry;  // from the node's own meshes to the node
 };
 // Parents before their children. Passes them to the host. Throws Broken if they form a circle.
 std::vector<SceneNode> read_nodes(const Context& context);
