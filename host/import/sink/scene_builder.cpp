@@ -1,5 +1,7 @@
 #include "import/sink/scene_builder.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -49,7 +51,10 @@ void reserve_arrays(const std::string& path, Scene& scene) {
     std::error_code error;
     const uint64_t size = fs::file_size(path, error);
     if (error || !scene.positions.empty()) return;
-    const size_t numbers = static_cast<size_t>(std::min(size / 8 * 3, uint64_t(64) << 20));  // 1.5 times the file; 256 MB
+    rlimit space{};
+    getrlimit(RLIMIT_AS, &space);
+    // 1.5 times the file, but at most 256 MB and a sixteenth of what the process may have.
+    const size_t numbers = static_cast<size_t>(std::min({size / 8 * 3, uint64_t(64) << 20, uint64_t(space.rlim_cur) / 64}));
     scene.positions.reserve(numbers);
     scene.triangles.reserve(numbers);
     scene.triangle_materials.reserve(numbers / 3);
