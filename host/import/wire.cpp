@@ -6,7 +6,6 @@
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
-#include <sys/uio.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -21,7 +20,9 @@ namespace {
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
 constexpr uint32_t kSectionCount = 45;
 constexpr uint64_t kPieceAlignment = 64;
-constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW | F_SEAL_WRITE;
+// Writing is not sealed, because the reader gives pages back behind its reading, which counts as writing. The reader copies
+// each byte once and checks the copy, so that what is written later does nothing.
+constexpr int kSeals = F_SEAL_SHRINK | F_SEAL_GROW;
 
 struct Section {
     uint64_t offset, bytes;
@@ -173,22 +174,48 @@ bool convert_back(const Converted& c, Scene& s) {
     return good && at == c.names.size();
 }
 
-// Writes all pieces in a loop: write() may stop early, and writes at most 2 GiB per call.
-std::string write_all(int fd, std::vector<iovec> pieces) {
-    for (size_t at = 0; at < pieces.size();) {
-        iovec piece = pieces[at];
-        if (piece.iov_len == 0) {
-            ++at;
-            continue;
-        }
-        piece.iov_len = std::min(piece.iov_len, size_t(1) << 30);
-        const ssize_t written = write(fd, piece.iov_base, piece.iov_len);
+// Bytes that both processes hold at the same time while an array goes from one to the other.
+constexpr uint64_t kBytesAtOnce = uint64_t(4) << 20;
+// Bytes that are copied out of the file at once: they stay in the processor's cache until they are in their array.
+constexpr uint64_t kCopiedAtOnce = uint64_t(256) << 10;
+
+// The whole pages within a range of addresses or offsets.
+template <class Body>
+void for_whole_pages(uint64_t first, uint64_t end, const Body& body) {
+    static const uint64_t page = static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+    first = (first + page - 1) / page * page;
+    end = end / page * page;
+    if (first < end) body(first, end - first);
+}
+
+// Appends all bytes to the file. write() may stop early. Returns an empty text on success, otherwise the reason.
+std::string append(int fd, const char* from, uint64_t bytes) {
+    while (bytes > 0) {
+        const ssize_t written = write(fd, from, bytes);
         if (written < 0 && errno == EINTR) continue;
         if (written <= 0) return std::string("cannot write the scene into shared memory: ") + std::strerror(errno);
-        pieces[at].iov_base = static_cast<char*>(pieces[at].iov_base) + written;
-        pieces[at].iov_len -= static_cast<size_t>(written);
+        from += written;
+        bytes -= static_cast<uint64_t>(written);
     }
     return {};
+}
+
+// Appends an array to the file, and gives its memory back to the system behind the writing: afterwards its elements are lost.
+template <class T>
+std::string move_to_file(int fd, std::vector<T>& array) {
+    std::string why;
+    auto* const bytes = reinterpret_cast<char*>(array.data());
+    const uint64_t size = array.size() * sizeof(T);
+    for (uint64_t at = 0; at < size && why.empty(); at += kBytesAtOnce) {
+        const uint64_t piece = std::min(kBytesAtOnce, size - at);
+        why = append(fd, bytes + at, piece);
+        const uint64_t address = reinterpret_cast<uintptr_t>(bytes) + at;
+        for_whole_pages(address, address + piece, [](uint64_t first, uint64_t length) {
+            madvise(reinterpret_cast<void*>(first), length, MADV_DONTNEED);
+        });
+    }
+    std::vector<T>().swap(array);
+    return why;
 }
 
 // Reserves memory and asks for large pages where it spans some, because half of the reading time is spent on page faults.
@@ -201,47 +228,69 @@ void reserve_on_large_pages(std::vector<T>& array, size_t count) {
     if (first < last) madvise(reinterpret_cast<void*>(first), last - first, MADV_HUGEPAGE);
 }
 
-class Mapping {
- public:
-    Mapping(int fd, size_t bytes) : bytes_(bytes), data_(mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE | MAP_POPULATE, fd, 0)) {}
-    ~Mapping() {
-        if (data_ != MAP_FAILED) munmap(data_, bytes_);
+// Copies bytes out of the file. Returns false if they are not all there.
+bool copy_from_file(int fd, uint64_t offset, void* to, uint64_t bytes) {
+    auto* at = static_cast<char*>(to);
+    while (bytes > 0) {
+        const ssize_t count = pread(fd, at, bytes, static_cast<off_t>(offset));
+        if (count < 0 && errno == EINTR) continue;
+        if (count <= 0) return false;
+        at += count;
+        offset += static_cast<uint64_t>(count);
+        bytes -= static_cast<uint64_t>(count);
     }
-    Mapping(const Mapping&) = delete;
-    Mapping& operator=(const Mapping&) = delete;
-    const char* data() const { return data_ == MAP_FAILED ? nullptr : static_cast<const char*>(data_); }
+    return true;
+}
 
- private:
-    size_t bytes_;
-    void* data_;
-};
+// Copies a section of the file into an array, and gives the file's memory back to the system behind the reading.
+template <class T>
+bool move_from_file(int fd, const Section& section, std::vector<char>& buffer, std::vector<T>& array) {
+    reserve_on_large_pages(array, section.bytes / sizeof(T));
+    buffer.resize(std::max<uint64_t>(1, kCopiedAtOnce / sizeof(T)) * sizeof(T));
+    uint64_t given_back = section.offset;
+    for (uint64_t done = 0; done < section.bytes;) {
+        const uint64_t piece = std::min<uint64_t>(buffer.size(), section.bytes - done);
+        if (!copy_from_file(fd, section.offset + done, buffer.data(), piece)) return false;
+        const auto* first = reinterpret_cast<const T*>(buffer.data());
+        array.insert(array.end(), first, first + piece / sizeof(T));
+        done += piece;
+        const uint64_t read_up_to = section.offset + done;
+        if (read_up_to - given_back < kBytesAtOnce && done < section.bytes) continue;
+        for_whole_pages(given_back, read_up_to, [&](uint64_t from, uint64_t length) {
+            fallocate(fd, FALLOC_FL_PUNCH_HOLE | FALLOC_FL_KEEP_SIZE, static_cast<off_t>(from), static_cast<off_t>(length));
+        });
+        given_back = read_up_to;
+    }
+    return true;
+}
 
 }  // namespace
 
-std::string write_scene(int fd, const Scene& scene) {
-    const Converted converted = convert(scene);
-    static const char zeros[kPieceAlignment] = {};
+std::string write_scene(int fd, Scene scene) {
+    Converted converted = convert(scene);
     Header header{};
     header.magic = kMagic;
-    std::vector<iovec> pieces = {{&header, sizeof header}};
     uint64_t offset = sizeof header;
     uint32_t section = 0;
-    const auto pad = [&] {
-        const uint64_t padding = (kPieceAlignment - offset % kPieceAlignment) % kPieceAlignment;
-        pieces.push_back({const_cast<char*>(zeros), padding});
-        offset += padding;
-    };
+    const auto padding = [&] { return (kPieceAlignment - offset % kPieceAlignment) % kPieceAlignment; };
     visit(scene, converted, [&](const auto& array) {
         using Element = typename std::decay_t<decltype(array)>::value_type;
         static_assert(std::is_trivially_copyable_v<Element>, "only plain data goes through shared memory");
-        pad();
-        const uint64_t bytes = array.size() * sizeof(Element);
-        header.sections[section++] = {offset, bytes};
-        pieces.push_back({const_cast<Element*>(array.data()), bytes});
-        offset += bytes;
+        offset += padding();
+        header.sections[section++] = {offset, array.size() * sizeof(Element)};
+        offset += array.size() * sizeof(Element);
     });
     header.total_bytes = offset;
-    const std::string why = write_all(fd, std::move(pieces));
+    std::string why = append(fd, reinterpret_cast<const char*>(&header), sizeof header);
+    offset = sizeof header;
+    section = 0;
+    visit(scene, converted, [&](auto& array) {
+        static const char zeros[kPieceAlignment] = {};
+        if (why.empty()) why = append(fd, zeros, padding());
+        if (why.empty()) why = move_to_file(fd, array);
+        offset = header.sections[section].offset + header.sections[section].bytes;
+        ++section;
+    });
     if (!why.empty()) return why;
     if (fcntl(fd, F_ADD_SEALS, kSeals) != 0) return std::string("cannot seal the shared memory: ") + std::strerror(errno);
     return {};
@@ -254,15 +303,15 @@ std::string read_scene(int fd, Scene& scene) {
     const int seals = fcntl(fd, F_GET_SEALS);
     if (seals < 0 || (seals & kSeals) != kSeals) return "the shared memory is not sealed";
     if (size < sizeof(Header)) return "the shared memory holds " + std::to_string(size) + " bytes, less than its header";
-    const Mapping mapping(fd, size);
-    if (!mapping.data()) return std::string("cannot map the shared memory: ") + std::strerror(errno);
+    constexpr const char* unreadable = "the shared memory cannot be read";
     Header header;
-    std::memcpy(&header, mapping.data(), sizeof header);
+    if (!copy_from_file(fd, 0, &header, sizeof header)) return unreadable;
     if (header.magic != kMagic) return "the shared memory holds no scene";
     if (header.total_bytes != size) return "the shared memory's size is not the one in its header";
 
     Converted converted;
     uint32_t section = 0;
+    std::vector<char> buffer;
     std::string why;
     visit(scene, converted, [&](auto& array) {
         using Element = typename std::decay_t<decltype(array)>::value_type;
@@ -270,10 +319,7 @@ std::string read_scene(int fd, Scene& scene) {
         if (s.offset % kPieceAlignment != 0 || s.offset > size || s.bytes > size - s.offset || s.bytes % sizeof(Element) != 0) {
             why = "section " + std::to_string(section - 1) + " of the shared memory is out of range";
         }
-        if (!why.empty()) return;
-        const auto* first = reinterpret_cast<const Element*>(mapping.data() + s.offset);
-        reserve_on_large_pages(array, s.bytes / sizeof(Element));
-        array.assign(first, first + s.bytes / sizeof(Element));
+        if (why.empty() && !move_from_file(fd, s, buffer, array)) why = unreadable;
     });
     if (why.empty() && !convert_back(converted, scene)) why = "the names in the shared memory do not match their lengths";
     return why;

@@ -6,13 +6,14 @@
 
 namespace clarity::import {
 
-// Writes the scene into an empty memfd and seals it against any later change. Returns an empty text on success, otherwise the
-// reason.
-std::string write_scene(int fd, const Scene& scene);
+// Writes the scene into an empty memfd and seals its size. The scene's memory goes back to the system piece by piece, so that
+// it is not held twice. Returns an empty text on success, otherwise the reason.
+std::string write_scene(int fd, Scene scene);
 
-// Reads a scene that write_scene() wrote. The worker is not trusted: a file that is not sealed is refused, and every size is
-// checked against the file's size. Indices and numbers are not checked here but by validate(). Returns an empty text on
-// success, otherwise the reason.
+// Reads a scene that write_scene() wrote. This empties the file: the memory of what was read goes back to the system. The
+// worker is not trusted: a file that is not sealed is refused, and every size is checked against the file's size. Each byte is
+// read once, so that it does not matter if the worker still writes. Indices and numbers are not checked here but by validate().
+// Returns an empty text on success, otherwise the reason.
 std::string read_scene(int fd, Scene& scene);
 
 }  // namespace clarity::import

@@ -86,9 +86,9 @@ std::string import_files(const Arguments& arguments, ImportProgress& progress) {
     }
     SceneBuilder builder(plugins, parameters, access, progress, &progress);
     for (const std::string& file : arguments.files) builder.add_root(file);
-    const Scene scene = builder.take();
+    Scene scene = builder.take();
     worker::allow_writing_result();
-    const std::string why = write_scene(worker::kResultFd, scene);
+    const std::string why = write_scene(worker::kResultFd, std::move(scene));
     return why.empty() ? why : arguments.files.front() + ": " + why;
 }
 

@@ -53,9 +53,12 @@ bool copy_strided(const float* from, rt_u32 stride, rt_u32 count, rt_u32 width, 
     return good;
 }
 
-// A scene has normals and uvs either for all vertices or for none: earlier meshes without them get zeros.
-void copy_attribute(const float* from, rt_u32 stride, rt_u32 first, rt_u32 count, rt_u32 width, std::vector<float>& to) {
+// A scene has normals and uvs either for all vertices or for none: earlier meshes without them get zeros. reserved: numbers for
+// which the array of positions has space.
+void copy_attribute(const float* from, rt_u32 stride, rt_u32 first, rt_u32 count, rt_u32 width, size_t reserved,
+                    std::vector<float>& to) {
     if (!from && to.empty()) return;
+    to.reserve(reserved / 3 * width);
     to.resize(size_t(width) * (size_t(first) + count), 0.f);
     if (!from || count == 0) return;
     float* values = to.data() + size_t(width) * first;
@@ -163,8 +166,8 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
             if (unusable[i]) std::fill(positions, positions + 3, 0.f);
         }
     }
-    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, scene.normals);
-    copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, scene.uvs);
+    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, scene.positions.capacity(), scene.normals);
+    copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, scene.positions.capacity(), scene.uvs);
 
     Mesh mesh;
     mesh.name = m.name ? m.name : "";

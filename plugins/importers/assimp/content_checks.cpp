@@ -94,7 +94,10 @@ bool has(const std::string& text, const char* words) {
 }  // namespace
 
 std::string damage_in(std::string_view bytes, const std::string& extension) {
-    if (is_xml(extension)) return xml_damage(bytes);
+    if (is_xml(extension)) {
+        const std::string damage = xml_damage(bytes);
+        return damage.empty() && extension == "dae" ? collada_accessor_damage(bytes) : damage;
+    }
     return extension == "3ds" ? damage_in_3ds(bytes) : std::string();
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../common/views.hpp"
 #include "rt_plugin.hpp"
 
 namespace assimp_import {
@@ -52,15 +53,13 @@ std::string quoted(const aiString& name) {
 
 void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host, const rt_scene_sink& sink) {
     Placement placement(tree);
-    std::vector<rt_light_desc> lights;
-    float brightest = 0;
+    importers::Lights lights;
     for (unsigned i = 0; i < scene.mNumLights; ++i) {
         const aiLight& light = *scene.mLights[i];
         const Transform world = placement.next(light.mName);
         if (light.mType == aiLightSource_AMBIENT) continue;
         rt_light_desc desc{};
         desc.struct_bytes = sizeof desc;
-        desc.name = light.mName.C_Str();
         if (light.mType == aiLightSource_DIRECTIONAL) {
             Vec direction = transform_vector(world, light.mDirection);
             if (!normalize(direction)) direction = {0, -1, 0};
@@ -75,22 +74,10 @@ void add_lights(const aiScene& scene, const NodeTree& tree, const rt_host& host,
             desc.kind = RT_LIGHT_POINT;
             store(transform_point(world, light.mPosition), desc.position);
         }
-        for (int k = 0; k < 3; ++k) {
-            const float c = light.mColorDiffuse[k];
-            desc.color[k] = std::isfinite(c) ? std::max(c, 0.0f) : 0;
-            brightest = std::max(brightest, desc.color[k]);
-        }
-        if (all_finite(desc.position)) lights.push_back(desc);
+        const aiColor3D& c = light.mColorDiffuse;
+        if (all_finite(desc.position)) lights.add(desc, light.mName.C_Str(), {c.r, c.g, c.b}, 1);
     }
-    // Physical intensities (watts, candela) assume falloff with distance. Lights here have no falloff, so all of them are
-    // scaled until the brightest is 1.
-    if (brightest > 1) {
-        rt::log(&host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest));
-        for (rt_light_desc& light : lights) {
-            for (float& c : light.color) c /= brightest;
-        }
-    }
-    for (const rt_light_desc& light : lights) rt::id(sink.light(sink.ctx, &light));
+    lights.pass(&host, sink);
 }
 
 void add_cameras(const aiScene& scene, const NodeTree& tree, const rt_scene_sink& sink) {
@@ -111,14 +98,8 @@ void add_cameras(const aiScene& scene, const NodeTree& tree, const rt_scene_sink
         if (!all_finite(out.eye) || !all_finite(out.target)) continue;
         // mHorizontalFOV is the whole angle, whatever the comment in its header says.
         const double aspect = camera.mAspect > 0 && std::isfinite(camera.mAspect) ? camera.mAspect : 4.0 / 3;
-        double fov_y = 2 * std::atan(std::tan(0.5 * camera.mHorizontalFOV) / aspect);
-        if (!(fov_y > 0.001) || fov_y > 3.1) {
-            const std::string text =
-                "the camera " + quoted(camera.mName) + " has no angle of view (orthographic?): 45 degrees are used";
-            sink.warn(sink.ctx, text.c_str());
-            fov_y = 0.7853982;
-        }
-        out.fov_y_rad = static_cast<float>(fov_y);
+        const double fov_y = 2 * std::atan(std::tan(0.5 * camera.mHorizontalFOV) / aspect);
+        out.fov_y_rad = importers::angle_of_view(fov_y, quoted(camera.mName), sink);
         rt::id(sink.camera(sink.ctx, &out));
     }
 }

@@ -66,29 +66,10 @@ void apply_transparency(const aiMaterial& m, rt_material_desc& out) {
     if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
 }
 
-// Returns the text behind the last slash.
-std::string base_name(const std::string& path) {
-    const size_t slash = path.find_last_of('/');
-    return slash == path.npos ? path : path.substr(slash + 1);
-}
-
-bool is_readable(const std::string& path) {
-    if (FILE* file = std::fopen(path.c_str(), "rb")) {
-        std::fclose(file);
-        return true;
-    }
-    return false;
-}
-
 }  // namespace
 
 MaterialTable::MaterialTable(const aiScene& scene, const std::string& file, const rt_scene_sink& sink)
-    : scene_(scene),
-      folder_(file.find_last_of('/') == file.npos ? "" : file.substr(0, file.find_last_of('/') + 1)),
-      stem_(base_name(file).substr(0, base_name(file).find_last_of('.'))),
-      sink_(sink),
-      ids_(scene.mNumMaterials, RT_NONE),
-      done_(scene.mNumMaterials, false) {}
+    : scene_(scene), place_(file), sink_(sink), ids_(scene.mNumMaterials, RT_NONE), done_(scene.mNumMaterials, false) {}
 
 rt_u32 MaterialTable::id(unsigned material) {
     if (material >= scene_.mNumMaterials || !scene_.mMaterials[material]) return RT_NONE;
@@ -156,7 +137,7 @@ rt_u32 MaterialTable::add_texture(const std::string& reference) {
     if (const aiTexture* embedded = scene_.GetEmbeddedTexture(reference.c_str())) {
         id = embedded_texture(*embedded);
     } else {
-        const std::string path = existing_path(reference);
+        const std::string path = importers::existing_picture(place_, {reference});
         rt_texture_desc desc{};
         desc.struct_bytes = sizeof desc;
         desc.path = path.c_str();
@@ -186,24 +167,6 @@ rt_u32 MaterialTable::embedded_texture(const aiTexture& texture) {
     desc.width = texture.mWidth;
     desc.height = texture.mHeight;
     return sink_.texture(sink_.ctx, &desc);
-}
-
-// Files often hold texture paths of the author's machine. So look also in the places beside the scene where modelling programs
-// put textures.
-std::string MaterialTable::existing_path(const std::string& reference) const {
-    std::string path = reference;
-    std::replace(path.begin(), path.end(), '\\', '/');
-    while (path.substr(0, 2) == "./") path.erase(0, 2);
-    const std::string name = base_name(path);
-    const bool is_absolute = !path.empty() && (path[0] == '/' || (path.size() > 1 && path[1] == ':'));
-    std::vector<std::string> candidates;
-    if (!is_absolute) candidates.push_back(path);
-    for (const std::string& folder : {std::string(), std::string("textures/"), stem_ + ".fbm/"})
-        candidates.push_back(folder + name);
-    for (const std::string& candidate : candidates) {
-        if (is_readable(folder_ + candidate)) return candidate;
-    }
-    return candidates.front();
 }
 
 }  // namespace assimp_import

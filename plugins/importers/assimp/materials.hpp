@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "../common/texture_path.hpp"
 #include "rt_plugin.h"
 
 namespace assimp_import {
@@ -28,10 +29,9 @@ class MaterialTable {
     rt_u32 texture(const aiMaterial& material);
     rt_u32 add_texture(const std::string& reference);
     rt_u32 embedded_texture(const aiTexture& texture);
-    std::string existing_path(const std::string& reference) const;
 
     const aiScene& scene_;
-    const std::string folder_, stem_;
+    const importers::FilePlace place_;
     const rt_scene_sink& sink_;
     std::vector<rt_u32> ids_;
     std::vector<bool> done_;

@@ -8,9 +8,11 @@ namespace assimp_import {
 // The text for a message: shortened, printable, in quotes.
 std::string in_quotes(std::string_view text);
 
-// Both return an empty string, or the place, what is there and what should be.
+// These return an empty string, or the place, what is there and what should be.
 std::string xml_damage(std::string_view text);
-// The text must be well-formed.
+// For well-formed texts. Finds what crashes assimp: accessors that reach beyond their array.
+std::string collada_accessor_damage(std::string_view text);
+// For well-formed texts that assimp has refused: finds why.
 std::string collada_damage(std::string_view text);
 
 }  // namespace assimp_import

@@ -126,6 +126,16 @@ inline std::string_view attribute(std::string_view xml, size_t from, const std::
     return rest.substr(0, rest.find('"'));
 }
 
+// Reads one file of a cache. Throws BrokenCache with the file's name.
+inline void read_maya_file(const std::string& path, std::string_view channel, size_t points, double time, CacheFrames& out) {
+    try {
+        const MappedFile file(path);
+        MayaCache(file.bytes(), channel, points, out).read(time);
+    } catch (const std::runtime_error& why) {
+        throw BrokenCache("its file " + path.substr(path.find_last_of('/') + 1) + ": " + why.what());
+    }
+}
+
 // The description names the form (OneFile, OneFilePerFrame), the format (mc, mcx), the range and the step of time.
 inline void read_maya(const std::string& path, std::string_view xml, std::string_view channel, size_t points,
                       CacheFrames& out) {
@@ -137,10 +147,7 @@ inline void read_maya(const std::string& path, std::string_view xml, std::string
     const size_t type = element("<cacheType");
     const std::string stem = path.substr(0, path.find_last_of('.')), suffix = "." + std::string(attribute(xml, type, "Format"));
     if (suffix != ".mc" && suffix != ".mcx") throw BrokenCache("its format is '" + suffix.substr(1) + "'; expected mc or mcx");
-    if (attribute(xml, type, "Type") == "OneFile") {
-        const MappedFile file(stem + suffix);
-        return MayaCache(file.bytes(), channel, points, out).read(0);
-    }
+    if (attribute(xml, type, "Type") == "OneFile") return read_maya_file(stem + suffix, channel, points, 0, out);
     const std::string range(attribute(xml, element("<time "), "Range"));
     const long step =
         std::strtol(std::string(attribute(xml, element("<cacheTimePerFrame"), "TimePerFrame")).c_str(), nullptr, 10);
@@ -149,8 +156,8 @@ inline void read_maya(const std::string& path, std::string_view xml, std::string
     if (step <= 0 || end < begin || (end - begin) / step > 1000000)
         throw BrokenCache("its range of time '" + range + "' makes no sense");
     for (long time = begin; time <= end; time += step) {
-        const MappedFile file(stem + "Frame" + std::to_string(time / step) + suffix);
-        MayaCache(file.bytes(), channel, points, out).read(static_cast<double>(time) / kMayaTicks);
+        const std::string file = stem + "Frame" + std::to_string(time / step) + suffix;
+        read_maya_file(file, channel, points, static_cast<double>(time) / kMayaTicks, out);
     }
 }
 

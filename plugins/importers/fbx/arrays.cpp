@@ -6,6 +6,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "../common/base64.hpp"
 #include "ascii.hpp"
 #include "binary.hpp"
 
@@ -142,13 +143,6 @@ std::vector<T> text_array(const Document& document, const Node& node, size_t exp
     }
 }
 
-int base64_digit(char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    return c == '+' ? 62 : c == '/' ? 63 : -1;
-}
-
 }  // namespace
 
 template <class T>
@@ -187,6 +181,12 @@ template std::vector<double> Document::numbers<double>(const Node*) const;
 template std::vector<int32_t> Document::numbers<int32_t>(const Node*) const;
 template std::vector<int64_t> Document::numbers<int64_t>(const Node*) const;
 
+uint64_t Document::count(const Node& node) const {
+    const Value first = value(node, 0);
+    if (first.kind != Value::array) return binary_ ? node.value_count : node.values.size() / 2;
+    return binary_ ? load<uint32_t>(first.text.data(), big_endian_) : static_cast<uint64_t>(std::max<int64_t>(first.whole, 0));
+}
+
 std::string Document::content(const Node& node) const {
     std::string out;
     Values values(*this, node);
@@ -194,15 +194,10 @@ std::string Document::content(const Node& node) const {
         if (v.kind != Value::string && v.kind != Value::raw) continue;
         if (binary_) {
             out += v.text;
-            continue;
-        }
-        uint32_t bits = 0;
-        int held = 0;
-        for (const char c : v.text) {
-            if (base64_digit(c) < 0) continue;
-            bits = bits << 6 | static_cast<uint32_t>(base64_digit(c));
-            held += 6;
-            if (held >= 8) out += static_cast<char>(bits >> (held -= 8) & 0xFF);
+        } else {
+            std::string digits(v.text);
+            digits.erase(std::remove_if(digits.begin(), digits.end(), [](char c) { return c <= ' '; }), digits.end());
+            importers::decode_base64(digits, out);
         }
     }
     return out;

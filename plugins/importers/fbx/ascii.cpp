@@ -11,7 +11,7 @@
 namespace fbx_import {
 namespace {
 
-enum Class : uint8_t { other, space, newline, special };  // special: what ends a word
+enum Class : uint8_t { other, space, newline, special };  // special: the characters that end a word
 constexpr std::array<uint8_t, 256> make_classes() {
     std::array<uint8_t, 256> table{};
     for (const char c : {' ', '\t', '\r', '\v', '\f'}) table[static_cast<unsigned char>(c)] = space;
@@ -84,11 +84,11 @@ void AsciiReader::read_nodes(uint32_t parent, int depth) {
 
 // Moves to the end of a node's values: a '{', a '}', or the next node.
 void AsciiReader::skip_values() {
-    bool after_comma = true, crossed_line = false;  // the first value may stand on the next line (Blender 2.79 writes keys so)
+    bool after_comma = true, crossed_line = false;  // Blender 2.79 writes the first key on the next line
     while (at_ < end_) {
         // Long lists of numbers take most of the file.
         while (at_ < end_ && (class_of(*at_) == other || class_of(*at_) == space || *at_ == ',')) {
-            if (*at_ == ':' && crossed_line) {  // the line is the next node after all: go back to its name
+            if (*at_ == ':' && crossed_line) {  // this line is the next node: go back to its name
                 while (class_of(at_[-1]) == other) --at_;
                 return;
             }

@@ -5,7 +5,7 @@
 namespace fbx_import {
 
 // `Name: value, value {` children `}`. Values are numbers, words or "texts"; they end at the end of the line unless a comma
-// stands at the end of it or at the begin of the next one. `;` begins a comment. Measured from max2009_cube_anim_5800_ascii
+// stands at the end of it or at the start of the next one. `;` begins a comment. Measured from max2009_cube_anim_5800_ascii
 // (commas), maya_cube_7400_ascii and blender_279_default_6100_ascii.
 class AsciiReader {
  public:

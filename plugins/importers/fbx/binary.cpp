@@ -4,7 +4,7 @@ namespace fbx_import {
 
 // Reads the nodes from `at` up to an empty record or `end`. Returns where it stopped.
 //
-// A record: its end, counted from the begin of the file, the number of its values, the bytes of its values (32 bits each, 64
+// A record: its end, counted from the start of the file, the number of its values, the bytes of its values (32 bits each, 64
 // from version 7500 on), the length of its name (8 bits), the name, the values, its child records. A record of zeros ends the
 // list if there are child records. Source: Blender developer blog; the 64 bits: measured from maya_*_7500_binary.
 size_t BinaryReader::read_nodes(size_t at, size_t end, uint32_t parent, int depth) {

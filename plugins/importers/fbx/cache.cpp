@@ -14,12 +14,11 @@ void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer)
     const std::vector<uint32_t> caches = context.objects.below(deformer, "Cache");
     if (caches.empty() || p.whole("Active", 1) == 0 || channel.find("_normals") != channel.npos) return;
     const Properties cache = context.properties(caches[0]);
-    std::string name(cache.text("CacheFileName"));
-    std::replace(name.begin(), name.end(), '\\', '/');
+    const std::string name = importers::with_slashes(std::string(cache.text("CacheFileName")));
     importers::CacheFrames frames;
     try {
-        frames =
-            importers::read_geometry_cache(context.folder + name, channel, mesh.points, context.fps > 0 ? context.fps : 30);
+        frames = importers::read_geometry_cache(context.place.folder + name, channel, mesh.points,
+                                                context.fps > 0 ? context.fps : 30);
     } catch (const std::runtime_error& why) {
         context.warn("the geometry cache " + quoted(name) + " is left out: " + why.what());
         return;

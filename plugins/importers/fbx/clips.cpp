@@ -1,54 +1,91 @@
 // clips.cpp -- animation stacks (version 7) and takes (before) with their layers and channels.
 #include <algorithm>
-#include <cmath>
+#include <functional>
+#include <set>
 
 #include "curves.hpp"
 
 namespace fbx_import {
 namespace {
 
-// What a channel of the file moves.
-struct Target {
-    rt_u32 moves;
-    double factor = 1;  // from the file's values to the host's
+// What the values of a property move.
+struct Output {
+    rt_u32 moves, target, component = 0;  // as rt_channel_desc has them
+    rt_u32 curve = 0;                     // number of the property's curve: those of vectors are x, y and z
+    std::function<double(double)> value;  // from the file's values to the host's; none: they are the same
 };
-const std::map<std::string_view, Target> kNodeTargets = {
-    {"Lcl Translation", {RT_MOVES_TRANSLATION}},
-    {"Lcl Rotation", {RT_MOVES_ROTATION}},
-    {"Lcl Scaling", {RT_MOVES_SCALE}},
-    {"Visibility", {RT_MOVES_VISIBILITY}},
-    {"T", {RT_MOVES_TRANSLATION}},
-    {"R", {RT_MOVES_ROTATION}},
-    {"S", {RT_MOVES_SCALE}},
+const std::map<std::string_view, rt_u32> kNodeProperties = {
+    {"Lcl Translation", RT_MOVES_TRANSLATION}, {"T", RT_MOVES_TRANSLATION},
+    {"Lcl Rotation", RT_MOVES_ROTATION},       {"R", RT_MOVES_ROTATION},
+    {"Lcl Scaling", RT_MOVES_SCALE},           {"S", RT_MOVES_SCALE},
+    {"Visibility", RT_MOVES_VISIBILITY},       {"Color", RT_MOVES_COLOR},
 };
+bool is_vector(std::string_view property) {
+    const auto found = kNodeProperties.find(property);
+    return found != kNodeProperties.end() && found->second != RT_MOVES_VISIBILITY;
+}
+const std::set<std::string_view> kAngles = {"FieldOfView", "FieldOfViewX", "FieldOfViewY", "FocalLength", "Aperture"};
 
 class Clips {
  public:
-    Clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs)
-        : context_(context), document_(context.document), morphs_(morphs), ticks_(ticks_of_second(document_)) {
-        for (uint32_t n = 0; n < nodes.size(); ++n) nodes_[nodes[n].object].push_back(nodes[n].id);
+    Clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs)
+        : context_(context), document_(context.document), views_(views), morphs_(morphs), ticks_(ticks_of_second(document_)) {
+        for (const SceneNode& node : nodes) nodes_[node.object].push_back(node.id);
     }
     void add_stacks();
     void add_takes();
 
  private:
     rt_u32 add_clip(const std::string& name, double begin, double end, const std::vector<rt_layer>& layers);
+    std::vector<Output> outputs_of(rt_u32 clip, uint32_t object, std::string_view property);
     void add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object);
     void add_take_model(rt_u32 clip, const Node& model);
-    void add(rt_u32 clip, rt_u32 layer, const Target& target, const std::vector<rt_u32>& ids, rt_u32 component, Curve curve);
-    const std::vector<rt_u32>& nodes_of(uint32_t object) const;
+    void add_take_channels(rt_u32 clip, uint32_t object, const Node& parent);
+    void add(rt_u32 clip, rt_u32 layer, const Output& output, Curve curve);
 
     const Context& context_;
     const Document& document_;
+    const Views& views_;
     const Morphs& morphs_;
     const double ticks_;
-    std::map<uint32_t, std::vector<rt_u32>> nodes_;
-    const std::vector<rt_u32> nothing_;
+    std::map<uint32_t, std::vector<rt_u32>> nodes_;                             // of the host, by object
+    std::map<std::pair<rt_u32, uint32_t>, std::string_view> light_properties_;  // that move, by clip and object
 };
 
-const std::vector<rt_u32>& Clips::nodes_of(uint32_t object) const {
-    const auto found = nodes_.find(object);
-    return found == nodes_.end() ? nothing_ : found->second;
+template <class Map>
+typename Map::mapped_type found_in(const Map& map, const typename Map::key_type& key) {
+    const auto found = map.find(key);
+    return found == map.end() ? typename Map::mapped_type() : found->second;
+}
+
+// What a property of an object moves; nothing, if the host has no such thing.
+std::vector<Output> Clips::outputs_of(rt_u32 clip, uint32_t object, std::string_view property) {
+    std::vector<Output> out;
+    const bool is_color = property == "Color";
+    if (const auto known = kNodeProperties.find(property); known != kNodeProperties.end() && !is_color) {
+        for (const rt_u32 id : found_in(nodes_, object)) {
+            for (rt_u32 k = 0; k < (is_vector(property) ? 3 : 1); ++k) out.push_back({known->second, id, k, k, {}});
+        }
+    }
+    // A channel of a shape has its percentage; before version 7 the shape's name is that of the property.
+    for (const rt_u32 id : found_in(morphs_, {object, property == "DeformPercent" ? "" : std::string(property)}))
+        out.push_back({RT_MOVES_MORPH, id, 0, 0, [](double percent) { return percent / 100; }});
+    for (const LightView& light : found_in(views_.lights, is_color || property == "Intensity" ? object : kNoObject)) {
+        const std::string_view other = light_properties_.emplace(std::make_pair(clip, object), property).first->second;
+        if (other != property) {
+            context_.warn("the colour and the intensity of a light both move; only its " + std::string(other) + " does here");
+            break;
+        }
+        for (rt_u32 k = 0; k < 3; ++k) {
+            const double factor = light.scale * (is_color ? light.intensity : light.color[k] / 100);
+            out.push_back({RT_MOVES_COLOR, light.id, k, is_color ? k : 0, [=](double x) { return x * factor; }});
+        }
+    }
+    for (const rt_u32 id : found_in(views_.cameras, kAngles.count(property) ? object : kNoObject)) {
+        const Properties camera = context_.properties(object);
+        out.push_back({RT_MOVES_FOV, id, 0, 0, [=](double x) { return angle_of_view(camera, property, x); }});
+    }
+    return out;
 }
 
 rt_u32 Clips::add_clip(const std::string& name, double begin, double end, const std::vector<rt_layer>& layers) {
@@ -63,62 +100,33 @@ rt_u32 Clips::add_clip(const std::string& name, double begin, double end, const 
     return rt::id(context_.sink.clip(context_.sink.ctx, &out));
 }
 
-void Clips::add(rt_u32 clip, rt_u32 layer, const Target& target, const std::vector<rt_u32>& ids, rt_u32 component,
-                Curve curve) {
+void Clips::add(rt_u32 clip, rt_u32 layer, const Output& output, Curve curve) {
     if (curve.times.empty()) return;
-    if (target.factor != 1) curve.scale(target.factor);
-    rt_channel_desc out{};
-    out.struct_bytes = sizeof out;
-    out.clip = clip;
-    out.layer = layer;
-    out.moves = target.moves;
-    out.component = component;
-    out.key_count = curve.times.size();
-    out.times_s = curve.times.data();
-    out.values = curve.values.data();
-    out.spans = curve.spans.data();
-    out.handles = curve.handles.empty() ? nullptr : curve.handles.data();
-    out.before = curve.before;
-    out.after = curve.after;
-    out.before_count = curve.before_count;
-    out.after_count = curve.after_count;
-    for (const rt_u32 id : ids) {
-        out.target = id;
-        if (context_.sink.channel(context_.sink.ctx, &out) != RT_OK) throw rt::Stopped();
-    }
+    if (output.value) curve.convert(output.value);
+    curve.pass(importers::channel(clip, layer, output.moves, output.target, output.component), context_.sink);
 }
 
 // A curve node gathers the curves of one property: those of `d|X`, `d|Y`, `d|Z`, or of `d|DeformPercent` and the like. Its own
 // properties are the values of components without a curve. Source: Blender developer blog; FBX SDK help, "FbxAnimCurveNode".
 void Clips::add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object) {
     const Objects& objects = context_.objects;
+    const Properties rest(document_, objects[object].node);
+    const std::vector<const Link*> curves = objects.below(object);
     for (const Link* above : objects.above(object)) {
         const std::string_view property = above->property;
-        const std::string_view kind = objects[above->to].kind;
-        Target target{RT_MOVES_MORPH, 0.01};
-        std::vector<rt_u32> ids;
-        const auto of_node = kNodeTargets.find(property);
-        if (kind == "Model" && of_node != kNodeTargets.end()) {
-            target = of_node->second;
-            ids = nodes_of(above->to);
-        } else if (property == "DeformPercent") {
-            const auto found = morphs_.find({above->to, ""});
-            if (found != morphs_.end()) ids = found->second;
-        } else if (kind == "AnimationLayer" && property == "Weight") {
-            target = {RT_MOVES_LAYER, 0.01};
-            ids = {layer};
-        }
-        if (ids.empty()) continue;
-        const Properties rest(document_, objects[object].node);
-        const std::vector<const Link*> curves = objects.below(object);
-        const bool is_vector = target.moves <= RT_MOVES_SCALE;
-        for (rt_u32 k = 0; k < (is_vector ? 3u : 1u); ++k) {
-            const std::string name = is_vector ? std::string("d|") + "XYZ"[k] : "d|" + std::string(property);
+        std::vector<Output> outputs = outputs_of(clip, above->to, property);
+        if (property == "Weight" && objects[above->to].kind == "AnimationLayer")
+            outputs.push_back({RT_MOVES_LAYER, layer, 0, 0, [](double percent) { return percent / 100; }});
+        for (rt_u32 k = 0; k < 3 && !outputs.empty(); ++k) {
+            const std::string name = "d|" + (is_vector(property) ? std::string(1, "XYZ"[k]) : std::string(property));
             const auto curve = std::find_if(curves.begin(), curves.end(), [&](const Link* l) { return l->property == name; });
             Curve read;
             if (curve != curves.end()) read = read_curve(document_, *objects[(*curve)->from].node, ticks_);
             if (read.times.empty() && rest.has(name)) read = Curve::constant(rest.number(name, 0));
-            add(clip, layer, target, ids, k, std::move(read));
+            for (const Output& output : outputs) {
+                if (output.curve == k) add(clip, layer, output, read);
+            }
+            if (!is_vector(property)) break;
         }
     }
 }
@@ -174,35 +182,30 @@ void Clips::add_takes() {
     }
 }
 
-// The channels "T", "R" and "S" are in the channel "Transform", each with channels "X", "Y" and "Z"; "Visibility" and those of
-// shapes stand beside it. Measured from maya_game_sausage_6100_ascii_combined and maya_blend_shape_cube_6100_binary.
 void Clips::add_take_model(rt_u32 clip, const Node& model) {
     const uint32_t object = context_.objects.find(document_.text(&model, 0));
-    if (object == kNoObject) return;
-    for (const Node& channel : document_.children(model)) {
-        if (channel.name != "Channel") continue;
+    if (object != kNoObject) add_take_channels(clip, object, model);
+}
+
+// The channels "T", "R" and "S" are in the channel "Transform", each with channels "X", "Y" and "Z"; "Visibility" and those of
+// shapes stand beside it. Measured from maya_game_sausage_6100_ascii_combined and maya_blend_shape_cube_6100_binary.
+void Clips::add_take_channels(rt_u32 clip, uint32_t object, const Node& parent) {
+    for (const Node& channel : document_.children(parent)) {
         const std::string_view name = document_.text(&channel, 0);
-        if (name == "Transform") {
-            for (const Node& part : document_.children(channel)) {
-                const auto target = kNodeTargets.find(document_.text(&part, 0));
-                if (part.name != "Channel" || target == kNodeTargets.end()) continue;
-                for (rt_u32 k = 0; k < 3; ++k) {
-                    const Node* axis = document_.child(&part, "Channel", std::string_view("XYZ").substr(k, 1));
-                    if (axis) add(clip, 0, target->second, nodes_of(object), k, read_take_curve(document_, *axis, ticks_));
-                }
-            }
-        } else if (name == "Visibility") {
-            add(clip, 0, {RT_MOVES_VISIBILITY}, nodes_of(object), 0, read_take_curve(document_, channel, ticks_));
-        } else if (const auto morph = morphs_.find({object, std::string(name)}); morph != morphs_.end()) {
-            add(clip, 0, {RT_MOVES_MORPH, 0.01}, morph->second, 0, read_take_curve(document_, channel, ticks_));
+        if (channel.name != "Channel") continue;
+        if (name == "Transform") add_take_channels(clip, object, channel);
+        for (const Output& output : outputs_of(clip, object, name)) {
+            const std::string_view axis = std::string_view("XYZ").substr(output.curve, 1);
+            const Node* curve = is_vector(name) ? document_.child(&channel, "Channel", axis) : &channel;
+            if (curve) add(clip, 0, output, read_take_curve(document_, *curve, ticks_));
         }
     }
 }
 
 }  // namespace
 
-void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs) {
-    Clips clips(context, nodes, morphs);
+void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs) {
+    Clips clips(context, nodes, views, morphs);
     context.document.version() >= 7000 ? clips.add_stacks() : clips.add_takes();
 }
 

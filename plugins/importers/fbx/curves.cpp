@@ -20,15 +20,15 @@ enum : uint32_t {
 };
 constexpr double kUsualWeight = 1.0 / 3;
 
-// What a key has beside its time and value: the slopes behind it and before the next key (value per second), and how far the
-// handles reach, as parts of the span.
+// The rest of a key. slope: at its right side; next_slope: at the left side of the next key; both are values a second. The
+// weights say how far the handles reach, as parts of the span between the two keys.
 struct Tangents {
     uint32_t flags = 0;
     double slope = 0, next_slope = 0, weight = kUsualWeight, next_weight = kUsualWeight;
 };
 
-// The slope that an automatic key has: that of the line from the key before to the key behind; 0 at the ends. Clamped ones are
-// flat at peaks and valleys, and their handles stay between the neighbours. Measured from
+// The slope of an automatic key: that of the line from the previous key to the next one; 0 at the first and last key. Clamped
+// keys are flat at peaks and valleys, and their handles stay between the values of the neighbours. Measured from
 // motionbuilder_tangent_auto_7700_ascii, maya_extrapolate_cube_7700_binary and maya_game_sausage_7500_binary_combined.
 double auto_slope(const Curve& c, size_t i, uint32_t flags, double weight_before, double weight_behind) {
     if (i == 0 || i + 1 == c.times.size()) return 0;
@@ -107,9 +107,22 @@ void check(const Document& document, const Node& node, const Curve& c) {
 
 }  // namespace
 
-void Curve::scale(double by) {
-    for (double& value : values) value *= by;
-    for (size_t i = 1; i < handles.size(); i += 2) handles[i] *= by;
+Curve Curve::constant(double value) {
+    Curve c;
+    c.times = {0};
+    c.values = {value};
+    c.spans = {RT_SPAN_STEP};
+    return c;
+}
+
+void Curve::convert(const std::function<double(double)>& value) {
+    for (size_t i = 0; i < values.size(); ++i) {
+        const double before = values[i];
+        values[i] = value(before);
+        if (handles.empty()) continue;
+        handles[4 * i + 1] = values[i] - value(before - handles[4 * i + 1]);
+        handles[4 * i + 3] = value(before + handles[4 * i + 3]) - values[i];
+    }
 }
 
 // Frames a second of the time modes from 1 on; 14 has a number of its own. Source: FBX SDK help, "FbxTime::EMode".
@@ -140,9 +153,8 @@ double ticks_of_second(const Document& document) {
     return is_new ? 141120000.0 : 46186158000.0;
 }
 
-// KeyAttrRefCount tells for how many keys each set of attributes counts. A set: flags, and four floats, of which the first two
-// are the slopes and the third one holds the weights. Measured from maya_anim_interpolation_7700_ascii and
-// maya_extrapolate_cube_7700_binary.
+// KeyAttrRefCount says how many keys share each set of attributes. A set has flags and four floats: two slopes, the weights in
+// one float, and one that is not used. Measured from maya_anim_interpolation_7700_ascii and maya_extrapolate_cube_7700_binary.
 Curve read_curve(const Document& document, const Node& node, double ticks) {
     Curve c;
     c.values = document.numbers<double>(&node, "KeyValueFloat");

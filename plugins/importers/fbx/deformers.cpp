@@ -1,10 +1,20 @@
 // deformers.cpp -- skins and morphs: what moves the vertices of a mesh.
 #include <algorithm>
 
+#include "../common/keys.hpp"
 #include "scene.hpp"
 
 namespace fbx_import {
 namespace {
+
+// A matrix of 16 numbers as the file writes them, column by column; false if there are fewer.
+bool matrix_of(const std::vector<double>& numbers, Transform& out) {
+    if (numbers.size() < 16) return false;
+    for (int row = 0; row < 3; ++row) {
+        for (int column = 0; column < 4; ++column) out[4 * row + column] = numbers[4 * column + row];
+    }
+    return true;
+}
 
 // The host's vertices of each vertex of the file: itself, and its copies.
 class Copies {
@@ -27,11 +37,11 @@ class Copies {
     std::vector<std::pair<rt_u32, rt_u32>> copies_;
 };
 
-// A shape of the file, and at which weight it is reached.
+// A shape of the file. `weight`: at which the mesh has reached it.
 struct Shape {
     double weight;
     const Node* node;
-    std::vector<float> shares;  // of each of its vertices; empty: 1
+    std::vector<float> shares;  // by which each vertex follows it; empty: fully
 };
 
 class Deformers {
@@ -44,7 +54,6 @@ class Deformers {
     void add_skin(uint32_t skin);
     void add_oldest_skin();
     void add_bone(const Node& cluster, uint32_t bone);
-    void pass_skin(rt_u32 method, const std::vector<float>& shares);
     void add_channel(uint32_t channel);
     void pass_morph(const std::string& name, double weight, const std::vector<Shape>& shapes, uint32_t owner,
                     const std::string& key);
@@ -55,8 +64,7 @@ class Deformers {
     const SceneMesh& mesh_;
     const Copies copies_;
     Morphs& morphs_;
-    std::vector<rt_bone> bones_;
-    std::vector<rt_weight> weights_;
+    importers::Skin skin_;
 };
 
 void Deformers::add() {
@@ -78,6 +86,7 @@ void Deformers::add() {
     }
     const Node* geometry = objects[mesh_.object].node;
     if (!has_skin && document_.child(geometry, "Link")) add_oldest_skin();
+    if (!skin_.bones.empty()) skin_.pass(mesh_.id, context_.sink);
     // Before version 7, shapes are blocks of the model (measured from maya_blend_shape_cube_6100_binary).
     for (const Node& shape : document_.children(*geometry)) {
         if (shape.name != "Shape") continue;
@@ -86,8 +95,8 @@ void Deformers::add() {
     }
 }
 
-// Clusters hang from the skin, and a bone's model from each. Transform: where the mesh is in the bone's space when both are
-// bound. Source: FBX SDK help, "FbxCluster"; measured from max_transformed_skin_6100_ascii.
+// Clusters hang from the skin, and the model of a bone hangs from each cluster. Transform: from the mesh to the bone, when both
+// are bound. Source: FBX SDK help, "FbxCluster"; measured from max_transformed_skin_6100_ascii.
 void Deformers::add_skin(uint32_t skin) {
     const Objects& objects = context_.objects;
     for (const uint32_t cluster : objects.below(skin, "Deformer", "Cluster")) {
@@ -95,8 +104,10 @@ void Deformers::add_skin(uint32_t skin) {
         if (!bones.empty()) add_bone(*objects[cluster].node, bones[0]);
     }
     const std::string_view type = document_.text(document_.child(objects[skin].node, "SkinningType"), 0);
-    std::vector<float> shares;
+    if (type == "DualQuaternion") skin_.method = RT_SKIN_DUAL_QUATERNION;
     if (type == "Blend") {
+        skin_.method = RT_SKIN_BLENDED;
+        std::vector<float>& shares = skin_.dual_quaternion_shares;
         shares.resize(mesh_.points + mesh_.copy_of.size());
         const std::vector<int32_t> indices = document_.numbers<int32_t>(objects[skin].node, "Indexes");
         const std::vector<float> blend = document_.numbers<float>(objects[skin].node, "BlendWeights");
@@ -104,7 +115,6 @@ void Deformers::add_skin(uint32_t skin) {
             copies_.each(indices[i], [&](rt_u32 v) { shares[v] = std::clamp(blend[i], 0.f, 1.f); });
         }
     }
-    pass_skin(type == "DualQuaternion" ? RT_SKIN_DUAL_QUATERNION : type == "Blend" ? RT_SKIN_BLENDED : RT_SKIN_LINEAR, shares);
 }
 
 // Up to version 5.8: `Link: "Bone" { Indexes, Weights, Transform }` in the model (measured from max7_skin_5000_binary).
@@ -113,7 +123,6 @@ void Deformers::add_oldest_skin() {
         const uint32_t bone = link.name == "Link" ? context_.objects.find(document_.text(&link, 0)) : kNoObject;
         if (bone != kNoObject) add_bone(link, bone);
     }
-    pass_skin(RT_SKIN_LINEAR, {});
 }
 
 void Deformers::add_bone(const Node& cluster, uint32_t bone) {
@@ -122,30 +131,16 @@ void Deformers::add_bone(const Node& cluster, uint32_t bone) {
     const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const SceneNode& n) { return n.object == bone; });
     Transform bind = kIdentity;
     if (indices.empty() || node == nodes_.end() || !matrix_of(document_.numbers<double>(&cluster, "Transform"), bind)) return;
-    bind = multiply(bind, nodes_[mesh_.node].transform.geometry);
+    bind = multiply(bind, nodes_[mesh_.node].geometry);
     if (!is_finite(bind)) throw Broken(document_.place(cluster) + ": the matrix of a bone is not finite");
     rt_bone out{};
     out.node = node->id;
     std::copy(bind.begin(), bind.end(), out.bone_from_mesh);
-    const rt_u32 number = static_cast<rt_u32>(bones_.size());
-    bones_.push_back(out);
+    const rt_u32 number = static_cast<rt_u32>(skin_.bones.size());
+    skin_.bones.push_back(out);
     for (size_t i = 0; i < std::min(indices.size(), weights.size()); ++i) {
-        copies_.each(indices[i], [&](rt_u32 v) { weights_.push_back({v, number, weights[i]}); });
+        copies_.each(indices[i], [&](rt_u32 v) { skin_.weights.push_back({v, number, weights[i]}); });
     }
-}
-
-void Deformers::pass_skin(rt_u32 method, const std::vector<float>& shares) {
-    if (bones_.empty()) return;
-    rt_skin_desc out{};
-    out.struct_bytes = sizeof out;
-    out.mesh = mesh_.id;
-    out.bone_count = static_cast<rt_u32>(bones_.size());
-    out.method = method;
-    out.bones = bones_.data();
-    out.weights = weights_.data();
-    out.weight_count = weights_.size();
-    out.dual_quaternion_shares = shares.empty() ? nullptr : shares.data();
-    if (context_.sink.skin(context_.sink.ctx, &out) != RT_OK) throw rt::Stopped();
 }
 
 // FullWeights: at which percentage of DeformPercent each shape is reached. Source: FBX SDK help, "FbxBlendShapeChannel".

@@ -14,11 +14,11 @@ Document::Document(std::string_view bytes) : bytes_(bytes) {
     } else {
         AsciiReader(*this).read();
     }
-    // Up to FBX 5, the number in a binary file's header is that of the container: 3000 where FBXVersion says 5000 (measured
+    // Up to FBX 5, the header of a binary file has the version of the container: 3000 where FBXVersion says 5000 (measured
     // from max7_cube_5000_binary). From 5.8 on, both are the same.
     const int64_t stated = integer(child(child(&root(), "FBXHeaderExtension"), "FBXVersion"), 0, version_);
     version_ = static_cast<int>(std::clamp<int64_t>(stated, 0, 99999));
-    // Such ASCII files have no version (measured from synthetic_missing_version_6100_ascii). Connections have ids from 7.0 on.
+    // Some ASCII files state no version (measured from synthetic_missing_version_6100_ascii). Connections have ids from 7.0 on.
     if (version_ == 0 && !binary_) {
         const Node* connections = child(&root(), "Connections");
         version_ = connections && child(connections, "C") ? 7000 : connections ? 6000 : 5000;
@@ -44,7 +44,7 @@ void Document::read_header() {
     if (!binary_) {
         const std::string_view head = bytes_.substr(0, 4096);
         if (head.find("FBX") == head.npos) throw Broken("not an FBX file: neither the binary nor the text header is there");
-        // Only a comment has the version of very old files: `; FBX 5.8.0 project file`.
+        // In very old files only a comment says the version: `; FBX 5.8.0 project file`.
         const size_t key = head.find("FBX ");
         const auto digit = [&](size_t i) { return key + i < head.size() && head[key + i] >= '0' && head[key + i] <= '9'; };
         if (key != head.npos && digit(4)) version_ = (head[key + 4] - '0') * 1000;

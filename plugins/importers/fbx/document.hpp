@@ -16,22 +16,22 @@ struct Broken : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Words of the file in quotes, for messages: a few characters, and none that cannot be shown.
+// The start of a text of the file, in quotes, for messages. Characters that cannot be printed become '?'.
 std::string quoted(std::string_view text);
 
 struct Node {
     std::string_view name;
-    std::string_view values;             // of binary files the records of the values, of ASCII files their text
-    uint32_t value_count = 0;            // of binary files, as declared
+    std::string_view values;             // in binary files the records of the values, in ASCII files their text
+    uint32_t value_count = 0;            // in binary files, as declared
     uint32_t first_child = 0, next = 0;  // numbers of nodes; 0: none
 };
 
 struct Value {
     enum Kind { none, integer, real, string, raw, array } kind = none;
-    int64_t whole = 0;      // of an integer; of an ASCII array how many values it declares
-    double number = 0;      // of an integer or real
-    std::string_view text;  // of a string or raw; of an array all that follows its type
-    char type = 0;          // of binary files, the type's letter
+    int64_t whole = 0;      // an integer's; of an ASCII array, how many values it declares
+    double number = 0;      // an integer's or real's
+    std::string_view text;  // a string's or raw's; of an array, all bytes behind its type
+    char type = 0;          // in binary files, the letter of the type
 };
 
 class Document {
@@ -43,7 +43,7 @@ class Document {
     bool is_binary() const { return binary_; }
     bool is_big_endian() const { return big_endian_; }
 
-    class Children;
+    struct Children;
     Children children(const Node& node) const;
     const Node& root() const { return nodes_[0]; }
     const Node* child(const Node* node,
@@ -65,6 +65,8 @@ class Document {
     std::vector<T> numbers(const Node* node, std::string_view name) const {
         return numbers<T>(child(node, name));
     }
+    // How many numbers a node has: the count that it declares, or an estimate.
+    uint64_t count(const Node& node) const;
     // The bytes of all texts and raw values. Those of ASCII files are decoded from base64.
     std::string content(const Node& node) const;
 
@@ -83,29 +85,18 @@ class Document {
     std::vector<Node> nodes_ = std::vector<Node>(1);
 };
 
-class Document::Children {
- public:
-    struct Iterator {
-        const Document* document;
-        uint32_t at;
-        const Node& operator*() const { return document->nodes_[at]; }
-        Iterator& operator++() {
-            at = document->nodes_[at].next;
-            return *this;
-        }
-        bool operator!=(const Iterator& other) const { return at != other.at; }
-    };
-    Children(const Document& document, uint32_t first) : document_(document), first_(first) {}
-    Iterator begin() const { return {&document_, first_}; }
-    Iterator end() const { return {&document_, 0}; }
-
- private:
-    const Document& document_;
-    uint32_t first_;
+// The child nodes of a node, for range-based loops: the range is its own iterator.
+struct Document::Children {
+    const Document* document;
+    uint32_t at;
+    Children begin() const { return *this; }
+    Children end() const { return {document, 0}; }
+    const Node& operator*() const { return document->nodes_[at]; }
+    void operator++() { at = document->nodes_[at].next; }
+    bool operator!=(const Children& other) const { return at != other.at; }
 };
-
 inline Document::Children Document::children(const Node& node) const {
-    return {*this, node.first_child};
+    return {this, node.first_child};
 }
 
 // The values of a node, one after the other.

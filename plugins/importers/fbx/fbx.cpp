@@ -1,7 +1,7 @@
 // fbx.cpp -- the importer plugin for FBX files of the versions 3000 to 7700, binary and ASCII.
 //
-// The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. What moves it is passed on
-// as the file has it; the host computes poses.
+// The scene is imported as the file stores it: in its own pose, units and axes, with whole polygons. Motion is passed on as
+// the file has it; the host computes poses.
 #include <algorithm>
 
 #include "../common/mapped_file.hpp"
@@ -33,18 +33,8 @@ int32_t load_file(const rt_host* host, const char* given_path, const double*, co
         throw Broken("the file says that it has FBX version " + std::to_string(version) + "; expected 3000 to 7700");
     const Objects objects(document);
     const Templates templates(document);
-    const size_t slash = path.find_last_of('/');
-    const std::string folder = slash == path.npos ? "" : path.substr(0, slash + 1);
-    const std::string name = path.substr(folder.size());
-    const Context context = {host,
-                             *sink,
-                             file,
-                             document,
-                             objects,
-                             templates,
-                             folder,
-                             name.substr(0, name.find_last_of('.')),
-                             frames_of_second(document, objects)};
+    const double fps = frames_of_second(document, objects);
+    const Context context = {host, *sink, file, document, objects, templates, importers::FilePlace(path), fps};
     if (!RT_HAS(sink, rt_scene_sink, vertex_frames)) throw Broken("this importer needs a newer version of the program");
     if (version >= kNewestVersion + 300) context.warn("the file's FBX version is newer than 7.7, the newest known");
     const rt_scene_info info = info_of(context);
@@ -54,14 +44,14 @@ int32_t load_file(const rt_host* host, const char* given_path, const double*, co
     rt::progress(host, 0.1f);
     const std::vector<SceneMesh> meshes = add_meshes(context, nodes);
     if (meshes.empty()) context.warn("contains no polygons (points, lines, NURBS and the like were skipped)");
-    add_views(context, nodes);
+    const Views views = add_views(context, nodes);
     Morphs morphs;
     add_deformers(context, nodes, meshes, morphs);
-    add_clips(context, nodes, morphs);
+    add_clips(context, nodes, views, morphs);
     return RT_OK;
 }
 
-// How certain the first bytes are those of an FBX file.
+// How certainly a file with these first bytes is an FBX file: 0 to 100.
 int32_t probe(const uint8_t* head, uint64_t bytes) {
     std::string_view text(reinterpret_cast<const char*>(head), bytes);
     if (text.substr(0, kMagic.size()) == kMagic) return 100;

@@ -1,10 +1,10 @@
-// layers.hpp -- what a geometry tells of its corners and faces: normals, texture coordinates, material slots.
+// layers.hpp -- the data that a geometry has for its corners and faces: normals, texture coordinates, material slots.
 #pragma once
 #include "document.hpp"
 
 namespace fbx_import {
 
-// Which element of the file a number belongs to.
+// A corner of a face: its number, its vertex and its face.
 struct Corner {
     size_t corner, vertex, face;
 };
@@ -14,25 +14,22 @@ struct MeshCounts {
 
 class Layer {
  public:
-    // `element`: "LayerElementNormal"; its numbers are in `values`, `width` for each element, and their indices in `indices`.
-    Layer(const Document& document, const Node& geometry, const char* element, const char* values, const char* indices,
-          size_t width, const MeshCounts& counts);
+    enum Mapping { none, unknown, by_corner, by_vertex, by_face, all_same };
     Layer() = default;
+    // `width` values for each element. indices: which of these groups of values each element has; empty: they are in order.
+    Layer(Mapping mapping, size_t width, std::vector<float> values, std::vector<int32_t> indices = {});
+    // layer: a node such as LayerElementNormal, or nullptr; its numbers are in `values`, and their indices in `indices`.
+    Layer(const Document& document, const Node* layer, const char* values, const char* indices, size_t width);
 
     bool empty() const { return mapping_ == none; }
-    bool is_of_corners() const { return mapping_ == by_corner || mapping_ == by_face; }
-    // The numbers of a corner, or nullptr if the file has none.
+    // Finds an unknown mapping by the count of elements. Call it before `at`.
+    void settle(const MeshCounts& counts);
+    // The numbers of a corner, or zeros if the file has none.
     const float* at(const Corner& corner) const;
 
-    // The layer of a list of numbers without a mapping, as up to version 5.8.
-    static Layer of_list(std::vector<float> values, size_t width, const MeshCounts& counts);
-    static Layer of_indices(std::vector<float> values, size_t width, std::vector<int32_t> indices);
-
  private:
-    enum Mapping { none, by_corner, by_vertex, by_face, all_same };
-    void guess(const MeshCounts& counts);
     Mapping mapping_ = none;
-    bool indexed_ = false;
+    bool is_indexed_ = false;
     size_t width_ = 1;
     std::vector<float> values_;
     std::vector<int32_t> indices_;
@@ -40,5 +37,9 @@ class Layer {
 
 // The material slot of each face; empty: all have slot 0.
 std::vector<int32_t> material_slots(const Document& document, const Node& geometry, size_t faces);
+
+// A normal for each corner, as the file's smoothing groups or smooth edges say. Empty: it has none, or nothing is smooth.
+std::vector<float> normals_of_smoothing(const Document& document, const Node& geometry, const std::vector<float>& positions,
+                                        const std::vector<int32_t>& corners, const std::vector<uint32_t>& sizes);
 
 }  // namespace fbx_import

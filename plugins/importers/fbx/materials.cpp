@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "scene.hpp"
 
@@ -26,7 +25,7 @@ Vec3 color(const Properties& p, const char* name, const char* oldest, const Vec3
 }
 
 void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
-    // A texture replaces the colour: programs leave any value there.
+    // A texture replaces the colour. Its value then means nothing, because programs leave any value there.
     const Vec3 diffuse = scaled(color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8}), p.number("DiffuseFactor", 1));
     store(has_texture ? Vec3{1, 1, 1} : diffuse, 1, out.color);
     store(scaled(color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1)), 1000, out.emission);
@@ -44,22 +43,12 @@ void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
     if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
 }
 
-std::string base_name(const std::string& path) {
-    const size_t slash = path.find_last_of('/');
-    return slash == path.npos ? path : path.substr(slash + 1);
-}
-
-bool is_readable(const std::string& path) {
-    FILE* file = std::fopen(path.c_str(), "rb");
-    if (file) std::fclose(file);
-    return file != nullptr;
-}
-
-std::string with_slashes(std::string_view path) {
-    std::string out(path);
-    std::replace(out.begin(), out.end(), '\\', '/');
-    while (out.substr(0, 2) == "./") out.erase(0, 2);
-    return out;
+// Whether a texture's picture is placed by more than texture coordinates. Source of the names: FBX SDK help, "FbxTexture" and
+// "FbxFileTexture".
+bool is_transformed(const Properties& p) {
+    const Vec3 zero{}, one{1, 1, 1};
+    return p.vector("Translation", zero) != zero || p.vector("Rotation", zero) != zero || p.vector("Scaling", one) != one ||
+           p.whole("UVSwap", 0) != 0;
 }
 
 }  // namespace
@@ -71,6 +60,16 @@ std::vector<const Node*> Materials::of(uint32_t model) const {
     // Up to version 5.8 they are blocks of the model (measured from max2009_blob_5800_ascii).
     for (const Node& child : context_.document.children(*context_.objects[model].node)) {
         if (child.name == "Material" && child.first_child) out.push_back(&child);
+    }
+    return out;
+}
+
+// UVSet: the `Name` of a layer. Source: FBX SDK help, "FbxTexture".
+std::vector<std::string_view> Materials::uv_sets(uint32_t model) const {
+    std::vector<std::string_view> out;
+    for (const uint32_t material : context_.objects.below(model, "Material")) {
+        const uint32_t found = texture(material, model);
+        out.push_back(found == kNoObject ? std::string_view() : context_.properties(found).text("UVSet"));
     }
     return out;
 }
@@ -90,37 +89,37 @@ rt_u32 Materials::id(const Node* material, uint32_t model) {
     rt_material_desc out{};
     out.struct_bytes = sizeof out;
     if (!name.empty()) out.name = name.c_str();
-    out.texture = texture(number, model);
+    const uint32_t found = texture(number, model);
+    out.texture = found == kNoObject ? RT_NONE : picture(found);
     read_phong(context_.templates.of(object), out.texture != RT_NONE, out);
     return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
 }
 
 // A texture hangs from the material's property, and a layered texture may be in between. In version 6 it hangs from the model,
 // beside the material (measured from max2009_blob_6100_binary and the files that Blender 2.79 writes).
-rt_u32 Materials::texture(uint32_t material, uint32_t model) {
+uint32_t Materials::texture(uint32_t material, uint32_t model) const {
     const Objects& objects = context_.objects;
-    if (material != kNoObject) {
-        for (const Link* link : objects.below(material)) {
-            const Object& object = objects[link->from];
-            const bool is_color = link->property == "DiffuseColor" ||
-                                  link->property.find("base_color") != link->property.npos ||
-                                  link->property.find("baseColor") != link->property.npos;
-            if (!is_color) continue;
-            if (object.kind == "Texture") return file_texture(link->from);
-            if (object.kind != "LayeredTexture") continue;
-            for (const uint32_t layer : objects.below(link->from, "Texture")) return file_texture(layer);
-        }
+    const std::vector<const Link*> below = material == kNoObject ? std::vector<const Link*>() : objects.below(material);
+    for (const Link* link : below) {
+        const Object& object = objects[link->from];
+        const bool is_color = link->property == "DiffuseColor" || link->property.find("base_color") != link->property.npos ||
+                              link->property.find("baseColor") != link->property.npos;
+        if (!is_color) continue;
+        if (object.kind == "Texture") return link->from;
+        if (object.kind != "LayeredTexture") continue;
+        for (const uint32_t layer : objects.below(link->from, "Texture")) return layer;
     }
-    for (const uint32_t found : objects.below(model, "Texture")) return file_texture(found);
-    return RT_NONE;
+    for (const uint32_t found : objects.below(model, "Texture")) return found;
+    return kNoObject;
 }
 
 // A texture's picture is in the Content of the Video that hangs from it, or in a file. Source: Blender developer blog.
-rt_u32 Materials::file_texture(uint32_t texture) {
-    const auto known = textures_.find(texture);
-    if (known != textures_.end()) return known->second;
+rt_u32 Materials::picture(uint32_t texture) {
+    const auto known = pictures_.find(texture);
+    if (known != pictures_.end()) return known->second;
     const Document& document = context_.document;
     const Node* node = context_.objects[texture].node;
+    if (is_transformed(context_.properties(texture))) ++transformed_;
     rt_texture_desc out{};
     out.struct_bytes = sizeof out;
     std::string content, path;
@@ -133,30 +132,19 @@ rt_u32 Materials::file_texture(uint32_t texture) {
         out.byte_count = content.size();
     } else {
         const Node* name = document.child(node, "FileName");
-        path = existing_path(document.text(document.child(node, "RelativeFilename"), 0),
-                             document.text(name ? name : document.child(node, "Filename"), 0));
-        if (path.empty()) return textures_[texture] = RT_NONE;
+        path = importers::existing_picture(context_.place,
+                                           {std::string(document.text(document.child(node, "RelativeFilename"), 0)),
+                                            std::string(document.text(name ? name : document.child(node, "Filename"), 0))});
+        if (path.empty()) return pictures_[texture] = RT_NONE;
         out.path = path.c_str();
     }
-    return textures_[texture] = context_.sink.texture(context_.sink.ctx, &out);
+    return pictures_[texture] = context_.sink.texture(context_.sink.ctx, &out);
 }
 
-// Files often hold texture paths of the author's machine. So look also in the places beside the scene where programs put
-// textures.
-std::string Materials::existing_path(std::string_view relative, std::string_view absolute) const {
-    std::vector<std::string> candidates;
-    for (const std::string& path : {with_slashes(relative), with_slashes(absolute)}) {
-        const bool is_absolute = !path.empty() && (path[0] == '/' || (path.size() > 1 && path[1] == ':'));
-        if (!path.empty() && !is_absolute) candidates.push_back(path);
-        if (path.empty() || base_name(path).empty()) continue;
-        for (const std::string& folder : {std::string(), std::string("textures/"), context_.stem + ".fbm/"}) {
-            candidates.push_back(folder + base_name(path));
-        }
-    }
-    for (const std::string& candidate : candidates) {
-        if (is_readable(context_.folder + candidate)) return candidate;
-    }
-    return candidates.empty() ? "" : candidates.front();
+void Materials::report() const {
+    if (transformed_ == 0) return;
+    context_.warn("the transforms of " + std::to_string(transformed_) +
+                  " textures are left out: their pictures lie as the texture coordinates say");
 }
 
 }  // namespace fbx_import

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cmath>
-#include <cstring>
+#include <set>
 
+#include "../common/mesh_arrays.hpp"
 #include "layers.hpp"
 #include "scene.hpp"
 
@@ -9,10 +9,8 @@ namespace fbx_import {
 namespace {
 
 // A geometry in the form that the host takes.
-struct MeshData {
-    std::vector<float> positions, normals, uvs;
-    std::vector<int32_t> indices;  // those below 0 are far above any vertex for the host
-    std::vector<rt_u32> sizes;     // none: all faces are triangles
+struct MeshData : importers::MeshArrays {
+    std::vector<int32_t> indices;  // numbers below 0 name no vertex
     size_t faces = 0, points = 0;
     std::vector<int32_t> slots;
     std::vector<uint32_t> copy_of;
@@ -39,52 +37,6 @@ void read_faces(MeshData& mesh) {
     mesh.faces = mesh.sizes.size();
 }
 
-// Gives each corner a vertex with its normal and uv: the file's own vertex for the first set of values, a copy for each further
-// one.
-class VertexCopies {
- public:
-    VertexCopies(MeshData& mesh, bool normals, bool uvs) : mesh_(mesh), next_(mesh.points, 0), used_(mesh.points) {
-        if (normals) mesh.normals.resize(3 * mesh.points);
-        if (uvs) mesh.uvs.resize(2 * mesh.points);
-    }
-    rt_u32 vertex(rt_u32 point, const float* normal, const float* uv) {
-        if (!used_[point]) {
-            used_[point] = true;
-            store(point, normal, uv);
-            return point;
-        }
-        rt_u32 at = point;
-        for (int step = 0;; ++step, at = next_[at]) {
-            if (matches(at, normal, uv)) return at;
-            if (next_[at] == 0 || step == kMaxChain) break;
-        }
-        const rt_u32 copy = static_cast<rt_u32>(next_.size());
-        next_.push_back(next_[at]);
-        next_[at] = copy;
-        mesh_.copy_of.push_back(point);
-        for (int k = 0; k < 3; ++k) mesh_.positions.push_back(mesh_.positions[3 * size_t(point) + k]);
-        if (!mesh_.normals.empty()) mesh_.normals.resize(mesh_.normals.size() + 3);
-        if (!mesh_.uvs.empty()) mesh_.uvs.resize(mesh_.uvs.size() + 2);
-        store(copy, normal, uv);
-        return copy;
-    }
-
- private:
-    // Values of one vertex that are compared, at most (at the hub of a fan there are many). Beyond, a further copy is made.
-    static constexpr int kMaxChain = 32;
-    bool matches(rt_u32 at, const float* normal, const float* uv) const {
-        return (mesh_.normals.empty() || std::memcmp(&mesh_.normals[3 * size_t(at)], normal, 12) == 0) &&
-               (mesh_.uvs.empty() || std::memcmp(&mesh_.uvs[2 * size_t(at)], uv, 8) == 0);
-    }
-    void store(rt_u32 at, const float* normal, const float* uv) {
-        if (!mesh_.normals.empty()) std::copy_n(normal, 3, &mesh_.normals[3 * size_t(at)]);
-        if (!mesh_.uvs.empty()) std::copy_n(uv, 2, &mesh_.uvs[2 * size_t(at)]);
-    }
-    MeshData& mesh_;
-    std::vector<rt_u32> next_;
-    std::vector<bool> used_;
-};
-
 // Calls body(corner) for each corner whose vertex exists.
 template <class Body>
 void for_corners(MeshData& mesh, const Body& body) {
@@ -99,68 +51,92 @@ void for_corners(MeshData& mesh, const Body& body) {
     }
 }
 
-void read_layers(const Document& document, const Node& geometry, MeshData& mesh) {
-    const MeshCounts counts = {mesh.indices.size(), mesh.points, mesh.faces};
-    Layer normals(document, geometry, "LayerElementNormal", "Normals", "NormalsIndex", 3, counts);
-    Layer uvs(document, geometry, "LayerElementUV", "UV", "UVIndex", 2, counts);
-    if (normals.empty()) normals = Layer::of_list(document.numbers<float>(&geometry, "Normals"), 3, counts);  // up to 5.8
-    if (const Node* info = document.child(&geometry, "GeometryUVInfo"); info && uvs.empty()) {                // up to 5.8
-        uvs = Layer::of_indices(document.numbers<float>(info, "TextureUV"), 2,
-                                document.numbers<int32_t>(info, "TextureUVVerticeIndex"));
-    }
-    if (normals.empty() && uvs.empty()) return;
-    static constexpr float zeros[3] = {};
-    VertexCopies copies(mesh, !normals.empty(), !uvs.empty());
-    const auto or_zero = [](const float* values) { return values ? values : zeros; };
-    for_corners(mesh, [&](const Corner& c) {
-        const rt_u32 vertex = copies.vertex(static_cast<rt_u32>(c.vertex), or_zero(normals.at(c)), or_zero(uvs.at(c)));
-        mesh.indices[c.corner] = static_cast<int32_t>(vertex);
-    });
-}
-
-MeshData read_mesh(const Document& document, const Node& geometry) {
-    MeshData mesh;
-    mesh.positions = document.numbers<float>(&geometry, "Vertices");
-    mesh.points = mesh.positions.size() / 3;
-    mesh.positions.resize(3 * mesh.points);
-    if (mesh.points >= RT_NONE / 2) throw Broken(document.place(geometry) + ": there are more vertices than a mesh can have");
-    mesh.indices = document.numbers<int32_t>(&geometry, "PolygonVertexIndex");
-    read_faces(mesh);
-    mesh.slots = material_slots(document, geometry, mesh.faces);
-    read_layers(document, geometry, mesh);
-    return mesh;
-}
-
 // A mesh to show: a geometry with the materials that its first node gives it.
 struct Wanted {
     uint32_t object, node;
     const Node* geometry;
     std::vector<const Node*> materials;
+    std::vector<std::string_view> uv_sets;  // the set that the texture of each material names
 };
 
-std::vector<rt_u32> face_materials(const MeshData& mesh, const std::vector<rt_u32>& ids) {
-    std::vector<rt_u32> out;
-    for (const int32_t slot : mesh.slots)
-        out.push_back(static_cast<size_t>(slot) < ids.size() ? ids[static_cast<size_t>(slot)] : RT_NONE);
+// The sets of texture coordinates that the materials need: the first set, and those that a texture names. of_slot: which of
+// them each material has.
+std::vector<const Node*> uv_layers(const Document& document, const Wanted& wanted, std::vector<size_t>& of_slot) {
+    std::vector<const Node*> out(1, document.child(wanted.geometry, "LayerElementUV"));
+    for (const std::string_view name : wanted.uv_sets) {
+        const Node* found = out[0];
+        for (const Node& layer : document.children(*wanted.geometry)) {
+            const bool is_set = layer.name == "LayerElementUV" && !name.empty();
+            if (is_set && document.text(document.child(&layer, "Name"), 0) == name) found = &layer;
+        }
+        const auto at = std::find(out.begin(), out.end(), found);
+        of_slot.push_back(static_cast<size_t>(at - out.begin()));
+        if (at == out.end()) out.push_back(found);
+    }
     return out;
+}
+
+Layer read_normals(const Document& document, const Node& geometry) {
+    Layer normals(document, document.child(&geometry, "LayerElementNormal"), "Normals", "NormalsIndex", 3);
+    // Up to version 5.8 the numbers stand in the model.
+    return normals.empty() ? Layer(Layer::unknown, 3, document.numbers<float>(&geometry, "Normals")) : std::move(normals);
+}
+
+Layer read_uvs(const Document& document, const Node& geometry, const Node* layer) {
+    const Node* info = document.child(&geometry, "GeometryUVInfo");  // up to version 5.8
+    if (layer || !info) return Layer(document, layer, "UV", "UVIndex", 2);
+    return Layer(Layer::by_corner, 2, document.numbers<float>(info, "TextureUV"),
+                 document.numbers<int32_t>(info, "TextureUVVerticeIndex"));
+}
+
+MeshData read_mesh(const Context& context, const Wanted& wanted) {
+    const Document& document = context.document;
+    const Node& geometry = *wanted.geometry;
+    MeshData mesh;
+    Layer normals;
+    std::vector<size_t> uv_of_slot;
+    const std::vector<const Node*> layers = uv_layers(document, wanted, uv_of_slot);
+    std::vector<Layer> uvs(layers.size());
+    // Most of the time is spent on the arrays, which can be inflated at the same time.
+    rt::parallel_for(context.host, static_cast<rt_u32>(3 + uvs.size()), [&](rt_u32 i) {
+        if (i == 0) mesh.indices = document.numbers<int32_t>(&geometry, "PolygonVertexIndex");
+        if (i == 1) mesh.positions = document.numbers<float>(&geometry, "Vertices");
+        if (i == 2) normals = read_normals(document, geometry);
+        if (i > 2) uvs[i - 3] = read_uvs(document, geometry, layers[i - 3]);
+    });
+    mesh.points = mesh.positions.size() / 3;
+    mesh.positions.resize(3 * mesh.points);
+    if (mesh.points >= RT_NONE / 2) throw Broken(document.place(geometry) + ": there are more vertices than a mesh can have");
+    read_faces(mesh);
+    mesh.slots = material_slots(document, geometry, mesh.faces);
+    const MeshCounts counts = {mesh.indices.size(), mesh.points, mesh.faces};
+    normals.settle(counts);
+    for (Layer& layer : uvs) layer.settle(counts);
+    if (normals.empty()) {
+        normals =
+            Layer(Layer::by_corner, 3, normals_of_smoothing(document, geometry, mesh.positions, mesh.indices, mesh.sizes));
+    }
+    const bool has_uvs = std::any_of(uvs.begin(), uvs.end(), [](const Layer& layer) { return !layer.empty(); });
+    if (normals.empty() && !has_uvs) return mesh;
+    importers::VertexCopies copies(mesh, !normals.empty(), has_uvs, mesh.copy_of);
+    for_corners(mesh, [&](const Corner& c) {
+        const size_t slot = mesh.slots.empty() ? 0 : static_cast<size_t>(mesh.slots[c.face]);
+        const Layer& uv = uvs[slot < uv_of_slot.size() ? uv_of_slot[slot] : 0];
+        const rt_u32 vertex = copies.vertex(static_cast<rt_u32>(c.vertex), normals.at(c), uv.at(c));
+        mesh.indices[c.corner] = static_cast<int32_t>(vertex);
+    });
+    return mesh;
 }
 
 SceneMesh pass(const Context& context, const Wanted& wanted, MeshData& mesh, const std::vector<rt_u32>& ids,
                const std::string& name) {
-    rt_mesh out{};
-    out.struct_bytes = sizeof out;
-    out.name = name.c_str();
-    out.positions = mesh.positions.data();
-    out.vertex_count = static_cast<rt_u32>(mesh.positions.size() / 3);
-    out.position_stride = out.normal_stride = 12;
-    out.uv_stride = 8;
-    out.normals = mesh.normals.empty() ? nullptr : mesh.normals.data();
-    out.uvs = mesh.uvs.empty() ? nullptr : mesh.uvs.data();
+    std::vector<rt_u32> materials;
+    for (const int32_t slot : mesh.slots)
+        materials.push_back(static_cast<size_t>(slot) < ids.size() ? ids[static_cast<size_t>(slot)] : RT_NONE);
+    rt_mesh out = mesh.description(name.c_str());
     out.indices = reinterpret_cast<const rt_u32*>(mesh.indices.data());
     out.index_count = mesh.indices.size();
-    out.face_sizes = mesh.sizes.empty() ? nullptr : mesh.sizes.data();
     out.face_count = mesh.faces;
-    const std::vector<rt_u32> materials = face_materials(mesh, ids);
     out.material = ids.empty() ? RT_NONE : ids[0];
     out.face_materials = materials.empty() ? nullptr : materials.data();
     SceneMesh added;
@@ -184,31 +160,32 @@ std::vector<uint32_t> meshes_of(const Context& context, uint32_t model) {
 }
 
 void show(const Context& context, const SceneNode& node, rt_u32 mesh) {
-    const Transform& into_node = node.transform.geometry;
     rt_instance_desc out = rt::instance(mesh, context.objects[node.object].name.c_str());
-    std::transform(into_node.begin(), into_node.end(), out.world_from_object, [](double x) { return static_cast<float>(x); });
+    std::transform(node.geometry.begin(), node.geometry.end(), out.world_from_object,
+                   [](double x) { return static_cast<float>(x); });
     out.node = node.id;
     rt::id(context.sink.instance(context.sink.ctx, &out));
 }
 
-// Bytes of geometry that are decoded at the same time, about.
-constexpr size_t kBatchBytes = 48u << 20;
+// Numbers of geometry that are decoded at the same time, about: 12 MB.
+constexpr uint64_t kBatchNumbers = 3u << 20;
 
-size_t bytes_of(const Document& document, const Node& geometry) {
-    size_t bytes = 0;
-    for (const char* name : {"Vertices", "PolygonVertexIndex"}) {
-        const Node* node = document.child(&geometry, name);
-        const Node* inner = node && !document.is_binary() ? document.child(node, "a") : nullptr;
-        if (node) bytes += (inner ? inner : node)->values.size();
+uint64_t numbers_in(const Document& document, const Node& geometry) {
+    static const std::set<std::string_view> arrays = {"Vertices", "PolygonVertexIndex", "Normals", "NormalsIndex", "UV",
+                                                      "UVIndex"};
+    uint64_t count = 0;
+    for (const Node& child : document.children(geometry)) {
+        if (arrays.count(child.name)) count += document.count(child);
+        if (child.name == "LayerElementNormal" || child.name == "LayerElementUV") count += numbers_in(document, child);
     }
-    return bytes;
+    return count;
 }
 
 }  // namespace
 
 std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<SceneNode>& nodes) {
     Materials materials(context);
-    // Nodes that give the same geometry other materials get a mesh of their own.
+    // A geometry becomes one mesh for each list of materials that nodes give it.
     std::map<std::pair<const Node*, std::vector<const Node*>>, size_t> known;
     std::vector<Wanted> wanted;
     std::vector<std::pair<uint32_t, size_t>> shown;  // node, number in `wanted`
@@ -217,19 +194,20 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
             const Node* geometry = context.objects[object].node;
             const std::vector<const Node*> slots = materials.of(nodes[n].object);
             const auto [at, is_new] = known.emplace(std::make_pair(geometry, slots), wanted.size());
-            if (is_new) wanted.push_back({object, n, geometry, slots});
+            if (is_new) wanted.push_back({object, n, geometry, slots, materials.uv_sets(nodes[n].object)});
             shown.push_back({n, at->second});
         }
     }
     std::vector<SceneMesh> meshes;
     for (size_t first = 0; first < wanted.size();) {
-        size_t end = first, bytes = 0;
-        while (end < wanted.size() && end - first < 256 && bytes < kBatchBytes) {
-            bytes += bytes_of(context.document, *wanted[end++].geometry);
+        size_t end = first;
+        uint64_t numbers = 0;
+        while (end < wanted.size() && end - first < 256 && numbers < kBatchNumbers) {
+            numbers += numbers_in(context.document, *wanted[end++].geometry);
         }
         std::vector<MeshData> data(end - first);
         rt::parallel_for(context.host, static_cast<rt_u32>(data.size()),
-                         [&](rt_u32 i) { data[i] = read_mesh(context.document, *wanted[first + i].geometry); });
+                         [&](rt_u32 i) { data[i] = read_mesh(context, wanted[first + i]); });
         for (size_t i = first; i < end; ++i) {
             const Wanted& w = wanted[i];
             std::vector<rt_u32> ids;
@@ -243,6 +221,7 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
         context.file.forget();
         rt::progress(context.host, 0.1f + 0.8f * static_cast<float>(first) / static_cast<float>(wanted.size()));
     }
+    materials.report();
     for (const auto& [node, mesh] : shown) show(context, nodes[node], meshes[mesh].id);
     return meshes;
 }

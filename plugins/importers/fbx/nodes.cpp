@@ -5,11 +5,12 @@
 namespace fbx_import {
 namespace {
 
-// Nodes below nodes, at most, and copies of nodes with several parents, at most, for each model of the file.
+// Levels of nodes, at most; and how many times as many nodes as models there may be, because models with several parents are
+// copied.
 constexpr uint32_t kMaxNodeDepth = 1000;
 constexpr size_t kMaxCopies = 16;
 
-// Models that hang from nothing are shown too: MotionBuilder's own cameras do (motionbuilder_cube_7700_binary).
+// Models without a parent are shown too: MotionBuilder's own cameras have none (motionbuilder_cube_7700_binary).
 std::vector<uint32_t> top_models(const Context& context) {
     const Objects& objects = context.objects;
     std::vector<uint32_t> out = objects.below(kRoot, "Model");
@@ -44,34 +45,64 @@ double oldest_rest(const Document& document, const Object& model, const char* le
     return document.number(document.child(found, "Default"), 0, otherwise);
 }
 
-NodeTransform transform_of(const Context& context, uint32_t model) {
-    NodeTransform out = node_transform(context.properties(model));
-    const Object& object = context.objects[model];
-    for (int k = 0; k < 3; ++k) {
-        const char* axis = k == 0 ? "X" : k == 1 ? "Y" : "Z";
-        out.translation[k] = oldest_rest(context.document, object, "T", axis, out.translation[k]);
-        out.rotation[k] = oldest_rest(context.document, object, "R", axis, out.rotation[k]);
-        out.scale[k] = oldest_rest(context.document, object, "S", axis, out.scale[k]);
-    }
-    return out;
+template <class From, class To>
+void copy(const From& from, To& to) {
+    std::copy(from.begin(), from.end(), to);
 }
 
-rt_u32 pass(const Context& context, const SceneNode& node, const std::vector<SceneNode>& nodes) {
-    const NodeTransform& t = node.transform;
+// A node's own transform is T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1. Source: FBX SDK help, "Computing transformation
+// matrices". Pre- and post-rotation always turn in the order xyz, and like the rotation order they count only if RotationActive
+// is set. Geometric transforms turn in the order xyz. Source: FBX SDK help, "FbxNode"; measured from
+// casegen_rotation_space_7500_ascii and max_geometry_transform_7700_ascii.
+void read_transform(const Context& context, const Object& model, const Properties& p, rt_node_desc& out) {
+    const Vec3 zero{}, one{1, 1, 1};
+    copy(p.vector("Lcl Translation", zero), out.translation);
+    copy(p.vector("Lcl Rotation", zero), out.rotation);
+    copy(p.vector("Lcl Scaling", one), out.scale);
+    for (int k = 0; k < 3; ++k) {
+        const char* axis = k == 0 ? "X" : k == 1 ? "Y" : "Z";
+        out.translation[k] = oldest_rest(context.document, model, "T", axis, out.translation[k]);
+        out.rotation[k] = oldest_rest(context.document, model, "R", axis, out.rotation[k]);
+        out.scale[k] = oldest_rest(context.document, model, "S", axis, out.scale[k]);
+    }
+    const bool active = p.whole("RotationActive", 0) != 0;
+    const int64_t order = active ? p.whole("RotationOrder", 0) : 0;
+    out.rotation_order = order >= 0 && order <= 5 ? static_cast<rt_u32>(order) : rt_u32(RT_ROTATE_XYZ);  // 6: spheric xyz
+    // 0 RrSs, 1 RSrs, 2 Rrs. Source: FBX SDK help, "FbxTransform::EInheritType".
+    const int64_t inherit = p.whole("InheritType", 1);
+    out.inherit = inherit == 0 ? RT_INHERIT_RRSS : inherit == 2 ? RT_INHERIT_RRS : RT_INHERIT_RSRS;
+    const Vec3 pivot = p.vector("RotationPivot", zero), scale_pivot = p.vector("ScalingPivot", zero);
+    const Vec3 offset = p.vector("RotationOffset", zero), scale_offset = p.vector("ScalingOffset", zero);
+    Vec3 to_pivot, from_pivot, back;
+    for (int k = 0; k < 3; ++k) {
+        to_pivot[k] = offset[k] + pivot[k];
+        from_pivot[k] = -pivot[k] + scale_offset[k] + scale_pivot[k];
+        back[k] = -scale_pivot[k];
+    }
+    const Transform before = active ? rotation(p.vector("PreRotation", zero)) : kIdentity;
+    const Transform after = active ? transposed(rotation(p.vector("PostRotation", zero))) : kIdentity;
+    copy(multiply(translation(to_pivot), before), out.before_rotation);
+    copy(multiply(after, translation(from_pivot)), out.after_rotation);
+    copy(translation(back), out.after_scale);
+}
+
+Transform geometric_transform(const Properties& p) {
+    const Vec3 zero{}, one{1, 1, 1};
+    return multiply(translation(p.vector("GeometricTranslation", zero)),
+                    multiply(rotation(p.vector("GeometricRotation", zero)), scaling(p.vector("GeometricScaling", one))));
+}
+
+SceneNode pass(const Context& context, uint32_t model, uint32_t parent, const std::vector<SceneNode>& nodes) {
+    const Object& object = context.objects[model];
+    const Properties p = context.properties(model);
     rt_node_desc out{};
     out.struct_bytes = sizeof out;
-    out.parent = node.parent == kNoObject ? 0 : nodes[node.parent].id;
-    out.name = context.objects[node.object].name.c_str();
-    out.rotation_order = t.rotation_order;
-    out.inherit = t.inherit;
-    std::copy(t.translation.begin(), t.translation.end(), out.translation);
-    std::copy(t.rotation.begin(), t.rotation.end(), out.rotation);
-    std::copy(t.scale.begin(), t.scale.end(), out.scale);
-    std::copy(t.before_rotation.begin(), t.before_rotation.end(), out.before_rotation);
-    std::copy(t.after_rotation.begin(), t.after_rotation.end(), out.after_rotation);
-    std::copy(t.after_scale.begin(), t.after_scale.end(), out.after_scale);
-    out.flags = node.hidden ? RT_NODE_HIDDEN : 0;
-    return rt::id(context.sink.node(context.sink.ctx, &out));
+    out.parent = parent == kNoObject ? 0 : nodes[parent].id;
+    out.name = object.name.c_str();
+    read_transform(context, object, p, out);
+    if (p.number("Visibility", 1) < 0.5) out.flags |= RT_NODE_HIDDEN;
+    if (p.number("Visibility Inheritance", 1) == 0) out.flags |= RT_NODE_OWN_VISIBILITY;
+    return {model, rt::id(context.sink.node(context.sink.ctx, &out)), geometric_transform(p)};
 }
 
 }  // namespace
@@ -80,7 +111,7 @@ std::vector<SceneNode> read_nodes(const Context& context) {
     const Objects& objects = context.objects;
     struct Pending {
         uint32_t model, parent, depth;
-        bool leave;  // all below the model is done
+        bool leave;  // everything below the model is done
     };
     std::vector<Pending> stack;
     const std::vector<uint32_t> top = top_models(context);
@@ -105,16 +136,7 @@ std::vector<SceneNode> read_nodes(const Context& context) {
             fail(at.model, "hangs from several nodes that do the same: too many copies of it");
         is_open[at.model] = is_done[at.model] = true;
         stack.push_back({at.model, 0, 0, true});
-        SceneNode node;
-        node.object = at.model;
-        node.parent = at.parent;
-        node.transform = transform_of(context, at.model);
-        const SceneNode* parent = at.parent == kNoObject ? nullptr : &nodes[at.parent];
-        const Properties p = context.properties(at.model);
-        node.hidden =
-            p.number("Visibility", 1) < 0.5 || (parent && parent->hidden && p.number("Visibility Inheritance", 1) != 0);
-        node.id = pass(context, node, nodes);
-        nodes.push_back(node);
+        nodes.push_back(pass(context, at.model, at.parent, nodes));
         const uint32_t index = static_cast<uint32_t>(nodes.size() - 1);
         const std::vector<const Link*> below = objects.below(at.model);
         for (auto link = below.rbegin(); link != below.rend(); ++link) {

@@ -45,8 +45,7 @@ Objects::Objects(const Document& document) : document_(document) {
 
 void Objects::add_all(const Node& parent) {
     for (const Node& node : document_.children(parent)) {
-        if (node.first_child != 0 || document_.value(node, 1).kind == Value::string)
-            add(node);  // a layer may have an empty block
+        if (node.first_child != 0 || document_.value(node, 1).kind == Value::string) add(node);  // a layer's block may be empty
     }
 }
 
@@ -104,8 +103,8 @@ void Objects::connect() {
         link.to = end(i++);
         if (kind[1] == 'P') link.property = document_.text(&node, i);
         if (link.from == kNoObject || link.to == kNoObject || link.from == kRoot) continue;
-        // A connection that is there again means nothing, but where names are ids it is that of another object of the same
-        // name.
+        // A second connection between the same ids means nothing. Where names are ids, it belongs to another object of
+        // the same name.
         const bool is_new = known.insert(uint64_t(link.from) << 32 | link.to).second;
         if (kind == "OO" && !is_new && document_.value(node, 1).kind == Value::integer) continue;
         links_.push_back(link);

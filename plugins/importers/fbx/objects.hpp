@@ -1,4 +1,4 @@
-// objects.hpp -- the objects of a file, and what is connected to what.
+// objects.hpp -- the objects of a file and their connections.
 #pragma once
 #include <string>
 #include <unordered_map>
@@ -30,7 +30,7 @@ class Objects {
     size_t size() const { return all_.size(); }
     const Object& operator[](uint32_t object) const { return all_[object]; }
     uint32_t find(std::string_view name) const;  // by name as the file writes it; before version 7 only
-    // What hangs from an object, and from what it hangs, in the order of the file.
+    // The connections to the objects below an object, and to those above it, in the order of the file.
     std::vector<const Link*> below(uint32_t object) const { return links(below_, object, &Link::to); }
     std::vector<const Link*> above(uint32_t object) const { return links(above_, object, &Link::from); }
     // Objects of this kind that hang from the object itself, not from a property; `type` "" stands for any.

@@ -1,4 +1,4 @@
-// properties.hpp -- the properties of an object: its own, else those of its class's template.
+// properties.hpp -- the properties of an object. Those that it does not have itself are in the template of its class.
 #pragma once
 #include <unordered_map>
 
@@ -34,7 +34,7 @@ class Properties {
 class Templates {
  public:
     explicit Templates(const Document& document);
-    // The properties of an object, where it has none those of its template.
+    // The properties of an object, and of its template.
     Properties of(const Object& object) const;
 
  private:

@@ -1,10 +1,11 @@
-// scene.hpp -- what the parts of the importer share while they pass a file's scene to the host.
+// scene.hpp -- the steps that pass a file's scene to the host, and the data that they share.
 #pragma once
 #include <map>
 
 #include "../common/mapped_file.hpp"
+#include "../common/texture_path.hpp"
+#include "properties.hpp"
 #include "rt_plugin.hpp"
-#include "transform.hpp"
 
 namespace fbx_import {
 
@@ -15,8 +16,8 @@ struct Context {
     const Document& document;
     const Objects& objects;
     const Templates& templates;
-    std::string folder, stem;  // of the file: "/models/", "car"
-    double fps;                // frames a second, 0: the file does not say
+    importers::FilePlace place;
+    double fps;  // frames a second; 0: the file does not say
 
     void warn(const std::string& text) const { sink.warn(sink.ctx, text.c_str()); }
     Properties properties(uint32_t object) const { return templates.of(objects[object]); }
@@ -24,13 +25,11 @@ struct Context {
 
 // ---- nodes
 
-// A model of the file below one of its parents.
+// A model of the file below one of its parents; a model with several parents becomes several nodes.
 struct SceneNode {
     uint32_t object = kNoObject;
-    uint32_t parent = kNoObject;  // number of a node
-    NodeTransform transform;
-    rt_u32 id = 0;  // the host's
-    bool hidden = false;
+    rt_u32 id = 0;       // the host's
+    Transform geometry;  // from the node's own meshes to the node
 };
 // Parents before their children. Passes them to the host. Throws Broken if they form a circle.
 std::vector<SceneNode> read_nodes(const Context& context);
@@ -43,7 +42,7 @@ struct SceneMesh {
     uint32_t object = kNoObject;    // its geometry; before version 7 its model
     uint32_t node = kNoObject;      // number of the first node that shows it
     uint32_t points = 0;            // vertices of the file; the host's vertex i is the file's for i < points
-    std::vector<uint32_t> copy_of;  // the file's vertex, of each further vertex of the host
+    std::vector<uint32_t> copy_of;  // of each further vertex of the host: the file's vertex
 };
 std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<SceneNode>& nodes);
 
@@ -52,33 +51,49 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
 class Materials {
  public:
     explicit Materials(const Context& context) : context_(context) {}
-    // The materials of a model in the order of their slots.
+    // The materials of a model in the order of their slots, and the sets of texture coordinates that their textures name.
     std::vector<const Node*> of(uint32_t model) const;
+    std::vector<std::string_view> uv_sets(uint32_t model) const;
     rt_u32 id(const Node* material, uint32_t model);  // RT_NONE: the default material
+    void report() const;                              // warns about what was left out
 
  private:
-    rt_u32 texture(uint32_t material, uint32_t model);
-    rt_u32 file_texture(uint32_t texture);
-    std::string existing_path(std::string_view relative, std::string_view absolute) const;
+    uint32_t texture(uint32_t material, uint32_t model) const;  // kNoObject: there is none
+    rt_u32 picture(uint32_t texture);
     const Context& context_;
     std::map<const Node*, rt_u32> ids_;
-    std::map<uint32_t, rt_u32> textures_;
+    std::map<uint32_t, rt_u32> pictures_;  // by texture
+    size_t transformed_ = 0;               // textures
 };
 
 // ---- lights and cameras
 
-void add_views(const Context& context, const std::vector<SceneNode>& nodes);
+// A light that the host has. Its colour there is color * intensity * scale.
+struct LightView {
+    rt_u32 id = 0;
+    Vec3 color{};
+    double intensity = 1, scale = 1;
+};
+// The host's lights and cameras, by the object that has their properties.
+struct Views {
+    std::map<uint32_t, std::vector<LightView>> lights;
+    std::map<uint32_t, std::vector<rt_u32>> cameras;
+};
+Views add_views(const Context& context, const std::vector<SceneNode>& nodes);
+// The vertical angle of view in radians, where the property `moved` has another value than at rest.
+double angle_of_view(const Properties& camera, std::string_view moved = "", double value = 0);
 
 // ---- motion
 
-// Ids of the host's morphs, by the object that has their weight and, before version 7, the name of the shape.
+// Ids of the host's morphs, by the object that has their weight. Before version 7, that is the model, and the shape's name
+// tells its morphs apart.
 using Morphs = std::map<std::pair<uint32_t, std::string>, std::vector<rt_u32>>;
 void add_deformers(const Context& context, const std::vector<SceneNode>& nodes, const std::vector<SceneMesh>& meshes,
                    Morphs& morphs);
-// Reads the geometry cache that a deformer names. Files that are missing or damaged are a warning.
+// Reads the geometry cache that a deformer names. Missing or damaged files give a warning.
 void add_cache(const Context& context, const SceneMesh& mesh, uint32_t deformer);
 // Frames a second; 0: the file does not say.
 double frames_of_second(const Document& document, const Objects& objects);
-void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Morphs& morphs);
+void add_clips(const Context& context, const std::vector<SceneNode>& nodes, const Views& views, const Morphs& morphs);
 
 }  // namespace fbx_import

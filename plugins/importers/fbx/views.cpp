@@ -1,6 +1,5 @@
 // views.cpp -- lights and cameras.
-#include <algorithm>
-#include <cmath>
+#include "../common/views.hpp"
 
 #include "scene.hpp"
 
@@ -16,56 +15,32 @@ std::vector<uint32_t> attributes_of(const Context& context, uint32_t model, std:
 
 // A light shines along its node's -y. LightType: 0 point, 1 directional, 2 spot, 3 area, 4 volume; Intensity in percent.
 // Source: FBX SDK help, "FbxLight".
-rt_light_desc light_of(const Context& context, const SceneNode& node, uint32_t attribute) {
+LightView light_of(const Context& context, const SceneNode& node, uint32_t attribute, importers::Lights& lights) {
     const std::string& name = context.objects[node.object].name;
     const Properties p = context.properties(attribute);
     const int64_t type = p.whole("LightType", 0);
-    rt_light_desc out = rt::light(type == 1 ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT, name.c_str());
-    out.direction[1] = -1;
+    rt_light_desc out = rt::light(type == 1 ? RT_LIGHT_DIRECTIONAL : RT_LIGHT_POINT);
     if (type > 1)
         context.warn(std::string("the ") + (type == 2 ? "spot" : "area") + " light '" + name + "' became a point light");
-    const Vec3 color = p.vector("Color", {1, 1, 1});
-    const double intensity = p.number("Intensity", 100) / 100;
-    for (int k = 0; k < 3; ++k) {
-        const double c = color[k] * intensity;
-        out.color[k] = std::isfinite(c) ? static_cast<float>(std::clamp(c, 0.0, 1e30)) : 0;
-    }
     out.node = node.id;
-    return out;
-}
-
-// The vertical angle of view. ApertureMode: 0 both angles are given, 1 the horizontal one, 2 the vertical one, 3 a focal length
-// in mm and a film size in inches. Source: FBX SDK help, "FbxCamera". Blender writes 2 and the horizontal angle, which
-// FieldOfViewX shows.
-double angle_of(const Properties& p) {
-    constexpr double radians = 0.017453292519943295;
-    double width = p.number("AspectWidth", p.number("AspectW", 0)), height = p.number("AspectHeight", p.number("AspectH", 0));
-    if (!(width > 0 && height > 0)) width = p.number("FilmWidth", 0), height = p.number("FilmHeight", 0);
-    const double aspect = width > 0 && height > 0 ? width / height : 4.0 / 3;
-    const int64_t mode = p.whole("ApertureMode", 1);
-    const double film = p.number("FilmHeight", 0), focal = p.number("FocalLength", 0);
-    if (mode == 3 && film > 0 && focal > 0) return 2 * std::atan(film * 25.4 / 2 / focal);
-    if (mode == 0 && p.has("FieldOfViewY")) return p.number("FieldOfViewY", 0) * radians;
-    const double angle = p.number("FieldOfView", p.number("FieldOfViewX", p.number("Aperture", 40))) * radians;
-    const bool is_vertical = mode == 2 && p.number("FieldOfView", 0) != p.number("FieldOfViewX", -1);
-    return is_vertical ? angle : 2 * std::atan(std::tan(angle / 2) / aspect);
+    LightView view;
+    view.color = p.vector("Color", {1, 1, 1});
+    view.intensity = p.number("Intensity", 100) / 100;
+    lights.add(out, name, {view.color[0], view.color[1], view.color[2]}, view.intensity);
+    return view;
 }
 
 // A camera looks along its node's +x, and +y is up. Source: FBX SDK help, "FbxCamera".
-rt_camera camera_of(const Context& context, const SceneNode& node, uint32_t attribute) {
+rt_u32 add_camera(const Context& context, const SceneNode& node, uint32_t attribute) {
     const std::string& name = context.objects[node.object].name;
     rt_camera out{};
     out.struct_bytes = sizeof out;
     out.name = name.c_str();
     out.target[0] = out.up[1] = 1;
-    double angle = angle_of(context.properties(attribute));
-    if (!(angle > 0.001) || angle > 3.1) {
-        context.warn("the camera '" + name + "' has no angle of view (orthographic?): 45 degrees are used");
-        angle = 0.7853982;
-    }
-    out.fov_y_rad = static_cast<float>(angle);
+    const double angle = angle_of_view(context.properties(attribute));
+    out.fov_y_rad = importers::angle_of_view(angle, "'" + name + "'", context.sink);
     out.node = node.id;
-    return out;
+    return rt::id(context.sink.camera(context.sink.ctx, &out));
 }
 
 // A stereo camera consists of two, which hang from its attribute (measured from maya_node_attribute_zoo_7500_binary and
@@ -82,33 +57,52 @@ std::vector<uint32_t> cameras_of(const Context& context, uint32_t model) {
 
 }  // namespace
 
-void add_views(const Context& context, const std::vector<SceneNode>& nodes) {
-    std::vector<rt_light_desc> lights;
-    float brightest = 0;
+// The vertical angle of view. ApertureMode: 0 both angles are given, 1 the horizontal one, 2 the vertical one, 3 a focal length
+// in mm and a film size in inches. Source: FBX SDK help, "FbxCamera". Blender writes 2 and the horizontal angle, which
+// FieldOfViewX shows.
+double angle_of_view(const Properties& p, std::string_view moved, double value) {
+    const auto number = [&](std::string_view name, double otherwise) {
+        return name == moved ? value : p.number(name, otherwise);
+    };
+    constexpr double radians = 0.017453292519943295;
+    double width = number("AspectWidth", number("AspectW", 0)), height = number("AspectHeight", number("AspectH", 0));
+    if (!(width > 0 && height > 0)) width = number("FilmWidth", 0), height = number("FilmHeight", 0);
+    const double aspect = width > 0 && height > 0 ? width / height : 4.0 / 3;
+    const int64_t mode = p.whole("ApertureMode", 1);
+    const double film = number("FilmHeight", 0), focal = number("FocalLength", 0);
+    // Blender moves the focal length also where it states an angle.
+    if ((mode == 3 || moved == "FocalLength") && film > 0 && focal > 0) return 2 * std::atan(film * 25.4 / 2 / focal);
+    if (mode == 0 && (p.has("FieldOfViewY") || moved == "FieldOfViewY")) return number("FieldOfViewY", 0) * radians;
+    const double angle = number("FieldOfView", number("FieldOfViewX", number("Aperture", 40))) * radians;
+    const bool is_vertical = mode == 2 && p.number("FieldOfView", 0) != p.number("FieldOfViewX", -1);
+    return is_vertical ? angle : 2 * std::atan(std::tan(angle / 2) / aspect);
+}
+
+Views add_views(const Context& context, const std::vector<SceneNode>& nodes) {
+    Views views;
+    importers::Lights lights;
+    std::vector<std::pair<uint32_t, LightView>> added;
     for (const SceneNode& node : nodes) {
-        for (const uint32_t attribute : attributes_of(context, node.object, "Light")) {
-            lights.push_back(light_of(context, node, attribute));
-            brightest = std::max(brightest, *std::max_element(lights.back().color, lights.back().color + 3));
-        }
+        for (const uint32_t attribute : attributes_of(context, node.object, "Light"))
+            added.emplace_back(attribute, light_of(context, node, attribute, lights));
     }
-    // Physical intensities (watts, candela) assume falloff with distance. Lights here have none, so all of them are scaled
-    // until the brightest is 1.
-    if (brightest > 1) rt::log(context.host, RT_LOG_INFO, "light intensities are scaled by " + std::to_string(1 / brightest));
-    for (rt_light_desc& light : lights) {
-        for (float& c : light.color) c = brightest > 1 ? c / brightest : c;
-        rt::id(context.sink.light(context.sink.ctx, &light));
+    const std::vector<rt_u32> ids = lights.pass(context.host, context.sink);
+    for (size_t i = 0; i < added.size(); ++i) {
+        LightView& view = added[i].second;
+        view.id = ids[i];
+        view.scale = lights.scale();
+        views.lights[added[i].first].push_back(view);
     }
     // The view cameras of MotionBuilder, which old exporters write too ("Producer Front"), come last: the first camera is the
     // one that is shown.
     for (const bool producers : {false, true}) {
         for (const SceneNode& node : nodes) {
             if ((context.objects[node.object].name.rfind("Producer ", 0) == 0) != producers) continue;
-            for (const uint32_t attribute : cameras_of(context, node.object)) {
-                const rt_camera camera = camera_of(context, node, attribute);
-                rt::id(context.sink.camera(context.sink.ctx, &camera));
-            }
+            for (const uint32_t attribute : cameras_of(context, node.object))
+                views.cameras[attribute].push_back(add_camera(context, node, attribute));
         }
     }
+    return views;
 }
 
 }  // namespace fbx_import

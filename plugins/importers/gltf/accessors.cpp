@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "../common/base64.hpp"
+
 namespace gltf_import {
 namespace {
 
@@ -56,33 +58,6 @@ int hex_digit(char c) {
     if (c >= '0' && c <= '9') return c - '0';
     c = static_cast<char>(c | 0x20);
     return c >= 'a' && c <= 'f' ? c - 'a' + 10 : -1;
-}
-
-// Returns the position of the first character that is not base64, or npos.
-size_t decode_base64(std::string_view text, std::string& out) {
-    static const auto values = [] {
-        std::array<int8_t, 256> table;
-        table.fill(-1);
-        constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        for (size_t i = 0; i < digits.size(); ++i) table[static_cast<unsigned char>(digits[i])] = static_cast<int8_t>(i);
-        return table;
-    }();
-    out.reserve(text.size() / 4 * 3 + 3);
-    uint32_t bits = 0;
-    int bit_count = 0;
-    for (size_t i = 0; i < text.size(); ++i) {
-        const int value = values[static_cast<unsigned char>(text[i])];
-        if (value < 0) {
-            const size_t rest = text.find_first_not_of('=', i);
-            return rest == text.npos && text.size() - i <= 2 ? text.npos : i;
-        }
-        bits = (bits << 6 | uint32_t(value)) & 0xFFFFFF;
-        bit_count += 6;
-        if (bit_count < 8) continue;
-        bit_count -= 8;
-        out += static_cast<char>(bits >> bit_count & 0xFF);
-    }
-    return text.npos;
 }
 
 }  // namespace
@@ -267,7 +242,7 @@ bool decode_data_uri(const Value& uri, std::string& out) {
     const std::string_view head = text.substr(0, comma), data = text.substr(comma + 1);
     if (head.size() < 7 || head.substr(head.size() - 7) != ";base64") {
         out = percent_decoded(data);
-    } else if (const size_t bad = decode_base64(data, out); bad != data.npos) {
+    } else if (const size_t bad = importers::decode_base64(data, out); bad != data.npos) {
         uri.refuse(in_quotes(data.substr(bad, 1)) + " at character " + std::to_string(comma + 1 + bad), "base64");
     }
     return true;

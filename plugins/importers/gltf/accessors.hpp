@@ -24,14 +24,14 @@ class Accessors {
  public:
     explicit Accessors(const Document& document);
 
-    // Reads the accessor whose index is `reference`. types: those that are allowed there, "VEC2" or "VEC3 VEC4". count: how
+    // Reads the accessor with the index `reference`. types: the types that are allowed there, "VEC2" or "VEC3 VEC4". count: how
     // many elements it must have. Normalised integers become -1..1 or 0..1.
     Elements<float> floats(const Value& reference, std::string_view types, uint64_t count = kAnyCount);
     // For indices and numbers of joints. Refuses floats and signed integers.
     Elements<uint32_t> integers(const Value& reference, std::string_view types, uint64_t count = kAnyCount);
     // Whether the accessor has data of its own, or is all zeros.
     bool has_view(const Value& reference) const;
-    // The bytes of the view whose index is `reference`.
+    // The bytes of the view with the index `reference`.
     std::string_view view(const Value& reference);
 
  private:

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "rt_plugin.hpp"
+#include "../common/keys.hpp"
 
 namespace gltf_import {
 namespace {
@@ -64,36 +64,25 @@ class Clip {
  public:
     Clip(rt_u32 id, const rt_scene_sink& sink) : id_(id), sink_(sink) {}
 
-    // Adds the numbers from `first` on of each element: `count` of them, which one channel interpolates together.
+    // Adds one channel with `count` numbers of each element, from the number `first` on. They are interpolated together.
     void add(const Sampler& sampler, rt_u32 moves, rt_u32 target, rt_u32 component, size_t first, size_t count) const {
-        const size_t keys = sampler.times.size();
-        std::vector<double> values, handles;
-        for (size_t key = 0; key < keys; ++key) {
+        const size_t key_count = sampler.times.size();
+        importers::Keys keys;
+        keys.times = sampler.times;
+        for (size_t key = 0; key < key_count; ++key) {
             // A Hermite spline as a Bezier curve: its handles are as long as a third of the span, in time and along the
             // tangent.
             const double before = key > 0 ? sampler.times[key] - sampler.times[key - 1] : 0;
-            const double after = key + 1 < keys ? sampler.times[key + 1] - sampler.times[key] : 0;
+            const double after = key + 1 < key_count ? sampler.times[key + 1] - sampler.times[key] : 0;
             for (size_t k = first; k < first + count; ++k) {
-                values.push_back(sampler.value(key, k, 1));
+                keys.values.push_back(sampler.value(key, k, 1));
                 if (!sampler.is_cubic) continue;
-                handles.insert(handles.end(), {before / 3, before / 3 * sampler.value(key, k, 0), after / 3,
-                                               after / 3 * sampler.value(key, k, 2)});
+                keys.handles.insert(keys.handles.end(), {before / 3, before / 3 * sampler.value(key, k, 0), after / 3,
+                                                         after / 3 * sampler.value(key, k, 2)});
             }
         }
-        const std::vector<uint8_t> spans(keys, sampler.is_cubic ? RT_SPAN_CUBIC : RT_SPAN_STEP);
-        rt_channel_desc out{};
-        out.struct_bytes = sizeof out;
-        out.clip = id_;
-        out.moves = moves;
-        out.target = target;
-        out.component = component;
-        out.key_count = keys;
-        out.times_s = sampler.times.data();
-        out.values = values.data();
-        out.spans = sampler.is_cubic || sampler.is_step ? spans.data() : nullptr;
-        out.handles = sampler.is_cubic ? handles.data() : nullptr;
-        out.before = out.after = RT_OUTSIDE_HOLD;
-        if (sink_.channel(sink_.ctx, &out) != RT_OK) throw rt::Stopped();
+        if (sampler.is_cubic || sampler.is_step) keys.spans.assign(key_count, sampler.is_cubic ? RT_SPAN_CUBIC : RT_SPAN_STEP);
+        keys.pass(importers::channel(id_, 0, moves, target, component), sink_);
     }
     void add_vector(const Sampler& sampler, rt_u32 moves, rt_u32 target) const {
         for (rt_u32 k = 0; k < 3; ++k) add(sampler, moves, target, k, k, 1);

@@ -9,7 +9,7 @@
 
 namespace gltf_import {
 
-// The nodes whose weights of morphs an animation changes.
+// The nodes that have weights of morphs which an animation changes.
 std::set<size_t> nodes_with_animated_weights(const Document& document);
 
 void add_animations(const Document& document, Accessors& accessors, const NodeTree& tree, const Meshes& meshes,

@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/keys.hpp"
 #include "meshes.hpp"
-#include "rt_plugin.hpp"
 
 namespace gltf_import {
 namespace {
@@ -28,7 +28,7 @@ std::vector<rt_bone> bones_of(const Value& skin, Accessors& accessors, const Nod
         for (size_t row = 0; row < 3; ++row) {
             for (size_t column = 0; column < 4; ++column) {
                 bones[i].bone_from_mesh[4 * row + column] =
-                    inverse.count > 0 ? double(inverse.values[16 * i + 4 * column + row]) : kIdentity[4 * row + column];
+                    inverse.count > 0 ? double(inverse.values[16 * i + 4 * column + row]) : double(row == column);
             }
         }
     }
@@ -38,8 +38,8 @@ std::vector<rt_bone> bones_of(const Value& skin, Accessors& accessors, const Nod
 }  // namespace
 
 void Meshes::add_skin(const Value& skin, rt_u32 mesh, const std::vector<Part>& parts) {
-    const std::vector<rt_bone> bones = bones_of(skin, accessors_, tree_);
-    std::vector<rt_weight> weights;
+    importers::Skin passed;
+    passed.bones = bones_of(skin, accessors_, tree_);
     for (const Part& part : parts) {
         const Value attributes = part.primitive["attributes"];
         for (int set = 0;; ++set) {
@@ -50,21 +50,12 @@ void Meshes::add_skin(const Value& skin, rt_u32 mesh, const std::vector<Part>& p
             const Elements<float> shares = accessors_.floats(attributes[weights_key.c_str()], "VEC4", part.count);
             for (size_t i = 0; i < shares.values.size(); ++i) {
                 if (!(shares.values[i] > 0) || !std::isfinite(shares.values[i])) continue;
-                if (joints.values[i] >= bones.size()) refuse_joint(joints_of, joints.values[i], i / 4, skin);
-                weights.push_back({static_cast<rt_u32>(part.first + i / 4), joints.values[i], shares.values[i]});
+                if (joints.values[i] >= passed.bones.size()) refuse_joint(joints_of, joints.values[i], i / 4, skin);
+                passed.weights.push_back({static_cast<rt_u32>(part.first + i / 4), joints.values[i], shares.values[i]});
             }
         }
     }
-    if (weights.empty()) return;
-    rt_skin_desc out{};
-    out.struct_bytes = sizeof out;
-    out.mesh = mesh;
-    out.bone_count = static_cast<rt_u32>(bones.size());
-    out.method = RT_SKIN_LINEAR;
-    out.bones = bones.data();
-    out.weights = weights.data();
-    out.weight_count = weights.size();
-    if (sink_.skin(sink_.ctx, &out) != RT_OK) throw rt::Stopped();
+    if (!passed.weights.empty()) passed.pass(mesh, sink_);
 }
 
 // One target at a time, because all of them together may be much larger than the file: most vertices move in few of them.
@@ -98,7 +89,7 @@ std::vector<rt_u32> Meshes::add_morphs(const Value& mesh, const Value& node, rt_
                 normals.insert(normals.end(), &turned[3 * i], &turned[3 * i] + 3);
             }
         }
-        if (vertices.empty()) {  // the weights of an animation count it nevertheless
+        if (vertices.empty()) {  // an animation has a weight for it nevertheless
             vertices = {0};
             positions = normals = {0, 0, 0};
         }

@@ -23,7 +23,7 @@ uint32_t read_u32(std::string_view bytes, size_t at) {
     throw Error("byte " + std::to_string(byte) + ": found " + found + ", expected " + expected);
 }
 
-// Returns what the file is if it is no glTF file; nullptr: unknown.
+// Names the kind of a file that is no glTF file; nullptr: the kind is unknown.
 const char* other_kind(std::string_view bytes) {
     constexpr std::pair<std::string_view, const char*> kinds[] = {
         {"\x89PNG", "a PNG picture"},   {"\xFF\xD8\xFF", "a JPEG picture"}, {"PK\x03\x04", "a zip archive"},
@@ -36,7 +36,7 @@ const char* other_kind(std::string_view bytes) {
     return nullptr;
 }
 
-// Extensions without which this importer would deliver something else than the file means, and that it knows. Those of
+// The required extensions that this importer obeys. Those of
 // materials and textures are not listed: without them only the surface looks different.
 bool is_known(const std::string& name) {
     for (const char* known :

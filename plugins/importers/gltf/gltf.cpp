@@ -1,7 +1,7 @@
 // gltf.cpp -- the importer plugin for glTF 2.0.
 //
-// Facts about the format are from the Khronos Group's glTF 2.0 specification (2021) and its register of extensions. Only
-// nlohmann-json is used, for the JSON, whose syntax is checked before.
+// Facts about the format are from the Khronos Group's glTF 2.0 specification (2021) and its register of extensions. JSON
+// is parsed by nlohmann-json, after its syntax was checked.
 #include <new>
 #include <string_view>
 

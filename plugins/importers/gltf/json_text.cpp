@@ -59,7 +59,7 @@ class Checker {
         skip_blanks();
         if (at_ < text_.size()) fail("the end of the text");
     }
-    // Behind a value. Returns false if the array or object ends.
+    // Call it behind a value. Returns false if the array or object ends.
     bool separator() {
         if (open_.empty()) fail("an object");
         skip_blanks();

@@ -10,7 +10,7 @@
 
 namespace gltf_import {
 
-// What is wrong with the file, without its name.
+// The file is wrong. The text says where and why, without the file's name.
 struct Error : std::runtime_error {
     using std::runtime_error::runtime_error;
 };

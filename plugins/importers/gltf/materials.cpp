@@ -78,7 +78,7 @@ rt_u32 Materials::add(const Value& material) {
     store(base, 1, 1, out.color);
     out.texture = texture(color_texture(material));
     apply_metallic(pbr, out);
-    // One texture multiplies the colour. Light that another picture confines to a part of the surface cannot be kept.
+    // The host has one texture, which multiplies the colour. A picture that confines emission to a part of the surface is lost.
     const std::array<double, 3> emission = material.numbers<3>("emissiveFactor", {0, 0, 0});
     const double strength = extensions.object("KHR_materials_emissive_strength").number("emissiveStrength", 1);
     const bool shines = emission[0] > 0 || emission[1] > 0 || emission[2] > 0;

@@ -9,7 +9,7 @@
 
 namespace gltf_import {
 
-// Which set of texture coordinates the colour's texture uses, and how they are transformed (KHR_texture_transform).
+// The set of texture coordinates that the colour's texture uses, and how they are transformed (KHR_texture_transform).
 struct TextureMapping {
     uint64_t set = 0;
     std::array<double, 6> matrix = {1, 0, 0, 0, 1, 0};  // 2x3, row-major, from the file's coordinates

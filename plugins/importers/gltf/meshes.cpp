@@ -1,33 +1,39 @@
 #include "meshes.hpp"
 
 #include <algorithm>
+#include <limits>
 
+#include "../common/mesh_arrays.hpp"
 #include "rt_plugin.hpp"
 
 namespace gltf_import {
 namespace {
 
 constexpr size_t kNone = size_t(-1);
+// Infinite if the number is too large for a float.
+float to_float(double x) {
+    constexpr double kMost = std::numeric_limits<float>::max();
+    return x >= -kMost && x <= kMost ? static_cast<float>(x) : std::numeric_limits<float>::infinity();
+}
+
 enum Mode : uint64_t { kPoints, kLines, kLineLoop, kLineStrip, kTriangles, kStrip, kFan };
 
 }  // namespace
 
-struct Meshes::Geometry {
-    std::vector<float> positions, normals, uvs;
+struct Meshes::Geometry : importers::MeshArrays {
     std::vector<rt_u32> indices, materials;
     std::vector<Part> parts;
     bool has_normals = false, has_uvs = false;
 };
 
 Meshes::Meshes(const Document& document, Accessors& accessors, Materials& materials, const NodeTree& tree,
-               const rt_scene_sink& sink, bool moves, std::set<size_t> animated)
+               const rt_scene_sink& sink, std::set<size_t> animated)
     : accessors_(accessors),
       materials_(materials),
       tree_(tree),
       sink_(sink),
       meshes_(document.list("meshes")),
       skins_(document.list("skins")),
-      moves_(moves),
       animated_(std::move(animated)) {}
 
 void Meshes::place(size_t node) {
@@ -36,7 +42,7 @@ void Meshes::place(size_t node) {
     if (!mesh) return;
     copies_left_out_ = copies_left_out_ || value.object("extensions").has("EXT_mesh_gpu_instancing");
     const bool has_own_weights = value.has("weights") || animated_.count(node) > 0;
-    const std::tuple key(*mesh, moves_ ? skin.value_or(kNone) : kNone, moves_ && has_own_weights ? node : kNone);
+    const std::tuple key(*mesh, skin.value_or(kNone), has_own_weights ? node : kNone);
     const std::string name = value.text("name", meshes_[*mesh].text("name", ""));
     auto known = built_.find(key);
     if (known == built_.end()) known = built_.emplace(key, build(meshes_[*mesh], value, name)).first;
@@ -44,7 +50,6 @@ void Meshes::place(size_t node) {
     if (known->second.mesh == RT_NONE) return;
     rt_instance_desc out = rt::instance(known->second.mesh, name.c_str());
     out.node = tree_.id(node);
-    std::transform(tree_.placed(node).begin(), tree_.placed(node).end(), out.world_from_object, to_float);
     rt::id(sink_.instance(sink_.ctx, &out));
 }
 
@@ -73,15 +78,7 @@ Meshes::Built Meshes::build(const Value& mesh, const Value& node, const std::str
     g.normals.resize(g.has_normals ? g.positions.size() : 0);  // zeros: the vertex has none
     g.uvs.resize(g.has_uvs ? g.positions.size() / 3 * 2 : 0);
 
-    rt_mesh out{};
-    out.struct_bytes = sizeof out;
-    out.name = name.c_str();
-    out.positions = g.positions.data();
-    out.vertex_count = static_cast<rt_u32>(g.positions.size() / 3);
-    out.position_stride = out.normal_stride = 3 * sizeof(float);
-    out.uv_stride = 2 * sizeof(float);
-    if (g.has_normals) out.normals = g.normals.data();
-    if (g.has_uvs) out.uvs = g.uvs.data();
+    rt_mesh out = g.description(name.c_str());
     out.indices = g.indices.data();
     out.index_count = g.indices.size();
     out.face_count = g.indices.size() / 3;
@@ -89,7 +86,6 @@ Meshes::Built Meshes::build(const Value& mesh, const Value& node, const std::str
     if (std::any_of(g.materials.begin(), g.materials.end(), [&](rt_u32 m) { return m != g.materials[0]; }))
         out.face_materials = g.materials.data();
     built.mesh = rt::id(sink_.mesh(sink_.ctx, &out));
-    if (!moves_) return built;
     if (const auto skin = node.index("skin", skins_)) add_skin(skins_[*skin], built.mesh, g.parts);
     built.morphs = add_morphs(mesh, node, built.mesh, g.parts);
     return built;

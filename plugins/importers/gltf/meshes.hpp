@@ -22,9 +22,9 @@ struct Part {
 
 class Meshes {
  public:
-    // moves: the sink takes skins and morphs. animated: nodes whose weights of morphs an animation changes.
+    // animated: the nodes that have weights of morphs which an animation changes.
     Meshes(const Document& document, Accessors& accessors, Materials& materials, const NodeTree& tree,
-           const rt_scene_sink& sink, bool moves, std::set<size_t> animated);
+           const rt_scene_sink& sink, std::set<size_t> animated);
 
     // Adds an instance of the node's mesh, if it has one.
     void place(size_t node);
@@ -51,7 +51,6 @@ class Meshes {
     const NodeTree& tree_;
     const rt_scene_sink& sink_;
     const Value meshes_, skins_;
-    const bool moves_;
     const std::set<size_t> animated_;
     // By mesh, skin, and node if its weights are its own; size_t(-1): none.
     std::map<std::tuple<size_t, size_t, size_t>, Built> built_;

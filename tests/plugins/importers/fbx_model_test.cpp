@@ -5,59 +5,14 @@
 #include <cmath>
 
 #include "base/error.hpp"
-#include "fbx_writer.hpp"
-#include "measure.hpp"
+#include "fbx_model.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity::test {
 namespace {
 
-using Numbers = std::vector<double>;
-using Indices = std::vector<int32_t>;
-
-FbxNode node(const std::string& name, const std::vector<FbxNode::Value>& values, const std::vector<FbxNode>& children = {}) {
-    return {name, values, children};
-}
-FbxNode property(const std::string& name, const Numbers& numbers) {
-    FbxNode out = node("P", {text(name), text(""), text(""), text("A")});
-    for (const double x : numbers) out.values.push_back(x);
-    return out;
-}
-FbxNode geometry(int64_t id, const std::vector<FbxNode>& layers = {}) {
-    FbxNode out = node("Geometry", {whole(id), text("Geometry::Square"), text("Mesh")},
-                       {node("Vertices", {Numbers{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0}}),
-                        node("PolygonVertexIndex", {Indices{0, 1, -3, 0, 2, -4}})});
-    out.children.insert(out.children.end(), layers.begin(), layers.end());
-    return out;
-}
-FbxNode model(int64_t id, const std::string& name, const std::vector<FbxNode>& properties = {}) {
-    return node("Model", {whole(id), text("Model::" + name), text("Mesh")},
-                {node("Version", {whole(232)}), node("Properties70", {}, properties)});
-}
-FbxNode link(int64_t from, int64_t to, const std::string& property = "") {
-    FbxNode out = node("C", {text(property.empty() ? "OO" : "OP"), whole(from), whole(to)});
-    if (!property.empty()) out.values.push_back(text(property));
-    return out;
-}
-
-class FbxModelForm : public testing::TestWithParam<FbxForm> {
- protected:
-    Scene import(const std::vector<FbxNode>& objects, const std::vector<FbxNode>& links) {
-        const std::string version = std::to_string(GetParam().version);
-        const std::vector<FbxNode> all = {
-            node("FBXHeaderExtension", {}, {node("FBXVersion", {whole(GetParam().version)})}),
-            node("GlobalSettings", {}, {node("Version", {whole(1000)}), node("Properties70", {}, {property("TimeMode", {6})})}),
-            node("Objects", {}, objects), node("Connections", {}, links)};
-        return import_file(folder_.write("model.fbx", FbxWriter(GetParam()).file(all)));
-    }
-    TemporaryFolder folder_;
-};
-INSTANTIATE_TEST_SUITE_P(Forms, FbxModelForm,
-                         testing::Values(FbxForm{true, false, false, 7400}, FbxForm{true, true, false, 7700},
-                                         FbxForm{false, false, false, 7500}),
-                         [](const auto& form) {
-                             return std::string(form.param.binary ? "Binary" : "Ascii") + std::to_string(form.param.version);
-                         });
+class FbxModelForm : public FbxForms {};
+INSTANTIATE_TEST_SUITE_P(Forms, FbxModelForm, kFbxForms, fbx_form_name);
 
 TEST_P(FbxModelForm, ShowsAMeshBelowEachOfItsParents) {
     const Scene scene = import({geometry(1), model(2, "Shown"), model(3, "Left", {property("Lcl Translation", {-5, 0, 0})}),

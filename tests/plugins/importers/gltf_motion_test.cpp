@@ -239,7 +239,8 @@ TEST(GltfMotion, ChecksJointsAndKeys) {
               "skins[0].inverseBindMatrices: found 1 matrices, expected 2, one for each joint");
 }
 
-TEST(GltfMotion, PlacesWhatStandsStillWithoutNodes) {
+// The host places what stands still (Gltf.PlacesWhatStandsStill).
+TEST(GltfMotion, PassesNodesAlsoOfWhatStandsStill) {
     nlohmann::json file = everything();
     file.erase("animations");
     file.erase("skins");
@@ -248,9 +249,10 @@ TEST(GltfMotion, PlacesWhatStandsStillWithoutNodes) {
     file["meshes"][0]["primitives"][0].erase("targets");
     Recorder got;
     got.load(file.dump());
-    EXPECT_TRUE(got.nodes.empty());
+    ASSERT_EQ(got.nodes.size(), file["nodes"].size());
     ASSERT_EQ(got.instances.size(), 1u);
-    EXPECT_EQ(got.instances[0].world_from_object[7], 5);
+    ASSERT_NE(got.instances[0].node, 0u);
+    EXPECT_EQ(got.nodes[got.instances[0].node - 1].translation[1], 5);
 }
 
 }  // namespace

@@ -115,6 +115,33 @@ TEST_F(Gltf, ReadsStripsAndFans) {
     }
 }
 
+TEST_F(Gltf, PlacesWhatStandsStill) {
+    Model model = quad();
+    model.indices({0, 1, 2, 1, 3, 2});
+    model["extensions"] = {{"KHR_lights_punctual", {{"lights", {{{"type", "directional"}}, {{"type", "point"}}}}}}};
+    model["cameras"] = {{{"type", "perspective"}, {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}}}};
+    const double half = std::sqrt(0.5);
+    // A quarter turn about y, and a matrix (column by column) that doubles and moves by (0, 1, 0).
+    model["nodes"] = {{{"translation", {4, 5, 6}}, {"rotation", {0, half, 0, half}}, {"children", {1, 2, 3}}},
+                      {{"mesh", 0}, {"matrix", {2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 1, 0, 1}}},
+                      {{"camera", 0}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}},
+                      {{"translation", {0, 0, 1}}, {"extensions", {{"KHR_lights_punctual", {{"light", 1}}}}}}};
+    const Scene scene = import(model.text());
+    EXPECT_TRUE(scene.motion.nodes.empty());
+    const std::array<float, 3> min = {4, 6, 4}, max = {4, 8, 6};
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_NEAR(scene.bounds().min[k], min[k], 1e-5);
+        EXPECT_NEAR(scene.bounds().max[k], max[k], 1e-5);
+    }
+    ASSERT_EQ(scene.cameras.size(), 1u);
+    EXPECT_NEAR(scene.cameras[0].eye[1], 5, 1e-6);
+    EXPECT_NEAR(scene.cameras[0].target[0] - scene.cameras[0].eye[0], -1, 1e-6);  // along -z of the turned node
+    ASSERT_EQ(scene.lights.size(), 2u);
+    EXPECT_NEAR(scene.lights[0].values.position[0], 1, 1e-6);  // towards the light
+    EXPECT_NEAR(scene.lights[0].values.position[1], 0, 1e-6);
+    EXPECT_NEAR(scene.lights[1].values.position[0], 5, 1e-6);
+}
+
 TEST_F(Gltf, LeavesPointsAndLinesOutWithOneWarning) {
     Model model = quad();
     model.indices({0, 1, 2});

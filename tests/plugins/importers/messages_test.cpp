@@ -185,6 +185,39 @@ TEST_P(Messages, CanBeActedOn) {
     }
 }
 
+// Damage that crashes assimp, or that it refuses without a place.
+TEST(ColladaMessages, NameThePlace) {
+    if (!has_importer_for("a.dae")) GTEST_SKIP() << "SKIPPED: the importer for dae was not built";
+    const std::string good = seed_of("box.dae").bytes;
+    const TemporaryFolder folder;
+    const auto expect = [&](const std::string& what, const std::string& instead, const std::string& why) {
+        std::string bytes = good;
+        const size_t at = bytes.find(what);
+        ASSERT_NE(at, bytes.npos) << what;
+        try {
+            import_file(folder.write("damaged.dae", bytes.replace(at, what.size(), instead)));
+            ADD_FAILURE() << "was imported; expected: " << why;
+        } catch (const Error& error) {
+            EXPECT_NE(std::string(error.what()).find("damaged.dae: " + why), std::string::npos) << error.what();
+        }
+    };
+    expect("stride=\"3\"", "stride=\"999999993\"",
+           "line 30, column 14: found an <accessor> to 6 elements of 999999993 numbers from the number 0 on, expected elements "
+           "within the 18 numbers of '#roof-array'");
+    expect("count=\"18\">0 0 0 1 0 1 2 0 0 0 1 0 1 1 1 2 1 0</float_array>", "count=\"0\"/>",
+           "line 30, column 14: found an <accessor> to 6 elements");
+    expect("<polylist material=\"paint\" count=\"2\"", "<polylist material=\"paint\" count=\"999999992\"",
+           "line 42, column 19: found 2 numbers in <vcount>, expected 999999992, the 'count' of its <polylist>");
+    expect("0 1 4 3 1", "0 1 81 3 1", "line 43, column 18: found '81', expected an index below 6");
+    expect("semantic=\"POSITION\" source", "semantic=\"POSITION\" _ource",
+           "line 38, column 12: found <input> without 'source', expected that attribute");
+    expect("0 0 0 1 0 1 2", "0 0 0 \x01 0 1 2", "line 28, column 57: found '?', expected text: XML has no control bytes");
+    expect("<geometry id", "<geometry 1d", "line 25, column 15: found '1d=\"roof\"', expected an attribute");
+    expect("<?xml version=\"1.0\" ", "<?xml version=\"1.0\"",
+           "line 1, column 20: found 'encoding=\"utf-8\"?>', expected a space");
+    expect("<!-- Made", "<!- Made", "line 2, column 1: found '<!-', expected '<!--'");
+}
+
 INSTANTIATE_TEST_SUITE_P(Formats, Messages,
                          testing::Values("nodes.gltf", "glb", "polygons.obj", "roof.ply", "binary_ply", "roof.off", "roof.stl",
                                          "binary_stl", "box.dae", "3ds"),

@@ -1,0 +1,81 @@
+// mesh_arrays.hpp -- the arrays of a mesh, and vertices that are copied where their corners differ. For importers.
+#pragma once
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "rt_plugin.h"
+
+namespace importers {
+
+struct MeshArrays {
+    std::vector<float> positions, normals, uvs;  // 3, 3 and 2 for each vertex; normals and uvs may be empty
+    std::vector<rt_u32> sizes;                   // corners of each face; empty: all faces are triangles
+
+    // The host's description, but for the faces and their materials. The arrays must outlive it.
+    rt_mesh description(const char* name) const {
+        rt_mesh out{};
+        out.struct_bytes = sizeof out;
+        out.material = RT_NONE;
+        out.name = name;
+        out.positions = positions.data();
+        out.vertex_count = static_cast<rt_u32>(positions.size() / 3);
+        out.position_stride = out.normal_stride = 3 * sizeof(float);
+        out.uv_stride = 2 * sizeof(float);
+        out.normals = normals.empty() ? nullptr : normals.data();
+        out.uvs = uvs.empty() ? nullptr : uvs.data();
+        out.face_sizes = sizes.empty() ? nullptr : sizes.data();
+        return out;
+    }
+};
+
+// Gives each corner a vertex with its normal and uv: the file's own vertex for the first set of values, and a copy of it for
+// each further set.
+class VertexCopies {
+ public:
+    // copy_of: receives the file's vertex of each copy. Copies stand behind the file's vertices.
+    VertexCopies(MeshArrays& mesh, bool normals, bool uvs, std::vector<rt_u32>& copy_of)
+        : mesh_(mesh), copy_of_(copy_of), next_(mesh.positions.size() / 3), used_(next_.size()) {
+        if (normals) mesh.normals.resize(mesh.positions.size());
+        if (uvs) mesh.uvs.resize(mesh.positions.size() / 3 * 2);
+    }
+    rt_u32 vertex(rt_u32 point, const float* normal, const float* uv) {
+        if (!used_[point]) {
+            used_[point] = true;
+            store(point, normal, uv);
+            return point;
+        }
+        rt_u32 at = point;
+        for (int step = 0;; ++step, at = next_[at]) {
+            if (matches(at, normal, uv)) return at;
+            if (next_[at] == 0 || step == kMaxChain) break;
+        }
+        const rt_u32 copy = static_cast<rt_u32>(next_.size());
+        next_.push_back(next_[at]);
+        next_[at] = copy;
+        copy_of_.push_back(point);
+        for (int k = 0; k < 3; ++k) mesh_.positions.push_back(mesh_.positions[3 * size_t(point) + k]);
+        if (!mesh_.normals.empty()) mesh_.normals.resize(mesh_.normals.size() + 3);
+        if (!mesh_.uvs.empty()) mesh_.uvs.resize(mesh_.uvs.size() + 2);
+        store(copy, normal, uv);
+        return copy;
+    }
+
+ private:
+    // Values of one vertex that are compared, at most (at the hub of a fan there are many). Beyond, a further copy is made.
+    static constexpr int kMaxChain = 32;
+    bool matches(rt_u32 at, const float* normal, const float* uv) const {
+        return (mesh_.normals.empty() || std::memcmp(&mesh_.normals[3 * size_t(at)], normal, 12) == 0) &&
+               (mesh_.uvs.empty() || std::memcmp(&mesh_.uvs[2 * size_t(at)], uv, 8) == 0);
+    }
+    void store(rt_u32 at, const float* normal, const float* uv) {
+        if (!mesh_.normals.empty()) std::copy_n(normal, 3, &mesh_.normals[3 * size_t(at)]);
+        if (!mesh_.uvs.empty()) std::copy_n(uv, 2, &mesh_.uvs[2 * size_t(at)]);
+    }
+    MeshArrays& mesh_;
+    std::vector<rt_u32>& copy_of_;
+    std::vector<rt_u32> next_;
+    std::vector<bool> used_;
+};
+
+}  // namespace importers

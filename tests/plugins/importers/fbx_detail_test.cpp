@@ -1,0 +1,178 @@
+// fbx_detail_test.cpp -- sets of texture coordinates, smoothing, visibility, and what moves lights and cameras in FBX files.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "fbx_model.hpp"
+#include "scene/motion/pose.hpp"
+
+namespace clarity::test {
+namespace {
+
+constexpr int64_t kSecond = 46186158000;
+
+class FbxDetailForm : public FbxForms {};
+INSTANTIATE_TEST_SUITE_P(Forms, FbxDetailForm, kFbxForms, fbx_form_name);
+
+bool warns_of(const Scene& scene, const std::string& text) {
+    for (const std::string& warning : scene.warnings) {
+        if (warning.find(text) != warning.npos) return true;
+    }
+    return false;
+}
+
+FbxNode uv_set(int64_t number, const std::string& name, double first) {
+    Numbers uvs;
+    for (int i = 0; i < 6; ++i) uvs.insert(uvs.end(), {first + i, 0});
+    return node("LayerElementUV", {whole(number)},
+                {node("Name", {text(name)}), node("MappingInformationType", {text("ByPolygonVertex")}),
+                 node("ReferenceInformationType", {text("Direct")}), node("UV", {uvs})});
+}
+FbxNode material(int64_t id) {
+    return node("Material", {whole(id), text("Material::M"), text("")}, {node("Version", {whole(102)})});
+}
+FbxNode texture(int64_t id, const std::vector<FbxNode>& properties) {
+    return node("Texture", {whole(id), text("Texture::T"), text("")}, {node("Properties70", {}, properties)});
+}
+
+TEST_P(FbxDetailForm, TakesTheSetOfCoordinatesThatATextureNames) {
+    const FbxNode slots = node("LayerElementMaterial", {whole(0)},
+                               {node("MappingInformationType", {text("ByPolygon")}), node("Materials", {Indices{0, 1}})});
+    const auto first_coordinates = [&](const std::string& of_first, const std::string& of_second) {
+        const Scene scene =
+            import({geometry(1, {uv_set(0, "plain", 0), uv_set(1, "detail", 10), slots}), model(2, "A"), material(3),
+                    material(4), texture(5, {word("UVSet", of_first)}), texture(6, {word("UVSet", of_second)})},
+                   {link(2, 0), link(1, 2), link(3, 2), link(4, 2), link(5, 3, "DiffuseColor"), link(6, 4, "DiffuseColor")});
+        return std::pair(scene.uvs[2 * size_t(scene.triangles[0])], scene.uvs[2 * size_t(scene.triangles[3])]);
+    };
+    EXPECT_EQ(first_coordinates("plain", "plain"), std::pair(0.f, 3.f));
+    EXPECT_EQ(first_coordinates("detail", "detail"), std::pair(10.f, 13.f));
+    EXPECT_EQ(first_coordinates("plain", "detail"), std::pair(0.f, 13.f));
+    EXPECT_EQ(first_coordinates("detail", "default"), std::pair(10.f, 3.f)) << "the first set, if there is none of the name";
+}
+
+TEST_P(FbxDetailForm, WarnsThatTransformsOfTexturesAreLeftOut) {
+    const auto scene_with = [&](const std::vector<FbxNode>& properties) {
+        return import({geometry(1), model(2, "A"), material(3), texture(5, properties)},
+                      {link(2, 0), link(1, 2), link(3, 2), link(5, 3, "DiffuseColor")});
+    };
+    EXPECT_TRUE(warns_of(scene_with({property("Scaling", {2, 2, 1})}), "the transforms of 1 textures are left out"));
+    EXPECT_FALSE(warns_of(scene_with({property("Scaling", {1, 1, 1})}), "transforms"));
+}
+
+// Two triangles that meet at a right angle along the edge from vertex 0 to vertex 1.
+FbxNode roof(const std::string& mapping, const Indices& smoothing) {
+    return node("Geometry", {whole(1), text("Geometry::Roof"), text("Mesh")},
+                {node("Vertices", {Numbers{0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1}}),
+                 node("PolygonVertexIndex", {Indices{0, 1, -3, 1, 0, -4}}), node("Edges", {Indices{0, 1, 2, 4, 5}}),
+                 node("LayerElementSmoothing", {whole(0)},
+                      {node("MappingInformationType", {text(mapping)}), node("Smoothing", {smoothing})})});
+}
+
+TEST_P(FbxDetailForm, SmoothsByGroupsOfFacesAndByEdges) {
+    // The normal of the first triangle's corner at vertex 0, or zeros.
+    const auto normal = [&](const std::string& mapping, const Indices& smoothing) {
+        const Scene scene = import({roof(mapping, smoothing), model(2, "A")}, {link(2, 0), link(1, 2)});
+        const size_t at = 3 * size_t(scene.triangles[0]);
+        return scene.normals.empty() ? std::array<float, 3>{}
+                                     : std::array<float, 3>{scene.normals[at], scene.normals[at + 1], scene.normals[at + 2]};
+    };
+    const auto expect = [](const std::array<float, 3>& found, float x, float y, float z) {
+        EXPECT_NEAR(found[0], x, 1e-6);
+        EXPECT_NEAR(found[1], y, 1e-6);
+        EXPECT_NEAR(found[2], z, 1e-6);
+    };
+    const float half = std::sqrt(0.5f);
+    expect(normal("ByPolygon", {1, 1}), 0, half, half);
+    expect(normal("ByPolygon", {3, 6}), 0, half, half);  // both are in the second group
+    expect(normal("ByPolygon", {1, 2}), 0, 0, 1);
+    expect(normal("ByPolygon", {0, 0}), 0, 0, 0);
+    expect(normal("ByEdge", {1, 0, 0, 0, 0}), 0, half, half);
+    expect(normal("ByEdge", {0, 1, 1, 1, 1}), 0, 0, 1);
+    expect(normal("ByEdge", {0, 0, 0, 0, 0}), 0, 0, 0);
+}
+
+// A clip of one second whose objects `nodes` move properties: {id of the curve node, object, property, component, end value}.
+struct Moved {
+    int64_t object;
+    std::string property, component;
+    double from, to;
+};
+void add_clip(const std::vector<Moved>& moved, std::vector<FbxNode>& objects, std::vector<FbxNode>& links) {
+    objects.push_back(node("AnimationStack", {whole(100), text("AnimStack::Move"), text("")}, {node("Properties70", {}, {})}));
+    objects.push_back(node("AnimationLayer", {whole(101), text("AnimLayer::Base"), text("")}, {node("Version", {whole(1)})}));
+    links.push_back(link(101, 100));
+    int64_t id = 102;
+    for (const Moved& m : moved) {
+        objects.push_back(
+            node("AnimationCurveNode", {whole(id), text("AnimCurveNode::N"), text("")}, {node("Version", {whole(1)})}));
+        objects.push_back(node("AnimationCurve", {whole(id + 1), text("AnimCurve::"), text("")},
+                               {node("KeyTime", {Numbers{0, double(kSecond)}}), node("KeyValueFloat", {Numbers{m.from, m.to}}),
+                                node("KeyAttrFlags", {Indices{4}}), node("KeyAttrDataFloat", {Numbers{0, 0, 0, 0}}),
+                                node("KeyAttrRefCount", {Indices{2}})}));
+        links.push_back(link(id, 101));
+        links.push_back(link(id, m.object, m.property));
+        links.push_back(link(id + 1, id, "d|" + m.component));
+        id += 2;
+    }
+}
+
+TEST_P(FbxDetailForm, MovesColoursOfLightsAndAnglesOfCameras) {
+    const auto attribute = [](int64_t id, const std::string& type, const std::vector<FbxNode>& properties) {
+        return node("NodeAttribute", {whole(id), text("NodeAttribute::N"), text(type)}, {node("Properties70", {}, properties)});
+    };
+    std::vector<FbxNode> objects = {geometry(1),
+                                    model(2, "A"),
+                                    model(3, "Lamp"),
+                                    attribute(4, "Light", {property("Color", {1, 0.5, 0.25}), property("Intensity", {100})}),
+                                    model(5, "Sun"),
+                                    attribute(6, "Light", {property("Color", {1, 1, 1}), property("Intensity", {200})}),
+                                    model(7, "Eye"),
+                                    attribute(8, "Camera",
+                                              {property("ApertureMode", {1}), property("FieldOfView", {90}),
+                                               property("AspectWidth", {2}), property("AspectHeight", {1})}),
+                                    model(9, "Lens"),
+                                    attribute(10, "Camera",
+                                              {property("ApertureMode", {3}), property("FocalLength", {25.4}),
+                                               property("FilmHeight", {2}), property("FilmWidth", {2})})};
+    std::vector<FbxNode> links = {link(2, 0), link(1, 2), link(3, 0), link(4, 3), link(5, 0),
+                                  link(6, 5), link(7, 0), link(8, 7), link(9, 0), link(10, 9)};
+    add_clip({{4, "Intensity", "Intensity", 100, 0},
+              {6, "Color", "Y", 1, 0},
+              {8, "FieldOfView", "FieldOfView", 90, 60},
+              {10, "FocalLength", "FocalLength", 25.4, 50.8}},
+             objects, links);
+    const Scene scene = import(objects, links);
+    ASSERT_EQ(scene.lights.size(), 2u);
+    ASSERT_EQ(scene.cameras.size(), 2u);
+    // The brightest light has the intensity 2, so both are halved.
+    const Pose begin = evaluate(scene, "Move", 0), middle = evaluate(scene, "Move", 0.5), end = evaluate(scene, "Move", 1);
+    EXPECT_NEAR(begin.lights[0].values.color[1], 0.25, 1e-6);
+    EXPECT_NEAR(middle.lights[0].values.color[0], 0.25, 1e-6);
+    EXPECT_NEAR(middle.lights[0].values.color[2], 0.0625, 1e-6);
+    EXPECT_NEAR(end.lights[0].values.color[0], 0, 1e-6);
+    EXPECT_NEAR(middle.lights[1].values.color[0], 1, 1e-6) << "a component without a curve keeps its value";
+    EXPECT_NEAR(middle.lights[1].values.color[1], 0.5, 1e-6);
+    // 90 degrees across an aspect of 2; a film as high as 2 inches behind a lens of 1 and 2 inches.
+    EXPECT_NEAR(begin.cameras[0].fov_y_rad, 2 * std::atan(0.5), 1e-6);
+    EXPECT_NEAR(end.cameras[0].fov_y_rad, 2 * std::atan(std::tan(std::acos(-1) / 6) / 2), 1e-6);
+    EXPECT_NEAR(begin.cameras[1].fov_y_rad, std::acos(0.), 1e-6);
+    EXPECT_NEAR(end.cameras[1].fov_y_rad, 2 * std::atan(0.5), 1e-6);
+}
+
+TEST_P(FbxDetailForm, ShowsWhatItsParentHidesOnlyWhereItSays) {
+    std::vector<FbxNode> objects = {geometry(1), model(2, "Hidden", {property("Visibility", {0})}), model(3, "Follows"),
+                                    model(4, "Own", {property("Visibility Inheritance", {0})})};
+    std::vector<FbxNode> links = {link(2, 0), link(3, 2), link(4, 2), link(1, 3), link(1, 4)};
+    const Scene rest = import(objects, links);
+    ASSERT_EQ(rest.instances.size(), 2u);
+    EXPECT_FALSE(rest.instances[0].visible);
+    EXPECT_TRUE(rest.instances[1].visible);
+    add_clip({{2, "Visibility", "Visibility", 0, 1}}, objects, links);
+    const Scene scene = import(objects, links);
+    EXPECT_FALSE(evaluate(scene, "Move", 0.25).instances[0].visible);
+    EXPECT_TRUE(evaluate(scene, "Move", 0.75).instances[0].visible) << "its parent is seen then";
+}
+
+}  // namespace
+}  // namespace clarity::test
