@@ -148,7 +148,8 @@ inline void ReadingSink::check_message(const std::string& text) const {
     bool is_readable = text.size() >= 10 && text.size() < 4000;
     for (const char c : text) is_readable = is_readable && static_cast<unsigned char>(c) >= ' ' && c != 0x7F;
     // Words of the file, in quotes, may be any.
-    const size_t first = text.find('\''), last = text.rfind('\'');
+    constexpr const char* kQuotes = "'`";
+    const size_t first = text.find_first_of(kQuotes), last = text.find_last_of(kQuotes);
     const std::string own = first == last ? text : text.substr(0, first) + text.substr(last);
     for (const char* words :
          {"std::", "vector::", "basic_string", "json.exception", "nknown error", "nknown type", "out of memory"})

@@ -115,6 +115,11 @@ void check(const Header& header) {
         throw std::runtime_error("found the PLY format " + quoted(header.format) +
                                  ", expected ascii, binary_little_endian or binary_big_endian");
     }
+    for (const Element& element : header.elements) {
+        // OpenMesh counts the faces of the first one, and fails an assertion at the properties of the second.
+        if (header.find(element.name) != &element)
+            throw std::runtime_error("the PLY header has two elements " + quoted(element.name) + ", expected one");
+    }
     const Element *vertices = header.find("vertex"), *faces = header.find("face");
     if (!vertices) throw std::runtime_error("the PLY header has no element 'vertex'");
     if (!faces) {

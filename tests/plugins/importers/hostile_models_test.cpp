@@ -54,6 +54,10 @@ const std::string kPlyVertices =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
 
 TEST_F(HostileModel, PlyHeaderWithoutEnd) {
+    expect_refused("twice.ply",
+                   kPlyVertices + "element face 0\nproperty list uint int vertex_indices\nproperty list uchar float s\n" +
+                       "element face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
+                   "two elements 'face'");
     expect_refused("endless.ply", kPlyVertices + "element face 1\n", "no end");
 }
 TEST_F(HostileModel, PlyFaceOfFourBillionCorners) {
