@@ -1,6 +1,8 @@
 /* reduce.cl -- the bounds of many boxes and of their centres, in two passes: each work-group reduces a part, then one group
  * reduces the groups' results. Minima and maxima have no rounding, so the result does not depend on the order. */
 
+#pragma OPENCL FP_CONTRACT OFF /* centres are the same on every device */
+
 /* A box as rt_prim has it: 32 B. */
 typedef struct rt_build_box {
     float lo[3];
