@@ -91,14 +91,16 @@ class DeviceTopology : public ::testing::TestWithParam<BuildForm> {
     }
     BuildKernels kernels_{device(), GetParam()};
     const PluginRegistry plugins_ = PluginRegistry::discover();
+    void lbvh_is_the_tree_of_the_host(std::initializer_list<size_t> counts);
+    void bvh4_packs_it_whole(std::initializer_list<size_t> counts);
 };
 
-TEST_P(DeviceTopology, LbvhIsTheTreeOfTheHost) {
+void DeviceTopology::lbvh_is_the_tree_of_the_host(std::initializer_list<size_t> counts) {
     const rt_plugin* lbvh = plugins_.accel("lbvh");
     ASSERT_TRUE(lbvh);
     const rt_device_build build = device_build_of(*lbvh);
     ASSERT_TRUE(build.topology);
-    for (const size_t count : {0u, 1u, 2u, 3u, 255u, 256u, 257u, 513u, 5000u, 70000u}) {
+    for (const size_t count : counts) {
         // One plan for all poses, as in a scene that moves.
         DevicePlan plan(kernels_);
         const cl::Buffer boxes = kernels_.buffer(count * sizeof(rt_prim));
@@ -190,13 +192,13 @@ struct WideTree {
     }
 };
 
-TEST_P(DeviceTopology, Bvh4PacksItWhole) {
+void DeviceTopology::bvh4_packs_it_whole(std::initializer_list<size_t> counts) {
     const rt_plugin *lbvh = plugins_.accel("lbvh"), *bvh4 = plugins_.accel("bvh4");
     ASSERT_TRUE(lbvh && bvh4);
     const rt_device_build build = device_build_of(*lbvh), layout = device_build_of(*bvh4);
     ASSERT_TRUE(build.topology && layout.pack);
     const ParameterValues params = default_parameters(*bvh4);
-    for (const size_t count : {0u, 1u, 2u, 4u, 5u, 17u, 512u, 513u, 5000u, 300000u}) {
+    for (const size_t count : counts) {
         DevicePlan plan(kernels_);
         const cl::Buffer boxes = kernels_.buffer(count * sizeof(rt_prim)), order = kernels_.buffer(4 * count);
         const uint64_t elements = layout.elements(0, count, params.data());
@@ -223,6 +225,19 @@ TEST_P(DeviceTopology, Bvh4PacksItWhole) {
             EXPECT_LE(3 * (wide.depth - 1) + 1, planned.defines.at("BVH4_STACK"));
         }
     }
+}
+
+TEST_P(DeviceTopology, LbvhIsTheTreeOfTheHost) {
+    lbvh_is_the_tree_of_the_host({0, 1, 2, 3, 255, 256, 257, 513, 3000});
+}
+TEST_P(DeviceTopology, LbvhIsTheTreeOfTheHostForMany) {
+    lbvh_is_the_tree_of_the_host({70000, 300000});
+}
+TEST_P(DeviceTopology, Bvh4PacksItWhole) {
+    bvh4_packs_it_whole({0, 1, 2, 4, 5, 17, 512, 513, 3000});
+}
+TEST_P(DeviceTopology, Bvh4PacksItWholeForMany) {
+    bvh4_packs_it_whole({300000});  // all three passes
 }
 
 TEST_P(DeviceTopology, APlanThatCannotBeMadeSaysWhy) {
