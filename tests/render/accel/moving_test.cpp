@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -181,7 +182,10 @@ TEST(MovingAccel, RaysHitWhatTheyHitInAFreshBuild) {
         rays.push_back(ray);
     }
     size_t hit = 0;
+    Workbench& bench = Workbench::get();
+    const std::vector<std::string> tried = bench.fast_accels();  // in quick tests one, whose kernels are compiled
     for (const rt_plugin* plugin : refitting()) {
+        if (std::find(tried.begin(), tried.end(), plugin->id) == tried.end()) continue;
         SCOPED_TRACE(plugin->id);
         MovingAccel moving(rings(), build(rings(), *plugin));
         const auto refitted = trace(moved_scene, moving.move(waved(*rings(), 3), progress).accel, rays);
