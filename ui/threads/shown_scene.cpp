@@ -38,6 +38,7 @@ void ShownScene::update(const std::shared_ptr<const ImportedScene>& loaded, cons
         cameras_ = posed_->cameras;
         lights_ = posed_->lights;
         pose_ = {};
+        geometry_ = {};
         loaded_ = loaded;
         visible_.reset();
     }
@@ -52,6 +53,7 @@ void ShownScene::place(const PoseTime& time) {
     const Scene& rest = *loaded_->scene;
     if (!time.time_s) {
         posed_ = loaded_->scene;
+        geometry_ = {};
         cameras_ = rest.cameras;
         lights_ = rest.lights;
     } else {
@@ -59,8 +61,16 @@ void ShownScene::place(const PoseTime& time) {
         if (!has_geometry_of(*posed_, pose)) posed_ = std::make_shared<const Scene>(clarity::posed(rest, pose));
         cameras_ = std::move(pose.cameras);
         lights_ = std::move(pose.lights);
+        geometry_ = std::move(pose);
     }
     pose_ = time;
+}
+
+Pose ShownScene::geometry() const {
+    Pose pose = geometry_;
+    for (const rt_u32 i : hidden_)
+        if (i < pose.instances.size()) pose.instances[i].visible = false;
+    return pose;
 }
 
 }  // namespace clarity::ui

@@ -241,11 +241,9 @@ TEST(MovingAccel, OnlyWhatMovedIsRefitted) {
 TEST(MovingAccel, AMeshThatIsKeptApartMovesAlone) {
     Progress progress;
     const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh8");
-    BuildTarget target;
-    target.apart.assign(rings()->instances.size(), false);
-    target.apart[1] = true;
-    MovingAccel moving(
-        rings(), std::make_shared<AccelData>(build_accel(*rings(), plugin, default_parameters(plugin), progress, target)));
+    auto scene = std::make_shared<Scene>(*rings());
+    scene->instances[1].apart = true;
+    MovingAccel moving(scene, build(scene, plugin));
     moving.move(pose_of(*rings()), progress);
     Pose pose = pose_of(*rings());
     pose.meshes.push_back(waved(*rings(), 1).meshes[1]);
