@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <cstring>
+#include <utility>
 #include <vector>
 
 #include "rt_plugin.h"
@@ -76,6 +77,29 @@ class VertexCopies {
     std::vector<rt_u32>& copy_of_;
     std::vector<rt_u32> next_;
     std::vector<bool> used_;
+};
+
+// The host's vertices of each vertex of a file: itself, and its copies.
+class CopiesOfVertices {
+ public:
+    // copy_of: the file's vertex of each copy; the copies stand behind the file's `points` vertices.
+    CopiesOfVertices(size_t points, const std::vector<rt_u32>& copy_of) : points_(points) {
+        for (const rt_u32 vertex : copy_of) copies_.emplace_back(vertex, static_cast<rt_u32>(points + copies_.size()));
+        std::sort(copies_.begin(), copies_.end());
+    }
+    // Calls body(vertex) for each; for none, if the file has no such vertex.
+    template <class Body>
+    void each(int64_t vertex, const Body& body) const {
+        if (vertex < 0 || static_cast<uint64_t>(vertex) >= points_) return;
+        const rt_u32 v = static_cast<rt_u32>(vertex);
+        body(v);
+        auto at = std::lower_bound(copies_.begin(), copies_.end(), std::make_pair(v, rt_u32(0)));
+        for (; at != copies_.end() && at->first == v; ++at) body(at->second);
+    }
+
+ private:
+    size_t points_;
+    std::vector<std::pair<rt_u32, rt_u32>> copies_;
 };
 
 }  // namespace importers

@@ -18,8 +18,8 @@ Layer::Layer(Mapping mapping, size_t width, std::vector<float> values, std::vect
 // zbrush_d20_6100_ascii. Values of edges are left out: corners have none.
 Layer::Layer(const Document& document, const Node* layer, const char* values, const char* indices, size_t width) {
     if (!layer) return;
-    const std::string_view mapping = document.text(document.child(layer, "MappingInformationType"), 0);
-    const std::string_view reference = document.text(document.child(layer, "ReferenceInformationType"), 0);
+    const std::string_view mapping = document.text(layer, "MappingInformationType");
+    const std::string_view reference = document.text(layer, "ReferenceInformationType");
     if (mapping == "ByEdge" || mapping == "NoMappingInformation") return;
     // Old exporters write IndexToDirect without indices, and mean Direct.
     const bool is_indexed = reference == "IndexToDirect" || reference == "Index";
@@ -59,8 +59,8 @@ std::vector<int32_t> material_slots(const Document& document, const Node& geomet
     const Node* layer = document.child(&geometry, "LayerElementMaterial");
     // Up to version 5.8: `MaterialAssignation: "ByPolygon"` and `Materials` in the model itself (measured from
     // max2009_blob_5800_ascii).
-    std::string_view mapping = document.text(document.child(&geometry, "MaterialAssignation"), 0);
-    if (layer) mapping = document.text(document.child(layer, "MappingInformationType"), 0);
+    std::string_view mapping = document.text(&geometry, "MaterialAssignation");
+    if (layer) mapping = document.text(layer, "MappingInformationType");
     std::vector<int32_t> slots = document.numbers<int32_t>(layer ? layer : &geometry, "Materials");
     for (int32_t& slot : slots) slot = std::max(slot, 0);
     if (slots.empty()) return {};
@@ -78,7 +78,7 @@ std::vector<float> normals_of_smoothing(const Document& document, const Node& ge
     const Node* layer = document.child(&geometry, "LayerElementSmoothing");
     const std::vector<int32_t> values = document.numbers<int32_t>(layer, "Smoothing");
     if (std::all_of(values.begin(), values.end(), [](int32_t value) { return value == 0; })) return {};
-    const std::string_view mapping = document.text(document.child(layer, "MappingInformationType"), 0);
+    const std::string_view mapping = document.text(layer, "MappingInformationType");
     std::vector<int32_t> of_corner(corners.size());  // the groups of its face, or whether the edge that begins there is smooth
     if (mapping == "ByEdge") {
         const std::vector<int32_t> edges = document.numbers<int32_t>(&geometry, "Edges");

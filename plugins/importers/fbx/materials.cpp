@@ -53,45 +53,26 @@ bool is_transformed(const Properties& p) {
 
 }  // namespace
 
-std::vector<const Node*> Materials::of(uint32_t model) const {
-    std::vector<const Node*> out;
-    for (const uint32_t material : context_.objects.below(model, "Material")) out.push_back(context_.objects[material].node);
-    if (!out.empty()) return out;
-    // Up to version 5.8 they are blocks of the model (measured from max2009_blob_5800_ascii).
-    for (const Node& child : context_.document.children(*context_.objects[model].node)) {
-        if (child.name == "Material" && child.first_child) out.push_back(&child);
-    }
-    return out;
-}
-
 // UVSet: the `Name` of a layer. Source: FBX SDK help, "FbxTexture".
 std::vector<std::string_view> Materials::uv_sets(uint32_t model) const {
     std::vector<std::string_view> out;
-    for (const uint32_t material : context_.objects.below(model, "Material")) {
+    for (const uint32_t material : of(model)) {
         const uint32_t found = texture(material, model);
         out.push_back(found == kNoObject ? std::string_view() : context_.properties(found).text("UVSet"));
     }
     return out;
 }
 
-rt_u32 Materials::id(const Node* material, uint32_t model) {
+rt_u32 Materials::id(uint32_t material, uint32_t model) {
     const auto known = ids_.find(material);
     if (known != ids_.end()) return known->second;
-    Object object;
-    object.node = material;
-    object.kind = "Material";
-    uint32_t number = kNoObject;
-    for (const uint32_t i : context_.objects.below(model, "Material")) {
-        if (context_.objects[i].node == material) number = i;
-    }
-    const bool has_id = context_.document.value(*material, 0).kind == Value::integer;
-    const std::string name = plain_name(context_.document, context_.document.text(material, has_id ? 1 : 0));
+    const std::string& name = context_.objects[material].name;
     rt_material_desc out{};
     out.struct_bytes = sizeof out;
     if (!name.empty()) out.name = name.c_str();
-    const uint32_t found = texture(number, model);
+    const uint32_t found = texture(material, model);
     out.texture = found == kNoObject ? RT_NONE : picture(found);
-    read_phong(context_.templates.of(object), out.texture != RT_NONE, out);
+    read_phong(context_.properties(material), out.texture != RT_NONE, out);
     return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
 }
 
@@ -99,8 +80,7 @@ rt_u32 Materials::id(const Node* material, uint32_t model) {
 // beside the material (measured from max2009_blob_6100_binary and the files that Blender 2.79 writes).
 uint32_t Materials::texture(uint32_t material, uint32_t model) const {
     const Objects& objects = context_.objects;
-    const std::vector<const Link*> below = material == kNoObject ? std::vector<const Link*>() : objects.below(material);
-    for (const Link* link : below) {
+    for (const Link* link : objects.below(material)) {
         const Object& object = objects[link->from];
         const bool is_color = link->property == "DiffuseColor" || link->property.find("base_color") != link->property.npos ||
                               link->property.find("baseColor") != link->property.npos;

@@ -55,7 +55,7 @@ void for_corners(MeshData& mesh, const Body& body) {
 struct Wanted {
     uint32_t object, node;
     const Node* geometry;
-    std::vector<const Node*> materials;
+    std::vector<uint32_t> materials;
     std::vector<std::string_view> uv_sets;  // the set that the texture of each material names
 };
 
@@ -67,7 +67,7 @@ std::vector<const Node*> uv_layers(const Document& document, const Wanted& wante
         const Node* found = out[0];
         for (const Node& layer : document.children(*wanted.geometry)) {
             const bool is_set = layer.name == "LayerElementUV" && !name.empty();
-            if (is_set && document.text(document.child(&layer, "Name"), 0) == name) found = &layer;
+            if (is_set && document.text(&layer, "Name") == name) found = &layer;
         }
         const auto at = std::find(out.begin(), out.end(), found);
         of_slot.push_back(static_cast<size_t>(at - out.begin()));
@@ -106,7 +106,7 @@ MeshData read_mesh(const Context& context, const Wanted& wanted) {
     });
     mesh.points = mesh.positions.size() / 3;
     mesh.positions.resize(3 * mesh.points);
-    if (mesh.points >= RT_NONE / 2) throw Broken(document.place(geometry) + ": there are more vertices than a mesh can have");
+    if (mesh.points >= RT_NONE / 2) document.fail(geometry, "there are more vertices than a mesh can have");
     read_faces(mesh);
     mesh.slots = material_slots(document, geometry, mesh.faces);
     const MeshCounts counts = {mesh.indices.size(), mesh.points, mesh.faces};
@@ -186,15 +186,14 @@ uint64_t numbers_in(const Document& document, const Node& geometry) {
 std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<SceneNode>& nodes) {
     Materials materials(context);
     // A geometry becomes one mesh for each list of materials that nodes give it.
-    std::map<std::pair<const Node*, std::vector<const Node*>>, size_t> known;
+    std::map<std::pair<uint32_t, std::vector<uint32_t>>, size_t> known;
     std::vector<Wanted> wanted;
     std::vector<std::pair<uint32_t, size_t>> shown;  // node, number in `wanted`
     for (uint32_t n = 0; n < nodes.size(); ++n) {
         for (const uint32_t object : meshes_of(context, nodes[n].object)) {
-            const Node* geometry = context.objects[object].node;
-            const std::vector<const Node*> slots = materials.of(nodes[n].object);
-            const auto [at, is_new] = known.emplace(std::make_pair(geometry, slots), wanted.size());
-            if (is_new) wanted.push_back({object, n, geometry, slots, materials.uv_sets(nodes[n].object)});
+            const std::vector<uint32_t> slots = materials.of(nodes[n].object);
+            const auto [at, is_new] = known.emplace(std::make_pair(object, slots), wanted.size());
+            if (is_new) wanted.push_back({object, n, context.objects[object].node, slots, materials.uv_sets(nodes[n].object)});
             shown.push_back({n, at->second});
         }
     }
@@ -211,7 +210,7 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
         for (size_t i = first; i < end; ++i) {
             const Wanted& w = wanted[i];
             std::vector<rt_u32> ids;
-            for (const Node* material : w.materials) ids.push_back(materials.id(material, nodes[w.node].object));
+            for (const uint32_t material : w.materials) ids.push_back(materials.id(material, nodes[w.node].object));
             const std::string& own = context.objects[w.object].name;
             meshes.push_back(
                 pass(context, w, data[i - first], ids, own.empty() ? context.objects[nodes[w.node].object].name : own));

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <functional>
+#include <set>
 
 #include "scene.hpp"
 
@@ -11,16 +13,13 @@ constexpr uint32_t kMaxNodeDepth = 1000;
 constexpr size_t kMaxCopies = 16;
 
 // Models without a parent are shown too: MotionBuilder's own cameras have none (motionbuilder_cube_7700_binary).
-std::vector<uint32_t> top_models(const Context& context) {
-    const Objects& objects = context.objects;
+std::vector<uint32_t> top_models(const Objects& objects) {
     std::vector<uint32_t> out = objects.below(kRoot, "Model");
-    std::vector<bool> is_top(objects.size());
-    for (const uint32_t model : out) is_top[model] = true;
-    for (uint32_t i = 1; i < objects.size(); ++i) {
-        if (objects[i].kind != "Model" || is_top[i]) continue;
-        const std::vector<const Link*> above = objects.above(i);
+    const std::set<uint32_t> below_root(out.begin(), out.end());
+    for (const uint32_t model : objects.of_kind("Model")) {
+        const std::vector<const Link*> above = objects.above(model);
         const auto is_parent = [&](const Link* link) { return link->property.empty() && objects[link->to].kind == "Model"; };
-        if (std::none_of(above.begin(), above.end(), is_parent)) out.push_back(i);
+        if (!below_root.count(model) && std::none_of(above.begin(), above.end(), is_parent)) out.push_back(model);
     }
     return out;
 }
@@ -109,44 +108,26 @@ SceneNode pass(const Context& context, uint32_t model, uint32_t parent, const st
 
 std::vector<SceneNode> read_nodes(const Context& context) {
     const Objects& objects = context.objects;
-    struct Pending {
-        uint32_t model, parent, depth;
-        bool leave;  // everything below the model is done
-    };
-    std::vector<Pending> stack;
-    const std::vector<uint32_t> top = top_models(context);
-    for (auto at = top.rbegin(); at != top.rend(); ++at) stack.push_back({*at, kNoObject, 0, false});
-    size_t models = 0;
-    for (uint32_t i = 1; i < objects.size(); ++i) models += objects[i].kind == "Model";
+    const std::vector<uint32_t> models = objects.of_kind("Model");
     std::vector<bool> is_open(objects.size()), is_done(objects.size());
     std::vector<SceneNode> nodes;
     const auto fail = [&](uint32_t model, const std::string& what) {
-        throw Broken(context.document.place(*objects[model].node) + ": the node '" + objects[model].name + "' " + what);
+        context.document.fail(*objects[model].node, "the node '" + objects[model].name + "' " + what);
     };
-    while (!stack.empty()) {
-        const Pending at = stack.back();
-        stack.pop_back();
-        if (at.leave) {
-            is_open[at.model] = false;
-            continue;
-        }
-        if (is_open[at.model]) fail(at.model, "hangs from itself: the nodes form a circle; expected a tree");
-        if (at.depth > kMaxNodeDepth) fail(at.model, "has more than 1000 nodes above it; expected at most that");
-        if (nodes.size() > kMaxCopies * models)
-            fail(at.model, "hangs from several nodes that do the same: too many copies of it");
-        is_open[at.model] = is_done[at.model] = true;
-        stack.push_back({at.model, 0, 0, true});
-        nodes.push_back(pass(context, at.model, at.parent, nodes));
+    const std::function<void(uint32_t, uint32_t, uint32_t)> add = [&](uint32_t model, uint32_t parent, uint32_t depth) {
+        if (is_open[model]) fail(model, "hangs from itself: the nodes form a circle; expected a tree");
+        if (depth > kMaxNodeDepth) fail(model, "has more than 1000 nodes above it; expected at most that");
+        if (nodes.size() > kMaxCopies * models.size())
+            fail(model, "hangs from several nodes that do the same: too many copies of it");
+        is_open[model] = is_done[model] = true;
+        nodes.push_back(pass(context, model, parent, nodes));
         const uint32_t index = static_cast<uint32_t>(nodes.size() - 1);
-        const std::vector<const Link*> below = objects.below(at.model);
-        for (auto link = below.rbegin(); link != below.rend(); ++link) {
-            if (objects[(*link)->from].kind == "Model" && (*link)->property.empty() && (*link)->from_property.empty()) {
-                stack.push_back({(*link)->from, index, at.depth + 1, false});
-            }
-        }
-    }
-    for (uint32_t i = 1; i < objects.size(); ++i) {
-        if (objects[i].kind == "Model" && !is_done[i]) fail(i, "hangs from itself: the nodes form a circle; expected a tree");
+        for (const uint32_t child : objects.below(model, "Model")) add(child, index, depth + 1);
+        is_open[model] = false;
+    };
+    for (const uint32_t model : top_models(objects)) add(model, kNoObject, 0);
+    for (const uint32_t model : models) {
+        if (!is_done[model]) fail(model, "hangs from itself: the nodes form a circle; expected a tree");
     }
     return nodes;
 }

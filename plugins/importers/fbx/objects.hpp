@@ -35,6 +35,7 @@ class Objects {
     std::vector<const Link*> above(uint32_t object) const { return links(above_, object, &Link::from); }
     // Objects of this kind that hang from the object itself, not from a property; `type` "" stands for any.
     std::vector<uint32_t> below(uint32_t object, std::string_view kind, std::string_view type = "") const;
+    std::vector<uint32_t> of_kind(std::string_view kind) const;
 
     // The file's settings: unit, axes, time.
     const Node* settings() const { return settings_; }
@@ -43,7 +44,7 @@ class Objects {
     void add(const Node& node);
     void add_all(const Node& parent);
     void connect();
-    void connect_oldest();
+    void connect_oldest(uint32_t parent);
     std::vector<const Link*> links(const std::vector<uint32_t>& order, uint32_t object, uint32_t Link::*end) const;
 
     const Document& document_;
