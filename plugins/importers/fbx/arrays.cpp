@@ -139,7 +139,7 @@ std::string Document::content(const Node& node) const {
     std::string out;
     Values values(*this, node);
     for (Value v; values.next(v);) {
-        if (v.kind != Value::string && v.kind != Value::raw) continue;
+        if (v.kind != Value::string) continue;
         if (binary_) {
             out += v.text;
         } else {

@@ -67,7 +67,7 @@ bool Values::next_binary(Value& value) {
         need(4, "a text's length");
         size = load<uint32_t>(rest_.data(), big);
         rest_.remove_prefix(4);
-        value.kind = type == 'S' ? Value::string : Value::raw;
+        value.kind = Value::string;
     } else if (size == 0) {
         document_.fail(begin, "a value of " + quoted(node_.name) + " has the type " +
                                   std::to_string(static_cast<unsigned char>(type)) +
@@ -80,10 +80,8 @@ bool Values::next_binary(Value& value) {
     ++taken_;
     if (value.kind != Value::none) return true;
     value.kind = type == 'F' || type == 'D' ? Value::real : Value::integer;
-    if (type == 'D' || type == 'F') {
-        value.number = type == 'D' ? load<double>(at, big) : load<float>(at, big);
-        return true;
-    }
+    value.number = type == 'D' ? load<double>(at, big) : type == 'F' ? load<float>(at, big) : 0;
+    if (value.kind == Value::real) return true;
     value.whole = type == 'L'   ? load<int64_t>(at, big)
                   : type == 'I' ? load<int32_t>(at, big)
                   : type == 'Y' ? load<int16_t>(at, big)

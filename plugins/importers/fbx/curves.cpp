@@ -157,9 +157,7 @@ Curve read_curve(const Document& document, const Node& node, double ticks) {
         const size_t keys = set < repeats.size() && repeats[set] > 0 ? static_cast<size_t>(repeats[set]) : 1;
         tangents.insert(tangents.end(), std::min(keys, count - tangents.size()), t);
     }
-    Tangents last;
-    last.flags = kLinear;
-    tangents.resize(count, last);
+    tangents.resize(count, Tangents{kLinear});
     add_handles(tangents, c);
     read_outside(document, document.child(&node, "Pre-Extrapolation"), c.before, c.before_count);
     read_outside(document, document.child(&node, "Post-Extrapolation"), c.after, c.after_count);

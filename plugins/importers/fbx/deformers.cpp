@@ -8,15 +8,6 @@
 namespace fbx_import {
 namespace {
 
-// A matrix of 16 numbers as the file writes them, column by column; false if there are fewer.
-bool matrix_of(const std::vector<double>& numbers, Transform& out) {
-    if (numbers.size() < 16) return false;
-    for (int row = 0; row < 3; ++row) {
-        for (int column = 0; column < 4; ++column) out[4 * row + column] = numbers[4 * column + row];
-    }
-    return true;
-}
-
 class Deformers {
  public:
     Deformers(const Context& context, const std::vector<SceneNode>& nodes, const SceneMesh& mesh, Morphs& morphs)
@@ -108,9 +99,9 @@ void Deformers::add_bone(const Node& cluster, uint32_t bone) {
     const std::vector<int32_t> indices = document_.numbers<int32_t>(&cluster, "Indexes");
     const std::vector<float> weights = document_.numbers<float>(&cluster, "Weights");
     const auto node = std::find_if(nodes_.begin(), nodes_.end(), [&](const SceneNode& n) { return n.object == bone; });
-    Transform bind = kIdentity;
-    if (indices.empty() || node == nodes_.end() || !matrix_of(document_.numbers<double>(&cluster, "Transform"), bind)) return;
-    bind = multiply(bind, nodes_[mesh_.node].geometry);
+    const std::vector<double> to_bone = document_.numbers<double>(&cluster, "Transform");
+    if (indices.empty() || node == nodes_.end() || to_bone.size() < 16) return;
+    const Transform bind = multiply(from_columns(to_bone.data()), nodes_[mesh_.node].geometry);
     if (!is_finite(bind)) document_.fail(cluster, "the matrix of a bone is not finite");
     rt_bone out{};
     out.node = node->id;

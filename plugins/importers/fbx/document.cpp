@@ -56,16 +56,12 @@ std::string quoted(std::string_view text) {
     return out + "'";
 }
 
-const Node* Document::child(const Node* node, std::string_view name, std::string_view first_text) const {
+const Node* Document::child(const Node* node, std::string_view name, std::optional<std::string_view> first_text) const {
     if (!node) return nullptr;
     for (const Node& child : children(*node)) {
-        if (child.name == name && (first_text.empty() || text(&child, 0) == first_text)) return &child;
+        if (child.name == name && (!first_text || text(&child, 0) == *first_text)) return &child;
     }
     return nullptr;
-}
-
-bool Values::next(Value& value) {
-    return document_.is_binary() ? next_binary(value) : next_ascii(value);
 }
 
 Value Document::value(const Node& node, size_t i) const {
@@ -89,7 +85,7 @@ double Document::number(const Node* node, size_t i, double otherwise) const {
 
 std::string_view Document::text(const Node* node, size_t i) const {
     const Value found = node ? value(*node, i) : Value();
-    return found.kind == Value::string || found.kind == Value::raw ? found.text : std::string_view();
+    return found.kind == Value::string ? found.text : std::string_view();
 }
 
 void Document::fail(const char* at, const std::string& what) const {

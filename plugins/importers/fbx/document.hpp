@@ -4,6 +4,7 @@
 // file is trusted: each is compared with the bytes that are there before it is used.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -27,10 +28,10 @@ struct Node {
 };
 
 struct Value {
-    enum Kind { none, integer, real, string, raw, array } kind = none;
+    enum Kind { none, integer, real, string, array } kind = none;
     int64_t whole = 0;      // an integer's; of an ASCII array, how many values it declares
     double number = 0;      // an integer's or real's
-    std::string_view text;  // a string's or raw's; of an array, all bytes behind its type
+    std::string_view text;  // a string's or raw data; of an array, all bytes behind its type
     char type = 0;          // in binary files, the letter of the type
     bool is_number() const { return kind == integer || kind == real; }
 };
@@ -47,9 +48,9 @@ class Document {
     struct Children;
     Children children(const Node& node) const;
     const Node& root() const { return nodes_[0]; }
-    // The first child of this name, and with this text as its first value unless that is empty; nullptr if there is none, or no
+    // The first child of this name, and with this text as its first value if one is given; nullptr if there is none, or no
     // node.
-    const Node* child(const Node* node, std::string_view name, std::string_view first_text = {}) const;
+    const Node* child(const Node* node, std::string_view name, std::optional<std::string_view> first_text = {}) const;
 
     // The i-th value; kind is `none` if there are fewer. Throws Broken.
     Value value(const Node& node, size_t i) const;
@@ -70,7 +71,7 @@ class Document {
     }
     // How many numbers a node has: the count that it declares, or an estimate.
     uint64_t count(const Node& node) const;
-    // The bytes of all texts and raw values. Those of ASCII files are decoded from base64.
+    // The bytes of all texts and raw data. Those of ASCII files are decoded from base64.
     std::string content(const Node& node) const;
 
     // Throws Broken with the place: "line 12: " or "byte 3456: ".
@@ -115,7 +116,8 @@ inline Document::Children Document::children(const Node& node) const {
 class Values {
  public:
     Values(const Document& document, const Node& node) : document_(document), node_(node), rest_(node.values) {}
-    bool next(Value& value);  // false: there are no more. Throws Broken
+    // False: there are no more. Throws Broken.
+    bool next(Value& value) { return document_.is_binary() ? next_binary(value) : next_ascii(value); }
 
  private:
     bool next_binary(Value& value);

@@ -64,8 +64,8 @@ std::vector<int32_t> material_slots(const Document& document, const Node& geomet
     std::vector<int32_t> slots = document.numbers<int32_t>(layer ? layer : &geometry, "Materials");
     for (int32_t& slot : slots) slot = std::max(slot, 0);
     if (slots.empty()) return {};
-    if (mapping != "ByPolygon") slots.assign(slots[0] == 0 ? 0 : faces, slots[0]);
-    if (!slots.empty()) slots.resize(faces, 0);
+    if (mapping == "ByPolygon") slots.resize(faces, 0);
+    if (mapping != "ByPolygon") slots = std::vector<int32_t>(faces, slots[0]);
     if (std::all_of(slots.begin(), slots.end(), [](int32_t slot) { return slot == 0; })) slots.clear();
     return slots;
 }
@@ -90,14 +90,7 @@ std::vector<float> normals_of_smoothing(const Document& document, const Node& ge
                                          [&](size_t a, size_t b) { return of_corner[a] != 0 || of_corner[b] != 0; });
     }
     if (mapping != "ByPolygon") return {};
-    size_t corner = 0;
-    for (size_t face = 0; face < values.size() && corner < corners.size(); ++face) {
-        const size_t end = std::min<size_t>(corner + (sizes.empty()         ? 3
-                                                      : face < sizes.size() ? sizes[face]
-                                                                            : 0),
-                                            corners.size());
-        while (corner < end) of_corner[corner++] = values[face];
-    }
+    for_corners(corners, sizes, [&](const Corner& c) { of_corner[c.corner] = c.face < values.size() ? values[c.face] : 0; });
     return importers::smooth_normals(positions, corners, sizes,
                                      [&](size_t a, size_t b) { return (of_corner[a] & of_corner[b]) != 0; });
 }

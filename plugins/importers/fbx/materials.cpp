@@ -1,22 +1,9 @@
-#include <algorithm>
-#include <cmath>
+#include "../common/materials.hpp"
 
 #include "scene.hpp"
 
 namespace fbx_import {
 namespace {
-
-float limited(double x, double low, double high, double otherwise) {
-    return static_cast<float>(std::isfinite(x) ? std::clamp(x, low, high) : otherwise);
-}
-
-Vec3 scaled(const Vec3& v, double by) {
-    return {v[0] * by, v[1] * by, v[2] * by};
-}
-
-void store(const Vec3& v, double high, float out[3]) {
-    for (int k = 0; k < 3; ++k) out[k] = limited(v[k], 0, high, 0);
-}
 
 // Names of properties: FBX SDK help, "FbxSurfacePhong". Up to version 5.8 they are `Diffuse`, `Emissive`, ... (measured from
 // max2009_blob_5800_ascii).
@@ -26,21 +13,19 @@ Vec3 color(const Properties& p, const char* name, const char* oldest, const Vec3
 
 void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
     // A texture replaces the colour. Its value then means nothing, because programs leave any value there.
-    const Vec3 diffuse = scaled(color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8}), p.number("DiffuseFactor", 1));
-    store(has_texture ? Vec3{1, 1, 1} : diffuse, 1, out.color);
-    store(scaled(color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1)), 1000, out.emission);
+    const Vec3 diffuse = has_texture ? Vec3{1, 1, 1} : color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8});
+    store_color(diffuse, has_texture ? 1 : p.number("DiffuseFactor", 1), 1, out.color);
+    store_color(color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1), 1000, out.emission);
     const double strength = limited(p.number("SpecularFactor", 1), 0, 1, 1);
-    store(scaled(color(p, "SpecularColor", "Specular", {}), strength), 1, out.specular);
+    store_color(color(p, "SpecularColor", "Specular", {}), strength, 1, out.specular);
     out.shininess = limited(p.number("ShininessExponent", p.number("Shininess", 0)), 1, 10000, 1);
     const Vec3 reflection = p.vector("ReflectionColor", {});
     out.reflect = limited(p.number("ReflectionFactor", 0) * std::max({reflection[0], reflection[1], reflection[2]}), 0, 1, 0);
     // The transparent share is the mean of TransparentColor times TransparencyFactor. Maya always writes 1 for the factor, so
     // the factor alone means nothing. Source: FBX SDK help, "FbxSurfaceLambert".
-    const Vec3 clear = scaled(p.vector("TransparentColor", {}), p.number("TransparencyFactor", 1));
-    const double opacity = p.number("Opacity", 1 - (clear[0] + clear[1] + clear[2]) / 3);
-    out.refract = 1 - limited(opacity, 0, 1, 1);
-    out.ior = 1;  // files have no index of refraction, so rays are not bent
-    if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
+    const Vec3 clear = p.vector("TransparentColor", {});
+    const double share = (clear[0] + clear[1] + clear[2]) / 3 * p.number("TransparencyFactor", 1);
+    apply_transparency(p.number("Opacity", 1 - share), 0, 0, out);
 }
 
 // Whether a texture's picture is placed by more than texture coordinates. Source of the names: FBX SDK help, "FbxTexture" and
@@ -67,9 +52,7 @@ rt_u32 Materials::id(uint32_t material, uint32_t model) {
     const auto known = ids_.find(material);
     if (known != ids_.end()) return known->second;
     const std::string& name = context_.objects[material].name;
-    rt_material_desc out{};
-    out.struct_bytes = sizeof out;
-    if (!name.empty()) out.name = name.c_str();
+    rt_material_desc out = rt::material(name.empty() ? nullptr : name.c_str());
     const uint32_t found = texture(material, model);
     out.texture = found == kNoObject ? RT_NONE : picture(found);
     read_phong(context_.properties(material), out.texture != RT_NONE, out);

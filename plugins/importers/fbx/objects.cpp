@@ -46,11 +46,12 @@ Objects::Objects(const Document& document) : document_(document) {
     add_all(objects ? *objects : document.root());
     connect();
     for (const uint32_t model : objects ? std::vector<uint32_t>() : of_kind("Model")) connect_oldest(model);
-    below_.resize(links_.size());
-    for (uint32_t i = 0; i < links_.size(); ++i) below_[i] = i;
-    above_ = below_;
-    std::stable_sort(below_.begin(), below_.end(), [&](uint32_t a, uint32_t b) { return links_[a].to < links_[b].to; });
-    std::stable_sort(above_.begin(), above_.end(), [&](uint32_t a, uint32_t b) { return links_[a].from < links_[b].from; });
+    below_.resize(all_.size());
+    above_.resize(all_.size());
+    for (const Link& link : links_) {
+        below_[link.to].push_back(&link);
+        above_[link.from].push_back(&link);
+    }
 }
 
 void Objects::add_all(const Node& parent) {
@@ -102,7 +103,7 @@ void Objects::connect() {
         if (kind.size() != 2) continue;
         const auto end = [&](size_t i) {
             const Value v = document_.value(node, i);
-            if (v.kind == Value::string || v.kind == Value::raw) return find(v.text);
+            if (v.kind == Value::string) return find(v.text);
             const auto found = by_id_.find(v.whole);
             return v.kind == Value::integer && found != by_id_.end() ? found->second : kNoObject;
         };
@@ -137,13 +138,6 @@ void Objects::connect_oldest(uint32_t parent) {
         const uint32_t child = find(v.text);
         if (child != kNoObject && child != kRoot) links_.push_back({child, parent, {}, {}});
     }
-}
-
-std::vector<const Link*> Objects::links(const std::vector<uint32_t>& order, uint32_t object, uint32_t Link::*end) const {
-    auto at = std::lower_bound(order.begin(), order.end(), object, [&](uint32_t i, uint32_t o) { return links_[i].*end < o; });
-    std::vector<const Link*> out;
-    for (; at != order.end() && links_[*at].*end == object; ++at) out.push_back(&links_[*at]);
-    return out;
 }
 
 std::vector<uint32_t> Objects::below(uint32_t object, std::string_view kind, std::string_view type) const {

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "../common/keys.hpp"
+#include "../common/matrix.hpp"
 #include "meshes.hpp"
 
 namespace gltf_import {
@@ -25,12 +26,9 @@ std::vector<rt_bone> bones_of(const Value& skin, Accessors& accessors, const Nod
     }
     for (size_t i = 0; i < bones.size(); ++i) {
         bones[i].node = tree.id(joints[i].index(tree.list()));
-        for (size_t row = 0; row < 3; ++row) {
-            for (size_t column = 0; column < 4; ++column) {
-                bones[i].bone_from_mesh[4 * row + column] =
-                    inverse.count > 0 ? double(inverse.values[16 * i + 4 * column + row]) : double(row == column);
-            }
-        }
+        const importers::Transform bind =
+            inverse.count > 0 ? importers::from_columns(&inverse.values[16 * i]) : importers::kIdentity;
+        std::copy(bind.begin(), bind.end(), bones[i].bone_from_mesh);
     }
     return bones;
 }
