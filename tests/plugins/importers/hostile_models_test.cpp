@@ -89,6 +89,13 @@ TEST_F(HostileModel, PlyListsOfFourBillionValues) {
                        "byte " + head + ": face 1: a list of 4294967295 values, but only 12 bytes follow");
     }
 }
+TEST_F(HostileModel, PlyNamesThatCannotBePrinted) {
+    std::string bytes = kPlyVertices + "element fa\x7F\xFF 1\nproperty int a\n" +
+                        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    expect_refused("words.ply", bytes + "one\n3 0 1 2\n", "line 15: fa?? 1 of 1: 'one' instead of an integer");
+    bytes.replace(bytes.find("\xFF 1"), 3, "\xFF 1000");
+    expect_refused("counts.ply", bytes, "declares 1000 elements 'fa");
+}
 TEST_F(HostileModel, PlyCountsBeyondTheFile) {
     expect_refused(
         "counts.ply",
