@@ -50,7 +50,7 @@ class AsciiLines {
     std::string where() const {
         const std::string line = "line " + std::to_string(line_number_) + ": ";
         if (element_ == header_.elements.size()) return line;
-        return line + printable(element().name) + " " + std::to_string(item_ + 1) + " of " + std::to_string(element().count) +
+        return line + quoted(element().name) + " " + std::to_string(item_ + 1) + " of " + std::to_string(element().count) +
                ": ";
     }
 
@@ -131,7 +131,7 @@ void check_binary_lists(const Header& header, size_t body_at) {
                 }
                 const uint64_t bytes = values * static_cast<uint64_t>(p.type->bytes), left = header.body.size() - at;
                 if (bytes > left && p.is_list()) {
-                    throw std::runtime_error("byte " + std::to_string(body_at + at) + ": " + printable(element.name) + " " +
+                    throw std::runtime_error("byte " + std::to_string(body_at + at) + ": " + quoted(element.name) + " " +
                                              std::to_string(item + 1) + ": a list of " + std::to_string(values) +
                                              " values, but only " + std::to_string(left) + " bytes follow");
                 }
