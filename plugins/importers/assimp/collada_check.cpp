@@ -1,4 +1,5 @@
 // collada_check.cpp -- references, counts and numbers of COLLADA files (COLLADA 1.4.1 specification, Khronos Group, 2008).
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -135,7 +136,10 @@ class Collada {
             if (element == "p" && whole(word, 0) > whole(largest, 0)) largest = word;
         });
         const std::string_view count = tag_.value("count");
-        if (is_array(element)) arrays_[tag_.value("id")] += found;
+        if (is_array(element)) {  // assimp reads as many as it declares
+            if (count.empty()) fail(element, "<" + std::string(element) + "> without 'count'", "that attribute");
+            arrays_[tag_.value("id")] = std::min(found, static_cast<size_t>(std::max(0.0, whole(count, 0))));
+        }
         if (element == "p" && largest != "0") largest_indices_.push_back(largest);
         if (refused_ && element == "float_array" && !count.empty() && number(double(found)) != count)
             fail(words, std::to_string(found) + " numbers in <float_array>", std::string(count) + ", its 'count'");
