@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "render/accel/pose_follower.hpp"
+#include "render/moving/pose_follower.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "ui/threads/desired_state.hpp"
 

@@ -1,4 +1,4 @@
-#include "render/accel/refit_policy.hpp"
+#include "render/moving/refit_policy.hpp"
 
 #include <algorithm>
 

@@ -11,8 +11,8 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/accel/moving_accel.hpp"
-#include "render/accel/refit_policy.hpp"
+#include "render/moving/moving_accel.hpp"
+#include "render/moving/refit_policy.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 

@@ -1,5 +1,5 @@
 // pose_follower_test.cpp -- a structure that follows poses: when it is refitted, when it must be built, and what it says.
-#include "render/accel/pose_follower.hpp"
+#include "render/moving/pose_follower.hpp"
 
 #include <gtest/gtest.h>
 

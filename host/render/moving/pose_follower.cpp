@@ -1,4 +1,4 @@
-#include "render/accel/pose_follower.hpp"
+#include "render/moving/pose_follower.hpp"
 
 #include <cstdio>
 
