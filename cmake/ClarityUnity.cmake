@@ -13,8 +13,8 @@ function(clarity_unity target)
   endforeach()
 endfunction()
 
-# clarity_no_hot_loops(TARGET): -O1 in a release, which compiles in two thirds of the time; for code that computes nothing per pixel,
-# ray or primitive.
+# clarity_no_hot_loops(TARGET): -O1 in a release, which compiles in two thirds of the time; for code whose loops over pixels, rays
+# and primitives are elsewhere, or are not timed.
 function(clarity_no_hot_loops target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()

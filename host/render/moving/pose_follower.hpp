@@ -1,8 +1,8 @@
 // pose_follower.hpp -- the structure of a scene that is shown in one pose after another: refitted, or built anew where that
 // pays.
 //
-//   auto accel = follower.refit(of, posed, pose, way, trace_ms, progress);
-//   if (!accel) { accel = build(posed); follower.built(of, posed, pose, accel, {}); }
+//   auto accel = follower.refit(from, posed, pose, way, trace_ms, progress);
+//   if (!accel) { accel = build(posed); follower.built(from, posed, pose, accel); }
 #pragma once
 #include <deque>
 #include <memory>
@@ -22,7 +22,7 @@ namespace clarity {
 struct PoseUpdate {
     bool followed = false;  // false: the scene is at rest, or nothing was done for a pose
     bool refitted = false;  // false: built anew
-    std::string why;        // "cost 1.12 of the built tree's"; "instance `door` is hidden"
+    std::string why;        // "rays cost 1.12 times what they cost after the last build"; "instance `door` is hidden"
     double ms = 0;
     uint64_t primitives = 0;        // that were refitted
     std::deque<float> cost_ratios;  // of the last poses, the newest last; 1: as good as after its build
@@ -52,7 +52,6 @@ class PoseFollower {
 
     const AccelData* structure() const { return accel_.get(); }  // the newest; nullptr: none
     const PoseUpdate& update() const { return update_; }
-    const RefitPolicy& policy() const { return policy_; }
 
  private:
     std::string why_not(const PosedFrom& from, const Pose& pose, Way way) const;

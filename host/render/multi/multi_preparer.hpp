@@ -37,6 +37,7 @@ class MultiPreparer {
     // and for errors that do not concern a single device, such as a failed build or a program that does not compile.
     std::shared_ptr<const MultiPrepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                  Progress& progress, std::shared_ptr<const AccelData> built = nullptr);
+    // As Preparer::asks_for().
     bool asks_for(const AccelData& accel, const Settings& settings) const;
     bool needs_reopen() const;
     // As Preparer::close_device().

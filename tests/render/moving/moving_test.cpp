@@ -183,7 +183,7 @@ TEST(MovingAccel, RaysHitWhatTheyHitInAFreshBuild) {
     }
     size_t hit = 0;
     Workbench& bench = Workbench::get();
-    const std::vector<std::string> tried = bench.fast_accels();  // in quick tests one, whose kernels are compiled
+    const std::vector<std::string> tried = bench.fast_accels();  // a quick test compiles the kernels of one alone
     for (const rt_plugin* plugin : refitting()) {
         if (std::find(tried.begin(), tried.end(), plugin->id) == tried.end()) continue;
         SCOPED_TRACE(plugin->id);
