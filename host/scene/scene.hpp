@@ -40,6 +40,7 @@ struct Instance {
     // node's space. moving_mesh: its mesh, where a transform that is flat at rest has made another mesh of it.
     rt_u32 node = RT_NONE, root = RT_NONE, moving_mesh = 0;
     Affine node_from_object = kIdentity;
+    bool apart = false;  // moves, so that its mesh is kept apart from the flattened world and can move alone
 };
 
 struct Sphere {

@@ -11,21 +11,21 @@
 namespace {
 
 const char* const kSplits[] = {"sah", "half", "1", nullptr};  // the last name is also the index of another choice
-constexpr rt_param kParams[] = {
+constexpr rt_param kTreeParams[] = {
     rt::int_param("max_leaf", "Max leaf size", "primitives in a leaf, at most", 1, 16, 4),
     rt::float_param("cost", "Traversal cost", "relative to a leaf test", 0.0625, 2500, 1.5),
     rt::bool_param("packed", "Packed", "store triangles in the nodes", false, RT_EFFECT_RECOMPILE),
     rt::enum_param("split", "Split", "where a node is divided", kSplits, 1),
 };
-constexpr rt_accel kAccel = rt::topology("tree", nullptr, rt::Traits());
-constexpr rt_plugin kPlugin = rt::accel_plugin("bvh2", "A tree", "1.0", nullptr, kParams, kAccel);
-constexpr rt_plugin kPlain = rt::accel_plugin("plain", "No parameters", "1.0", nullptr, kAccel);
+constexpr rt_accel kTree = rt::topology("tree", nullptr, rt::Traits());
+constexpr rt_plugin kTreePlugin = rt::accel_plugin("bvh2", "A tree", "1.0", nullptr, kTreeParams, kTree);
+constexpr rt_plugin kPlain = rt::accel_plugin("plain", "No parameters", "1.0", nullptr, kTree);
 
 double set(const std::string& key, const std::string& value) {
-    clarity::ParameterValues values = clarity::default_parameters(kPlugin);
-    clarity::set_parameter(kPlugin, values, key, value);
+    clarity::ParameterValues values = clarity::default_parameters(kTreePlugin);
+    clarity::set_parameter(kTreePlugin, values, key, value);
     for (size_t i = 0; i < values.size(); ++i)
-        if (key == kParams[i].key) return values[i];
+        if (key == kTreeParams[i].key) return values[i];
     return std::numeric_limits<double>::quiet_NaN();
 }
 
@@ -43,7 +43,7 @@ std::string usage_error(Call call) {
 }
 
 TEST(Parameters, Defaults) {
-    EXPECT_EQ(clarity::default_parameters(kPlugin), (clarity::ParameterValues{4, 1.5, 0, 1}));
+    EXPECT_EQ(clarity::default_parameters(kTreePlugin), (clarity::ParameterValues{4, 1.5, 0, 1}));
     EXPECT_TRUE(clarity::default_parameters(kPlain).empty());
 }
 
@@ -80,9 +80,9 @@ TEST(Parameters, RefusesWhatIsOutOfRangeOrNoNumber) {
 }
 
 TEST(Parameters, AFailedSettingChangesNothing) {
-    clarity::ParameterValues values = clarity::default_parameters(kPlugin);
+    clarity::ParameterValues values = clarity::default_parameters(kTreePlugin);
     const clarity::ParameterValues before = values;
-    EXPECT_THROW(clarity::set_parameter(kPlugin, values, "max_leaf", "99"), clarity::Error);
+    EXPECT_THROW(clarity::set_parameter(kTreePlugin, values, "max_leaf", "99"), clarity::Error);
     EXPECT_EQ(values, before);
 }
 
@@ -98,14 +98,14 @@ TEST(Parameters, TextReadsBackAsTheSameValue) {
     clarity::ParameterValues values = {7, 0.1, 1, 2};
     const char* expected[] = {"max_leaf=7", "cost=0.1", "packed=true", "split=1"};
     for (size_t i = 0; i < values.size(); ++i) {
-        const std::string text = clarity::parameter_text(kPlugin, values, i);
+        const std::string text = clarity::parameter_text(kTreePlugin, values, i);
         EXPECT_EQ(text, expected[i]);
-        clarity::ParameterValues read = clarity::default_parameters(kPlugin);
+        clarity::ParameterValues read = clarity::default_parameters(kTreePlugin);
         const size_t equals = text.find('=');
-        clarity::set_parameter(kPlugin, read, text.substr(0, equals), text.substr(equals + 1));
+        clarity::set_parameter(kTreePlugin, read, text.substr(0, equals), text.substr(equals + 1));
         EXPECT_EQ(read[i], values[i]);
     }
-    EXPECT_EQ(clarity::parameter_text(kPlugin, values, 4), "");
+    EXPECT_EQ(clarity::parameter_text(kTreePlugin, values, 4), "");
 }
 
 TEST(PluginChoice, IdAndSettings) {
@@ -133,7 +133,7 @@ TEST(Parameters, DoNotDependOnTheLocale) {
     const std::string before = std::setlocale(LC_NUMERIC, nullptr);
     if (!std::setlocale(LC_NUMERIC, "de_DE.UTF-8")) GTEST_SKIP() << "the locale de_DE.UTF-8 is not installed";
     EXPECT_EQ(set("cost", "0.5"), 0.5);
-    EXPECT_EQ(clarity::parameter_text(kPlugin, {4, 0.5, 0, 0}, 1), "cost=0.5");
+    EXPECT_EQ(clarity::parameter_text(kTreePlugin, {4, 0.5, 0, 0}, 1), "cost=0.5");
     std::setlocale(LC_NUMERIC, before.c_str());
 }
 

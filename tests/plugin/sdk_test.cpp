@@ -111,9 +111,9 @@ static_assert(kAccel.types.text == kFiles[0].text && kAccel.traverse.text == kFi
 static_assert(kAccel.capabilities == (RT_TRAVERSES_STEPS | RT_TRAVERSES_WARPS) && kAccel.merit_cpu == 0.5f &&
               kAccel.merit_gpu == 2 && kAccel.ray_cost == RT_RAY_COST_LINEAR);
 static_assert(rt::host_slot<rt_prim>("boxes").elem_bytes == 32 && rt::host_slot<rt_prim>("boxes").flags == RT_SLOT_HOST_ONLY);
-constexpr rt_accel kTree = rt::topology("bvh2", nullptr, rt::Traits().merit(0.5f, 2));
-static_assert(kTree.struct_bytes == sizeof(rt_accel) && kTree.layout[0] == 'b' && kTree.slot_count == 0 && !kTree.build &&
-              !kTree.pack && kTree.merit_gpu == 2 && kTree.ray_cost == RT_RAY_COST_LOGARITHMIC);
+constexpr rt_accel kTopology = rt::topology("bvh2", nullptr, rt::Traits().merit(0.5f, 2));
+static_assert(kTopology.struct_bytes == sizeof(rt_accel) && kTopology.layout[0] == 'b' && kTopology.slot_count == 0 &&
+              !kTopology.build && !kTopology.pack && kTopology.merit_gpu == 2 && kTopology.ray_cost == RT_RAY_COST_LOGARITHMIC);
 constexpr rt_plugin kPlugin = rt::accel_plugin("a", "A", "1", nullptr, kParams, kAccel);
 static_assert(kPlugin.abi_version == RT_ABI_VERSION && kPlugin.param_count == 1 && kPlugin.accel == &kAccel &&
               !kPlugin.importer && kPlugin.param_bytes == sizeof(rt_param) && !kPlugin.extensions);

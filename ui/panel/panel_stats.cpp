@@ -140,6 +140,20 @@ void ray_rows(const Session& session, const std::vector<const PictureSide*>& sid
     if (full) row_text("Stacks full", overflowed.text, "rays whose traversal stack was full", colors::kAmber);
 }
 
+// How the structure came to the pose that is shown, and what rays cost in the last poses.
+void pose_rows(const PoseUpdate& update) {
+    if (!update.followed) return;
+    row_text("Pose", (update.refitted ? "refitted   " : "built anew   ") + time_text(update.ms), update.why);
+    const std::vector<float> costs(update.cost_ratios.begin(), update.cost_ratios.end());
+    if (costs.size() < 2) return;
+    char now[32];
+    std::snprintf(now, sizeof now, "%.2f", static_cast<double>(costs.back()));
+    row_label("Cost of rays", "expected (SAH) in the last poses, against that after the last build");
+    ImGui::SetNextItemWidth(-FLT_MIN);
+    const float most = std::max(1.5f, *std::max_element(costs.begin(), costs.end()));
+    ImGui::PlotLines("##costs", costs.data(), static_cast<int>(costs.size()), 0, now, 0, most, {0, 42 * ui_scale()});
+}
+
 void structure_rows(const ReadySide& side, const ImportedScene& loaded) {
     const AccelData& accel = *side.accel;
     row_text("Structure", accel.plugin->name);
@@ -149,6 +163,7 @@ void structure_rows(const ReadySide& side, const ImportedScene& loaded) {
                   accel.build_ms > 0 ? triangles / accel.build_ms * 1e-3 : 0);
     row_text("Build", rate, "the plugin's builder alone, and how many primitives a second");
     row_text("Packing", time_text(accel.pack_ms), "primitives into leaf order");
+    pose_rows(side.pose_update);
     row_text("Memory", bytes_text(static_cast<double>(accel.bytes)), "nodes and leaves, on the device");
     row_text("Per primitive", number_text(std::round(static_cast<double>(accel.bytes) / triangles * 10) / 10) + " bytes",
              count_text(triangles) + " primitives in leaves; " + count_text(static_cast<double>(loaded.placed_triangles)) +

@@ -161,6 +161,10 @@ void Session::post_request() {
     request.only_pose = posted_request_ && prepares_same_but_pose(*posted_request_, request);
     if (request.only_pose && (worker_.activity().busy || !frames_.begun())) return;
     posted_request_ = request;
+    for (unsigned side = 0; side < 2; ++side) {
+        const std::vector<float> times = frame_times(side);
+        if (!times.empty()) request.frame_ms[side] = static_cast<double>(times.back());
+    }
     worker_.request(std::move(request));
 }
 

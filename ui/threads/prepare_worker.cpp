@@ -210,13 +210,13 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
 }
 
 void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress) {
-    ready.main = lend(main_.devices, main_.preparer->prepare(shown_.visible(), request.main.settings, progress));
+    ready.main = prepare_side(main_, request.main.settings, request.frame_ms[0], progress);
     ready.other.reset();
     if (!request.other || !other_.preparer) return;
     ready.request.other->device = other_.choice;
     // If the second side cannot be prepared, the first side still changes.
     try {
-        ready.other = lend(other_.devices, other_.preparer->prepare(shown_.visible(), request.other->settings, progress));
+        ready.other = prepare_side(other_, request.other->settings, request.frame_ms[1], progress);
     } catch (const Cancelled&) {
         throw;
     } catch (const Error& error) {
@@ -224,6 +224,21 @@ void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, b
         publish(
             {Outcome::Kind::failed, nullptr, "the other side: " + std::string(error.what()), error.details(), false, false});
     }
+}
+
+ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings, double frame_ms, StageProgress& progress) {
+    PoseFollower& follower = side.follower;
+    const bool is_posed = shown_.pose().time_s.has_value();
+    if (!is_posed || (follower.structure() && !side.preparer->asks_for(*follower.structure(), settings))) follower.reset();
+    if (!is_posed) return lend(side.devices, side.preparer->prepare(shown_.visible(), settings, progress));
+    const PosedFrom from = {loaded_->scene, shown_.pose().clip};
+    const Pose pose = shown_.geometry();
+    auto accel = follower.refit(from, shown_.visible(), pose, way_of(settings.poses), frame_ms, progress);
+    const auto prepared = side.preparer->prepare(shown_.visible(), settings, progress, accel);
+    if (!accel) follower.built(from, shown_.visible(), pose, prepared->first()->accel);
+    ReadySide ready = lend(side.devices, prepared);
+    ready.pose_update = follower.update();
+    return ready;
 }
 
 bool PrepareWorker::needs_reopen() const {

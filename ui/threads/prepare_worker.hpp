@@ -66,7 +66,10 @@ class PrepareWorker {
         Devices devices;
         std::string choice;
         std::unique_ptr<MultiPreparer> preparer;
+        PoseFollower follower;
     };
+    // Prepares what is shown for one side. The structure follows a pose.
+    ReadySide prepare_side(SideState& side, const Settings& settings, double frame_ms, StageProgress& progress);
     void prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress);
     bool needs_reopen() const;
     void renew_devices();

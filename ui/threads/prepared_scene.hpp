@@ -1,5 +1,6 @@
 // prepared_scene.hpp -- a prepared scene as the window sees it: facts that stay valid, and a loan of what is on the devices.
 #pragma once
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -7,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "render/moving/pose_follower.hpp"
 #include "render/multi/multi_preparer.hpp"
 #include "ui/threads/desired_state.hpp"
 
@@ -23,6 +25,8 @@ struct PrepareRequest {
     uint64_t kernel_revision = 0;  // the kernels are read (again) when it changes
     PoseTime pose;
     bool only_pose = false;  // differs from the request before it in nothing else, so that work in hand goes on
+    // Time of the last frame of each side, for the choice between refit and build. No part of what is asked for. 0: not known.
+    std::array<double, 2> frame_ms{};
 };
 
 // An imported scene, with facts for the window. They are computed on the worker thread, so that the window does not wait.
@@ -75,6 +79,7 @@ struct ReadySide {
     bool compile_cached = false;
     std::weak_ptr<const TraceProgram> program;  // of the first part
     uint64_t device_bytes = 0;                  // of all buffers of the scene
+    PoseUpdate pose_update;                     // how the structure came to this pose
     std::shared_ptr<DeviceLoan> loan;
     bool uses(const DeviceInfo& device) const;                              // as a whole or in parts
     std::string devices_text() const { return device_list_text(devices); }  // as --device reads it

@@ -38,27 +38,41 @@ void ShownScene::update(const std::shared_ptr<const ImportedScene>& loaded, cons
         cameras_ = posed_->cameras;
         lights_ = posed_->lights;
         pose_ = {};
+        geometry_ = {};
         loaded_ = loaded;
         visible_.reset();
     }
     const std::shared_ptr<const Scene> before = posed_;
     if (!same_pose(pose, pose_)) place(pose);
-    if (visible_ && posed_ == before && hidden_ == hidden) return;
-    hidden_ = hidden;
-    visible_ = hidden_.empty() ? posed_ : std::make_shared<const Scene>(without_instances(*posed_, hidden_));
+    if (!visible_ || posed_ != before || hidden_ != hidden) {
+        hidden_ = hidden;
+        visible_ = hidden_.empty() ? posed_ : std::make_shared<const Scene>(without_instances(*posed_, hidden_));
+    }
+    for (size_t i = 0; i < geometry_.instances.size(); ++i) geometry_.instances[i].visible = visible_->instances[i].visible;
+}
+
+// Whether posed() has the geometry of a pose. The scene at rest never has it if instances move, even where they stand as at
+// rest: they are not kept apart in it.
+bool ShownScene::shows(const Pose& pose) const {
+    if (!has_geometry_of(*posed_, pose)) return false;
+    if (posed_ != loaded_->scene) return true;
+    const std::vector<bool> moving = moving_instances(*posed_);
+    return std::find(moving.begin(), moving.end(), true) == moving.end();
 }
 
 void ShownScene::place(const PoseTime& time) {
     const Scene& rest = *loaded_->scene;
     if (!time.time_s) {
         posed_ = loaded_->scene;
+        geometry_ = {};
         cameras_ = rest.cameras;
         lights_ = rest.lights;
     } else {
         Pose pose = evaluate(rest, time.clip, *time.time_s, std::ref(sequences_));
-        if (!has_geometry_of(*posed_, pose)) posed_ = std::make_shared<const Scene>(clarity::posed(rest, pose));
+        if (!shows(pose)) posed_ = std::make_shared<const Scene>(clarity::posed(rest, pose));
         cameras_ = std::move(pose.cameras);
         lights_ = std::move(pose.lights);
+        geometry_ = std::move(pose);
     }
     pose_ = time;
 }

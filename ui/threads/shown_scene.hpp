@@ -22,17 +22,21 @@ class ShownScene {
     const std::shared_ptr<const Scene>& posed() const { return posed_; }
     const std::shared_ptr<const Scene>& visible() const { return visible_; }  // posed() without the hidden instances
     const PoseTime& pose() const { return pose_; }
+    // The instances and deformed meshes of visible(); no cameras and lights. Empty for a scene at rest.
+    const Pose& geometry() const { return geometry_; }
     const std::vector<rt_u32>& hidden() const { return hidden_; }
     const std::vector<Camera>& cameras() const { return cameras_; }
     const std::vector<Light>& lights() const { return lights_; }
 
  private:
     void place(const PoseTime& pose);
+    bool shows(const Pose& pose) const;
 
     Progress unwatched_;  // of files of sequences
     import::SequenceReader sequences_;
     std::shared_ptr<const ImportedScene> loaded_;
     std::shared_ptr<const Scene> posed_, visible_;
+    Pose geometry_;  // of visible_
     PoseTime pose_;
     std::vector<rt_u32> hidden_;
     std::vector<Camera> cameras_;

@@ -14,7 +14,7 @@
 #include "bench/cases/ray_entries.hpp"
 #include "bench/run/bench.hpp"
 #include "bench/suites/motions.hpp"
-#include "render/accel/moving_accel.hpp"
+#include "render/moving/moving_accel.hpp"
 #include "render/frame/preparer.hpp"
 
 namespace clarity::bench {

@@ -119,10 +119,11 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
             ++lost;
         }
     }
-    if (placement.node != RT_NONE &&
-        content.spheres.size() + content.planes.size() + content.polygons.size() + content.shapes.size() > 0)
-        warn(from,
-             "only its meshes, cameras and lights move; spheres, planes, polygons and shapes stay where they are at rest");
+    const size_t fixed = content.spheres.size() + content.planes.size() + content.polygons.size() + content.shapes.size();
+    if (placement.node != RT_NONE && fixed > 0)
+        warn(from, std::to_string(fixed) +
+                       " of its objects stay where they are at rest: spheres, planes, polygons and shapes " +
+                       "cannot move; load a mesh for what should move");
     const bool is_root = &into == &world_;
     for (const auto* list : {&content.lights, &content.included_lights}) {
         for (Light light : *list) {

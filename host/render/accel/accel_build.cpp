@@ -136,7 +136,7 @@ AccelData build_accel(const Scene& scene, const rt_plugin& plugin, const Paramet
     data.layout = &layout;
     data.params = params;
     auto start = std::chrono::steady_clock::now();
-    data.scene = make_build_scene(scene, progress, target.apart);
+    data.scene = make_build_scene(scene, progress);
     data.pack_ms = ms_since(start);
 
     const bool packs = &layout != &plugin;

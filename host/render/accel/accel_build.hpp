@@ -49,9 +49,6 @@ struct BuildTarget {
     const rt_plugin* layout = nullptr;  // PluginRegistry::layout_of(); nullptr: the plugin itself
     rt_device device = {sizeof(rt_device), RT_DEVICE_UNKNOWN, 0, 0, 0, 0, 0, 0, 0};
     BuildPlace place = BuildPlace::automatic;
-    // For each instance: keep its mesh apart from the flattened world, so that it can move alone; moving_instances() tells
-    // which do. Empty: none.
-    std::vector<bool> apart = {};
 };
 // Describes a device to builders. lanes: rays of a work-item.
 rt_device device_for_builders(const DeviceInfo& info, unsigned lanes);

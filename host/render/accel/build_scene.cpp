@@ -251,7 +251,7 @@ struct Placement {
     uint64_t world_prims = 0, refs = 0;
 };
 
-Placement place(const Scene& scene, const std::vector<bool>& apart) {
+Placement place(const Scene& scene) {
     Placement out;
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
@@ -265,8 +265,7 @@ Placement place(const Scene& scene, const std::vector<bool>& apart) {
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
         if (!instance.visible) continue;
         const bool singular = !invert(instance.world_from_object, out.inverse[i]);
-        const bool together =
-            uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !(i < apart.size() && apart[i]);
+        const bool together = uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !instance.apart;
         out.flat[i] = together || singular || count == 0;
         if (out.flat[i]) {
             out.world_prims += count;
@@ -328,7 +327,7 @@ rt_prim box_of_instance(const Bounds& box, const Affine& world, const Affine& ob
 }
 
 SceneCounts count_scene(const Scene& scene) {
-    const Placement placement = place(scene, {});
+    const Placement placement = place(scene);
     SceneCounts counts;
     counts.triangles = placement.refs;
     counts.references = placement.world_prims;
@@ -337,9 +336,9 @@ SceneCounts count_scene(const Scene& scene) {
     return counts;
 }
 
-BuildScene make_build_scene(const Scene& scene, Progress& progress, const std::vector<bool>& apart) {
+BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     BuildScene out;
-    const Placement placement = place(scene, apart);
+    const Placement placement = place(scene);
     const std::vector<Affine>& inverse = placement.inverse;
     const std::vector<bool>& flat = placement.flat;
     const std::vector<rt_u32>& group_of_mesh = placement.group_of_mesh;

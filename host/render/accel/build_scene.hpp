@@ -57,8 +57,7 @@ rt_prim box_of_instance(const Bounds& box, const Affine& world_from_object, cons
 // Whether a transform contains a reflection (negative determinant): such an instance is never flattened.
 bool mirrors(const Affine& world_from_object);
 
-// Converts a scene. apart: for each instance whether its mesh gets a group of its own, though it is placed once; empty: none.
-// Throws Error(failed) if it has too many triangles, and Cancelled.
-BuildScene make_build_scene(const Scene& scene, Progress& progress, const std::vector<bool>& apart = {});
+// Converts a scene. Throws Error(failed) if it has too many triangles, and Cancelled.
+BuildScene make_build_scene(const Scene& scene, Progress& progress);
 
 }  // namespace clarity

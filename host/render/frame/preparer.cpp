@@ -129,6 +129,13 @@ void Preparer::open_device(std::shared_ptr<Device> device) {
     programs_ = std::make_unique<ProgramCache>(device_);
 }
 
+bool Preparer::asks_for(const AccelData& accel, const Settings& settings) const {
+    Settings resolved = settings;
+    const rt_plugin& plugin = resolve_accel(plugins_, kind_of({info_}), resolved);
+    return accel.plugin == &plugin && accel.layout == &plugins_.layout_of(plugin) &&
+           accel.params == fitting_parameters(plugin, resolved.accel_params);
+}
+
 std::shared_ptr<const AccelData> Preparer::build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                  Progress& progress) {
     const std::lock_guard<std::mutex> lock(mutex_);
@@ -143,9 +150,7 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     const rt_plugin& layout = plugins_.layout_of(plugin);
     // The library may have been replaced since the values were chosen.
     const ParameterValues params = fitting_parameters(plugin, settings.accel_params);
-    if (last_ && last_->scene == scene && last_->accel->plugin == &plugin && last_->accel->layout == &layout &&
-        last_->accel->params == params)
-        return last_->accel;
+    if (last_ && last_->scene == scene && asks_for(*last_->accel, settings)) return last_->accel;
     const SceneCounts counts = count_scene(*scene);
     const unsigned lanes = settings.lanes > 0 ? static_cast<unsigned>(settings.lanes) : info_.preferred_lanes();
     check_fits(plan_memory(counts, *scene, *layout.accel), info_,

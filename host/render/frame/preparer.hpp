@@ -27,6 +27,8 @@ class Preparer {
     // Error(usage) for an unknown structure, and Cancelled. The previous Prepared stays valid.
     std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress,
                                             std::shared_ptr<const AccelData> built = nullptr);
+    // Whether a structure is of the kind that these settings ask for, so that it may be passed as `built`.
+    bool asks_for(const AccelData& accel, const Settings& settings) const;
     // Builds the structure alone. This needs no device.
     std::shared_ptr<const AccelData> build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                            Progress& progress);

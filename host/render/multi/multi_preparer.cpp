@@ -61,19 +61,18 @@ MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devic
 }
 
 std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<const Scene> scene, const Settings& asked,
-                                                            Progress& progress) {
+                                                            Progress& progress, std::shared_ptr<const AccelData> built) {
     auto prepared = std::make_shared<MultiPrepared>();
     Settings settings = asked;
-    resolve_accel(plugins_, kind_of(infos_of(devices_)), settings);
+    resolve_accel(plugins_, kind_of(infos_), settings);
     if (preparers_.size() == 1) {
-        prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress)}};
+        prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress, std::move(built))}};
         return prepared;
     }
     // The device with the most memory decides whether the scene is built at all. Devices that it is too large for fail below.
     const auto roomiest = std::max_element(
         infos_.begin(), infos_.end(), [](const DeviceInfo& a, const DeviceInfo& b) { return a.global_bytes < b.global_bytes; });
-    const std::shared_ptr<const AccelData> built =
-        preparers_[size_t(roomiest - infos_.begin())]->build(scene, settings, progress);
+    if (!built) built = preparers_[size_t(roomiest - infos_.begin())]->build(scene, settings, progress);
     std::vector<Error> failures;
     for (size_t i = 0; i < preparers_.size(); ++i) {
         try {
@@ -86,6 +85,12 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
     if (prepared->parts.empty()) throw failures.front();
     for (const Error& e : failures) log(LogLevel::warning, std::string(e.what()) + "; the other devices go on without it");
     return prepared;
+}
+
+bool MultiPreparer::asks_for(const AccelData& accel, const Settings& asked) const {
+    Settings settings = asked;
+    resolve_accel(plugins_, kind_of(infos_), settings);
+    return preparers_.front()->asks_for(accel, settings);
 }
 
 bool MultiPreparer::needs_reopen() const {

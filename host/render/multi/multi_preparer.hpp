@@ -36,7 +36,9 @@ class MultiPreparer {
     // As Preparer::prepare(). A device that fails causes a warning, as long as another succeeds. Throws if all devices fail,
     // and for errors that do not concern a single device, such as a failed build or a program that does not compile.
     std::shared_ptr<const MultiPrepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
-                                                 Progress& progress);
+                                                 Progress& progress, std::shared_ptr<const AccelData> built = nullptr);
+    // As Preparer::asks_for().
+    bool asks_for(const AccelData& accel, const Settings& settings) const;
     bool needs_reopen() const;
     // As Preparer::close_device().
     std::vector<DeviceInfo> close_devices();

@@ -131,6 +131,11 @@ std::vector<std::string> tone_names() {
 
 const std::vector<Setting>& settings_table() {
     static const std::vector<Setting> table = {
+        choice("poses", "Each pose",
+               "how the structure follows a scene that plays in the window; refit: its boxes are fitted to what moved; build: "
+               "it is built anew; auto: refitted until slower rays have cost as much as a build. Frames of `render` are "
+               "always built",
+               {"auto", "refit", "build"}, Effect::rebuild, &Settings::poses),
         choice("tracer", "Tracer",
                "iterative: a work-item traces all generations of its packet; wavefront: rays that split continue in queues in "
                "the device's memory; auto: wavefront on a GPU if nothing refracts, else iterative",

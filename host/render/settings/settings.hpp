@@ -14,6 +14,7 @@ struct Settings {
     // The structure.
     std::string accel;                 // id of an accel plugin; empty: the best for the device, see accel_choice.hpp
     std::vector<double> accel_params;  // in the order in which the plugin declares them; empty: defaults
+    std::string poses = "auto";        // how the structure follows a scene that plays: auto|refit|build
     // How rays are traced.
     std::string tracer = "auto";
     int depth = 5;  // generations of rays, 1 = camera rays only

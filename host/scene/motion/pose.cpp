@@ -143,6 +143,7 @@ std::vector<bool> moving_instances(const Scene& scene) {
 
 Scene posed(Scene scene, const Pose& pose) {
     Scene result = std::move(scene);
+    const std::vector<bool> moving = moving_instances(result);
     result.motion = {};
     for (size_t i = 0; i < result.instances.size(); ++i) {
         Instance& instance = result.instances[i];
@@ -150,6 +151,7 @@ Scene posed(Scene scene, const Pose& pose) {
         instance.world_from_object = pose.instances[i].world_from_object;
         instance.visible = pose.instances[i].visible;
         instance.node = instance.root = RT_NONE;
+        instance.apart = moving[i];
     }
     result.cameras = pose.cameras;
     result.lights = pose.lights;

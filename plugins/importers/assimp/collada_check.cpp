@@ -1,4 +1,5 @@
 // collada_check.cpp -- references, counts and numbers of COLLADA files (COLLADA 1.4.1 specification, Khronos Group, 2008).
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -24,7 +25,7 @@ bool is_number(std::string_view word) {
     const std::string text(word);
     char* end = nullptr;
     std::strtod(text.c_str(), &end);
-    return end == text.c_str() + text.size();
+    return end == text.c_str() + text.size() && text.find_first_of("xX") == text.npos;
 }
 
 bool is_whole(std::string_view word) {
@@ -35,6 +36,12 @@ bool is_whole(std::string_view word) {
 double whole(std::string_view word, double otherwise) {
     return is_whole(word) ? std::strtod(std::string(word).c_str(), nullptr) : otherwise;
 }
+
+const std::set<std::string_view> kWithoutText = {"geometry", "mesh", "source", "vertices", "polylist", "triangles", "accessor"};
+const std::set<std::string_view> kSemantics = {
+    "BINORMAL", "COLOR",        "CONTINUITY",   "IMAGE",        "INPUT",  "IN_TANGENT", "INTERPOLATION", "INV_BIND_MATRIX",
+    "JOINT",    "LINEAR_STEPS", "MORPH_TARGET", "MORPH_WEIGHT", "NORMAL", "OUTPUT",     "OUT_TANGENT",   "POSITION",
+    "TANGENT",  "TEXBINORMAL",  "TEXCOORD",     "TEXTANGENT",   "UV",     "VERTEX",     "WEIGHT"};
 
 class Collada {
  public:
@@ -60,7 +67,8 @@ class Collada {
                 if (!input.values.count(name)) fail(input.name, "<input> without " + in_quotes(name), "that attribute");
             }
         }
-        if (!shows_scene_) reader_.fail("<instance_visual_scene> within <scene>");
+        if (scene_.data() && !has_scene_url_) fail(scene_, "<instance_visual_scene> without 'url'", "that attribute");
+        if (!scene_.data()) reader_.fail("<instance_visual_scene> within <scene>");
     }
 
  private:
@@ -88,6 +96,9 @@ class Collada {
         if (!refused_) return;
         if (name == "id") ids_.insert(value);
         const bool refers = name == "url" || name == "source" || name == "target";
+        if (element == "instance_visual_scene" && name == "url") has_scene_url_ = true;
+        if (element == "input" && name == "semantic" && !kSemantics.count(value))
+            fail(value, in_quotes(value), "a semantic of COLLADA, such as 'VERTEX'");
         if (refers && value.substr(0, 1) == "#" && element.substr(0, 3) != "tec") references_.push_back(value);
         if ((name == "count" || name == "stride" || name == "offset") && !is_whole(value))
             fail(value, in_quotes(value), "a whole number as " + in_quotes(name) + " of <" + std::string(element) + ">");
@@ -98,7 +109,7 @@ class Collada {
         if (element == "accessor") accessors_.push_back(tag_);
         if (element == "input") inputs_.push_back(tag_);
         if (element == "param" && parent_ == "accessor" && !accessors_.empty()) ++accessors_.back().parameters;
-        shows_scene_ = shows_scene_ || element == "instance_visual_scene";
+        if (element == "instance_visual_scene") scene_ = element;
     }
 
     static bool is_array(std::string_view element) {
@@ -106,6 +117,11 @@ class Collada {
     }
     void content(std::string_view element, std::string_view words) {
         parent_ = element;
+        if (refused_ && kWithoutText.count(element)) {
+            for_words(words, [&](std::string_view word) {
+                fail(word, in_quotes(word), "only elements in <" + std::string(element) + ">");
+            });
+        }
         const bool is_floats = element == "float_array" || element == "translate" || element == "scale" ||
                                element == "rotate" || element == "matrix" || element == "color" || element == "float";
         const bool is_indices = element == "p" || element == "vcount" || element == "h";
@@ -120,7 +136,10 @@ class Collada {
             if (element == "p" && whole(word, 0) > whole(largest, 0)) largest = word;
         });
         const std::string_view count = tag_.value("count");
-        if (is_array(element)) arrays_[tag_.value("id")] += found;
+        if (is_array(element)) {  // assimp reads as many as it declares
+            if (count.empty()) fail(element, "<" + std::string(element) + "> without 'count'", "that attribute");
+            arrays_[tag_.value("id")] = std::min(found, static_cast<size_t>(std::max(0.0, whole(count, 0))));
+        }
         if (element == "p" && largest != "0") largest_indices_.push_back(largest);
         if (refused_ && element == "float_array" && !count.empty() && number(double(found)) != count)
             fail(words, std::to_string(found) + " numbers in <float_array>", std::string(count) + ", its 'count'");
@@ -151,17 +170,18 @@ class Collada {
     std::set<std::string_view> ids_;
     std::vector<std::string_view> references_, largest_indices_;
     double largest_count_ = 0;
-    bool shows_scene_ = false;
+    std::string_view scene_;  // the name of its tag
+    bool has_scene_url_ = false;
 };
 
 }  // namespace
 
 std::string collada_accessor_damage(std::string_view text) {
-    return damage_of([&] { Collada(text, false).check(); });
+    return damage_of(text, [&] { Collada(text, false).check(); });
 }
 
 std::string collada_damage(std::string_view text) {
-    return damage_of([&] { Collada(text, true).check(); });
+    return damage_of(text, [&] { Collada(text, true).check(); });
 }
 
 }  // namespace assimp_import

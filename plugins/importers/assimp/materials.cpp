@@ -5,14 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/materials.hpp"
 #include "rt_plugin.hpp"
 
 namespace assimp_import {
 namespace {
-
-float finite(float x, float low, float high, float otherwise) {
-    return std::isfinite(x) ? std::clamp(x, low, high) : otherwise;
-}
 
 float number(const aiMaterial& m, const char* key, unsigned type, unsigned index, float otherwise) {
     ai_real value = otherwise;
@@ -24,46 +21,18 @@ aiColor3D color(const aiMaterial& m, const char* key, unsigned type, unsigned in
     return m.Get(key, type, index, value) == aiReturn_SUCCESS ? value : otherwise;
 }
 
-void store(const aiColor3D& c, float high, float out[3]) {
-    for (int k = 0; k < 3; ++k) out[k] = finite(c[k], 0, high, 0);
-}
-
 float brightest(const aiColor3D& c) {
     return std::max({c.r, c.g, c.b});
 }
 
-// Converts metallic-roughness materials (COLLADA and others): a smooth metal mirrors, a rough one stays diffuse in its own
-// colour.
-void apply_metallic(const aiMaterial& m, rt_material_desc& out) {
-    const float metallic = finite(number(m, AI_MATKEY_METALLIC_FACTOR, 0), 0, 1, 0);
-    const float roughness = finite(number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1), 0, 1, 1);
-    const float smooth = 1 - roughness;
-    out.reflect = metallic * smooth;
-    // Blinn's exponent for a GGX roughness (alpha = roughness^2): 2 / alpha^2 - 2.
-    const float alpha2 = std::max(1e-3f, roughness * roughness * roughness * roughness);
-    out.shininess = std::clamp(2 / alpha2 - 2, 1.0f, 1000.0f);
-    for (int k = 0; k < 3; ++k) out.specular[k] = smooth * (0.04f + metallic * (out.color[k] - 0.04f));
-}
-
 void apply_phong(const aiMaterial& m, rt_material_desc& out) {
     const aiColor3D specular = color(m, AI_MATKEY_COLOR_SPECULAR, {0, 0, 0});
-    const float strength = finite(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
-    store(specular * strength, 1, out.specular);
-    out.shininess = finite(number(m, AI_MATKEY_SHININESS, 0), 1, 10000, 1);
+    const float strength = importers::limited(number(m, AI_MATKEY_SHININESS_STRENGTH, 1), 0, 1, 1);
+    importers::store_color(specular, strength, 1, out.specular);
+    out.shininess = importers::limited(number(m, AI_MATKEY_SHININESS, 0), 1, 10000, 1);
     // COLLADA stores a reflection colour beside its factor. A black colour means no reflection.
-    out.reflect =
-        finite(number(m, AI_MATKEY_REFLECTIVITY, 0) * brightest(color(m, AI_MATKEY_COLOR_REFLECTIVE, {0, 0, 0})), 0, 1, 0);
-}
-
-// Converts opacity and transmission to refraction. Rays are bent only if the file gives an index of refraction or a
-// transmission.
-void apply_transparency(const aiMaterial& m, rt_material_desc& out) {
-    const float opacity = finite(number(m, AI_MATKEY_OPACITY, 1), 0, 1, 1);
-    const float transmission = finite(number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0), 0, 1, 0);
-    const float stated = finite(number(m, AI_MATKEY_REFRACTI, 0), 0, 10, 0);
-    out.refract = std::max(1 - opacity, transmission);
-    out.ior = stated > 1 ? stated : transmission > 0 ? 1.5f : 1.0f;
-    if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
+    out.reflect = importers::limited(
+        number(m, AI_MATKEY_REFLECTIVITY, 0) * brightest(color(m, AI_MATKEY_COLOR_REFLECTIVE, {0, 0, 0})), 0, 1, 0);
 }
 
 }  // namespace
@@ -87,14 +56,18 @@ rt_u32 MaterialTable::id(unsigned material) {
     out.texture = texture(m);
     aiColor3D base = color(m, AI_MATKEY_COLOR_DIFFUSE, {0.8f, 0.8f, 0.8f});
     base = color(m, AI_MATKEY_BASE_COLOR, base);
-    store(base, 1, out.color);
-    aiColor3D emission = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
-    emission = emission * finite(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0, 1000, 1);
-    store(emission, 1000, out.emission);
+    importers::store_color(base, 1, 1, out.color);
+    const aiColor3D emission = color(m, AI_MATKEY_COLOR_EMISSIVE, {0, 0, 0});
+    const float intensity = importers::limited(number(m, AI_MATKEY_EMISSIVE_INTENSITY, 1), 0, 1000, 1);
+    importers::store_color(emission, intensity, 1000, out.emission);
     ai_real metallic = 0;
-    const bool is_metallic = m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS;
-    is_metallic ? apply_metallic(m, out) : apply_phong(m, out);
-    apply_transparency(m, out);
+    if (m.Get(AI_MATKEY_METALLIC_FACTOR, metallic) == aiReturn_SUCCESS) {
+        importers::apply_metallic(metallic, number(m, AI_MATKEY_ROUGHNESS_FACTOR, 1), out);
+    } else {
+        apply_phong(m, out);
+    }
+    importers::apply_transparency(number(m, AI_MATKEY_OPACITY, 1), number(m, AI_MATKEY_TRANSMISSION_FACTOR, 0),
+                                  number(m, AI_MATKEY_REFRACTI, 0), out);
     return ids_[material] = rt::id(sink_.material(sink_.ctx, &desc));
 }
 

@@ -11,8 +11,7 @@ std::string in_quotes(std::string_view text) {
 }
 
 std::string xml_damage(std::string_view text) {
-    if (text.substr(0, 2) == "\xFE\xFF" || text.substr(0, 2) == "\xFF\xFE") return {};  // UTF-16
-    return damage_of([&] { Reader(text, {}).run(); });
+    return damage_of(text, [&] { Reader(text, {}).run(); });
 }
 
 }  // namespace assimp_import

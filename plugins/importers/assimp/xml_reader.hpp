@@ -180,9 +180,10 @@ class Reader {
     std::vector<Open> open_;
 };
 
-// Runs a check. Returns what it threw as Damage, or an empty text.
+// Runs the check of a text. Returns what it threw as Damage, or an empty string. Texts in UTF-16 are not checked.
 template <class Check>
-std::string damage_of(const Check& check) {
+std::string damage_of(std::string_view text, const Check& check) {
+    if (text.substr(0, 2) == "\xFE\xFF" || text.substr(0, 2) == "\xFF\xFE") return {};
     try {
         check();
     } catch (const Damage& damage) {

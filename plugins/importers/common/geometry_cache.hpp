@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "mapped_file.hpp"
+#include "numbers.hpp"
+#include "rt_plugin.hpp"
 
 namespace importers {
 
@@ -25,24 +27,29 @@ struct CacheFrames {
     std::vector<float> positions;  // 3 for each vertex of each frame
     void add(double time, const std::vector<float>& at) {
         if (!times.empty() && time <= times.back()) throw BrokenCache("its times do not increase");
+        if (!std::all_of(at.begin(), at.end(), [](float x) { return std::isfinite(x); }))
+            throw BrokenCache("it has values that are no finite numbers");
         times.push_back(time);
         positions.insert(positions.end(), at.begin(), at.end());
     }
+    // Passes them as the motion of a mesh. copy_of: the file's vertex of each vertex that stands behind the file's own.
+    void pass(rt_u32 mesh, const std::vector<rt_u32>& copy_of, const rt_scene_sink& sink) const {
+        const size_t numbers = positions.size() / times.size();
+        std::vector<float> all;
+        all.reserve((numbers + 3 * copy_of.size()) * times.size());
+        for (auto frame = positions.begin(); frame != positions.end(); frame += numbers) {
+            all.insert(all.end(), frame, frame + numbers);
+            for (const size_t vertex : copy_of) all.insert(all.end(), frame + 3 * vertex, frame + 3 * vertex + 3);
+        }
+        rt_vertex_frames out{};
+        out.struct_bytes = sizeof out;
+        out.mesh = mesh;
+        out.frame_count = times.size();
+        out.times_s = times.data();
+        out.positions = all.data();
+        if (sink.vertex_frames(sink.ctx, &out) != RT_OK) throw rt::Stopped();
+    }
 };
-
-// Numbers of this machine's byte order, which is little-endian, and of the other one.
-template <class T>
-T little(const char* at) {
-    T value;
-    std::memcpy(&value, at, sizeof value);
-    return value;
-}
-template <class T>
-T big(const char* at) {
-    char bytes[sizeof(T)];
-    std::reverse_copy(at, at + sizeof(T), bytes);
-    return little<T>(bytes);
-}
 
 // Maya's times have 6000 ticks a second (measured from maya_cache_sine_7500_binary_fpc: 250 a frame at 24 frames a second).
 inline constexpr double kMayaTicks = 6000;
@@ -78,7 +85,8 @@ class MayaCache {
             throw BrokenCache("byte " + std::to_string(at) + ": a chunk reaches beyond its file or block");
         };
         if (end - at < head) fail();
-        const uint64_t size = wide_ ? big<uint64_t>(bytes_.data() + at + 8) : big<uint32_t>(bytes_.data() + at + 4);
+        const uint64_t size =
+            wide_ ? load<uint64_t>(bytes_.data() + at + 8, true) : load<uint32_t>(bytes_.data() + at + 4, true);
         if (size > end - at - head) fail();
         const size_t data_end = at + head + size, next = at + head + (size + pad - 1) / pad * pad;
         const bool is_group = bytes_.substr(at, 3) == "FOR";
@@ -91,7 +99,7 @@ class MayaCache {
         while (at < end) {
             const Chunk c = chunk(at, end);
             at = c.next;
-            if (c.name == "TIME" && c.data.size() >= 4) time_ = big<uint32_t>(c.data.data()) / kMayaTicks;
+            if (c.name == "TIME" && c.data.size() >= 4) time_ = load<uint32_t>(c.data.data(), true) / kMayaTicks;
             if (c.name == "CHNM") name = c.data.substr(0, c.data.find('\0'));
             const bool is_float = c.name == "FVCA";
             if ((!is_float && c.name != "DVCA") || name != channel_) continue;
@@ -104,7 +112,7 @@ class MayaCache {
             std::vector<float> positions(3 * points_);
             for (size_t i = 0; i < positions.size(); ++i) {
                 const char* from = c.data.data() + i * element;
-                positions[i] = is_float ? big<float>(from) : static_cast<float>(big<double>(from));
+                positions[i] = is_float ? load<float>(from, true) : static_cast<float>(load<double>(from, true));
             }
             out_.add(time_, positions);
         }
@@ -167,8 +175,8 @@ inline void read_maya(const std::string& path, std::string_view xml, std::string
 inline void read_points(std::string_view bytes, double fps, size_t points, CacheFrames& out) {
     constexpr size_t head = 32;
     if (bytes.size() < head) throw BrokenCache("byte 0: it ends within its head");
-    const uint32_t vertices = little<uint32_t>(bytes.data() + 16), samples = little<uint32_t>(bytes.data() + 28);
-    const float first = little<float>(bytes.data() + 20), step = little<float>(bytes.data() + 24);
+    const uint32_t vertices = load<uint32_t>(bytes.data() + 16, false), samples = load<uint32_t>(bytes.data() + 28, false);
+    const float first = load<float>(bytes.data() + 20, false), step = load<float>(bytes.data() + 24, false);
     if (vertices != points)
         throw BrokenCache("byte 16: it has " + std::to_string(vertices) + " vertices; the mesh has " + std::to_string(points));
     if (samples > (bytes.size() - head) / (12 * std::max<size_t>(points, 1)))

@@ -11,6 +11,14 @@ using Vec3 = std::array<double, 3>;
 using Transform = std::array<double, 12>;
 inline constexpr Transform kIdentity = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
+// From 16 numbers, column by column.
+template <class Number>
+Transform from_columns(const Number* numbers) {
+    Transform m{};
+    for (int i = 0; i < 12; ++i) m[i] = numbers[4 * (i % 4) + i / 4];
+    return m;
+}
+
 // Applies b first, then a.
 inline Transform multiply(const Transform& a, const Transform& b) {
     Transform m{};

@@ -2,9 +2,11 @@
 #pragma once
 #include <algorithm>
 #include <cstring>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "rt_plugin.h"
+#include "rt_plugin.hpp"
 
 namespace importers {
 
@@ -12,20 +14,26 @@ struct MeshArrays {
     std::vector<float> positions, normals, uvs;  // 3, 3 and 2 for each vertex; normals and uvs may be empty
     std::vector<rt_u32> sizes;                   // corners of each face; empty: all faces are triangles
 
-    // The host's description, but for the faces and their materials. The arrays must outlive it.
-    rt_mesh description(const char* name) const {
+    // Passes the mesh and returns the host's id. corners: their vertices. materials: of each face, or one for all.
+    rt_u32 pass(const std::string& name, const rt_u32* corners, size_t corner_count, const std::vector<rt_u32>& materials,
+                const rt_scene_sink& sink) const {
         rt_mesh out{};
         out.struct_bytes = sizeof out;
-        out.material = RT_NONE;
-        out.name = name;
+        out.name = name.c_str();
         out.positions = positions.data();
         out.vertex_count = static_cast<rt_u32>(positions.size() / 3);
         out.position_stride = out.normal_stride = 3 * sizeof(float);
         out.uv_stride = 2 * sizeof(float);
         out.normals = normals.empty() ? nullptr : normals.data();
         out.uvs = uvs.empty() ? nullptr : uvs.data();
+        out.indices = corners;
+        out.index_count = corner_count;
         out.face_sizes = sizes.empty() ? nullptr : sizes.data();
-        return out;
+        out.face_count = sizes.empty() ? corner_count / 3 : sizes.size();
+        out.material = materials.empty() ? RT_NONE : materials[0];
+        const bool differ = std::any_of(materials.begin(), materials.end(), [&](rt_u32 m) { return m != out.material; });
+        out.face_materials = differ ? materials.data() : nullptr;
+        return rt::id(sink.mesh(sink.ctx, &out));
     }
 };
 
@@ -76,6 +84,29 @@ class VertexCopies {
     std::vector<rt_u32>& copy_of_;
     std::vector<rt_u32> next_;
     std::vector<bool> used_;
+};
+
+// The host's vertices of each vertex of a file: itself, and its copies.
+class CopiesOfVertices {
+ public:
+    // copy_of: the file's vertex of each copy; the copies stand behind the file's `points` vertices.
+    CopiesOfVertices(size_t points, const std::vector<rt_u32>& copy_of) : points_(points) {
+        for (const rt_u32 vertex : copy_of) copies_.emplace_back(vertex, static_cast<rt_u32>(points + copies_.size()));
+        std::sort(copies_.begin(), copies_.end());
+    }
+    // Calls body(vertex) for each; for none, if the file has no such vertex.
+    template <class Body>
+    void each(int64_t vertex, const Body& body) const {
+        if (vertex < 0 || static_cast<uint64_t>(vertex) >= points_) return;
+        const rt_u32 v = static_cast<rt_u32>(vertex);
+        body(v);
+        auto at = std::lower_bound(copies_.begin(), copies_.end(), std::make_pair(v, rt_u32(0)));
+        for (; at != copies_.end() && at->first == v; ++at) body(at->second);
+    }
+
+ private:
+    size_t points_;
+    std::vector<std::pair<rt_u32, rt_u32>> copies_;
 };
 
 }  // namespace importers

@@ -1,149 +1,98 @@
 // arrays.cpp -- the arrays of a document: plain, deflated or as text.
-#include <zlib.h>
-
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <type_traits>
 
 #include "../common/base64.hpp"
-#include "ascii.hpp"
+#include "../common/inflate.hpp"
 #include "binary.hpp"
 
 namespace fbx_import {
 namespace {
 
-template <class T, class From>
-T converted(From value) {
-    if constexpr (std::is_floating_point_v<T>) {
-        return static_cast<T>(value);
-    } else if constexpr (std::is_floating_point_v<From>) {
-        if (!(value == value)) return 0;
-        if (value >= static_cast<From>(std::numeric_limits<T>::max())) return std::numeric_limits<T>::max();
-        if (value <= static_cast<From>(std::numeric_limits<T>::min())) return std::numeric_limits<T>::min();
-        return static_cast<T>(value);
-    } else {
-        return static_cast<T>(std::clamp<int64_t>(value, std::numeric_limits<T>::min(), std::numeric_limits<T>::max()));
-    }
-}
+using importers::nearest;
 
 template <class T, class From>
 void convert(const char* from, size_t count, bool big_endian, T* to) {
     if (std::is_same_v<T, From> && !big_endian) {
         std::memcpy(to, from, count * sizeof(T));
-    } else if (!big_endian) {
-        for (size_t i = 0; i < count; ++i) to[i] = converted<T>(load<From>(from + i * sizeof(From), false));
+    } else if (!big_endian) {  // a loop of its own is faster
+        for (size_t i = 0; i < count; ++i) to[i] = nearest<T>(load<From>(from + i * sizeof(From), false));
     } else {
-        for (size_t i = 0; i < count; ++i) to[i] = converted<T>(load<From>(from + i * sizeof(From), true));
+        for (size_t i = 0; i < count; ++i) to[i] = nearest<T>(load<From>(from + i * sizeof(From), true));
     }
 }
 
 template <class T>
 void convert(char type, const char* from, size_t count, bool big_endian, T* to) {
-    switch (type) {
-        case 'd':
-            return convert<T, double>(from, count, big_endian, to);
-        case 'f':
-            return convert<T, float>(from, count, big_endian, to);
-        case 'l':
-            return convert<T, int64_t>(from, count, big_endian, to);
-        case 'i':
-            return convert<T, int32_t>(from, count, big_endian, to);
-        default:
-            return convert<T, int8_t>(from, count, big_endian, to);
-    }
+    if (type == 'd') return convert<T, double>(from, count, big_endian, to);
+    if (type == 'f') return convert<T, float>(from, count, big_endian, to);
+    if (type == 'l') return convert<T, int64_t>(from, count, big_endian, to);
+    if (type == 'i') return convert<T, int32_t>(from, count, big_endian, to);
+    convert<T, int8_t>(from, count, big_endian, to);
 }
 
-struct Inflater {
-    z_stream stream{};
-    bool good = inflateInit(&stream) == Z_OK;
-    ~Inflater() { inflateEnd(&stream); }
-};
+}  // namespace
 
-// Inflates piece by piece, so that no more than `count` elements are ever written, and the plain bytes are not all held.
+// Its numbers are inflated piece by piece, so that no more than it declares are ever written.
 template <class T>
-void inflate_array(char type, std::string_view deflated, bool big_endian, std::vector<T>& out, const std::string& where) {
-    Inflater inflater;
-    z_stream& s = inflater.stream;
-    s.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(deflated.data()));
-    s.avail_in = static_cast<uInt>(deflated.size());
-    const size_t element = element_bytes(type), most = 32768 / element;
-    std::vector<char> piece(32768);
-    for (size_t done = 0; done < out.size();) {
-        const size_t count = std::min(most, out.size() - done);
-        s.next_out = reinterpret_cast<Bytef*>(piece.data());
-        s.avail_out = static_cast<uInt>(count * element);
-        int state = inflater.good ? Z_OK : Z_MEM_ERROR;
-        while (state == Z_OK && s.avail_out > 0) state = inflate(&s, Z_NO_FLUSH);
-        if (s.avail_out > 0) {
-            throw Broken(where + ": its deflated bytes end or are damaged after " +
-                         std::to_string(done + (count * element - s.avail_out) / element) + " of " +
-                         std::to_string(out.size()) + " values; expected all of them");
-        }
-        convert(type, piece.data(), count, big_endian, out.data() + done);
-        done += count;
-    }
-    char more;
-    s.next_out = reinterpret_cast<Bytef*>(&more);
-    s.avail_out = 1;
-    if (!out.empty() && inflate(&s, Z_NO_FLUSH) != Z_STREAM_END && s.avail_out == 0) {
-        throw Broken(where + ": its deflated bytes hold more than the " + std::to_string(out.size()) +
-                     " values that it declares");
-    }
-}
-
-// Deflated bytes become 1032 times as many at most. Source: zlib's technical details, "Maximum Compression Factor".
-constexpr uint64_t kMostInflation = 1032;
-
-template <class T>
-std::vector<T> binary_array(const Value& value, bool big_endian, const std::string& where) {
-    const size_t element = element_bytes(value.type);
-    const uint64_t count = load<uint32_t>(value.text.data(), big_endian);
-    const uint32_t encoding = load<uint32_t>(value.text.data() + 4, big_endian);
-    const std::string_view bytes = value.text.substr(12);
-    const auto fail = [&](const std::string& what) { throw Broken(where + ": " + what); };
-    if (encoding > 1) fail("has the encoding " + std::to_string(encoding) + "; expected 0 (plain) or 1 (deflated)");
-    if (encoding == 0 ? count * element != bytes.size() : count * element > kMostInflation * bytes.size()) {
-        fail("declares " + std::to_string(count) + " values of " + std::to_string(element) + " bytes, but has " +
-             std::to_string(bytes.size()) + (encoding ? " deflated" : "") + " bytes");
+std::vector<T> Document::binary_array(const Node& node, const Value& array) const {
+    const size_t element = element_bytes(array.type);
+    const uint64_t count = load<uint32_t>(array.text.data(), big_endian_);
+    const uint32_t encoding = load<uint32_t>(array.text.data() + 4, big_endian_);
+    const std::string_view bytes = array.text.substr(12);
+    const auto refuse = [&](const std::string& what) { fail(node, quoted(node.name) + ": " + what); };
+    if (encoding > 1) refuse("has the encoding " + std::to_string(encoding) + "; expected 0 (plain) or 1 (deflated)");
+    const uint64_t most = bytes.size() * (encoding == 0 ? 1 : importers::kMostInflation);
+    if (count * element > most || (encoding == 0 && count * element != most)) {
+        refuse("declares " + std::to_string(count) + " values of " + std::to_string(element) + " bytes, but has " +
+               std::to_string(bytes.size()) + (encoding ? " deflated" : "") + " bytes");
     }
     std::vector<T> out(count);
-    if (encoding == 0) {
-        convert(value.type, bytes.data(), count, big_endian, out.data());
-    } else {
-        inflate_array(value.type, bytes, big_endian, out, where);
+    if (encoding == 0) convert(array.type, bytes.data(), count, big_endian_, out.data());
+    if (encoding == 0 || count == 0) return out;
+    importers::Inflater inflater(bytes);
+    std::vector<char> piece(32768);
+    for (size_t done = 0; done < count;) {
+        const size_t wanted = std::min<size_t>(piece.size() / element, count - done);
+        const size_t found = inflater.read(piece.data(), wanted * element) / element;
+        if (found < wanted) {
+            refuse("its deflated bytes end or are damaged after " + std::to_string(done + found) + " of " +
+                   std::to_string(count) + " values; expected all of them");
+        }
+        convert(array.type, piece.data(), wanted, big_endian_, &out[done]);
+        done += wanted;
     }
+    if (inflater.read(piece.data(), 1) > 0)
+        refuse("its deflated bytes hold more than the " + std::to_string(count) + " values that it declares");
     return out;
 }
 
+// declared: how many numbers there should be; 0: unknown.
 template <class T>
-std::vector<T> text_array(const Document& document, const Node& node, size_t expected) {
+std::vector<T> Document::text_array(const Node& node, size_t declared) const {
     std::vector<T> out;
     const char *at = node.values.data(), *const end = at + node.values.size();
-    out.reserve(std::min(expected ? expected : node.values.size() / 4, node.values.size() / 2 + 1));
+    out.reserve(std::min(declared ? declared : node.values.size() / 4, node.values.size() / 2 + 1));
     while (true) {
         while (at < end && (*at == ' ' || *at == ',' || *at == '\n' || *at == '\r' || *at == '\t')) ++at;
         if (at == end) return out;
         if (*at == ';') {
-            while (at < end && *at != '\n') ++at;
+            at = std::find(at, end, '\n');
             continue;
         }
         int64_t whole = 0;
         double number = 0;
-        if (!std::is_floating_point_v<T> && read_number(at, end, whole)) {
-            out.push_back(converted<T>(whole));
-        } else if (read_number(at, end, number)) {
-            out.push_back(converted<T>(number));
-        } else if (at[0] != '*') {
-            throw Broken(document.place(at) + ": found " + quoted({at, static_cast<size_t>(end - at)}) +
-                         " among the values of " + quoted(node.name) + "; expected a number");
-        } else {
+        if (!std::is_floating_point_v<T> && importers::read_number(at, end, whole)) {
+            out.push_back(nearest<T>(whole));
+        } else if (importers::read_number(at, end, number)) {
+            out.push_back(nearest<T>(number));
+        } else if (*at == '*') {
             return out;  // an array whose numbers are missing
+        } else {
+            fail(at, "found " + quoted({at, static_cast<size_t>(end - at)}) + " among the values of " + quoted(node.name) +
+                         "; expected a number");
         }
     }
 }
-
-}  // namespace
 
 template <class T>
 std::vector<T> Document::numbers(const Node* node) const {
@@ -151,27 +100,26 @@ std::vector<T> Document::numbers(const Node* node) const {
     const Value first = value(*node, 0);
     if (!binary_) {
         const Node* inner = first.kind == Value::array ? child(node, "a") : nullptr;
-        if (!inner) return text_array<T>(*this, *node, 0);
+        if (!inner) return text_array<T>(*node, 0);
         const size_t declared = static_cast<size_t>(std::clamp<int64_t>(first.whole, 0, int64_t(1) << 40));
-        std::vector<T> out = text_array<T>(*this, *inner, declared);
+        std::vector<T> out = text_array<T>(*inner, declared);
         if (out.size() < declared) {
-            throw Broken(place(*node) + ": " + quoted(node->name) + " declares " + std::to_string(declared) +
-                         " values, but has " + std::to_string(out.size()));
+            fail(*node, quoted(node->name) + " declares " + std::to_string(declared) + " values, but has " +
+                            std::to_string(out.size()));
         }
         out.resize(declared);
         return out;
     }
-    if (first.kind == Value::array) return binary_array<T>(first, big_endian_, place(*node) + ": " + quoted(node->name));
+    if (first.kind == Value::array) return binary_array<T>(*node, first);
     // Before version 7, each number is a value of its own (measured from maya_cube_6100_binary).
     std::vector<T> out;
     out.reserve(node->value_count);
     Values values(*this, *node);
     for (Value v; values.next(v);) {
-        if (v.kind != Value::integer && v.kind != Value::real) {
-            throw Broken(place(*node) + ": value " + std::to_string(out.size()) + " of " + quoted(node->name) +
-                         " is no number; expected one");
+        if (!v.is_number()) {
+            fail(*node, "value " + std::to_string(out.size()) + " of " + quoted(node->name) + " is no number; expected one");
         }
-        out.push_back(v.kind == Value::integer ? converted<T>(v.whole) : converted<T>(v.number));
+        out.push_back(v.kind == Value::integer ? nearest<T>(v.whole) : nearest<T>(v.number));
     }
     return out;
 }
@@ -191,7 +139,7 @@ std::string Document::content(const Node& node) const {
     std::string out;
     Values values(*this, node);
     for (Value v; values.next(v);) {
-        if (v.kind != Value::string && v.kind != Value::raw) continue;
+        if (v.kind != Value::string) continue;
         if (binary_) {
             out += v.text;
         } else {

@@ -1,10 +1,6 @@
-#include "ascii.hpp"
-
+// ascii.cpp -- the text form of FBX files.
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstring>
-#include <limits>
 
 #include "binary.hpp"
 
@@ -38,52 +34,53 @@ const char* skip_space(const char* at, const char* end) {
 
 }  // namespace
 
-void AsciiReader::fail(const char* where, const std::string& what) const {
-    throw Broken(document_.place(where) + ": " + what);
+// `Name: value, value {` children `}`. Values are numbers, words or "texts"; they end at the end of the line unless a comma
+// stands at the end of it or at the start of the next one. `;` begins a comment. Measured from max2009_cube_anim_5800_ascii
+// (commas), maya_cube_7400_ascii and blender_279_default_6100_ascii.
+class Document::AsciiReader {
+ public:
+    explicit AsciiReader(Document& document)
+        : document_(document), at_(document.bytes_.data()), end_(at_ + document.bytes_.size()) {
+        if (document.bytes_.substr(0, 3) == "\xEF\xBB\xBF") at_ += 3;
+    }
+    void read() {
+        read_nodes(0, 0);
+        if (at_ < end_) document_.fail(at_, "found a '}' without its '{'; expected the name of a block");
+    }
+
+ private:
+    void read_nodes(uint32_t parent, int depth);
+    void skip_values();
+    Document& document_;
+    const char *at_, *const end_;
+};
+void Document::read_ascii() {
+    AsciiReader(*this).read();
 }
 
-void AsciiReader::read() {
-    if (std::string_view(at_, static_cast<size_t>(end_ - at_)).substr(0, 3) == "\xEF\xBB\xBF") at_ += 3;
-    read_nodes(0, 0);
-    if (at_ < end_) fail(at_, "found a '}' without its '{'; expected the name of a block");
-}
-
-void AsciiReader::skip_space() {
-    at_ = fbx_import::skip_space(at_, end_);
-}
-
-void AsciiReader::read_nodes(uint32_t parent, int depth) {
-    std::vector<Node>& nodes = document_.nodes_;
-    if (depth > kMaxDepth)
-        fail(at_, "blocks are nested more than " + std::to_string(kMaxDepth) + " deep; expected at most that");
+void Document::AsciiReader::read_nodes(uint32_t parent, int depth) {
     uint32_t last = 0;
-    for (skip_space(); at_ < end_ && *at_ != '}'; skip_space()) {
-        const char* name = at_;
+    for (at_ = skip_space(at_, end_); at_ < end_ && *at_ != '}'; at_ = skip_space(at_, end_)) {
+        const char* from = at_;
         while (at_ < end_ && *at_ != ':' && class_of(*at_) == other) ++at_;
-        const char* name_end = at_;
+        const std::string_view name(from, static_cast<size_t>(at_ - from));
         while (at_ < end_ && class_of(*at_) == space) ++at_;
-        if (at_ == end_ || *at_ != ':' || name_end == name)
-            fail(name, "found " + quoted({name, static_cast<size_t>(end_ - name)}) + "; expected a name and ':'");
-        ++at_;
-        if (nodes.size() >= kMaxNodes) fail(name, "there are more blocks than can be read");
-        const uint32_t index = static_cast<uint32_t>(nodes.size());
-        nodes.emplace_back();
-        nodes[index].name = {name, static_cast<size_t>(name_end - name)};
-        (last ? nodes[last].next : nodes[parent].first_child) = index;
-        last = index;
-        const char* values = at_;
+        if (at_ == end_ || *at_ != ':' || name.empty())
+            document_.fail(from, "found " + quoted({from, static_cast<size_t>(end_ - from)}) + "; expected a name and ':'");
+        last = document_.add_node(name, parent, last, depth);
+        const char* values = ++at_;
         skip_values();
-        nodes[index].values = {values, static_cast<size_t>(at_ - values)};
+        document_.nodes_[last].values = {values, static_cast<size_t>(at_ - values)};
         if (at_ == end_ || *at_ != '{') continue;
         const char* open = at_++;
-        read_nodes(index, depth + 1);
-        if (at_ == end_) fail(open, "the file ends within this block, " + quoted(nodes[index].name) + "; expected its '}'");
+        read_nodes(last, depth + 1);
+        if (at_ == end_) document_.fail(open, "the file ends within this block, " + quoted(name) + "; expected its '}'");
         ++at_;
     }
 }
 
 // Moves to the end of a node's values: a '{', a '}', or the next node.
-void AsciiReader::skip_values() {
+void Document::AsciiReader::skip_values() {
     bool after_comma = true, crossed_line = false;  // Blender 2.79 writes the first key on the next line
     while (at_ < end_) {
         // Long lists of numbers take most of the file.
@@ -99,41 +96,18 @@ void AsciiReader::skip_values() {
         if (at_ == end_ || *at_ == '{' || *at_ == '}') return;
         if (*at_ == '"') {
             const void* close = std::memchr(at_ + 1, '"', static_cast<size_t>(end_ - at_ - 1));
-            if (!close) fail(at_, "found quotes that nothing closes; expected '\"'");
+            if (!close) document_.fail(at_, "found quotes that nothing closes; expected '\"'");
             at_ = static_cast<const char*>(close) + 1;
             after_comma = false;
         } else if (*at_ == '\0') {
-            fail(at_, "found a byte 0; expected text");
+            document_.fail(at_, "found a byte 0; expected text");
         } else {  // a new line, or a comment that reaches up to it
-            const char* next = fbx_import::skip_space(at_, end_);
+            const char* next = skip_space(at_, end_);
             if (!after_comma && (next == end_ || *next != ',')) return;
             at_ = next;
             crossed_line = true;
         }
     }
-}
-
-bool read_number(const char*& at, const char* end, double& number) {
-    const char* from = at < end && *at == '+' ? at + 1 : at;
-    const std::from_chars_result result = std::from_chars(from, end, number);
-    if (result.ptr == from) return false;
-    at = result.ptr;
-    if (result.ec == std::errc::result_out_of_range) number = *from == '-' ? -HUGE_VAL : HUGE_VAL;
-    if (at < end && *at == '#') {  // "1.#INF", as Microsoft's library writes it
-        while (at < end && class_of(*at) == other) ++at;
-        number = std::numeric_limits<double>::quiet_NaN();
-    }
-    return true;
-}
-
-bool read_number(const char*& at, const char* end, int64_t& number) {
-    const char* from = at < end && *at == '+' ? at + 1 : at;
-    const std::from_chars_result result = std::from_chars(from, end, number);
-    if (result.ec != std::errc() || (result.ptr < end && (*result.ptr == '.' || *result.ptr == 'e' || *result.ptr == 'E'))) {
-        return false;
-    }
-    at = result.ptr;
-    return true;
 }
 
 bool Values::next_ascii(Value& value) {
@@ -152,11 +126,11 @@ bool Values::next_ascii(Value& value) {
     } else if (*at == '*') {  // `*24 {`: the numbers are in a child `a`
         ++at;
         value.kind = Value::array;
-        read_number(at, end, value.whole);
-    } else if (read_number(at, end, value.whole)) {
+        importers::read_number(at, end, value.whole);
+    } else if (importers::read_number(at, end, value.whole)) {
         value.kind = Value::integer;
         value.number = static_cast<double>(value.whole);
-    } else if (read_number(at, end, value.number)) {
+    } else if (importers::read_number(at, end, value.number)) {
         value.kind = Value::real;
     }
     if (value.kind == Value::none || (at < end && class_of(*at) == other)) {  // a word
@@ -168,17 +142,6 @@ bool Values::next_ascii(Value& value) {
     }
     rest_ = {at, static_cast<size_t>(end - at)};
     return true;
-}
-
-std::string without_entities(std::string_view text) {
-    std::string out;
-    for (size_t i = 0; i < text.size(); ++i) {
-        const auto starts = [&](std::string_view entity) { return text.substr(i, entity.size()) == entity; };
-        const char c = starts("&quot;") ? '"' : starts("&lf;") ? '\n' : starts("&cr;") ? '\r' : starts("&amp;") ? '&' : text[i];
-        out += c;
-        if (text[i] == '&' && (c != '&' || starts("&amp;"))) i = text.find(';', i);
-    }
-    return out;
 }
 
 }  // namespace fbx_import

@@ -1,11 +1,11 @@
 // binary.hpp -- numbers and records of binary FBX files.
 #pragma once
-#include <algorithm>
-#include <cstring>
-
+#include "../common/numbers.hpp"
 #include "document.hpp"
 
 namespace fbx_import {
+
+using importers::load;
 
 // "Kaydara FBX Binary", two spaces, 0, 0x1A, the byte order (0 little, 1 big), and the version as 32 bits in that order.
 // Source: Blender developer blog, "FBX binary file format specification"; the byte order: measured from
@@ -17,16 +17,6 @@ inline constexpr size_t kVersionAt = 23, kHeaderBytes = 27;
 inline constexpr int kMaxDepth = 64;
 inline constexpr size_t kMaxNodes = size_t(1) << 28;
 
-// Reads a number of the file's byte order. The caller has checked that the bytes are there.
-template <class T>
-T load(const char* at, bool big_endian) {
-    T value;
-    std::memcpy(&value, at, sizeof(T));
-    auto* bytes = reinterpret_cast<unsigned char*>(&value);
-    if (big_endian) std::reverse(bytes, bytes + sizeof(T));
-    return value;
-}
-
 // Bytes of one element of an array of this type, or of one value; 0: there is no such type. Source: as above.
 inline size_t element_bytes(char type) {
     constexpr std::string_view of_8 = "dlDL", of_4 = "fiFI", of_1 = "bcBC";
@@ -36,16 +26,5 @@ inline size_t element_bytes(char type) {
 inline bool is_array(char type) {
     return type >= 'a' && type <= 'z' && element_bytes(type) != 0;
 }
-
-// Reads the nodes of binary files into the document.
-class BinaryReader {
- public:
-    explicit BinaryReader(Document& document) : document_(document), bytes_(document.bytes_) {}
-    size_t read_nodes(size_t at, size_t end, uint32_t parent = 0, int depth = 0);
-
- private:
-    Document& document_;
-    const std::string_view bytes_;
-};
 
 }  // namespace fbx_import

@@ -39,8 +39,10 @@ class Clips {
     rt_u32 add_clip(const std::string& name, double begin, double end, const std::vector<rt_layer>& layers);
     std::vector<Output> outputs_of(rt_u32 clip, uint32_t object, std::string_view property);
     void add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object);
-    void add_take_model(rt_u32 clip, const Node& model);
-    void add_take_channels(rt_u32 clip, uint32_t object, const Node& parent);
+    void add_take_model(rt_u32 clip, const Node& model) {
+        add_channels(clip, context_.objects.find(document_.text(&model, 0)), model);
+    }
+    void add_channels(rt_u32 clip, uint32_t object, const Node& parent);
     void add(rt_u32 clip, rt_u32 layer, const Output& output, Curve curve);
 
     const Context& context_;
@@ -111,7 +113,7 @@ void Clips::add(rt_u32 clip, rt_u32 layer, const Output& output, Curve curve) {
 void Clips::add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object) {
     const Objects& objects = context_.objects;
     const Properties rest(document_, objects[object].node);
-    const std::vector<const Link*> curves = objects.below(object);
+    const std::vector<const Link*>& curves = objects.below(object);
     for (const Link* above : objects.above(object)) {
         const std::string_view property = above->property;
         std::vector<Output> outputs = outputs_of(clip, above->to, property);
@@ -134,8 +136,7 @@ void Clips::add_curve_node(rt_u32 clip, rt_u32 layer, uint32_t object) {
 // Source of the names and numbers: FBX SDK help, "FbxAnimStack" and "FbxAnimLayer". LocalStart is 0 if it is not there.
 void Clips::add_stacks() {
     const Objects& objects = context_.objects;
-    for (uint32_t stack = 1; stack < objects.size(); ++stack) {
-        if (objects[stack].kind != "AnimationStack") continue;
+    for (const uint32_t stack : objects.of_kind("AnimationStack")) {
         std::vector<rt_layer> layers;
         std::vector<uint32_t> layer_objects;
         for (const uint32_t layer : objects.below(stack, "AnimationLayer")) {
@@ -182,18 +183,13 @@ void Clips::add_takes() {
     }
 }
 
-void Clips::add_take_model(rt_u32 clip, const Node& model) {
-    const uint32_t object = context_.objects.find(document_.text(&model, 0));
-    if (object != kNoObject) add_take_channels(clip, object, model);
-}
-
 // The channels "T", "R" and "S" are in the channel "Transform", each with channels "X", "Y" and "Z"; "Visibility" and those of
 // shapes stand beside it. Measured from maya_game_sausage_6100_ascii_combined and maya_blend_shape_cube_6100_binary.
-void Clips::add_take_channels(rt_u32 clip, uint32_t object, const Node& parent) {
+void Clips::add_channels(rt_u32 clip, uint32_t object, const Node& parent) {
     for (const Node& channel : document_.children(parent)) {
         const std::string_view name = document_.text(&channel, 0);
         if (channel.name != "Channel") continue;
-        if (name == "Transform") add_take_channels(clip, object, channel);
+        if (name == "Transform") add_channels(clip, object, channel);
         for (const Output& output : outputs_of(clip, object, name)) {
             const std::string_view axis = std::string_view("XYZ").substr(output.curve, 1);
             const Node* curve = is_vector(name) ? document_.child(&channel, "Channel", axis) : &channel;

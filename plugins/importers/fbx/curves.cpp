@@ -98,32 +98,10 @@ void read_outside(const Document& document, const Node* node, rt_u32& mode, rt_u
 }
 
 void check(const Document& document, const Node& node, const Curve& c) {
-    const auto is_bad = [](double x) { return !std::isfinite(x); };
-    if (std::any_of(c.values.begin(), c.values.end(), is_bad) || std::any_of(c.handles.begin(), c.handles.end(), is_bad) ||
-        std::any_of(c.times.begin(), c.times.end(), is_bad) || !std::is_sorted(c.times.begin(), c.times.end())) {
-        throw Broken(document.place(node) + ": the keys of a curve are not finite, or not in the order of their times");
-    }
+    if (!c.is_sound()) document.fail(node, "the keys of a curve are not finite, or not in the order of their times");
 }
 
 }  // namespace
-
-Curve Curve::constant(double value) {
-    Curve c;
-    c.times = {0};
-    c.values = {value};
-    c.spans = {RT_SPAN_STEP};
-    return c;
-}
-
-void Curve::convert(const std::function<double(double)>& value) {
-    for (size_t i = 0; i < values.size(); ++i) {
-        const double before = values[i];
-        values[i] = value(before);
-        if (handles.empty()) continue;
-        handles[4 * i + 1] = values[i] - value(before - handles[4 * i + 1]);
-        handles[4 * i + 3] = value(before + handles[4 * i + 3]) - values[i];
-    }
-}
 
 // Frames a second of the time modes from 1 on; 14 has a number of its own. Source: FBX SDK help, "FbxTime::EMode".
 static constexpr double kRates[] = {120, 100, 60,   50,           48, 30, 30, 29.97002997, 29.97002997,
@@ -179,9 +157,7 @@ Curve read_curve(const Document& document, const Node& node, double ticks) {
         const size_t keys = set < repeats.size() && repeats[set] > 0 ? static_cast<size_t>(repeats[set]) : 1;
         tangents.insert(tangents.end(), std::min(keys, count - tangents.size()), t);
     }
-    Tangents last;
-    last.flags = kLinear;
-    tangents.resize(count, last);
+    tangents.resize(count, Tangents{kLinear});
     add_handles(tangents, c);
     read_outside(document, document.child(&node, "Pre-Extrapolation"), c.before, c.before_count);
     read_outside(document, document.child(&node, "Post-Extrapolation"), c.after, c.after_count);
@@ -205,9 +181,8 @@ Curve read_take_curve(const Document& document, const Node& channel, double tick
         // In binary files letters are whole numbers.
         const auto letter = [&] { return !values.next(v) ? '\0' : v.text.empty() ? static_cast<char>(v.whole) : v.text[0]; };
         while (values.next(v)) {
-            if (v.kind != Value::integer && v.kind != Value::real) {
-                throw Broken(document.place(*key) + ": key " + std::to_string(c.times.size()) +
-                             " has no time; expected a number");
+            if (!v.is_number()) {
+                document.fail(*key, "key " + std::to_string(c.times.size()) + " has no time; expected a number");
             }
             c.times.push_back(v.number / ticks);
             c.values.push_back(number());

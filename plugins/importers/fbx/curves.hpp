@@ -1,16 +1,11 @@
 // curves.hpp -- keys of one number over time, as the host takes them.
 #pragma once
-#include <functional>
-
 #include "../common/keys.hpp"
 #include "scene.hpp"
 
 namespace fbx_import {
 
-struct Curve : importers::Keys {
-    static Curve constant(double value);
-    void convert(const std::function<double(double)>& value);  // all values, and the ends of handles
-};
+using Curve = importers::Keys;
 
 // Ticks of the file's clock in a second.
 double ticks_of_second(const Document& document);

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "ascii.hpp"
+#include "../common/file_kind.hpp"
 #include "binary.hpp"
 
 namespace fbx_import {
@@ -10,9 +10,9 @@ namespace fbx_import {
 Document::Document(std::string_view bytes) : bytes_(bytes) {
     read_header();
     if (binary_) {
-        BinaryReader(*this).read_nodes(kHeaderBytes, bytes_.size());
+        read_records(kHeaderBytes, bytes_.size(), 0, 0);
     } else {
-        AsciiReader(*this).read();
+        read_ascii();
     }
     // Up to FBX 5, the header of a binary file has the version of the container: 3000 where FBXVersion says 5000 (measured
     // from max7_cube_5000_binary). From 5.8 on, both are the same.
@@ -28,19 +28,9 @@ Document::Document(std::string_view bytes) : bytes_(bytes) {
 void Document::read_header() {
     const auto starts = [&](std::string_view start) { return bytes_.substr(0, start.size()) == start; };
     if (bytes_.empty()) throw Broken("the file is empty");
-    struct Kind {
-        std::string_view magic;
-        const char* name;
-    };
-    static constexpr Kind kinds[] = {
-        {"\x89PNG", "a PNG picture"},   {"\xFF\xD8\xFF", "a JPEG picture"}, {"PK\x03\x04", "a zip archive"},
-        {"\x1F\x8B", "a gzip archive"}, {"%PDF", "a PDF document"},         {"glTF", "a binary glTF file"},
-        {"ply", "a PLY file"},          {"<?xml", "an XML file"},           {"BLENDER", "a Blender file"},
-    };
-    for (const Kind& kind : kinds) {
-        if (starts(kind.magic)) throw Broken(std::string("not an FBX file: it is ") + kind.name + "; rename it");
-    }
     binary_ = starts(kMagic.substr(0, 18));
+    const char* kind = importers::kind_of(bytes_);
+    if (kind && !binary_) throw Broken(std::string("not an FBX file but ") + kind);
     if (!binary_) {
         const std::string_view head = bytes_.substr(0, 4096);
         if (head.find("FBX") == head.npos) throw Broken("not an FBX file: neither the binary nor the text header is there");
@@ -66,24 +56,12 @@ std::string quoted(std::string_view text) {
     return out + "'";
 }
 
-const Node* Document::child(const Node* node, std::string_view name) const {
+const Node* Document::child(const Node* node, std::string_view name, std::optional<std::string_view> first_text) const {
     if (!node) return nullptr;
     for (const Node& child : children(*node)) {
-        if (child.name == name) return &child;
+        if (child.name == name && (!first_text || text(&child, 0) == *first_text)) return &child;
     }
     return nullptr;
-}
-
-const Node* Document::child(const Node* node, std::string_view name, std::string_view first_text) const {
-    if (!node) return nullptr;
-    for (const Node& child : children(*node)) {
-        if (child.name == name && text(&child, 0) == first_text) return &child;
-    }
-    return nullptr;
-}
-
-bool Values::next(Value& value) {
-    return document_.is_binary() ? next_binary(value) : next_ascii(value);
 }
 
 Value Document::value(const Node& node, size_t i) const {
@@ -102,18 +80,28 @@ int64_t Document::integer(const Node* node, size_t i, int64_t otherwise) const {
 
 double Document::number(const Node* node, size_t i, double otherwise) const {
     const Value found = node ? value(*node, i) : Value();
-    return found.kind == Value::integer || found.kind == Value::real ? found.number : otherwise;
+    return found.is_number() ? found.number : otherwise;
 }
 
 std::string_view Document::text(const Node* node, size_t i) const {
     const Value found = node ? value(*node, i) : Value();
-    return found.kind == Value::string || found.kind == Value::raw ? found.text : std::string_view();
+    return found.kind == Value::string ? found.text : std::string_view();
 }
 
-std::string Document::place(const char* at) const {
-    const size_t offset = static_cast<size_t>(at - bytes_.data());
-    if (binary_) return "byte " + std::to_string(offset);
-    return "line " + std::to_string(1 + std::count(bytes_.data(), at, '\n'));
+void Document::fail(const char* at, const std::string& what) const {
+    const auto number = binary_ ? at - bytes_.data() : 1 + std::count(bytes_.data(), at, '\n');
+    throw Broken((binary_ ? "byte " : "line ") + std::to_string(number) + ": " + what);
+}
+
+uint32_t Document::add_node(std::string_view name, uint32_t parent, uint32_t last, int depth) {
+    if (depth > kMaxDepth)
+        fail(name.data(), "blocks are nested more than " + std::to_string(kMaxDepth) + " deep; expected at most that");
+    if (nodes_.size() >= kMaxNodes) fail(name.data(), "there are more blocks than can be read");
+    const uint32_t index = static_cast<uint32_t>(nodes_.size());
+    nodes_.emplace_back();
+    nodes_[index].name = name;
+    (last ? nodes_[last].next : nodes_[parent].first_child) = index;
+    return index;
 }
 
 }  // namespace fbx_import

@@ -4,6 +4,7 @@
 // file is trusted: each is compared with the bytes that are there before it is used.
 #pragma once
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -27,11 +28,12 @@ struct Node {
 };
 
 struct Value {
-    enum Kind { none, integer, real, string, raw, array } kind = none;
+    enum Kind { none, integer, real, string, array } kind = none;
     int64_t whole = 0;      // an integer's; of an ASCII array, how many values it declares
     double number = 0;      // an integer's or real's
-    std::string_view text;  // a string's or raw's; of an array, all bytes behind its type
+    std::string_view text;  // a string's or raw data; of an array, all bytes behind its type
     char type = 0;          // in binary files, the letter of the type
+    bool is_number() const { return kind == integer || kind == real; }
 };
 
 class Document {
@@ -46,15 +48,17 @@ class Document {
     struct Children;
     Children children(const Node& node) const;
     const Node& root() const { return nodes_[0]; }
-    const Node* child(const Node* node,
-                      std::string_view name) const;  // the first one of this name; nullptr if none, or no node
-    const Node* child(const Node* node, std::string_view name, std::string_view first_text) const;
+    // The first child of this name, and with this text as its first value if one is given; nullptr if there is none, or no
+    // node.
+    const Node* child(const Node* node, std::string_view name, std::optional<std::string_view> first_text = {}) const;
 
     // The i-th value; kind is `none` if there are fewer. Throws Broken.
     Value value(const Node& node, size_t i) const;
     int64_t integer(const Node* node, size_t i, int64_t otherwise) const;
     double number(const Node* node, size_t i, double otherwise) const;
     std::string_view text(const Node* node, size_t i) const;
+    // The first text of the node's child `name`.
+    std::string_view text(const Node* node, std::string_view name) const { return text(child(node, name), 0); }
 
     // All numbers of a node: its array, or its values one by one. T: float, double, int32_t or int64_t; numbers that do not fit
     // become the nearest one that does. Throws Broken.
@@ -67,17 +71,26 @@ class Document {
     }
     // How many numbers a node has: the count that it declares, or an estimate.
     uint64_t count(const Node& node) const;
-    // The bytes of all texts and raw values. Those of ASCII files are decoded from base64.
+    // The bytes of all texts and raw data. Those of ASCII files are decoded from base64.
     std::string content(const Node& node) const;
 
-    std::string place(const char* at) const;  // "line 12" or "byte 3456"
-    std::string place(const Node& node) const { return place(node.name.data()); }
+    // Throws Broken with the place: "line 12: " or "byte 3456: ".
+    [[noreturn]] void fail(const char* at, const std::string& what) const;
+    [[noreturn]] void fail(const Node& node, const std::string& what) const { fail(node.name.data(), what); }
 
  private:
-    friend class BinaryReader;
-    friend class AsciiReader;
     friend class Values;
+    class AsciiReader;
     void read_header();
+    void read_ascii();
+    // Reads the child nodes of `parent` in a binary file, from `at` up to an empty record or `end`. Returns where it stopped.
+    size_t read_records(size_t at, size_t end, uint32_t parent, int depth);
+    // Adds a node behind `last`, the last child of `parent` so far; 0: there is none. Returns its number.
+    uint32_t add_node(std::string_view name, uint32_t parent, uint32_t last, int depth);
+    template <class T>
+    std::vector<T> binary_array(const Node& node, const Value& array) const;
+    template <class T>
+    std::vector<T> text_array(const Node& node, size_t declared) const;
 
     std::string_view bytes_;
     bool binary_ = false, big_endian_ = false;
@@ -103,7 +116,8 @@ inline Document::Children Document::children(const Node& node) const {
 class Values {
  public:
     Values(const Document& document, const Node& node) : document_(document), node_(node), rest_(node.values) {}
-    bool next(Value& value);  // false: there are no more. Throws Broken
+    // False: there are no more. Throws Broken.
+    bool next(Value& value) { return document_.is_binary() ? next_binary(value) : next_ascii(value); }
 
  private:
     bool next_binary(Value& value);

@@ -18,8 +18,8 @@ Layer::Layer(Mapping mapping, size_t width, std::vector<float> values, std::vect
 // zbrush_d20_6100_ascii. Values of edges are left out: corners have none.
 Layer::Layer(const Document& document, const Node* layer, const char* values, const char* indices, size_t width) {
     if (!layer) return;
-    const std::string_view mapping = document.text(document.child(layer, "MappingInformationType"), 0);
-    const std::string_view reference = document.text(document.child(layer, "ReferenceInformationType"), 0);
+    const std::string_view mapping = document.text(layer, "MappingInformationType");
+    const std::string_view reference = document.text(layer, "ReferenceInformationType");
     if (mapping == "ByEdge" || mapping == "NoMappingInformation") return;
     // Old exporters write IndexToDirect without indices, and mean Direct.
     const bool is_indexed = reference == "IndexToDirect" || reference == "Index";
@@ -59,13 +59,13 @@ std::vector<int32_t> material_slots(const Document& document, const Node& geomet
     const Node* layer = document.child(&geometry, "LayerElementMaterial");
     // Up to version 5.8: `MaterialAssignation: "ByPolygon"` and `Materials` in the model itself (measured from
     // max2009_blob_5800_ascii).
-    std::string_view mapping = document.text(document.child(&geometry, "MaterialAssignation"), 0);
-    if (layer) mapping = document.text(document.child(layer, "MappingInformationType"), 0);
+    std::string_view mapping = document.text(&geometry, "MaterialAssignation");
+    if (layer) mapping = document.text(layer, "MappingInformationType");
     std::vector<int32_t> slots = document.numbers<int32_t>(layer ? layer : &geometry, "Materials");
     for (int32_t& slot : slots) slot = std::max(slot, 0);
     if (slots.empty()) return {};
-    if (mapping != "ByPolygon") slots.assign(slots[0] == 0 ? 0 : faces, slots[0]);
-    if (!slots.empty()) slots.resize(faces, 0);
+    if (mapping == "ByPolygon") slots.resize(faces, 0);
+    if (mapping != "ByPolygon") slots = std::vector<int32_t>(faces, slots[0]);
     if (std::all_of(slots.begin(), slots.end(), [](int32_t slot) { return slot == 0; })) slots.clear();
     return slots;
 }
@@ -78,7 +78,7 @@ std::vector<float> normals_of_smoothing(const Document& document, const Node& ge
     const Node* layer = document.child(&geometry, "LayerElementSmoothing");
     const std::vector<int32_t> values = document.numbers<int32_t>(layer, "Smoothing");
     if (std::all_of(values.begin(), values.end(), [](int32_t value) { return value == 0; })) return {};
-    const std::string_view mapping = document.text(document.child(layer, "MappingInformationType"), 0);
+    const std::string_view mapping = document.text(layer, "MappingInformationType");
     std::vector<int32_t> of_corner(corners.size());  // the groups of its face, or whether the edge that begins there is smooth
     if (mapping == "ByEdge") {
         const std::vector<int32_t> edges = document.numbers<int32_t>(&geometry, "Edges");
@@ -90,14 +90,7 @@ std::vector<float> normals_of_smoothing(const Document& document, const Node& ge
                                          [&](size_t a, size_t b) { return of_corner[a] != 0 || of_corner[b] != 0; });
     }
     if (mapping != "ByPolygon") return {};
-    size_t corner = 0;
-    for (size_t face = 0; face < values.size() && corner < corners.size(); ++face) {
-        const size_t end = std::min<size_t>(corner + (sizes.empty()         ? 3
-                                                      : face < sizes.size() ? sizes[face]
-                                                                            : 0),
-                                            corners.size());
-        while (corner < end) of_corner[corner++] = values[face];
-    }
+    for_corners(corners, sizes, [&](const Corner& c) { of_corner[c.corner] = c.face < values.size() ? values[c.face] : 0; });
     return importers::smooth_normals(positions, corners, sizes,
                                      [&](size_t a, size_t b) { return (of_corner[a] & of_corner[b]) != 0; });
 }

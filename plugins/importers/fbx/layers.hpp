@@ -8,6 +8,17 @@ namespace fbx_import {
 struct Corner {
     size_t corner, vertex, face;
 };
+// Calls body(corner) for each corner. vertices: one for each. sizes: corners of each face; empty: three.
+template <class Body>
+void for_corners(const std::vector<int32_t>& vertices, const std::vector<uint32_t>& sizes, const Body& body) {
+    const auto size_of = [&](size_t face) { return face < sizes.size() ? sizes[face] : 3; };
+    Corner c{0, 0, 0};
+    for (size_t left = size_of(0); c.corner < vertices.size(); ++c.corner) {
+        c.vertex = static_cast<uint32_t>(vertices[c.corner]);
+        body(c);
+        if (--left == 0) left = size_of(++c.face);
+    }
+}
 struct MeshCounts {
     size_t corners = 0, vertices = 0, faces = 0;
 };

@@ -1,22 +1,9 @@
-#include <algorithm>
-#include <cmath>
+#include "../common/materials.hpp"
 
 #include "scene.hpp"
 
 namespace fbx_import {
 namespace {
-
-float limited(double x, double low, double high, double otherwise) {
-    return static_cast<float>(std::isfinite(x) ? std::clamp(x, low, high) : otherwise);
-}
-
-Vec3 scaled(const Vec3& v, double by) {
-    return {v[0] * by, v[1] * by, v[2] * by};
-}
-
-void store(const Vec3& v, double high, float out[3]) {
-    for (int k = 0; k < 3; ++k) out[k] = limited(v[k], 0, high, 0);
-}
 
 // Names of properties: FBX SDK help, "FbxSurfacePhong". Up to version 5.8 they are `Diffuse`, `Emissive`, ... (measured from
 // max2009_blob_5800_ascii).
@@ -26,21 +13,19 @@ Vec3 color(const Properties& p, const char* name, const char* oldest, const Vec3
 
 void read_phong(const Properties& p, bool has_texture, rt_material_desc& out) {
     // A texture replaces the colour. Its value then means nothing, because programs leave any value there.
-    const Vec3 diffuse = scaled(color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8}), p.number("DiffuseFactor", 1));
-    store(has_texture ? Vec3{1, 1, 1} : diffuse, 1, out.color);
-    store(scaled(color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1)), 1000, out.emission);
+    const Vec3 diffuse = has_texture ? Vec3{1, 1, 1} : color(p, "DiffuseColor", "Diffuse", {0.8, 0.8, 0.8});
+    store_color(diffuse, has_texture ? 1 : p.number("DiffuseFactor", 1), 1, out.color);
+    store_color(color(p, "EmissiveColor", "Emissive", {}), p.number("EmissiveFactor", 1), 1000, out.emission);
     const double strength = limited(p.number("SpecularFactor", 1), 0, 1, 1);
-    store(scaled(color(p, "SpecularColor", "Specular", {}), strength), 1, out.specular);
+    store_color(color(p, "SpecularColor", "Specular", {}), strength, 1, out.specular);
     out.shininess = limited(p.number("ShininessExponent", p.number("Shininess", 0)), 1, 10000, 1);
     const Vec3 reflection = p.vector("ReflectionColor", {});
     out.reflect = limited(p.number("ReflectionFactor", 0) * std::max({reflection[0], reflection[1], reflection[2]}), 0, 1, 0);
     // The transparent share is the mean of TransparentColor times TransparencyFactor. Maya always writes 1 for the factor, so
     // the factor alone means nothing. Source: FBX SDK help, "FbxSurfaceLambert".
-    const Vec3 clear = scaled(p.vector("TransparentColor", {}), p.number("TransparencyFactor", 1));
-    const double opacity = p.number("Opacity", 1 - (clear[0] + clear[1] + clear[2]) / 3);
-    out.refract = 1 - limited(opacity, 0, 1, 1);
-    out.ior = 1;  // files have no index of refraction, so rays are not bent
-    if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
+    const Vec3 clear = p.vector("TransparentColor", {});
+    const double share = (clear[0] + clear[1] + clear[2]) / 3 * p.number("TransparencyFactor", 1);
+    apply_transparency(p.number("Opacity", 1 - share), 0, 0, out);
 }
 
 // Whether a texture's picture is placed by more than texture coordinates. Source of the names: FBX SDK help, "FbxTexture" and
@@ -53,45 +38,24 @@ bool is_transformed(const Properties& p) {
 
 }  // namespace
 
-std::vector<const Node*> Materials::of(uint32_t model) const {
-    std::vector<const Node*> out;
-    for (const uint32_t material : context_.objects.below(model, "Material")) out.push_back(context_.objects[material].node);
-    if (!out.empty()) return out;
-    // Up to version 5.8 they are blocks of the model (measured from max2009_blob_5800_ascii).
-    for (const Node& child : context_.document.children(*context_.objects[model].node)) {
-        if (child.name == "Material" && child.first_child) out.push_back(&child);
-    }
-    return out;
-}
-
 // UVSet: the `Name` of a layer. Source: FBX SDK help, "FbxTexture".
 std::vector<std::string_view> Materials::uv_sets(uint32_t model) const {
     std::vector<std::string_view> out;
-    for (const uint32_t material : context_.objects.below(model, "Material")) {
+    for (const uint32_t material : of(model)) {
         const uint32_t found = texture(material, model);
         out.push_back(found == kNoObject ? std::string_view() : context_.properties(found).text("UVSet"));
     }
     return out;
 }
 
-rt_u32 Materials::id(const Node* material, uint32_t model) {
+rt_u32 Materials::id(uint32_t material, uint32_t model) {
     const auto known = ids_.find(material);
     if (known != ids_.end()) return known->second;
-    Object object;
-    object.node = material;
-    object.kind = "Material";
-    uint32_t number = kNoObject;
-    for (const uint32_t i : context_.objects.below(model, "Material")) {
-        if (context_.objects[i].node == material) number = i;
-    }
-    const bool has_id = context_.document.value(*material, 0).kind == Value::integer;
-    const std::string name = plain_name(context_.document, context_.document.text(material, has_id ? 1 : 0));
-    rt_material_desc out{};
-    out.struct_bytes = sizeof out;
-    if (!name.empty()) out.name = name.c_str();
-    const uint32_t found = texture(number, model);
+    const std::string& name = context_.objects[material].name;
+    rt_material_desc out = rt::material(name.empty() ? nullptr : name.c_str());
+    const uint32_t found = texture(material, model);
     out.texture = found == kNoObject ? RT_NONE : picture(found);
-    read_phong(context_.templates.of(object), out.texture != RT_NONE, out);
+    read_phong(context_.properties(material), out.texture != RT_NONE, out);
     return ids_[material] = rt::id(context_.sink.material(context_.sink.ctx, &out));
 }
 
@@ -99,8 +63,7 @@ rt_u32 Materials::id(const Node* material, uint32_t model) {
 // beside the material (measured from max2009_blob_6100_binary and the files that Blender 2.79 writes).
 uint32_t Materials::texture(uint32_t material, uint32_t model) const {
     const Objects& objects = context_.objects;
-    const std::vector<const Link*> below = material == kNoObject ? std::vector<const Link*>() : objects.below(material);
-    for (const Link* link : below) {
+    for (const Link* link : objects.below(material)) {
         const Object& object = objects[link->from];
         const bool is_color = link->property == "DiffuseColor" || link->property.find("base_color") != link->property.npos ||
                               link->property.find("baseColor") != link->property.npos;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 
 #include "../common/mesh_arrays.hpp"
 #include "layers.hpp"
@@ -11,7 +10,8 @@ namespace {
 // A geometry in the form that the host takes.
 struct MeshData : importers::MeshArrays {
     std::vector<int32_t> indices;  // numbers below 0 name no vertex
-    size_t faces = 0, points = 0;
+    size_t points = 0;
+    size_t faces() const { return sizes.empty() ? indices.size() / 3 : sizes.size(); }
     std::vector<int32_t> slots;
     std::vector<uint32_t> copy_of;
 };
@@ -19,13 +19,7 @@ struct MeshData : importers::MeshArrays {
 // PolygonVertexIndex lists corners; the last one of a face is written as -1 - index. Source: Blender developer blog.
 void read_faces(MeshData& mesh) {
     std::vector<int32_t>& corners = mesh.indices;
-    bool all_triangles = corners.size() % 3 == 0;
-    for (size_t i = 0; all_triangles && i < corners.size(); i += 3) {
-        all_triangles = corners[i] >= 0 && corners[i + 1] >= 0 && corners[i + 2] < 0;
-    }
-    mesh.faces = corners.size() / 3;
-    for (size_t i = 2; all_triangles && i < corners.size(); i += 3) corners[i] = ~corners[i];
-    if (all_triangles) return;
+    mesh.sizes.reserve(corners.size() / 3);
     rt_u32 size = 0;
     for (size_t i = 0; i < corners.size(); ++i) {
         ++size;
@@ -34,28 +28,15 @@ void read_faces(MeshData& mesh) {
         size = 0;
         corners[i] = corners[i] < 0 ? ~corners[i] : corners[i];
     }
-    mesh.faces = mesh.sizes.size();
-}
-
-// Calls body(corner) for each corner whose vertex exists.
-template <class Body>
-void for_corners(MeshData& mesh, const Body& body) {
-    Corner c{0, 0, 0};
-    size_t left = mesh.sizes.empty() ? 3 : mesh.sizes[0];
-    for (; c.corner < mesh.indices.size(); ++c.corner) {
-        c.vertex = static_cast<rt_u32>(mesh.indices[c.corner]);
-        if (c.vertex < mesh.points) body(c);
-        if (--left > 0) continue;
-        ++c.face;
-        left = mesh.sizes.empty() || c.face >= mesh.sizes.size() ? 3 : mesh.sizes[c.face];
-    }
+    if (std::all_of(mesh.sizes.begin(), mesh.sizes.end(), [](rt_u32 corner_count) { return corner_count == 3; }))
+        std::vector<rt_u32>().swap(mesh.sizes);
 }
 
 // A mesh to show: a geometry with the materials that its first node gives it.
 struct Wanted {
     uint32_t object, node;
     const Node* geometry;
-    std::vector<const Node*> materials;
+    std::vector<uint32_t> materials;
     std::vector<std::string_view> uv_sets;  // the set that the texture of each material names
 };
 
@@ -67,7 +48,7 @@ std::vector<const Node*> uv_layers(const Document& document, const Wanted& wante
         const Node* found = out[0];
         for (const Node& layer : document.children(*wanted.geometry)) {
             const bool is_set = layer.name == "LayerElementUV" && !name.empty();
-            if (is_set && document.text(document.child(&layer, "Name"), 0) == name) found = &layer;
+            if (is_set && document.text(&layer, "Name") == name) found = &layer;
         }
         const auto at = std::find(out.begin(), out.end(), found);
         of_slot.push_back(static_cast<size_t>(at - out.begin()));
@@ -106,10 +87,10 @@ MeshData read_mesh(const Context& context, const Wanted& wanted) {
     });
     mesh.points = mesh.positions.size() / 3;
     mesh.positions.resize(3 * mesh.points);
-    if (mesh.points >= RT_NONE / 2) throw Broken(document.place(geometry) + ": there are more vertices than a mesh can have");
+    if (mesh.points >= RT_NONE / 2) document.fail(geometry, "there are more vertices than a mesh can have");
     read_faces(mesh);
-    mesh.slots = material_slots(document, geometry, mesh.faces);
-    const MeshCounts counts = {mesh.indices.size(), mesh.points, mesh.faces};
+    mesh.slots = material_slots(document, geometry, mesh.faces());
+    const MeshCounts counts = {mesh.indices.size(), mesh.points, mesh.faces()};
     normals.settle(counts);
     for (Layer& layer : uvs) layer.settle(counts);
     if (normals.empty()) {
@@ -119,7 +100,8 @@ MeshData read_mesh(const Context& context, const Wanted& wanted) {
     const bool has_uvs = std::any_of(uvs.begin(), uvs.end(), [](const Layer& layer) { return !layer.empty(); });
     if (normals.empty() && !has_uvs) return mesh;
     importers::VertexCopies copies(mesh, !normals.empty(), has_uvs, mesh.copy_of);
-    for_corners(mesh, [&](const Corner& c) {
+    for_corners(mesh.indices, mesh.sizes, [&](const Corner& c) {
+        if (c.vertex >= mesh.points) return;
         const size_t slot = mesh.slots.empty() ? 0 : static_cast<size_t>(mesh.slots[c.face]);
         const Layer& uv = uvs[slot < uv_of_slot.size() ? uv_of_slot[slot] : 0];
         const rt_u32 vertex = copies.vertex(static_cast<rt_u32>(c.vertex), normals.at(c), uv.at(c));
@@ -133,19 +115,10 @@ SceneMesh pass(const Context& context, const Wanted& wanted, MeshData& mesh, con
     std::vector<rt_u32> materials;
     for (const int32_t slot : mesh.slots)
         materials.push_back(static_cast<size_t>(slot) < ids.size() ? ids[static_cast<size_t>(slot)] : RT_NONE);
-    rt_mesh out = mesh.description(name.c_str());
-    out.indices = reinterpret_cast<const rt_u32*>(mesh.indices.data());
-    out.index_count = mesh.indices.size();
-    out.face_count = mesh.faces;
-    out.material = ids.empty() ? RT_NONE : ids[0];
-    out.face_materials = materials.empty() ? nullptr : materials.data();
-    SceneMesh added;
-    added.id = rt::id(context.sink.mesh(context.sink.ctx, &out));
-    added.object = wanted.object;
-    added.node = wanted.node;
-    added.points = static_cast<uint32_t>(mesh.points);
-    added.copy_of = std::move(mesh.copy_of);
-    return added;
+    if (mesh.slots.empty() && !ids.empty()) materials.push_back(ids[0]);
+    const auto* const corners = reinterpret_cast<const rt_u32*>(mesh.indices.data());
+    const rt_u32 id = mesh.pass(name, corners, mesh.indices.size(), materials, context.sink);
+    return {id, wanted.object, wanted.node, static_cast<uint32_t>(mesh.points), std::move(mesh.copy_of)};
 }
 
 // The meshes that a node shows. From version 7 on they hang from the model; before, they are part of it.
@@ -170,15 +143,10 @@ void show(const Context& context, const SceneNode& node, rt_u32 mesh) {
 // Numbers of geometry that are decoded at the same time, about: 12 MB.
 constexpr uint64_t kBatchNumbers = 3u << 20;
 
+// Each corner has a vertex, and mostly a normal and texture coordinates.
 uint64_t numbers_in(const Document& document, const Node& geometry) {
-    static const std::set<std::string_view> arrays = {"Vertices", "PolygonVertexIndex", "Normals", "NormalsIndex", "UV",
-                                                      "UVIndex"};
-    uint64_t count = 0;
-    for (const Node& child : document.children(geometry)) {
-        if (arrays.count(child.name)) count += document.count(child);
-        if (child.name == "LayerElementNormal" || child.name == "LayerElementUV") count += numbers_in(document, child);
-    }
-    return count;
+    const Node *vertices = document.child(&geometry, "Vertices"), *corners = document.child(&geometry, "PolygonVertexIndex");
+    return (vertices ? document.count(*vertices) : 0) + (corners ? 6 * document.count(*corners) : 0);
 }
 
 }  // namespace
@@ -186,15 +154,14 @@ uint64_t numbers_in(const Document& document, const Node& geometry) {
 std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<SceneNode>& nodes) {
     Materials materials(context);
     // A geometry becomes one mesh for each list of materials that nodes give it.
-    std::map<std::pair<const Node*, std::vector<const Node*>>, size_t> known;
+    std::map<std::pair<uint32_t, std::vector<uint32_t>>, size_t> known;
     std::vector<Wanted> wanted;
     std::vector<std::pair<uint32_t, size_t>> shown;  // node, number in `wanted`
     for (uint32_t n = 0; n < nodes.size(); ++n) {
         for (const uint32_t object : meshes_of(context, nodes[n].object)) {
-            const Node* geometry = context.objects[object].node;
-            const std::vector<const Node*> slots = materials.of(nodes[n].object);
-            const auto [at, is_new] = known.emplace(std::make_pair(geometry, slots), wanted.size());
-            if (is_new) wanted.push_back({object, n, geometry, slots, materials.uv_sets(nodes[n].object)});
+            const std::vector<uint32_t> slots = materials.of(nodes[n].object);
+            const auto [at, is_new] = known.emplace(std::make_pair(object, slots), wanted.size());
+            if (is_new) wanted.push_back({object, n, context.objects[object].node, slots, materials.uv_sets(nodes[n].object)});
             shown.push_back({n, at->second});
         }
     }
@@ -211,7 +178,7 @@ std::vector<SceneMesh> add_meshes(const Context& context, const std::vector<Scen
         for (size_t i = first; i < end; ++i) {
             const Wanted& w = wanted[i];
             std::vector<rt_u32> ids;
-            for (const Node* material : w.materials) ids.push_back(materials.id(material, nodes[w.node].object));
+            for (const uint32_t material : w.materials) ids.push_back(materials.id(material, nodes[w.node].object));
             const std::string& own = context.objects[w.object].name;
             meshes.push_back(
                 pass(context, w, data[i - first], ids, own.empty() ? context.objects[nodes[w.node].object].name : own));

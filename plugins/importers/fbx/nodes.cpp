@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <functional>
+#include <set>
 
 #include "scene.hpp"
 
@@ -11,43 +13,37 @@ constexpr uint32_t kMaxNodeDepth = 1000;
 constexpr size_t kMaxCopies = 16;
 
 // Models without a parent are shown too: MotionBuilder's own cameras have none (motionbuilder_cube_7700_binary).
-std::vector<uint32_t> top_models(const Context& context) {
-    const Objects& objects = context.objects;
+std::vector<uint32_t> top_models(const Objects& objects) {
     std::vector<uint32_t> out = objects.below(kRoot, "Model");
-    std::vector<bool> is_top(objects.size());
-    for (const uint32_t model : out) is_top[model] = true;
-    for (uint32_t i = 1; i < objects.size(); ++i) {
-        if (objects[i].kind != "Model" || is_top[i]) continue;
-        const std::vector<const Link*> above = objects.above(i);
+    const std::set<uint32_t> below_root(out.begin(), out.end());
+    for (const uint32_t model : objects.of_kind("Model")) {
+        const std::vector<const Link*>& above = objects.above(model);
         const auto is_parent = [&](const Link* link) { return link->property.empty() && objects[link->to].kind == "Model"; };
-        if (std::none_of(above.begin(), above.end(), is_parent)) out.push_back(i);
+        if (!below_root.count(model) && std::none_of(above.begin(), above.end(), is_parent)) out.push_back(model);
     }
     return out;
 }
 
 // `Channel: "Transform" { Channel: "T" { Channel: "X" { Default: 1 } } }` of a model or of its block in a take.
-const Node* axis_of(const Document& document, const Node* owner, const char* letter, const char* axis) {
+const Node* axis_of(const Document& document, const Node* owner, const char* letter, std::string_view axis) {
     const Node* transform = document.child(owner, "Channel", "Transform");
     return document.child(document.child(transform, "Channel", letter), "Channel", axis);
 }
 
 // Up to version 5.8, the values at rest are the defaults of the channels, of the model itself (measured from
 // max7_skin_5000_binary) or of the current take (measured from max2009_cube_anim_5800_ascii).
-double oldest_rest(const Document& document, const Object& model, const char* letter, const char* axis, double otherwise) {
-    if (document.version() >= 6000) return otherwise;
-    const Node* found = axis_of(document, model.node, letter, axis);
-    if (!found) {
-        const Node* takes = document.child(&document.root(), "Takes");
-        const Node* take = document.child(takes, "Take", document.text(document.child(takes, "Current"), 0));
-        if (!take) take = document.child(takes, "Take");
-        found = axis_of(document, document.child(take, "Model", document.text(model.node, 0)), letter, axis);
+Vec3 oldest_rest(const Document& document, const Object& model, const char* letter, Vec3 out) {
+    const Node* takes = document.child(&document.root(), "Takes");
+    const Node* take = document.child(takes, "Take", document.text(takes, "Current"));
+    if (!take) take = document.child(takes, "Take");
+    const Node* in_take = document.child(take, "Model", document.text(model.node, 0));
+    for (size_t k = 0; k < 3; ++k) {
+        const std::string_view axis = std::string_view("XYZ").substr(k, 1);
+        const Node* found = axis_of(document, model.node, letter, axis);
+        if (!found) found = axis_of(document, in_take, letter, axis);
+        out[k] = document.number(document.child(found, "Default"), 0, out[k]);
     }
-    return document.number(document.child(found, "Default"), 0, otherwise);
-}
-
-template <class From, class To>
-void copy(const From& from, To& to) {
-    std::copy(from.begin(), from.end(), to);
+    return out;
 }
 
 // A node's own transform is T Roff Rp Rpre R Rpost^-1 Rp^-1 Soff Sp S Sp^-1. Source: FBX SDK help, "Computing transformation
@@ -56,34 +52,31 @@ void copy(const From& from, To& to) {
 // casegen_rotation_space_7500_ascii and max_geometry_transform_7700_ascii.
 void read_transform(const Context& context, const Object& model, const Properties& p, rt_node_desc& out) {
     const Vec3 zero{}, one{1, 1, 1};
-    copy(p.vector("Lcl Translation", zero), out.translation);
-    copy(p.vector("Lcl Rotation", zero), out.rotation);
-    copy(p.vector("Lcl Scaling", one), out.scale);
-    for (int k = 0; k < 3; ++k) {
-        const char* axis = k == 0 ? "X" : k == 1 ? "Y" : "Z";
-        out.translation[k] = oldest_rest(context.document, model, "T", axis, out.translation[k]);
-        out.rotation[k] = oldest_rest(context.document, model, "R", axis, out.rotation[k]);
-        out.scale[k] = oldest_rest(context.document, model, "S", axis, out.scale[k]);
-    }
+    const auto copy = [](const auto& from, double* to) { std::copy(from.begin(), from.end(), to); };
+    const auto rest = [&](const char* letter, const char* name, const Vec3& otherwise) {
+        const Vec3 found = p.vector(name, otherwise);
+        return context.document.version() < 6000 ? oldest_rest(context.document, model, letter, found) : found;
+    };
+    copy(rest("T", "Lcl Translation", zero), out.translation);
+    copy(rest("R", "Lcl Rotation", zero), out.rotation);
+    copy(rest("S", "Lcl Scaling", one), out.scale);
     const bool active = p.whole("RotationActive", 0) != 0;
     const int64_t order = active ? p.whole("RotationOrder", 0) : 0;
     out.rotation_order = order >= 0 && order <= 5 ? static_cast<rt_u32>(order) : rt_u32(RT_ROTATE_XYZ);  // 6: spheric xyz
     // 0 RrSs, 1 RSrs, 2 Rrs. Source: FBX SDK help, "FbxTransform::EInheritType".
     const int64_t inherit = p.whole("InheritType", 1);
     out.inherit = inherit == 0 ? RT_INHERIT_RRSS : inherit == 2 ? RT_INHERIT_RRS : RT_INHERIT_RSRS;
-    const Vec3 pivot = p.vector("RotationPivot", zero), scale_pivot = p.vector("ScalingPivot", zero);
-    const Vec3 offset = p.vector("RotationOffset", zero), scale_offset = p.vector("ScalingOffset", zero);
-    Vec3 to_pivot, from_pivot, back;
-    for (int k = 0; k < 3; ++k) {
-        to_pivot[k] = offset[k] + pivot[k];
-        from_pivot[k] = -pivot[k] + scale_offset[k] + scale_pivot[k];
-        back[k] = -scale_pivot[k];
-    }
+    const auto moved = [&](const char* name, double by = 1) {
+        const Vec3 v = p.vector(name, zero);
+        return translation({by * v[0], by * v[1], by * v[2]});
+    };
+    const Transform to_pivot = multiply(moved("RotationOffset"), moved("RotationPivot"));
+    const Transform to_scale_pivot = multiply(moved("ScalingOffset"), moved("ScalingPivot"));
     const Transform before = active ? rotation(p.vector("PreRotation", zero)) : kIdentity;
     const Transform after = active ? transposed(rotation(p.vector("PostRotation", zero))) : kIdentity;
-    copy(multiply(translation(to_pivot), before), out.before_rotation);
-    copy(multiply(after, translation(from_pivot)), out.after_rotation);
-    copy(translation(back), out.after_scale);
+    copy(multiply(to_pivot, before), out.before_rotation);
+    copy(multiply(after, multiply(moved("RotationPivot", -1), to_scale_pivot)), out.after_rotation);
+    copy(moved("ScalingPivot", -1), out.after_scale);
 }
 
 Transform geometric_transform(const Properties& p) {
@@ -109,44 +102,26 @@ SceneNode pass(const Context& context, uint32_t model, uint32_t parent, const st
 
 std::vector<SceneNode> read_nodes(const Context& context) {
     const Objects& objects = context.objects;
-    struct Pending {
-        uint32_t model, parent, depth;
-        bool leave;  // everything below the model is done
-    };
-    std::vector<Pending> stack;
-    const std::vector<uint32_t> top = top_models(context);
-    for (auto at = top.rbegin(); at != top.rend(); ++at) stack.push_back({*at, kNoObject, 0, false});
-    size_t models = 0;
-    for (uint32_t i = 1; i < objects.size(); ++i) models += objects[i].kind == "Model";
+    const std::vector<uint32_t> models = objects.of_kind("Model");
     std::vector<bool> is_open(objects.size()), is_done(objects.size());
     std::vector<SceneNode> nodes;
     const auto fail = [&](uint32_t model, const std::string& what) {
-        throw Broken(context.document.place(*objects[model].node) + ": the node '" + objects[model].name + "' " + what);
+        context.document.fail(*objects[model].node, "the node '" + objects[model].name + "' " + what);
     };
-    while (!stack.empty()) {
-        const Pending at = stack.back();
-        stack.pop_back();
-        if (at.leave) {
-            is_open[at.model] = false;
-            continue;
-        }
-        if (is_open[at.model]) fail(at.model, "hangs from itself: the nodes form a circle; expected a tree");
-        if (at.depth > kMaxNodeDepth) fail(at.model, "has more than 1000 nodes above it; expected at most that");
-        if (nodes.size() > kMaxCopies * models)
-            fail(at.model, "hangs from several nodes that do the same: too many copies of it");
-        is_open[at.model] = is_done[at.model] = true;
-        stack.push_back({at.model, 0, 0, true});
-        nodes.push_back(pass(context, at.model, at.parent, nodes));
+    const std::function<void(uint32_t, uint32_t, uint32_t)> add = [&](uint32_t model, uint32_t parent, uint32_t depth) {
+        if (is_open[model]) fail(model, "hangs from itself: the nodes form a circle; expected a tree");
+        if (depth > kMaxNodeDepth) fail(model, "has more than 1000 nodes above it; expected at most that");
+        if (nodes.size() > kMaxCopies * models.size())
+            fail(model, "hangs from several nodes that do the same: too many copies of it");
+        is_open[model] = is_done[model] = true;
+        nodes.push_back(pass(context, model, parent, nodes));
         const uint32_t index = static_cast<uint32_t>(nodes.size() - 1);
-        const std::vector<const Link*> below = objects.below(at.model);
-        for (auto link = below.rbegin(); link != below.rend(); ++link) {
-            if (objects[(*link)->from].kind == "Model" && (*link)->property.empty() && (*link)->from_property.empty()) {
-                stack.push_back({(*link)->from, index, at.depth + 1, false});
-            }
-        }
-    }
-    for (uint32_t i = 1; i < objects.size(); ++i) {
-        if (objects[i].kind == "Model" && !is_done[i]) fail(i, "hangs from itself: the nodes form a circle; expected a tree");
+        for (const uint32_t child : objects.below(model, "Model")) add(child, index, depth + 1);
+        is_open[model] = false;
+    };
+    for (const uint32_t model : top_models(objects)) add(model, kNoObject, 0);
+    for (const uint32_t model : models) {
+        if (!is_done[model]) fail(model, "hangs from itself: the nodes form a circle; expected a tree");
     }
     return nodes;
 }

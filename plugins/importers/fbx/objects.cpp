@@ -3,13 +3,26 @@
 #include <algorithm>
 #include <unordered_set>
 
-#include "ascii.hpp"
-
 namespace fbx_import {
 namespace {
 
 // Binary files write "Cube", 0, 1, "Model". Source: Blender developer blog.
 constexpr std::string_view kSeparator{"\0\1", 2};
+
+// The text with &quot; &lf; &cr; and &amp; replaced. Measured from max_quote_6100_ascii.
+std::string without_entities(std::string_view text) {
+    constexpr std::pair<std::string_view, char> entities[] = {{"&quot;", '"'}, {"&lf;", '\n'}, {"&cr;", '\r'}, {"&amp;", '&'}};
+    std::string out;
+    while (!text.empty()) {
+        const auto* const found = std::find_if(std::begin(entities), std::end(entities), [&](const auto& entity) {
+            return text.substr(0, entity.first.size()) == entity.first;
+        });
+        const bool is_entity = found != std::end(entities);
+        out += is_entity ? found->second : text[0];
+        text.remove_prefix(is_entity ? found->first.size() : 1);
+    }
+    return out;
+}
 
 }  // namespace
 
@@ -29,18 +42,16 @@ Objects::Objects(const Document& document) : document_(document) {
     settings_ = document.child(&document.root(), "GlobalSettings");
     const Node* objects = document.child(&document.root(), "Objects");
     if (objects && !settings_) settings_ = document.child(objects, "GlobalSettings");  // version 6
-    if (objects) {
-        add_all(*objects);
-    } else {  // up to version 5.8, objects stand in the file's top level (measured from max7_skin_5000_binary)
-        add_all(document.root());
-    }
+    // Up to version 5.8, objects stand in the file's top level (measured from max7_skin_5000_binary).
+    add_all(objects ? *objects : document.root());
     connect();
-    if (!objects) connect_oldest();
-    below_.resize(links_.size());
-    for (uint32_t i = 0; i < links_.size(); ++i) below_[i] = i;
-    above_ = below_;
-    std::stable_sort(below_.begin(), below_.end(), [&](uint32_t a, uint32_t b) { return links_[a].to < links_[b].to; });
-    std::stable_sort(above_.begin(), above_.end(), [&](uint32_t a, uint32_t b) { return links_[a].from < links_[b].from; });
+    for (const uint32_t model : objects ? std::vector<uint32_t>() : of_kind("Model")) connect_oldest(model);
+    below_.resize(all_.size());
+    above_.resize(all_.size());
+    for (const Link& link : links_) {
+        below_[link.to].push_back(&link);
+        above_[link.from].push_back(&link);
+    }
 }
 
 void Objects::add_all(const Node& parent) {
@@ -62,7 +73,7 @@ void Objects::add(const Node& node) {
     object.node = &node;
     object.kind = node.name;
     object.type = document_.text(&node, name_at + 1);
-    if (object.type.empty()) object.type = document_.text(document_.child(&node, "Type"), 0);
+    if (object.type.empty()) object.type = document_.text(&node, "Type");
     object.name = plain_name(document_, name);
     all_.push_back(object);
     if (has_id) {
@@ -71,7 +82,7 @@ void Objects::add(const Node& node) {
     }
     if (!by_name_.emplace(name, index).second && object.kind == "Model") all_.back().kind = "Model again";
     // A model's camera, light or mesh is part of it, and has a second name (measured from maya_node_attribute_zoo_6100_binary).
-    const std::string_view inner = document_.text(document_.child(&node, "NodeAttributeName"), 0);
+    const std::string_view inner = document_.text(&node, "NodeAttributeName");
     if (!inner.empty()) by_name_.emplace(inner, index);
 }
 
@@ -92,7 +103,7 @@ void Objects::connect() {
         if (kind.size() != 2) continue;
         const auto end = [&](size_t i) {
             const Value v = document_.value(node, i);
-            if (v.kind == Value::string || v.kind == Value::raw) return find(v.text);
+            if (v.kind == Value::string) return find(v.text);
             const auto found = by_id_.find(v.whole);
             return v.kind == Value::integer && found != by_id_.end() ? found->second : kNoObject;
         };
@@ -111,24 +122,22 @@ void Objects::connect() {
     }
 }
 
-// Up to version 5.8, a model names its children (measured from max7_skin_5000_binary and max2009_blob_5800_ascii).
-void Objects::connect_oldest() {
-    for (uint32_t parent = 1; parent < all_.size(); ++parent) {
-        const Node* list = document_.child(all_[parent].node, "Children");
-        if (all_[parent].kind != "Model" || !list) continue;
-        Values values(document_, *list);
-        for (Value v; values.next(v);) {
-            const uint32_t child = find(v.text);
-            if (child != kNoObject && child != kRoot) links_.push_back({child, parent, {}, {}});
-        }
+// Up to version 5.8, a model names its children, and its materials are blocks of it (measured from max7_skin_5000_binary and
+// max2009_blob_5800_ascii).
+void Objects::connect_oldest(uint32_t parent) {
+    const Node& node = *all_[parent].node;
+    for (const Node& block : document_.children(node)) {
+        if (block.name != "Material" || !block.first_child) continue;
+        links_.push_back({static_cast<uint32_t>(all_.size()), parent, {}, {}});
+        add(block);
     }
-}
-
-std::vector<const Link*> Objects::links(const std::vector<uint32_t>& order, uint32_t object, uint32_t Link::*end) const {
-    auto at = std::lower_bound(order.begin(), order.end(), object, [&](uint32_t i, uint32_t o) { return links_[i].*end < o; });
-    std::vector<const Link*> out;
-    for (; at != order.end() && links_[*at].*end == object; ++at) out.push_back(&links_[*at]);
-    return out;
+    const Node* list = document_.child(&node, "Children");
+    if (!list) return;
+    Values values(document_, *list);
+    for (Value v; values.next(v);) {
+        const uint32_t child = find(v.text);
+        if (child != kNoObject && child != kRoot) links_.push_back({child, parent, {}, {}});
+    }
 }
 
 std::vector<uint32_t> Objects::below(uint32_t object, std::string_view kind, std::string_view type) const {
@@ -137,6 +146,14 @@ std::vector<uint32_t> Objects::below(uint32_t object, std::string_view kind, std
         const Object& found = all_[link->from];
         if (!link->property.empty() || !link->from_property.empty()) continue;
         if (found.kind == kind && (type.empty() || found.type == type)) out.push_back(link->from);
+    }
+    return out;
+}
+
+std::vector<uint32_t> Objects::of_kind(std::string_view kind) const {
+    std::vector<uint32_t> out;
+    for (uint32_t i = 1; i < all_.size(); ++i) {
+        if (all_[i].kind == kind) out.push_back(i);
     }
     return out;
 }

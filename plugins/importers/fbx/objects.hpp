@@ -31,10 +31,11 @@ class Objects {
     const Object& operator[](uint32_t object) const { return all_[object]; }
     uint32_t find(std::string_view name) const;  // by name as the file writes it; before version 7 only
     // The connections to the objects below an object, and to those above it, in the order of the file.
-    std::vector<const Link*> below(uint32_t object) const { return links(below_, object, &Link::to); }
-    std::vector<const Link*> above(uint32_t object) const { return links(above_, object, &Link::from); }
+    const std::vector<const Link*>& below(uint32_t object) const { return below_[object]; }
+    const std::vector<const Link*>& above(uint32_t object) const { return above_[object]; }
     // Objects of this kind that hang from the object itself, not from a property; `type` "" stands for any.
     std::vector<uint32_t> below(uint32_t object, std::string_view kind, std::string_view type = "") const;
+    std::vector<uint32_t> of_kind(std::string_view kind) const;
 
     // The file's settings: unit, axes, time.
     const Node* settings() const { return settings_; }
@@ -43,15 +44,14 @@ class Objects {
     void add(const Node& node);
     void add_all(const Node& parent);
     void connect();
-    void connect_oldest();
-    std::vector<const Link*> links(const std::vector<uint32_t>& order, uint32_t object, uint32_t Link::*end) const;
+    void connect_oldest(uint32_t parent);
 
     const Document& document_;
     std::vector<Object> all_;
     std::unordered_map<int64_t, uint32_t> by_id_;
     std::unordered_map<std::string_view, uint32_t> by_name_;
     std::vector<Link> links_;
-    std::vector<uint32_t> below_, above_;  // numbers of links, sorted by `to` and by `from`
+    std::vector<std::vector<const Link*>> below_, above_;  // of each object
     const Node* settings_ = nullptr;
 };
 

@@ -27,26 +27,11 @@ Properties::Place Properties::find(std::string_view name) const {
     return found != places_.end() ? found->second : Place{document_.child(object_, name), 0};
 }
 
-double Properties::number(std::string_view name, double otherwise) const {
-    const Place place = find(name);
-    return document_.number(place.node, place.first, otherwise);
-}
-
-int64_t Properties::whole(std::string_view name, int64_t otherwise) const {
-    const Place place = find(name);
-    return document_.integer(place.node, place.first, otherwise);
-}
-
 Vec3 Properties::vector(std::string_view name, const Vec3& otherwise) const {
-    const Place place = find(name);
-    Vec3 out = otherwise;
-    for (size_t k = 0; k < 3; ++k) out[k] = document_.number(place.node, place.first + k, otherwise[k]);
+    const auto [node, first] = find(name);
+    Vec3 out;
+    for (size_t k = 0; k < 3; ++k) out[k] = document_.number(node, first + k, otherwise[k]);
     return out;
-}
-
-std::string_view Properties::text(std::string_view name) const {
-    const Place place = find(name);
-    return document_.text(place.node, place.first);
 }
 
 // `Definitions: ObjectType: "Model" { PropertyTemplate: "FbxNode" { Properties70 } }`. Node attributes have one for each type:
@@ -56,24 +41,16 @@ Templates::Templates(const Document& document) : document_(document) {
     if (!definitions) return;
     for (const Node& type : document.children(*definitions)) {
         if (type.name != "ObjectType") continue;
+        const bool has_several = document.text(&type, 0) == "NodeAttribute";
         for (const Node& found : document.children(type)) {
-            if (found.name != "PropertyTemplate") continue;
-            by_class_.emplace(document.text(&type, 0), &found);
-            by_name_.emplace(document.text(&found, 0), &found);
+            if (found.name == "PropertyTemplate") all_.emplace(document.text(has_several ? &found : &type, 0), &found);
         }
     }
 }
 
 Properties Templates::of(const Object& object) const {
-    const Node* found = nullptr;
-    if (object.kind == "NodeAttribute") {
-        const auto at = by_name_.find("Fbx" + std::string(object.type));
-        if (at != by_name_.end()) found = at->second;
-    } else {
-        const auto at = by_class_.find(object.kind);
-        if (at != by_class_.end()) found = at->second;
-    }
-    return {document_, object.node, found};
+    const auto found = all_.find(object.kind == "NodeAttribute" ? "Fbx" + std::string(object.type) : std::string(object.kind));
+    return {document_, object.node, found == all_.end() ? nullptr : found->second};
 }
 
 }  // namespace fbx_import

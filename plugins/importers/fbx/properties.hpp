@@ -13,10 +13,19 @@ class Properties {
  public:
     Properties(const Document& document, const Node* object, const Node* defaults = nullptr);
     bool has(std::string_view name) const { return find(name).node != nullptr; }
-    double number(std::string_view name, double otherwise) const;
-    int64_t whole(std::string_view name, int64_t otherwise) const;
+    double number(std::string_view name, double otherwise) const {
+        const auto [node, first] = find(name);
+        return document_.number(node, first, otherwise);
+    }
+    int64_t whole(std::string_view name, int64_t otherwise) const {
+        const auto [node, first] = find(name);
+        return document_.integer(node, first, otherwise);
+    }
+    std::string_view text(std::string_view name) const {
+        const auto [node, first] = find(name);
+        return document_.text(node, first);
+    }
     Vec3 vector(std::string_view name, const Vec3& otherwise) const;
-    std::string_view text(std::string_view name) const;
 
  private:
     struct Place {
@@ -30,7 +39,7 @@ class Properties {
     std::unordered_map<std::string_view, Place> places_;
 };
 
-// The templates of a file, by class of objects.
+// The properties that objects have unless they state others.
 class Templates {
  public:
     explicit Templates(const Document& document);
@@ -39,8 +48,7 @@ class Templates {
 
  private:
     const Document& document_;
-    std::unordered_map<std::string_view, const Node*> by_class_;
-    std::unordered_map<std::string, const Node*> by_name_;
+    std::unordered_map<std::string, const Node*> all_;  // by class of objects, "Model", or "FbxLight" for node attributes
 };
 
 }  // namespace fbx_import

@@ -52,16 +52,16 @@ class Materials {
  public:
     explicit Materials(const Context& context) : context_(context) {}
     // The materials of a model in the order of their slots, and the sets of texture coordinates that their textures name.
-    std::vector<const Node*> of(uint32_t model) const;
+    std::vector<uint32_t> of(uint32_t model) const { return context_.objects.below(model, "Material"); }
     std::vector<std::string_view> uv_sets(uint32_t model) const;
-    rt_u32 id(const Node* material, uint32_t model);  // RT_NONE: the default material
-    void report() const;                              // warns about what was left out
+    rt_u32 id(uint32_t material, uint32_t model);
+    void report() const;  // warns about what was left out
 
  private:
     uint32_t texture(uint32_t material, uint32_t model) const;  // kNoObject: there is none
     rt_u32 picture(uint32_t texture);
     const Context& context_;
-    std::map<const Node*, rt_u32> ids_;
+    std::map<uint32_t, rt_u32> ids_;
     std::map<uint32_t, rt_u32> pictures_;  // by texture
     size_t transformed_ = 0;               // textures
 };

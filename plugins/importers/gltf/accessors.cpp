@@ -208,8 +208,8 @@ std::string_view Accessors::buffer(size_t index) {
     } else {
         const std::string name = relative_path(uri);
         try {
-            out.file = std::make_unique<MappedFile>(document_.folder() + name);
-        } catch (const Error& error) {
+            out.file = std::make_unique<importers::MappedFile>(document_.folder() + name);
+        } catch (const std::runtime_error& error) {
             uri.refuse("a file in the scene's folder, or data; " + std::string(error.what()));
         }
         out.bytes = out.file->bytes();

@@ -49,7 +49,7 @@ class Accessors {
     struct Buffer {
         bool is_read = false;
         std::string decoded;  // of a data URI
-        std::unique_ptr<MappedFile> file;
+        std::unique_ptr<importers::MappedFile> file;
         std::string_view bytes;
     };
     std::vector<Buffer> read_;

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "../common/keys.hpp"
+#include "../common/matrix.hpp"
 #include "meshes.hpp"
 
 namespace gltf_import {
@@ -25,12 +26,9 @@ std::vector<rt_bone> bones_of(const Value& skin, Accessors& accessors, const Nod
     }
     for (size_t i = 0; i < bones.size(); ++i) {
         bones[i].node = tree.id(joints[i].index(tree.list()));
-        for (size_t row = 0; row < 3; ++row) {
-            for (size_t column = 0; column < 4; ++column) {
-                bones[i].bone_from_mesh[4 * row + column] =
-                    inverse.count > 0 ? double(inverse.values[16 * i + 4 * column + row]) : double(row == column);
-            }
-        }
+        const importers::Transform bind =
+            inverse.count > 0 ? importers::from_columns(&inverse.values[16 * i]) : importers::kIdentity;
+        std::copy(bind.begin(), bind.end(), bones[i].bone_from_mesh);
     }
     return bones;
 }
@@ -67,8 +65,8 @@ std::vector<rt_u32> Meshes::add_morphs(const Value& mesh, const Value& node, rt_
     const bool has_names = extras.has("targetNames") && extras["targetNames"].json().is_array();
     std::vector<rt_u32> ids;
     for (size_t k = 0; k < count; ++k) {
-        std::vector<rt_u32> vertices;
-        std::vector<float> positions, normals;
+        importers::Morph morph;
+        importers::Morph::Target target;
         bool has_normals = false;
         for (const Part& part : parts) {
             const Value targets = part.primitive.list("targets");
@@ -84,31 +82,17 @@ std::vector<rt_u32> Meshes::add_morphs(const Value& mesh, const Value& node, rt_
             const auto is_zero = [](const float* v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; };
             for (size_t i = 0; i < part.count; ++i) {
                 if (is_zero(&moved[3 * i]) && is_zero(&turned[3 * i])) continue;
-                vertices.push_back(static_cast<rt_u32>(part.first + i));
-                positions.insert(positions.end(), &moved[3 * i], &moved[3 * i] + 3);
-                normals.insert(normals.end(), &turned[3 * i], &turned[3 * i] + 3);
+                target.add(static_cast<rt_u32>(part.first + i), &moved[3 * i], &turned[3 * i]);
             }
         }
-        if (vertices.empty()) {  // an animation has a weight for it nevertheless
-            vertices = {0};
-            positions = normals = {0, 0, 0};
-        }
+        constexpr float zeros[3] = {};
+        if (target.vertices.empty()) target.add(0, zeros, zeros);  // an animation has a weight for it nevertheless
+        if (!has_normals) target.normals.clear();
         const Value names = has_names ? extras["targetNames"] : weights;
-        const std::string name = has_names && k < names.size() && names[k].json().is_string() ? names[k].text() : "";
-        rt_morph_target target{};
-        target.weight = 1;
-        target.vertices = vertices.data();
-        target.count = vertices.size();
-        target.positions = positions.data();
-        target.normals = has_normals ? normals.data() : nullptr;
-        rt_morph_desc out{};
-        out.struct_bytes = sizeof out;
-        out.mesh = id;
-        out.name = name.empty() ? nullptr : name.c_str();
-        out.weight = k < weights.size() ? weights[k].number() : 0;
-        out.targets = &target;
-        out.target_count = 1;
-        ids.push_back(rt::id(sink_.morph(sink_.ctx, &out)));
+        if (has_names && k < names.size() && names[k].json().is_string()) morph.name = names[k].text();
+        morph.weight = k < weights.size() ? weights[k].number() : 0;
+        morph.targets.push_back(std::move(target));
+        ids.push_back(morph.pass(id, sink_));
     }
     return ids;
 }

@@ -1,12 +1,6 @@
 #include "document.hpp"
 
-#include <fcntl.h>
-#include <sys/mman.h>
-#include <sys/stat.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
+#include "../common/file_kind.hpp"
 
 namespace gltf_import {
 namespace {
@@ -23,21 +17,8 @@ uint32_t read_u32(std::string_view bytes, size_t at) {
     throw Error("byte " + std::to_string(byte) + ": found " + found + ", expected " + expected);
 }
 
-// Names the kind of a file that is no glTF file; nullptr: the kind is unknown.
-const char* other_kind(std::string_view bytes) {
-    constexpr std::pair<std::string_view, const char*> kinds[] = {
-        {"\x89PNG", "a PNG picture"},   {"\xFF\xD8\xFF", "a JPEG picture"}, {"PK\x03\x04", "a zip archive"},
-        {"\x1F\x8B", "a gzip archive"}, {"Kaydara FBX", "an FBX file"},     {"ply", "a PLY file"},
-        {"<?xml", "an XML file"},       {"BLENDER", "a Blender file"},
-    };
-    for (const auto& [magic, name] : kinds) {
-        if (bytes.substr(0, magic.size()) == magic) return name;
-    }
-    return nullptr;
-}
-
-// The required extensions that this importer obeys. Those of
-// materials and textures are not listed: without them only the surface looks different.
+// The required extensions that this importer obeys. Those of materials and textures are not listed: without them only the
+// surface looks different.
 bool is_known(const std::string& name) {
     for (const char* known :
          {"KHR_mesh_quantization", "KHR_lights_punctual", "KHR_texture_transform", "KHR_texture_basisu", "EXT_texture_webp",
@@ -49,26 +30,8 @@ bool is_known(const std::string& name) {
 
 }  // namespace
 
-MappedFile::MappedFile(const std::string& path) {
-    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-    if (file < 0) throw Error(std::string("cannot open the file: ") + std::strerror(errno));
-    struct stat about {};
-    const bool is_regular = ::fstat(file, &about) == 0 && S_ISREG(about.st_mode);
-    size_ = is_regular ? static_cast<size_t>(about.st_size) : 0;
-    void* memory = size_ > 0 ? ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file, 0) : nullptr;
-    const int error = errno;
-    ::close(file);
-    if (!is_regular) throw Error("it is not a regular file");
-    if (memory == MAP_FAILED) throw Error(std::string("cannot read the file: ") + std::strerror(error));
-    data_ = static_cast<const char*>(memory);
-}
-
-MappedFile::~MappedFile() {
-    if (data_) ::munmap(const_cast<char*>(data_), size_);
-}
-
 Document::Document(const std::string& path)
-    : file_(std::make_unique<MappedFile>(path)), folder_(path.substr(0, path.find_last_of('/') + 1)) {
+    : file_(std::make_unique<importers::MappedFile>(path)), folder_(path.substr(0, path.find_last_of('/') + 1)) {
     parse(file_->bytes());
 }
 
@@ -78,7 +41,8 @@ Document::Document(std::string_view bytes, std::string folder) : folder_(std::mo
 
 void Document::parse(std::string_view bytes) {
     if (bytes.empty()) throw Error("the file is empty");
-    if (const char* kind = other_kind(bytes)) refuse(0, kind, "a glTF file (.gltf or .glb): give it its own extension");
+    const char* kind = importers::kind_of(bytes);
+    if (kind && bytes.substr(0, 4) != "glTF") refuse(0, kind, "a glTF file (.gltf or .glb)");
     bytes.substr(0, 4) == "glTF" ? parse_chunks(bytes) : parse_json(bytes, 0);
     check_version();
 }

@@ -6,24 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include "../common/mapped_file.hpp"
 #include "value.hpp"
 
 namespace gltf_import {
-
-// A file in memory, read-only.
-class MappedFile {
- public:
-    // Throws Error with the reason.
-    explicit MappedFile(const std::string& path);
-    ~MappedFile();
-    MappedFile(const MappedFile&) = delete;
-    MappedFile& operator=(const MappedFile&) = delete;
-    std::string_view bytes() const { return {data_, size_}; }
-
- private:
-    const char* data_ = nullptr;
-    size_t size_ = 0;
-};
 
 class Document {
  public:
@@ -46,7 +32,7 @@ class Document {
     void parse_json(std::string_view text, size_t first_byte);
     void check_version() const;
 
-    std::unique_ptr<MappedFile> file_;
+    std::unique_ptr<importers::MappedFile> file_;
     std::string folder_;
     nlohmann::json json_;
     bool has_binary_ = false;

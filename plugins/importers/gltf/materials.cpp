@@ -3,46 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "../common/materials.hpp"
 #include "nodes.hpp"
 #include "rt_plugin.hpp"
 
 namespace gltf_import {
 namespace {
-
-float clamped(double x, double low, double high) {
-    return static_cast<float>(std::clamp(x, low, high));
-}
-
-float shared(const Value& object, const char* key, double otherwise) {
-    return clamped(object.number(key, otherwise), 0, 1);
-}
-
-template <size_t n>
-void store(const std::array<double, n>& from, double factor, double most, float* out) {
-    for (size_t k = 0; k < 3; ++k) out[k] = clamped(from[k] * factor, 0, most);
-}
-
-// A smooth metal mirrors, a rough one stays diffuse in its own colour.
-void apply_metallic(const Value& pbr, rt_material_desc& out) {
-    const float metallic = shared(pbr, "metallicFactor", 1), roughness = shared(pbr, "roughnessFactor", 1),
-                smooth = 1 - roughness;
-    out.reflect = metallic * smooth;
-    // Blinn's exponent for a GGX roughness (alpha = roughness^2): 2 / alpha^2 - 2.
-    const float alpha2 = std::max(1e-3f, roughness * roughness * roughness * roughness);
-    out.shininess = std::clamp(2 / alpha2 - 2, 1.0f, 1000.0f);
-    for (int k = 0; k < 3; ++k) out.specular[k] = smooth * (0.04f + metallic * (out.color[k] - 0.04f));
-}
-
-// Rays are bent only if the file gives an index of refraction or a transmission.
-void apply_transparency(const Value& material, double alpha, rt_material_desc& out) {
-    const Value extensions = material.object("extensions");
-    const float opacity = material.text("alphaMode", "OPAQUE") == "BLEND" ? clamped(alpha, 0, 1) : 1;
-    const float transmission = shared(extensions.object("KHR_materials_transmission"), "transmissionFactor", 0);
-    const double stated = extensions.object("KHR_materials_ior").number("ior", 0);
-    out.refract = std::max(1 - opacity, transmission);
-    out.ior = stated > 1 ? clamped(stated, 1, 10) : transmission > 0 ? 1.5f : 1.0f;
-    if (out.refract > 0) out.reflect = std::min(out.reflect, 1 - out.refract);
-}
 
 // The texture of the colour, as the material describes it.
 Value color_texture(const Value& material) {
@@ -75,9 +41,9 @@ rt_u32 Materials::add(const Value& material) {
     const Value gloss = extensions.object("KHR_materials_pbrSpecularGlossiness");
     rt_material_desc out = rt::material(name.c_str());
     const std::array<double, 4> base = gloss.numbers<4>("diffuseFactor", pbr.numbers<4>("baseColorFactor", {1, 1, 1, 1}));
-    store(base, 1, 1, out.color);
+    importers::store_color(base, 1, 1, out.color);
     out.texture = texture(color_texture(material));
-    apply_metallic(pbr, out);
+    importers::apply_metallic(pbr.number("metallicFactor", 1), pbr.number("roughnessFactor", 1), out);
     // The host has one texture, which multiplies the colour. A picture that confines emission to a part of the surface is lost.
     const std::array<double, 3> emission = material.numbers<3>("emissiveFactor", {0, 0, 0});
     const double strength = extensions.object("KHR_materials_emissive_strength").number("emissiveStrength", 1);
@@ -86,9 +52,11 @@ rt_u32 Materials::add(const Value& material) {
         const std::string text = material.path() + " shines as a picture says (emissiveTexture); that light is left out";
         rt::warn(sink_, text);
     } else {
-        store(emission, strength, 1000, out.emission);
+        importers::store_color(emission, strength, 1000, out.emission);
     }
-    apply_transparency(material, base[3], out);
+    const double opacity = material.text("alphaMode", "OPAQUE") == "BLEND" ? base[3] : 1;
+    const double transmission = extensions.object("KHR_materials_transmission").number("transmissionFactor", 0);
+    importers::apply_transparency(opacity, transmission, extensions.object("KHR_materials_ior").number("ior", 0), out);
     return rt::id(sink_.material(sink_.ctx, &out));
 }
 

@@ -78,14 +78,7 @@ Meshes::Built Meshes::build(const Value& mesh, const Value& node, const std::str
     g.normals.resize(g.has_normals ? g.positions.size() : 0);  // zeros: the vertex has none
     g.uvs.resize(g.has_uvs ? g.positions.size() / 3 * 2 : 0);
 
-    rt_mesh out = g.description(name.c_str());
-    out.indices = g.indices.data();
-    out.index_count = g.indices.size();
-    out.face_count = g.indices.size() / 3;
-    out.material = g.materials[0];
-    if (std::any_of(g.materials.begin(), g.materials.end(), [&](rt_u32 m) { return m != g.materials[0]; }))
-        out.face_materials = g.materials.data();
-    built.mesh = rt::id(sink_.mesh(sink_.ctx, &out));
+    built.mesh = g.pass(name, g.indices.data(), g.indices.size(), g.materials, sink_);
     if (const auto skin = node.index("skin", skins_)) add_skin(skins_[*skin], built.mesh, g.parts);
     built.morphs = add_morphs(mesh, node, built.mesh, g.parts);
     return built;

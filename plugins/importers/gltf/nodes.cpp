@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "../common/matrix.hpp"
 #include "rt_plugin.hpp"
 
 namespace gltf_import {
@@ -21,8 +22,7 @@ rt_u32 pass(const Value& node, rt_u32 parent, const rt_scene_sink& sink) {
     copy(node.numbers<4>("rotation", {0, 0, 0, 1}), out.rotation);
     copy(node.numbers<3>("scale", {1, 1, 1}), out.scale);
     if (node.has("matrix")) {
-        const std::array<double, 16> columns = node.numbers<16>("matrix", {});
-        for (size_t i = 0; i < 12; ++i) out.after_scale[i] = columns[4 * (i % 4) + i / 4];
+        copy(importers::from_columns(node.numbers<16>("matrix", {}).data()), out.after_scale);
     }
     return rt::id(sink.node(sink.ctx, &out));
 }

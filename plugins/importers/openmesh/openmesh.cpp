@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "../common/file_kind.hpp"
 #include "../common/mapped_file.hpp"
 #include "readers.hpp"
 #include "rt_plugin.hpp"
@@ -65,17 +66,6 @@ std::string format_of(const std::string& path, std::string_view bytes) {
     if (bytes.substr(0, 3) == "ply") return "ply";
     if (bytes.substr(0, 2) == "OM") return "om";
     return bytes.substr(0, 3) == "OFF" ? "off" : extension;
-}
-
-const char* other_kind(std::string_view bytes) {
-    if (bytes.substr(0, 4) == "\x89PNG") return "a PNG picture";
-    if (bytes.substr(0, 3) == "\xFF\xD8\xFF") return "a JPEG picture";
-    if (bytes.substr(0, 2) == "\x1F\x8B") return "a gzip archive: unpack it";
-    if (bytes.substr(0, 4) == "PK\x03\x04") return "a zip archive: unpack it";
-    if (bytes.substr(0, 4) == "glTF") return "a binary glTF file: call it .glb";
-    if (bytes.substr(0, 11) == "Kaydara FBX") return "an FBX file: call it .fbx";
-    if (bytes.substr(0, 5) == "<?xml") return "an XML file";
-    return nullptr;
 }
 
 rt_u32 texture_material(const Source& source, const std::string& path) {
@@ -145,7 +135,8 @@ std::string read(const std::string& format, const Source& source, FlatImporter& 
 int32_t load(const rt_host* host, const char* path, const double*, const rt_scene_sink* sink) {
     const importers::MappedFile file(path);
     if (file.bytes().empty()) throw std::runtime_error("the file is empty");
-    if (const char* kind = other_kind(file.bytes()))
+    const char* kind = importers::kind_of(file.bytes());
+    if (kind && file.bytes().substr(0, 3) != "ply")
         throw std::runtime_error(std::string("byte 0: found ") + kind + ", expected what its extension says");
     const auto report = [&](float fraction) { rt::progress(host, kReadShare * std::min(1.0f, std::max(0.0f, fraction))); };
     const Source source{path, file.bytes(), report, *sink};

@@ -4,6 +4,7 @@
 #include <istream>
 #include <stdexcept>
 
+#include "../common/numbers.hpp"
 #include "ply_header.hpp"
 #include "readers.hpp"
 #include "text.hpp"
@@ -49,7 +50,8 @@ class AsciiLines {
     std::string where() const {
         const std::string line = "line " + std::to_string(line_number_) + ": ";
         if (element_ == header_.elements.size()) return line;
-        return line + element().name + " " + std::to_string(item_ + 1) + " of " + std::to_string(element().count) + ": ";
+        return line + quoted(element().name) + " " + std::to_string(item_ + 1) + " of " + std::to_string(element().count) +
+               ": ";
     }
 
  private:
@@ -61,6 +63,9 @@ class AsciiLines {
             long long count = 0;
             if (!parse_integer(word, count) || count < 0)
                 throw std::runtime_error(where() + quoted(word) + " instead of the length of a list");
+            // OpenMesh reserves memory for any length of such a list.
+            if (!property.is_indices() && static_cast<unsigned long long>(count) > header_.body.size() / 2)
+                throw std::runtime_error(where() + "a list of " + quoted(word) + " values, more than the file can hold");
             out.append(word);
             list_left_ = static_cast<unsigned long long>(count);
             list_is_open_ = true;
@@ -105,6 +110,39 @@ class AsciiLines {
     unsigned long long item_ = 0, list_left_ = 0;
 };
 
+// Likewise for a binary file: compares the lengths of its lists with the bytes that are there.
+void check_binary_lists(const Header& header, size_t body_at) {
+    const bool big_endian = header.format == "binary_big_endian";
+    const auto length_at = [&](size_t at, int bytes) -> uint64_t {
+        const char* from = header.body.data() + at;
+        return bytes == 1   ? importers::load<uint8_t>(from, big_endian)
+               : bytes == 2 ? importers::load<uint16_t>(from, big_endian)
+                            : importers::load<uint32_t>(from, big_endian);
+    };
+    size_t at = 0;
+    for (const Element& element : header.elements) {
+        for (unsigned long long item = 0; item < element.count; ++item) {
+            for (const Property& p : element.properties) {
+                uint64_t values = 1;
+                if (p.is_list()) {
+                    if (header.body.size() - at < static_cast<size_t>(p.count_type->bytes)) return;
+                    values = length_at(at, p.count_type->bytes);
+                    at += static_cast<size_t>(p.count_type->bytes);
+                }
+                const uint64_t bytes = values * static_cast<uint64_t>(p.type->bytes), left = header.body.size() - at;
+                if (bytes > left && p.is_list()) {
+                    throw std::runtime_error("byte " + std::to_string(body_at + at) + ": " + quoted(element.name) + " " +
+                                             std::to_string(item + 1) + ": a list of " + std::to_string(values) +
+                                             " values, but only " + std::to_string(left) + " bytes follow");
+                }
+                if (bytes > left) return;  // that not all elements were read is reported later
+                at += bytes;
+            }
+        }
+        if (element.name == "face") return;
+    }
+}
+
 // MeshLab writes uvs as `property list uchar float texcoord`, two numbers per corner.
 void take_texcoords(FlatImporter& mesh) {
     OpenMesh::FPropHandleT<std::vector<float>> lists;
@@ -123,6 +161,7 @@ std::string read_ply(const Source& source, FlatImporter& mesh) {
     mesh.properties.faces = faces->count;
     const auto is_other_list = [](const Property& p) { return p.is_list() && !p.is_indices(); };
     const bool has_lists = std::any_of(faces->properties.begin(), faces->properties.end(), is_other_list);
+    if (has_lists && !header.is_ascii()) check_binary_lists(header, source.bytes.size() - header.body.size());
     AsciiLines lines(header, mesh);
     LineBuffer text(
         source.bytes, false, [&](std::string_view line, int, std::string& out) { return lines.edit(line, out); }, 1,

@@ -152,7 +152,7 @@ void check(const Header& header) {
             }
         }
         const unsigned long long each = least_bytes(element, header.is_ascii());
-        const std::string why = too_large(element.name.c_str(), element.count, each, available);
+        const std::string why = too_large(printable(element.name).c_str(), element.count, each, available);
         if (!why.empty()) throw std::runtime_error(why);
         available -= std::min(available, element.count * each);
         if (&element == faces) break;

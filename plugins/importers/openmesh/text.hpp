@@ -71,11 +71,14 @@ inline std::string counted(unsigned long long count, const char* what) {
     return std::to_string(count) + " " + what + (count == 1 ? "" : "s");
 }
 
-// Returns the text for a message: shortened, printable, in quotes.
-inline std::string quoted(std::string_view text) {
-    std::string out = "'";
+// Returns the text for a message: shortened, and '?' in place of characters that cannot be printed.
+inline std::string printable(std::string_view text) {
+    std::string out;
     for (const char c : trim(text).substr(0, 40)) out += c >= ' ' && c <= '~' ? c : '?';
-    return out + (trim(text).size() > 40 ? "...'" : "'");
+    return out + (trim(text).size() > 40 ? "..." : "");
+}
+inline std::string quoted(std::string_view text) {
+    return "'" + printable(text) + "'";
 }
 
 }  // namespace openmesh_import

@@ -14,9 +14,9 @@ bool is_empty_child(rt_u32 child) {
     return child == BVH2_MAKE_LEAF(0u, 0u);
 }
 
-class Checker : Findings {
+class Bvh2Checker : Findings {
  public:
-    Checker(const Input& input, const Built& built, uint32_t max_leaf, bool larger_first)
+    Bvh2Checker(const Input& input, const Built& built, uint32_t max_leaf, bool larger_first)
         : Findings(built),
           input_(input),
           max_leaf_(max_leaf),
@@ -120,7 +120,7 @@ class Checker : Findings {
 
 std::string check_bvh2(const Input& input, const Built& built, uint32_t max_leaf, bool larger_first) {
     if (built.status != RT_OK) return "the build failed: " + built.why;
-    return Checker(input, built, max_leaf, larger_first).run();
+    return Bvh2Checker(input, built, max_leaf, larger_first).run();
 }
 
 double sah_cost(const Input& input, const Built& built, double traversal_cost, double intersection_cost) {

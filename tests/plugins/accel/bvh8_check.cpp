@@ -10,9 +10,9 @@
 namespace accel_test {
 namespace {
 
-class Checker : Findings {
+class Bvh8Checker : Findings {
  public:
-    Checker(const Input& input, const Built& built, uint32_t max_leaf, double traversal_cost, double intersection_cost)
+    Bvh8Checker(const Input& input, const Built& built, uint32_t max_leaf, double traversal_cost, double intersection_cost)
         : Findings(built),
           input_(input),
           max_leaf_(max_leaf),
@@ -134,7 +134,7 @@ class Checker : Findings {
 std::string check_bvh8(const Input& input, const Built& built, uint32_t max_leaf, double traversal_cost,
                        double intersection_cost) {
     if (built.status != RT_OK) return "the build failed: " + built.why;
-    return Checker(input, built, max_leaf, traversal_cost, intersection_cost).run();
+    return Bvh8Checker(input, built, max_leaf, traversal_cost, intersection_cost).run();
 }
 
 }  // namespace accel_test

@@ -10,9 +10,9 @@
 namespace accel_test {
 namespace {
 
-class Checker : Findings {
+class CwbvhChecker : Findings {
  public:
-    Checker(const Input& input, const Built& built, uint32_t max_leaf)
+    CwbvhChecker(const Input& input, const Built& built, uint32_t max_leaf)
         : Findings(built), input_(input), max_leaf_(max_leaf), node_seen_(built.slot_counts[0]), leaves_(input, built) {}
 
     std::string run() {
@@ -129,7 +129,7 @@ class Checker : Findings {
 
 std::string check_cwbvh(const Input& input, const Built& built, uint32_t max_leaf) {
     if (built.status != RT_OK) return "the build failed: " + built.why;
-    return Checker(input, built, max_leaf).run();
+    return CwbvhChecker(input, built, max_leaf).run();
 }
 
 }  // namespace accel_test

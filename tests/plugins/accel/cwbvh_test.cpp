@@ -18,14 +18,13 @@ const rt_plugin& cwbvh() {
     return plugin;
 }
 
-Input one_group(const std::vector<rt_prim>& prims) {
-    Input input;
-    input.add_group(prims);
+Input numbered_group(const std::vector<rt_prim>& prims) {
+    Input input = one_group(prims);
     for (size_t i = 0; i < input.prims.size(); ++i) input.prims[i].ref = static_cast<rt_u32>(i);
     return input;
 }
 
-void expect_sound(const Input& input, const Options& options = {}) {
+void expect_cwbvh(const Input& input, const Options& options = {}) {
     const auto leaf = options.params.find("max_leaf");
     EXPECT_EQ(check_cwbvh(input, build(cwbvh(), input, options),
                           leaf == options.params.end() ? 4 : static_cast<uint32_t>(leaf->second)),
@@ -49,11 +48,11 @@ std::vector<rt_prim> spread(uint32_t count, const double at[3], const double siz
 
 TEST(Cwbvh, HoldsEveryPrimitiveOnce) {
     for (const uint32_t count : {1u, 2u, 3u, 4u, 5u, 8u, 9u, 31u, 65u, 1000u, 16385u, 100000u})
-        expect_sound(one_group(scattered(count, 10, 0, count)));
-    expect_sound(one_group(bumpy_sphere(200000)));
+        expect_cwbvh(numbered_group(scattered(count, 10, 0, count)));
+    expect_cwbvh(numbered_group(bumpy_sphere(200000)));
     for (int max_leaf = 1; max_leaf <= 4; ++max_leaf)
-        expect_sound(one_group(bumpy_sphere(5000)), {{{"max_leaf", max_leaf}}, 2, {}});
-    expect_sound(one_group(bumpy_sphere(20000)), {{{"builder", 1}}, 2, {}});
+        expect_cwbvh(numbered_group(bumpy_sphere(5000)), {{{"max_leaf", max_leaf}}, 2, {}});
+    expect_cwbvh(numbered_group(bumpy_sphere(20000)), {{{"builder", 1}}, 2, {}});
 }
 
 TEST(Cwbvh, GroupsOfFewPrimitivesHaveANode) {
@@ -62,8 +61,8 @@ TEST(Cwbvh, GroupsOfFewPrimitivesHaveANode) {
     for (uint32_t g = 0; g < 3000; ++g) input.add_group(scattered(g % 40, 1, static_cast<float>(g), g));
     input.add_group(scattered(20000, 1, 0, 7));
     for (size_t i = 0; i < input.prims.size(); ++i) input.prims[i].ref = static_cast<rt_u32>(i);
-    expect_sound(input);
-    expect_sound(one_group({}));
+    expect_cwbvh(input);
+    expect_cwbvh(numbered_group({}));
 }
 
 // Grids at every scale and position. Tiny boxes far from the origin get cells finer than their coordinates, flat boxes get
@@ -77,7 +76,7 @@ TEST(Cwbvh, GridsAtEveryScale) {
                 EXPECT_EQ(check_cwbvh(input, build(cwbvh(), input)), "") << size << " at " << at << ", flat " << flat;
             }
     const float lo[3] = {-FLT_MAX, -FLT_MAX, -1}, hi[3] = {FLT_MAX, 1, 1};
-    expect_sound(one_group({box_prim(lo, hi, 0)}));
+    expect_cwbvh(numbered_group({box_prim(lo, hi, 0)}));
 }
 
 // The compressed tree takes 55 bytes a triangle where bvh8 takes 68, and has the same order of octants.

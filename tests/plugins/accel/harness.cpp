@@ -29,6 +29,12 @@ rt_built Built::view() const {
     return {sizeof(rt_built), static_cast<rt_u32>(roots.size()), slots.data(), slot_counts.data(), roots.data()};
 }
 
+Input one_group(const std::vector<rt_prim>& prims) {
+    Input input;
+    input.add_group(prims);
+    return input;
+}
+
 namespace {
 
 struct HostContext {
@@ -178,6 +184,11 @@ rt_prim box_prim(const float lo[3], const float hi[3], rt_u32 ref, rt_u32 mesh) 
     prim.ref = ref;
     prim.mesh = mesh;
     return prim;
+}
+
+rt_prim cube(float x, float y, float z, float size, rt_u32 ref) {
+    const float lo[3] = {x, y, z}, hi[3] = {x + size, y + size, z + size};
+    return box_prim(lo, hi, ref);
 }
 
 std::vector<rt_prim> bumpy_sphere(uint32_t count, std::vector<float>* corners) {

@@ -23,6 +23,7 @@ struct Input {
     std::vector<rt_packed_prim> triangles;  // by the index of the ref, for builders that cut them; may be empty
     void add_group(const std::vector<rt_prim>& more);
 };
+Input one_group(const std::vector<rt_prim>& prims);
 
 // The results of a builder.
 struct Built {
@@ -69,6 +70,14 @@ std::vector<Volume> volumes(const rt_plugin& plugin, const Built& built, rt_u32 
 // ---- primitives for tests
 
 rt_prim box_prim(const float lo[3], const float hi[3], rt_u32 ref, rt_u32 mesh = 0);
+rt_prim cube(float x, float y, float z, float size, rt_u32 ref);
+// Calls make_one(0), make_one(1), ...
+template <class Make>
+std::vector<rt_prim> make(uint32_t count, Make make_one) {
+    std::vector<rt_prim> prims;
+    for (uint32_t i = 0; i < count; ++i) prims.push_back(make_one(i));
+    return prims;
+}
 // Returns the boxes of about `count` triangles of a bumpy sphere. Fills `corners` (9 floats per triangle) unless it is null.
 std::vector<rt_prim> bumpy_sphere(uint32_t count, std::vector<float>* corners = nullptr);
 // Returns small boxes that are spread over a cube with the given size and centre.

@@ -18,7 +18,7 @@ Options fast(double max_leaf = 4, unsigned threads = 2) {
     return {{{"builder", kMorton}, {"max_leaf", max_leaf}}, threads, {}};
 }
 
-void expect_sound(const std::vector<rt_prim>& prims, double max_leaf = 4) {
+void expect_morton(const std::vector<rt_prim>& prims, double max_leaf = 4) {
     Input input;
     input.add_group(prims);
     EXPECT_EQ(check_bvh2(input, build(load("bvh2"), input, fast(max_leaf)), static_cast<uint32_t>(max_leaf), false), "");
@@ -41,22 +41,22 @@ bool same_leaves_and_nodes(const Built& a, const Built& b, size_t node_bytes) {
 
 TEST(Morton, CoversEveryPrimitiveOnceWithExactBoxes) {
     for (const uint32_t count : {1u, 2u, 3u, 4u, 5u, 8u, 9u, 31u, 1000u, 16384u, 16385u, 100000u})
-        expect_sound(scattered(count, 10, 0, count));
-    for (const double max_leaf : {1, 2, 7}) expect_sound(bumpy_sphere(60000), max_leaf);
-    expect_sound({});
+        expect_morton(scattered(count, 10, 0, count));
+    for (const double max_leaf : {1, 2, 7}) expect_morton(bumpy_sphere(60000), max_leaf);
+    expect_morton({});
 }
 
 TEST(Morton, BuildsForTinyAndHugeExtents) {
-    expect_sound(same_box(50000, 4));
-    expect_sound(same_box(50000, 0));
-    for (const float size : {1e-44f, 1e-38f, 1e-20f, 1e20f, 1e37f, 3e38f}) expect_sound(scattered(20000, size, 0, 3));
-    expect_sound(scattered(20000, 1, 1e9f, 3));
+    expect_morton(same_box(50000, 4));
+    expect_morton(same_box(50000, 0));
+    for (const float size : {1e-44f, 1e-38f, 1e-20f, 1e20f, 1e37f, 3e38f}) expect_morton(scattered(20000, size, 0, 3));
+    expect_morton(scattered(20000, 1, 1e9f, 3));
     std::vector<rt_prim> line;
     for (rt_u32 i = 0; i < 30000; ++i) {
         const float p[3] = {FLT_MAX * (static_cast<float>(i) / 15000 - 1), 0, 0};
         line.push_back(box_prim(p, p, i));
     }
-    expect_sound(line);
+    expect_morton(line);
 }
 
 TEST(Morton, LeavesFollowTheMortonCurve) {
@@ -128,7 +128,7 @@ TEST(Morton, LimitsTheDepth) {
             prim.ref = static_cast<rt_u32>(prims.size());
             prims.push_back(prim);
         }
-    expect_sound(prims);
+    expect_morton(prims);
     Input input;
     input.add_group(prims);
     EXPECT_LE(build(load("bvh2"), input, fast()).stats.at("depth"), 64);

@@ -89,7 +89,7 @@ std::vector<Leaf> leaves_of(const Built& built, bool wide) {
 
 // Checks that every position in leaf order is in exactly one leaf, and that every sampled point of a triangle is in the box of
 // a leaf that holds the triangle.
-void expect_sound(const Input& input, const Built& built, bool wide) {
+void expect_spatial(const Input& input, const Built& built, bool wide) {
     ASSERT_EQ(built.status, RT_OK) << built.why;
     std::vector<int> seen(built.leaves.size());
     std::vector<std::vector<Leaf>> of_triangle(input.triangles.size());
@@ -138,7 +138,7 @@ TEST(Spatial, LosesNothingOfAnyTriangle) {
                 Options options = with(kSpatial, 1);
                 options.params["max_leaf"] = max_leaf;
                 const Input input = sticks(3000, size);
-                expect_sound(input, build(load(id), input, options), id[3] == '8');
+                expect_spatial(input, build(load(id), input, options), id[3] == '8');
             }
 }
 
@@ -186,7 +186,7 @@ TEST(Spatial, DoesNotSplitOtherPrimitives) {
 TEST(Spatial, BuildsForFewFlatAndEqualTriangles) {
     for (const uint32_t count : {1u, 2u, 3u, 5u, 9u, 40u}) {
         const Input input = sticks(count, 1);
-        for (const char* id : {"bvh2", "bvh8"}) expect_sound(input, build(load(id), input, with(kSpatial)), id[3] == '8');
+        for (const char* id : {"bvh2", "bvh8"}) expect_spatial(input, build(load(id), input, with(kSpatial)), id[3] == '8');
     }
     Input flat, same;
     std::vector<rt_prim> flat_group, same_group;
@@ -200,7 +200,7 @@ TEST(Spatial, BuildsForFewFlatAndEqualTriangles) {
     flat.add_group(flat_group);
     same.add_group(same_group);
     for (const Input& input : {flat, same})
-        for (const char* id : {"bvh2", "bvh8"}) expect_sound(input, build(load(id), input, with(kSpatial)), id[3] == '8');
+        for (const char* id : {"bvh2", "bvh8"}) expect_spatial(input, build(load(id), input, with(kSpatial)), id[3] == '8');
     EXPECT_EQ(build(load("bvh2"), Input{{}, {{0, 0}}, {}}, with(kSpatial)).status, RT_OK);
 }
 
@@ -213,7 +213,7 @@ TEST(Spatial, GroupsStaySeparate) {
     parted.add_group({});
     parted.add_group(first);
     parted.add_group(rest);
-    for (const char* id : {"bvh2", "bvh8"}) expect_sound(parted, build(load(id), parted, with(kSpatial)), id[3] == '8');
+    for (const char* id : {"bvh2", "bvh8"}) expect_spatial(parted, build(load(id), parted, with(kSpatial)), id[3] == '8');
 }
 
 TEST(Spatial, BuildsTheSameTreeOnAnyMachine) {

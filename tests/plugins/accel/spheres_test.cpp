@@ -22,9 +22,9 @@ const rt_plugin& spheres() {
 }
 
 // Walks the trees of a group, both as a traversal that enters every node and as trees.
-class Checker {
+class SpheresChecker {
  public:
-    Checker(const Input& input, const Built& built, uint32_t max_leaf, uint32_t max_depth)
+    SpheresChecker(const Input& input, const Built& built, uint32_t max_leaf, uint32_t max_depth)
         : input_(input), built_(built), nodes_(built.slot<spheres_node>()), max_leaf_(max_leaf), max_depth_(max_depth) {
         for (uint32_t i = 0; i < input.prims.size(); ++i)
             if (input.prims[i].ref >= by_ref_.size()) by_ref_.resize(input.prims[i].ref + 1, RT_NONE);
@@ -114,9 +114,9 @@ Input meshes(const std::vector<uint32_t>& sizes, float size = 1) {
     return input;
 }
 
-void expect_sound(const Input& input, const Built& built, uint32_t max_leaf = 4, uint32_t max_depth = 32) {
+void expect_spheres(const Input& input, const Built& built, uint32_t max_leaf = 4, uint32_t max_depth = 32) {
     ASSERT_EQ(built.status, RT_OK) << built.why;
-    Checker checker(input, built, max_leaf, max_depth);
+    SpheresChecker checker(input, built, max_leaf, max_depth);
     for (uint32_t g = 0; g < input.groups.size(); ++g) EXPECT_EQ(checker.check(g), "") << "group " << g;
     EXPECT_EQ(checker.sphere_count + input.groups.size(), built.slot_counts[0]);
     EXPECT_EQ(built.stats.at("nodes"), built.slot_counts[0]);
@@ -128,17 +128,17 @@ void expect_sound(const Input& input, const Built& built, uint32_t max_leaf = 4,
 TEST(Spheres, HoldEveryPrimitiveOnce) {
     for (const uint32_t count : {1u, 2u, 4u, 5u, 8u, 9u, 100u, 1023u, 3000u}) {
         const Input input = meshes({count});
-        expect_sound(input, build(spheres(), input));
+        expect_spheres(input, build(spheres(), input));
     }
 }
 
 TEST(Spheres, KeepToTheirParameters) {
     const Input input = meshes({1000});
     for (const int max_leaf : {1, 2, 3, 7, 100, 256})
-        expect_sound(input, build(spheres(), input, {{{"max_leaf", max_leaf}}, 2, {}}), static_cast<uint32_t>(max_leaf));
+        expect_spheres(input, build(spheres(), input, {{{"max_leaf", max_leaf}}, 2, {}}), static_cast<uint32_t>(max_leaf));
     for (const int max_depth : {0, 1, 3}) {
         const Built built = build(spheres(), input, {{{"max_depth", max_depth}}, 2, {}});
-        expect_sound(input, built, 4, static_cast<uint32_t>(max_depth));
+        expect_spheres(input, built, 4, static_cast<uint32_t>(max_depth));
         EXPECT_EQ(built.stats.at("leaves"), 1 << max_depth);
     }
 }
@@ -146,7 +146,7 @@ TEST(Spheres, KeepToTheirParameters) {
 TEST(Spheres, SplitsIntoEqualHalves) {
     const Input input = meshes({1000});
     const Built built = build(spheres(), input, {{{"max_leaf", 8}}, 2, {}});
-    Checker checker(input, built, 8, 32);
+    SpheresChecker checker(input, built, 8, 32);
     ASSERT_EQ(checker.check(0), "");
     EXPECT_EQ(checker.leaf_sizes.size(), 128u);  // 1000 / 128 is 7.8, so all leaves have 7 or 8
     EXPECT_EQ(*checker.leaf_sizes.begin(), 7u);
@@ -156,15 +156,15 @@ TEST(Spheres, SplitsIntoEqualHalves) {
 TEST(Spheres, OneTreeForEachMeshAndNoneAbove) {
     Input input = meshes({100, 1, 50, 7});
     const Built built = build(spheres(), input);
-    expect_sound(input, built);
-    Checker checker(input, built, 4, 32);
+    expect_spheres(input, built);
+    SpheresChecker checker(input, built, 4, 32);
     ASSERT_EQ(checker.check(0), "");
     EXPECT_EQ(checker.roots, 4u);
     EXPECT_EQ(volumes(spheres(), built, 0, 0).size(), 4u);
 
     const Built above = build(spheres(), input, {{{"top_level", 1}}, 2, {}});
-    expect_sound(input, above);
-    Checker with_top(input, above, 4, 32);
+    expect_spheres(input, above);
+    SpheresChecker with_top(input, above, 4, 32);
     ASSERT_EQ(with_top.check(0), "");
     EXPECT_EQ(with_top.roots, 1u);
     EXPECT_EQ(volumes(spheres(), above, 0, 0).size(), 1u);
@@ -207,7 +207,7 @@ TEST(Spheres, GroupsMayBeEmptyOrMany) {
     for (size_t i = 0; i < input.prims.size(); ++i) input.prims[i].ref = static_cast<rt_u32>(i);
     for (const double top_level : {0, 1}) {
         const Built built = build(spheres(), input, {{{"top_level", top_level}}, 2, {}});
-        expect_sound(input, built);
+        expect_spheres(input, built);
         EXPECT_EQ(built.slot<spheres_node>()[built.roots[0]].skip, built.roots[0] + 1);
         EXPECT_TRUE(volumes(spheres(), built, 0, RT_LEVEL_BOTTOM).empty());
     }
@@ -217,11 +217,11 @@ TEST(Spheres, BoundsHoldDespiteRounding) {
     // Sizes and positions at which centres and radii are rounded.
     for (const float size : {1e-38f, 1e-10f, 1e10f, 1e30f}) {
         const Input input = meshes({500, 300}, size);
-        expect_sound(input, build(spheres(), input));
+        expect_spheres(input, build(spheres(), input));
     }
     Input far;
     far.add_group(scattered(1000, 1, 1e7f, 4));
-    expect_sound(far, build(spheres(), far));
+    expect_spheres(far, build(spheres(), far));
     Input same;
     same.add_group(std::vector<rt_prim>(1, far.prims[0]));
     for (uint32_t i = 1; i < 2000; ++i) {
@@ -229,7 +229,7 @@ TEST(Spheres, BoundsHoldDespiteRounding) {
         same.prims.back().ref = i;
     }
     same.groups[0].count = 2000;
-    expect_sound(same, build(spheres(), same));
+    expect_spheres(same, build(spheres(), same));
     Input broken = meshes({500});
     broken.prims[7].lo[1] = NAN;
     broken.prims[8].hi[2] = INFINITY;

@@ -127,7 +127,7 @@ TEST(FbxDocument, SaysWhatIsWrongAndWhere) {
         EXPECT_NE(trouble(bytes).find(part), std::string::npos) << trouble(bytes) << "\nexpected: " << part;
     };
     expect("", "empty");
-    expect("\x89PNG....", "a PNG picture; rename it");
+    expect("\x89PNG....", "not an FBX file but a PNG picture: call it .png");
     expect(std::string("Kaydara FBX Binary  \n\x1A", 22) + "....", "header of this binary FBX file is damaged");
     expect(head(7400) + little(9999) + little(0) + little(0) + '\1' + "A", "byte 27: a record says that it ends at byte 9999");
     expect(head(7400) + little(45) + little(7) + little(4) + '\1' + "Abcde",

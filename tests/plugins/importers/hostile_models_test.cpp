@@ -74,6 +74,28 @@ TEST_F(HostileModel, BinaryPlyFaceOfFourBillionCorners) {
     bytes += std::string(36, '\0') + "\xFF\xFF\xFF\x7F" + std::string(12, '\0');
     expect_refused("corners_binary.ply", bytes, "0 of 1 faces");
 }
+TEST_F(HostileModel, PlyListsOfFourBillionValues) {
+    const std::string faces = "element face 1\nproperty list uint int vertex_indices\nproperty list uint float s\nend_header\n";
+    expect_refused("list.ply", kPlyVertices + faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2 4294967295 1 2 3\n",
+                   "line 14: 'face' 1 of 1: a list of '4294967295' values, more than the file can hold");
+    for (const bool big_endian : {false, true}) {
+        std::string bytes = kPlyVertices + faces + std::string(36, '\0');
+        const std::string form = big_endian ? "binary_big_endian" : "binary_little_endian";
+        bytes.replace(bytes.find("ascii"), 5, form);
+        const std::string head = std::to_string(bytes.size() + 20);
+        bytes += big_endian ? std::string("\0\0\0\3", 4) : std::string("\3\0\0\0", 4);
+        bytes += std::string(12, '\0') + "\xFF\xFF\xFF\xFF" + std::string(12, '\0');
+        expect_refused(form + ".ply", bytes,
+                       "byte " + head + ": 'face' 1: a list of 4294967295 values, but only 12 bytes follow");
+    }
+}
+TEST_F(HostileModel, PlyNamesThatCannotBePrinted) {
+    std::string bytes = kPlyVertices + "element fa\x7F\xFF 1\nproperty int a\n" +
+                        "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
+    expect_refused("words.ply", bytes + "one\n3 0 1 2\n", "line 15: 'fa?");
+    bytes.replace(bytes.find("\xFF 1"), 3, "\xFF 1000");
+    expect_refused("counts.ply", bytes, "declares 1000 elements 'fa");
+}
 TEST_F(HostileModel, PlyCountsBeyondTheFile) {
     expect_refused(
         "counts.ply",

@@ -211,6 +211,11 @@ TEST(ColladaMessages, NameThePlace) {
     expect("0 1 4 3 1", "0 1 81 3 1", "line 43, column 18: found '81', expected an index below 6");
     expect("semantic=\"POSITION\" source", "semantic=\"POSITION\" _ource",
            "line 38, column 12: found <input> without 'source', expected that attribute");
+    expect("roof-array\" count", "roof-array\" uount", "line 28, column 12: found <float_array> without 'count'");
+    expect("semantic=\"VERTEX\"", "semantic=\"VETEX\"", "line 41, column 28: found 'VETEX', expected a semantic of COLLADA");
+    expect("</vertices>", "! </vertices>", "line 39, column 9: found '!', expected only elements in <vertices>");
+    expect("<color>0.8", "<color>0X8", "line 13, column 29: found '0X8', expected a number");
+    expect("visual_scene url", "visual_scene rl", "line 63, column 6: found <instance_visual_scene> without 'url'");
     expect("0 0 0 1 0 1 2", "0 0 0 \x01 0 1 2", "line 28, column 57: found '?', expected text: XML has no control bytes");
     expect("<geometry id", "<geometry 1d", "line 25, column 15: found '1d=\"roof\"', expected an attribute");
     expect("<?xml version=\"1.0\" ", "<?xml version=\"1.0\"",

@@ -80,6 +80,16 @@ TEST(ShapeStatements, PlacedFilesShareTheirParts) {
     EXPECT_EQ(scene.shapes[1].material, 1u);
 }
 
+TEST(ShapeStatements, OfALoadedFileThatMovesStayAtRest) {
+    const Scratch scratch;
+    scratch.write("part.scene", "sphere\nbox from 1 1 1 to 0 2 3\n");
+    const std::string load = "load \"part.scene\" name part\n";
+    EXPECT_TRUE(import_text(scratch, load).warnings.empty());
+    const Scene scene = import_text(scratch, load + "animate part translate 0 0 0 0  1 5 0 0\n");
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("2 of its objects stay where they are at rest"), std::string::npos) << scene.warnings[0];
+}
+
 TEST(ShapeStatements, ErrorsNameThePlace) {
     EXPECT_EQ(error_of("\n cylindre from 0 0 0"),
               "a.scene:2:2: unknown statement `cylindre`; did you mean `cylinder`? (statements: camera, light, background, "

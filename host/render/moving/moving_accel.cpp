@@ -1,4 +1,4 @@
-#include "render/accel/moving_accel.hpp"
+#include "render/moving/moving_accel.hpp"
 
 #include <algorithm>
 #include <atomic>

@@ -1,4 +1,4 @@
-#include "render/accel/moved_leaves.hpp"
+#include "render/moving/moved_leaves.hpp"
 
 #include <algorithm>
 #include <cfloat>

@@ -19,7 +19,7 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/accel/moved_leaves.hpp"
+#include "render/moving/moved_leaves.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 

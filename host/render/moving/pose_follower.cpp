@@ -1,0 +1,87 @@
+#include "render/moving/pose_follower.hpp"
+
+#include <cstdio>
+
+namespace clarity {
+namespace {
+
+constexpr size_t kKeptCosts = 120;  // poses
+
+std::vector<rt_u32> deformed_by(const Pose& pose) {
+    std::vector<rt_u32> meshes;
+    for (const PosedMesh& mesh : pose.meshes) meshes.push_back(mesh.mesh);
+    return meshes;
+}
+
+std::string cost_text(double ratio) {
+    char text[64];
+    std::snprintf(text, sizeof text, "rays cost %.2f times what they cost after the last build", ratio);
+    return text;
+}
+
+}  // namespace
+
+PoseFollower::Way way_of(const std::string& poses) {
+    return poses == "refit"   ? PoseFollower::Way::refit
+           : poses == "build" ? PoseFollower::Way::build
+                              : PoseFollower::Way::automatic;
+}
+
+std::string PoseFollower::why_not(const PosedFrom& from, const Pose& pose, Way way) const {
+    if (!moving_) return "the first pose";
+    if (!(from == from_)) return "another scene or clip";
+    if (way == Way::build) return "the setting `poses` asks for it";
+    if (!moving_->cannot().empty()) return moving_->cannot();
+    if (deformed_by(pose) != deformed_) return "other meshes deform";
+    if (way == Way::automatic && policy_.wants_build())
+        return "slow rays have cost " + std::to_string(static_cast<long>(policy_.debt_ms())) + " ms since the last build";
+    return {};
+}
+
+std::shared_ptr<const AccelData> PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed,
+                                                     const Pose& pose, Way way, double trace_ms, Progress& progress) {
+    if (posed == posed_ && from == from_ && accel_) return accel_;
+    update_.followed = true;
+    update_.refitted = false;
+    update_.why = why_not(from, pose, way);
+    if (!update_.why.empty()) return nullptr;
+    const MovedAccel moved = moving_->move(pose, progress);
+    update_.why = moved.why;
+    if (!moved.accel) return nullptr;
+    refit_ms_ = moved.ms;
+    policy_.refitted(moved.worst_cost_ratio, trace_ms);
+    update_.refitted = true;
+    update_.why = cost_text(moved.worst_cost_ratio);
+    update_.ms = moved.ms;
+    update_.primitives = moved.refitted;
+    note_cost(moved.worst_cost_ratio);
+    posed_ = posed;
+    accel_ = moved.accel;
+    return accel_;
+}
+
+void PoseFollower::built(const PosedFrom& from, std::shared_ptr<const Scene> posed, const Pose& pose,
+                         std::shared_ptr<const AccelData> accel) {
+    if (!(from == from_)) {
+        policy_ = {};
+        refit_ms_ = 0;
+        update_.cost_ratios.clear();
+    }
+    const double ms = accel->build_ms + accel->pack_ms;
+    policy_.built(ms - refit_ms_);
+    update_.ms = ms;
+    update_.primitives = 0;
+    note_cost(1);
+    from_ = from;
+    deformed_ = deformed_by(pose);
+    posed_ = std::move(posed);
+    accel_ = std::move(accel);
+    moving_ = std::make_unique<MovingAccel>(posed_, accel_);
+}
+
+void PoseFollower::note_cost(double ratio) {
+    update_.cost_ratios.push_back(static_cast<float>(ratio));
+    if (update_.cost_ratios.size() > kKeptCosts) update_.cost_ratios.pop_front();
+}
+
+}  // namespace clarity

@@ -1,0 +1,73 @@
+// pose_follower.hpp -- the structure of a scene that is shown in one pose after another: refitted, or built anew where that
+// pays.
+//
+//   auto accel = follower.refit(from, posed, pose, way, trace_ms, progress);
+//   if (!accel) { accel = build(posed); follower.built(from, posed, pose, accel); }
+#pragma once
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/progress.hpp"
+#include "render/accel/accel_build.hpp"
+#include "render/moving/moving_accel.hpp"
+#include "render/moving/refit_policy.hpp"
+#include "scene/motion/pose.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// How a structure came to its pose.
+struct PoseUpdate {
+    bool followed = false;  // false: the scene is at rest, or nothing was done for a pose
+    bool refitted = false;  // false: built anew
+    std::string why;        // "rays cost 1.12 times what they cost after the last build"; "instance `door` is hidden"
+    double ms = 0;
+    uint64_t primitives = 0;        // that were refitted
+    std::deque<float> cost_ratios;  // of the last poses, the newest last; 1: as good as after its build
+};
+
+// What the poses belong to: poses of another scene or clip need a build.
+struct PosedFrom {
+    std::shared_ptr<const Scene> scene;  // at rest
+    std::string clip;
+    bool operator==(const PosedFrom& b) const { return scene == b.scene && clip == b.clip; }
+};
+
+// Used on one thread at a time. Keeps up to three structures, which are used again: see MovingAccel.
+class PoseFollower {
+ public:
+    enum class Way { automatic, refit, build };
+
+    // Returns the structure of `posed`, which is the scene in `pose`. nullptr: it must be built, for the reason in
+    // update().why. trace_ms: time of a frame; 0: not known. Throws as MovingAccel::move().
+    std::shared_ptr<const AccelData> refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed, const Pose& pose,
+                                           Way way, double trace_ms, Progress& progress);
+    // Says that this structure was built for the pose.
+    void built(const PosedFrom& from, std::shared_ptr<const Scene> posed, const Pose& pose,
+               std::shared_ptr<const AccelData> accel);
+    // Forgets everything: the scene is at rest, or other settings ask for another structure.
+    void reset() { *this = PoseFollower(); }
+
+    const AccelData* structure() const { return accel_.get(); }  // the newest; nullptr: none
+    const PoseUpdate& update() const { return update_; }
+
+ private:
+    std::string why_not(const PosedFrom& from, const Pose& pose, Way way) const;
+    void note_cost(double ratio);
+
+    PosedFrom from_;
+    std::unique_ptr<MovingAccel> moving_;
+    std::vector<rt_u32> deformed_;  // the meshes that poses deform
+    std::shared_ptr<const Scene> posed_;
+    std::shared_ptr<const AccelData> accel_;
+    RefitPolicy policy_;
+    double refit_ms_ = 0;
+    PoseUpdate update_;
+};
+
+// "auto", "refit", "build": values of the setting `poses`.
+PoseFollower::Way way_of(const std::string& poses);
+
+}  // namespace clarity
