@@ -3,14 +3,6 @@
 
 #pragma OPENCL FP_CONTRACT OFF /* centres are the same on every device */
 
-/* A box as rt_prim has it: 32 B. */
-typedef struct rt_build_box {
-    float lo[3];
-    uint ref;
-    float hi[3];
-    uint mesh;
-} rt_build_box;
-
 /* 0..2 the least corner of all boxes, 3..5 of all centres; 6..8 and 9..11: the greatest. */
 typedef struct rt_build_bounds {
     float at[12];

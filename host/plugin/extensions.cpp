@@ -8,7 +8,7 @@ namespace clarity {
 
 // Of its first release.
 template <>
-inline constexpr uint32_t kLeastBytes<rt_device_build> = 48;
+inline constexpr uint32_t kLeastBytes<rt_device_build> = 64;
 
 rt_refit refit_of(const rt_plugin& plugin) {
     for (const rt_extension* e = plugin.extensions; e && e->name; ++e)

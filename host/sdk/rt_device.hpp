@@ -1,5 +1,6 @@
 // rt_device.hpp -- rt_device.h for C++: the steps of a plan.
 #pragma once
+#include <cstring>
 #include <initializer_list>
 
 #include "rt_device.h"
@@ -22,6 +23,11 @@ class DeviceSteps {
     void sort(rt_u32 keys, rt_u32 values, uint64_t count, rt_u32 bits) { step(plan_->sort, keys, values, count, bits); }
     void scan(rt_u32 data, uint64_t count) { step(plan_->scan, data, count); }
     void bounds(rt_u32 boxes, uint64_t count, rt_u32 result) { step(plan_->bounds, boxes, count, result); }
+    rt_u32 blocks(rt_u32 boxes, rt_u32 order, uint64_t count) {
+        const rt_u32 made = ok_ ? plan_->blocks(plan_->ctx, boxes, order, count) : RT_NONE;
+        ok_ = ok_ && made != RT_NONE;
+        return made;
+    }
     int32_t result() const { return ok_ ? RT_OK : RT_FAILED; }
 
  private:
@@ -39,6 +45,12 @@ inline rt_device_arg of(rt_u32 buffer) {
 }
 inline rt_device_arg number(uint64_t value) {
     return {RT_NONE, static_cast<rt_u32>(value)};
+}
+
+inline rt_device_arg real(float value) {
+    rt_device_arg arg{RT_NONE, 0};
+    std::memcpy(&arg.value, &value, sizeof value);
+    return arg;
 }
 
 // The elements that a work-group takes in kernels that do the same for each: one for each work-item, or many where a work-item

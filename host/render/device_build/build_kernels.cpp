@@ -29,8 +29,10 @@ cl::Program BuildKernels::compile(const std::string& text, const std::string& wh
                           " -DRT_SORT_TILE=" + std::to_string(sort_tile()) + "u -DRT_SCAN_TILE=" + std::to_string(scan_tile()) +
                           "u";
     if (!serial_ && has_match(device_->info())) options += " -DRT_MATCH_PTX";
-    const std::string groups = "#line 1 \"cl/build/groups.h\"\n" + kernel_text("build/groups.h");
-    return build_program(*device_, groups + text, options + (more_options.empty() ? "" : " " + more_options), what).program;
+    std::string headers;
+    for (const std::string name : {"build/groups.h", "build/blocks.h"})
+        headers += "#line 1 \"cl/" + name + "\"\n" + kernel_text(name);
+    return build_program(*device_, headers + text, options + (more_options.empty() ? "" : " " + more_options), what).program;
 }
 
 cl::Program BuildKernels::compile_file(const std::string& name, const std::string& more_options) const {

@@ -27,7 +27,7 @@ class BuildKernels {
     unsigned sort_tile() const { return serial_ ? 8192 : 2048; }
     unsigned scan_tile() const { return 4096; }
 
-    // Compiles `text` behind groups.h and with the options of all kernels of builds. what: for error messages.
+    // Compiles `text` behind groups.h and blocks.h, and with the options of all kernels of builds. what: for error messages.
     cl::Program compile(const std::string& text, const std::string& what, const std::string& more_options = "") const;
     // The program of one file of cl/build: "scan.cl".
     cl::Program compile_file(const std::string& name, const std::string& more_options = "") const;

@@ -4,6 +4,7 @@
 #include "base/progress.hpp"
 #include "device/kernel_files.hpp"
 #include "plugin/host_services.hpp"
+#include "render/device_build/device_blocks.hpp"
 #include "render/device_build/device_reduce.hpp"
 #include "render/device_build/device_sort.hpp"
 
@@ -101,6 +102,20 @@ struct DevicePlan::Calls {
             plan.steps_.push_back([reducer, reduced, count, to] { reducer->run(reduced, 0, count, to); });
         });
     }
+    static rt_u32 blocks(void* ctx, rt_u32 boxes, rt_u32 order, uint64_t count) {
+        rt_u32 number = RT_NONE;
+        guarded(ctx, [&](DevicePlan& plan) {
+            const cl::Buffer from = known(plan, boxes), places = order == RT_NONE ? from : known(plan, order);
+            const cl::Buffer made = plan.kernels_.buffer(DeviceBlocks::bytes(count));
+            plan.bytes_ += DeviceBlocks::bytes(count);
+            number = plan.add(made);
+            const auto blocks = std::make_shared<DeviceBlocks>(plan.kernels_);
+            const bool ordered = order != RT_NONE;
+            plan.steps_.push_back(
+                [blocks, from, places, ordered, count, made] { blocks->run(from, ordered ? &places : nullptr, count, made); });
+        });
+        return number;
+    }
 };
 
 DevicePlan::DevicePlan(const BuildKernels& kernels) : kernels_(kernels) {}
@@ -128,6 +143,7 @@ void DevicePlan::plan(const rt_plugin& plugin, const rt_device_build& build,
     table.sort = Calls::sort;
     table.scan = Calls::scan;
     table.bounds = Calls::bounds;
+    table.blocks = Calls::blocks;
     why_.clear();
     Progress progress;
     HostServices services(name, progress);
@@ -147,19 +163,24 @@ rt_device_topology DevicePlan::plan_topology(const rt_plugin& plugin, const rt_d
 }
 
 PlannedLayout DevicePlan::plan_layout(const rt_plugin& plugin, const rt_device_build& build, const rt_device_input& input,
-                                      const rt_device_topology& topology, const std::vector<rt_u32>& slots, rt_u32 leaves) {
+                                      const rt_device_topology& topology, const rt_device_tree& tree, rt_u32 leaves) {
     PlannedLayout result;
     rt_device_output out{};
     out.struct_bytes = sizeof out;
     out.leaves = leaves;
-    out.slot_count = static_cast<rt_u32>(slots.size());
-    out.slots = slots.data();
     out.ctx = &result;
     out.root = [](void* ctx, rt_u32 node) { static_cast<PlannedLayout*>(ctx)->root = node; };
     out.define = [](void* ctx, const char* name, rt_u32 value) { static_cast<PlannedLayout*>(ctx)->defines[name] = value; };
     plan(plugin, build,
-         [&](const rt_host* host, const rt_device_plan* table) { return build.pack(host, table, &input, &topology, &out); });
+         [&](const rt_host* host, const rt_device_plan* table) { return build.pack(host, table, &input, &topology, &tree, &out); });
     return result;
+}
+
+void DevicePlan::plan_refit(const rt_plugin& plugin, const rt_device_build& build, const rt_device_tree& tree, rt_u32 blocks,
+                            rt_u32 costs, const double* params) {
+    plan(plugin, build, [&](const rt_host* host, const rt_device_plan* table) {
+        return build.refit(host, table, &tree, blocks, costs, params);
+    });
 }
 
 void DevicePlan::run() {

@@ -17,7 +17,7 @@ struct PlannedLayout {
     std::map<std::string, rt_u32> defines;
 };
 
-// The steps of one build. Plugins add steps and memory while it is made; then run() enqueues all of them, again and again,
+// The steps of one build or refit. Plugins add steps and memory while it is made; then run() enqueues all of them, again and again,
 // without an allocation. Used from one thread.
 class DevicePlan {
  public:
@@ -35,9 +35,14 @@ class DevicePlan {
     // Error(kernel_build_failed).
     rt_device_topology plan_topology(const rt_plugin& plugin, const rt_device_build& build, const rt_device_input& input);
 
-    // Lets the layout plan its nodes. slots: numbers of buffers of elements() each; leaves: of a uint for each primitive.
+    // Lets the layout plan the nodes of a tree. leaves: number of a buffer of a uint for each primitive.
     PlannedLayout plan_layout(const rt_plugin& plugin, const rt_device_build& build, const rt_device_input& input,
-                              const rt_device_topology& topology, const std::vector<rt_u32>& slots, rt_u32 leaves);
+                              const rt_device_topology& topology, const rt_device_tree& tree, rt_u32 leaves);
+    // Lets the layout plan the refit of a tree.
+    void plan_refit(const rt_plugin& plugin, const rt_device_build& build, const rt_device_tree& tree, rt_u32 blocks,
+                    rt_u32 costs, const double* params);
+    // Adds a step of the host's own.
+    void add_step(std::function<void()> step) { steps_.push_back(std::move(step)); }
 
     // Enqueues all steps on the device's queue. Throws cl::Error.
     void run();

@@ -71,7 +71,7 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
         lights(device.context(), CL_MEM_READ_ONLY, 256);
     if (program.is_wavefront()) {
         ViewBuffers view_buffers;
-        view_buffers.write(queue, *prepared.scene, {frame}, view);
+        view_buffers.write(queue, *prepared.scene, *prepared.on_device, {frame}, view);
         Launcher launcher;
         const WavefrontFrame pixel{prepared, view, view_buffers, layout, 1, 1, 0, 1, 1, 0, out, distances};
         Wavefront(opened).trace(queue, launcher, pixel, [] {});

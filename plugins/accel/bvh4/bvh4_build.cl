@@ -1,4 +1,4 @@
-/* bvh4_build.cl -- merges the nodes of a binary tree on the device to nodes of up to four children.
+/* bvh4_build.cl -- merges the nodes of a binary tree on the device to nodes of up to four children, and refits such nodes.
  *
  * A node takes in the children of its largest child until it has four (Wald, Benthin, Boulos 2008). That goes from the root down,
  * and no work-group may wait for another. So it goes in three passes: one group descends to subtrees of at most 2^18 primitives,
@@ -13,12 +13,6 @@ typedef struct bvh4_binary {
     float hi[3];
     uint right;
 } bvh4_binary;
-typedef struct bvh4_prim {
-    float lo[3];
-    uint ref;
-    float hi[3];
-    uint mesh;
-} bvh4_prim;
 
 #define BVH4_SINGLE 0x80000000u /* a child of the binary tree that is one primitive: RT_TOPOLOGY_LEAF | its place in order */
 #define BVH4_NONE 0xFFFFFFFFu
@@ -127,14 +121,17 @@ RT_INLINE void bvh4_leaf(const global bvh4_binary *nodes, const global uint *ord
     }
 }
 
-/* Writes the wide nodes, each at its number: at[b] is the sum of `wide` before binary node b. */
-RT_BUILD_KERNEL bvh4_write(const global bvh4_prim *prims, const global bvh4_binary *nodes, const global uint *counts,
-                           const global uint *order, uint binaries, uint each, uint max_leaf, const global uint2 *children,
-                           const global uint *at, global float *to, global uint *leaves)
+/* Writes the wide nodes, each at its number: at[b] is the sum of `wide` before binary node b. They begin at element first_node;
+ * there are `elements` elements for them, and those that are left over become no nodes. */
+RT_BUILD_KERNEL bvh4_write(const global rt_build_box *prims, const global bvh4_binary *nodes, const global uint *counts,
+                           const global uint *order, uint count, uint binaries, uint elements, uint each, uint max_leaf,
+                           const global uint2 *children, const global uint *at, uint first_node, uint first_leaf,
+                           global float *to, global uint2 *ranges, global uint *leaves)
 {
-    const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, binaries);
+    const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, max(binaries, elements)), used = at[binaries];
     for (uint b = begin + RT_ITEM; b < end; b += RT_GROUP) {
-        if (at[b] == at[b + 1u]) continue;
+        if (b >= used && b < elements) ranges[first_node + b] = (uint2)(0u, 0u);
+        if (b >= binaries || at[b] == at[b + 1u]) continue;
         float box[4][6], place[4][2], middle[2] = {0.0f, 0.0f};
         uint code[4], number = 0u;
         for (; number < 4u; ++number) {
@@ -148,9 +145,9 @@ RT_BUILD_KERNEL bvh4_write(const global bvh4_prim *prims, const global bvh4_bina
             }
             for (uint a = 0u; a < 2u; ++a) place[number][a] = 0.5f * box[number][a] + 0.5f * box[number][3u + a];
             if (bvh4_opens(counts, child.x, max_leaf)) {
-                code[number] = BVH4_NODE_REF(at[child.x]);
+                code[number] = BVH4_NODE_REF(first_node + at[child.x]);
             } else {
-                code[number] = BVH4_MAKE_LEAF(child.y, bvh4_size(counts, child.x));
+                code[number] = BVH4_MAKE_LEAF(first_leaf + child.y, bvh4_size(counts, child.x));
                 bvh4_leaf(nodes, order, child.x, leaves + child.y);
             }
         }
@@ -174,7 +171,8 @@ RT_BUILD_KERNEL bvh4_write(const global bvh4_prim *prims, const global bvh4_bina
             child_of[slot] = child;
             placed |= 1u << child;
         }
-        const uint index = at[b];
+        const uint index = first_node + at[b];
+        ranges[index] = number > 0u ? (uint2)(children[4u * b].y, count > 1u ? counts[b] : count) : (uint2)(0u, 0u);
         global float *const node = to + 32u * (ulong)index; /* its rows are permuted: bvh4_types.h */
         global uint *const codes = (global uint *)node;
         for (uint s = 0u; s < 4u; ++s) {
@@ -184,5 +182,41 @@ RT_BUILD_KERNEL bvh4_write(const global bvh4_prim *prims, const global bvh4_bina
             codes[4u * (6u ^ (index & 7u)) + s] = c < 4u ? code[c] : BVH4_EMPTY;
             codes[4u * (7u ^ (index & 7u)) + s] = 0u;
         }
+    }
+}
+
+/* Fits the nodes first_node .. first_node + elements - 1 to the boxes of the primitives below them, which come from `blocks`. count:
+ * of primitives. costs: see rt_device_build::refit. */
+RT_BUILD_KERNEL bvh4_refit(global float *nodes, const global uint2 *ranges, const global rt_block *blocks, uint count,
+                           uint first_node, uint elements, uint each, uint first_leaf, uint root, float node_cost,
+                           float primitive_cost, global float *costs)
+{
+    const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, elements);
+    for (uint e = begin + RT_ITEM; e < end; e += RT_GROUP) {
+        const uint index = first_node + e;
+        if (ranges[index].y == 0u) {
+            costs[e] = 0.0f;
+            continue;
+        }
+        global float *const node = nodes + 32u * (ulong)index;
+        const uint4 codes = vload4(6u ^ (index & 7u), (const global uint *)node);
+        const uint code[4] = {codes.x, codes.y, codes.z, codes.w};
+        float box[6][4], cost = 0.0f;
+        rt_block whole = rt_no_block();
+        for (uint s = 0u; s < 4u; ++s) {
+            uint2 below = (uint2)(0u, 0u);
+            const bool leaf = code[s] >= BVH4_LEAF;
+            if (!leaf)
+                below = ranges[BVH4_INDEX(code[s])];
+            else if (code[s] != BVH4_EMPTY)
+                below = (uint2)(BVH4_LEAF_FIRST(code[s]) - first_leaf, BVH4_LEAF_COUNT(code[s]));
+            const rt_block child = rt_box_of_range(blocks, count, below.x, below.x + below.y);
+            for (uint a = 0u; a < 3u; ++a) box[a][s] = child.lo[a], box[3u + a][s] = child.hi[a];
+            if (below.y > 0u) cost += rt_block_area(child) * (leaf ? primitive_cost * (float)below.y : node_cost);
+            whole = rt_join_blocks(whole, child);
+        }
+        costs[e] = cost + (index == root ? node_cost * rt_block_area(whole) : 0.0f);
+        for (uint k = 0u; k < 6u; ++k)
+            vstore4((float4)(box[k][0], box[k][1], box[k][2], box[k][3]), k ^ (index & 7u), node);
     }
 }

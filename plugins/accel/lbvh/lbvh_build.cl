@@ -2,26 +2,16 @@
  * Parallelism in the Construction of BVHs, Octrees, and k-d Trees").
  *
  * Karras finds the boxes from the leaves up, where the second of two children to arrive goes on. That needs one work-group to see what
- * another has written during the same launch, which OpenCL 1.2 does not promise. Here the boxes of all aligned blocks of 2, 4, 8, ...
- * neighbours are made in passes of 8 sizes each. The primitives of a node are neighbours, so its box is that of few blocks: two of
- * each size at most, and most nodes are small. */
+ * another has written during the same launch, which OpenCL 1.2 does not promise. Here they come from the host's blocks of neighbouring
+ * primitives: cl/build/blocks.h. */
 #pragma OPENCL FP_CONTRACT OFF /* the same codes as lbvh.cpp's */
 
-typedef struct lbvh_prim {
-    float lo[3];
-    uint ref;
-    float hi[3];
-    uint mesh;
-} lbvh_prim;
 typedef struct lbvh_node {
     float lo[3];
     uint left;
     float hi[3];
     uint right;
 } lbvh_node;
-typedef struct lbvh_box {
-    float lo[3], hi[3];
-} lbvh_box;
 #define LBVH_LEAF 0x80000000u
 
 /* Puts two zeros between the lowest 21 bits. */
@@ -35,7 +25,7 @@ RT_INLINE ulong lbvh_spread(ulong x)
 }
 
 /* bounds: 12 numbers of the reduction. Cells are cubes, so that a split halves the longest side. */
-RT_BUILD_KERNEL lbvh_codes(const global lbvh_prim *prims, uint count, uint each, uint axis_bits, const global float *bounds,
+RT_BUILD_KERNEL lbvh_codes(const global rt_build_box *prims, uint count, uint each, uint axis_bits, const global float *bounds,
                            global ulong *keys, global uint *values)
 {
     float extent = 0.0f;
@@ -55,69 +45,6 @@ RT_BUILD_KERNEL lbvh_codes(const global lbvh_prim *prims, uint count, uint each,
     }
 }
 
-RT_INLINE lbvh_box lbvh_no_box(void)
-{
-    lbvh_box b;
-    for (uint a = 0u; a < 3u; ++a) b.lo[a] = INFINITY, b.hi[a] = -INFINITY;
-    return b;
-}
-RT_INLINE lbvh_box lbvh_join(lbvh_box a, lbvh_box b)
-{
-    for (uint k = 0u; k < 3u; ++k) a.lo[k] = min(a.lo[k], b.lo[k]), a.hi[k] = max(a.hi[k], b.hi[k]);
-    return a;
-}
-
-/* Makes the blocks of the 8 sizes above `size` (a power of two, as its logarithm), 256 blocks of that size for each work-group. The
- * blocks of all sizes stand one after the other, the smallest first: from `begin` on those of this size, `blocks` many. For size 0
- * they are made here, too. */
-RT_BUILD_KERNEL lbvh_blocks(const global lbvh_prim *prims, const global uint *order, uint size, uint begin, uint blocks,
-                            global lbvh_box *boxes)
-{
-    local lbvh_box shared[2][256];
-    const uint first = RT_GROUP_NUMBER * 256u;
-    for (uint l = RT_ITEM; l < 256u; l += RT_GROUP) {
-        lbvh_box box = lbvh_no_box();
-        if (first + l < blocks) {
-            if (size > 0u) {
-                box = boxes[begin + first + l];
-            } else {
-                const lbvh_prim prim = prims[order[first + l]];
-                for (uint a = 0u; a < 3u; ++a) box.lo[a] = prim.lo[a], box.hi[a] = prim.hi[a];
-                boxes[begin + first + l] = box;
-            }
-        }
-        shared[0][l] = box;
-    }
-    RT_LOCAL_BARRIER();
-    uint from = 0u;
-    for (uint pairs = 128u; pairs > 0u && blocks > 1u; pairs /= 2u) {
-        begin += blocks;
-        blocks = (blocks + 1u) / 2u;
-        for (uint l = RT_ITEM; l < pairs; l += RT_GROUP) {
-            const lbvh_box box = lbvh_join(shared[from][2u * l], shared[from][2u * l + 1u]);
-            shared[1u - from][l] = box;
-            const uint at = RT_GROUP_NUMBER * pairs + l;
-            if (at < blocks) boxes[begin + at] = box;
-        }
-        RT_LOCAL_BARRIER();
-        from = 1u - from;
-    }
-}
-
-/* The box of the primitives first .. last in order. */
-RT_INLINE lbvh_box lbvh_box_of(const global lbvh_box *boxes, uint count, uint first, uint last)
-{
-    lbvh_box box = lbvh_no_box();
-    uint at = 0u, blocks = count, a = first, b = last + 1u;
-    for (; a < b; a /= 2u, b /= 2u) {
-        if (a & 1u) box = lbvh_join(box, boxes[at + a++]);
-        if (b & 1u) box = lbvh_join(box, boxes[at + --b]);
-        at += blocks;
-        blocks = (blocks + 1u) / 2u;
-    }
-    return box;
-}
-
 /* The number of leading bits that the keys of i and j have in common; equal keys are told apart by i and j. */
 RT_INLINE int lbvh_common(const global ulong *keys, uint count, ulong key, uint i, int j)
 {
@@ -127,7 +54,7 @@ RT_INLINE int lbvh_common(const global ulong *keys, uint count, ulong key, uint 
 }
 
 /* All inner nodes. Node i has a range of places that begins or ends at place i (Karras 2012, figure 4). */
-RT_BUILD_KERNEL lbvh_nodes(const global ulong *keys, const global lbvh_box *boxes, uint count, uint each, global lbvh_node *nodes,
+RT_BUILD_KERNEL lbvh_nodes(const global ulong *keys, const global rt_block *blocks, uint count, uint each, global lbvh_node *nodes,
                            global uint *counts)
 {
     const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, count - 1u);
@@ -148,7 +75,7 @@ RT_BUILD_KERNEL lbvh_nodes(const global ulong *keys, const global lbvh_box *boxe
         }
         const uint middle = (uint)((int)i + split * d + min(d, 0));
         const uint first = min(i, (uint)other), last = max(i, (uint)other);
-        const lbvh_box box = lbvh_box_of(boxes, count, first, last);
+        const rt_block box = rt_box_of_range(blocks, count, first, last + 1u);
         lbvh_node node;
         for (uint a = 0u; a < 3u; ++a) node.lo[a] = box.lo[a], node.hi[a] = box.hi[a];
         node.left = first == middle ? LBVH_LEAF | middle : middle;

@@ -9,9 +9,7 @@ namespace {
 using rt::number;
 using rt::of;
 
-constexpr uint64_t kNodeBytes = 32, kBoxBytes = 24, kBoundsBytes = 48;
-constexpr uint64_t kBlocksAtOnce = 256;  // of a work-group of lbvh_blocks
-constexpr rt_u32 kSizesAtOnce = 8;
+constexpr uint64_t kNodeBytes = 32, kBoundsBytes = 48;
 
 }  // namespace
 
@@ -26,18 +24,9 @@ int32_t plan(const rt_host*, const rt_device_plan* plan, const rt_device_input* 
                      {of(input->prims), number(n), number(each), number(axis_bits(n)), of(bounds), of(keys), of(order)});
         steps.sort(keys, order, n, code_bits(n));
         if (n > 1) {
-            const rt_u32 boxes = steps.buffer(kBoxBytes * (2 * n + 64));
-            uint64_t begin = 0, blocks = n;
-            for (rt_u32 size = 0; size == 0 || blocks > 1; size += kSizesAtOnce) {
-                steps.launch("lbvh_blocks", (blocks + kBlocksAtOnce - 1) / kBlocksAtOnce,
-                             {of(input->prims), of(order), number(size), number(begin), number(blocks), of(boxes)});
-                for (rt_u32 s = 0; s < kSizesAtOnce && blocks > 1; ++s) {
-                    begin += blocks;
-                    blocks = (blocks + 1) / 2;
-                }
-            }
+            const rt_u32 blocks = steps.blocks(input->prims, order, n);
             steps.launch("lbvh_nodes", (n - 1 + each - 1) / each,
-                         {of(keys), of(boxes), number(n), number(each), of(nodes), of(counts)});
+                         {of(keys), of(blocks), number(n), number(each), of(nodes), of(counts)});
         }
     }
     result->nodes = nodes;
