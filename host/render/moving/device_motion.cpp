@@ -80,7 +80,7 @@ void DeviceMotion::start() {
     is_deformed_.assign(scene_->meshes.size(), 0);
     version_.assign(build.groups.size(), ++moves_);
     structures_.clear();
-    refit(spare());
+    bring_up(spare());
     queue.enqueueReadBuffer(pose_.costs, CL_TRUE, 0, costs_.size() * sizeof(float), costs_.data());
     built_costs_ = costs_;
     started_ = true;
@@ -174,7 +174,7 @@ DeviceStructure& DeviceMotion::spare() {
 }
 
 // Brings a structure to the pose. Returns how many primitives were refitted.
-uint64_t DeviceMotion::refit(DeviceStructure& structure) {
+uint64_t DeviceMotion::bring_up(DeviceStructure& structure) {
     uint64_t refitted = 0;
     for (rt_u32 m = 0; !normals_.empty() && m < scene_->meshes.size(); ++m) {
         const rt_u32 group = built_->scene.group_of_mesh[m];
@@ -216,14 +216,39 @@ MovedOnDevice DeviceMotion::move(const Pose& pose) {
         result.worst_cost_ratio = worst_cost_ratio();
         device_->queue().enqueueMarkerWithWaitList(nullptr, &result.begin);
         result.why = place(pose);
-        if (!result.why.empty()) return result;
-        ++moves_;
-        DeviceStructure& structure = spare();
-        result.refitted = refit(structure);
-        ask_for_costs();
-        device_->queue().enqueueMarkerWithWaitList(nullptr, &result.end);
-        device_->queue().flush();
-        result.on_device = structure.on_device();
+        if (result.why.empty()) finish_move(result);
+        result.ms = ms_since(begin);
+        return result;
+    });
+}
+
+// Refits what version_ says that move number moves_ + 1 has changed.
+void DeviceMotion::finish_move(MovedOnDevice& moved) {
+    ++moves_;
+    DeviceStructure& structure = spare();
+    moved.refitted = bring_up(structure);
+    ask_for_costs();
+    device_->queue().enqueueMarkerWithWaitList(nullptr, &moved.end);
+    device_->queue().flush();
+    moved.on_device = structure.on_device();
+}
+
+void DeviceMotion::touch(rt_u32 mesh) {
+    const rt_u32 group = built_->scene.group_of_mesh[mesh];
+    if (group == 0) return;
+    version_[group] = version_[0] = moves_ + 1;
+    is_deformed_[mesh] = 1;
+    positions_[3 * size_t(scene_->meshes[mesh].first_vertex)] =
+        NAN;  // no longer what is there: the next pose sends its vertices
+}
+
+MovedOnDevice DeviceMotion::refit() {
+    const auto begin = std::chrono::steady_clock::now();
+    MovedOnDevice result;
+    return wrap_cl_errors(*device_, "moving the scene", [&] {
+        result.worst_cost_ratio = worst_cost_ratio();
+        device_->queue().enqueueMarkerWithWaitList(nullptr, &result.begin);
+        finish_move(result);
         result.ms = ms_since(begin);
         return result;
     });
