@@ -13,8 +13,8 @@ namespace clarity {
 namespace {
 
 constexpr uint64_t kBoxBytes = 6 * sizeof(float);
-constexpr uint64_t kLeavesOfSerial = 4096;  // elements of a work-group that is one work-item
-constexpr uint64_t kCostGroups = 512;       // work-groups that add the costs of nodes, at most
+constexpr uint64_t kCostsAlone = 4096;  // nodes whose costs one work-group adds
+constexpr uint64_t kCostGroups = 512;   // work-groups that add costs, at most
 
 cl::Buffer copy_of(const BuildKernels& kernels, const cl::Buffer& from) {
     const auto bytes = from.getInfo<CL_MEM_SIZE>();
@@ -85,7 +85,6 @@ void DeviceGroups::make_scratch() {
         count = std::max(count, group.count);
         elements = std::max(elements, group.element_count);
     }
-    boxes_ = kernels_.buffer(count * sizeof(rt_prim));
     blocks_ = kernels_.buffer(DeviceBlocks::bytes(count));
     node_costs_ = kernels_.buffer(elements * sizeof(float));
     sums_ = kernels_.buffer(kCostGroups * sizeof(float));
@@ -107,29 +106,25 @@ std::unique_ptr<DevicePlan> DeviceStructure::plan(rt_u32 number) {
     const DeviceGroups& shared = groups_;
     const BuildKernels& kernels = shared.kernels_;
     const DeviceGroups::Group& group = shared.groups_[number];
-    const uint64_t each = kernels.serial() ? kLeavesOfSerial : kernels.group();
-    const auto groups_for = [&](uint64_t elements) { return (elements + each - 1) / each; };
     const DeviceScene::Fixed fixed = shared.on_device_->fixed();
     auto plan = std::make_unique<DevicePlan>(kernels);
 
     cl::Kernel move(shared.program_, "move_leaves");
     cl_uint at = 0;
     move.setArg(at++, buffers_.leaves);
-    for (const uint64_t value : {uint64_t{group.first_leaf}, group.count, each, uint64_t{number > 0}})
+    for (const uint64_t value : {uint64_t{group.first_leaf}, group.count, uint64_t{number > 0}})
         move.setArg(at++, static_cast<cl_uint>(value));
+    const DeviceBlocks::Whole whole = {shared.pose_.group_boxes, number, number == 0 ? buffers_.bounds : shared.sums_};
     for (const cl::Buffer& buffer :
          {shared.pose_.corners, shared.pose_.positions, shared.pose_.placements, shared.pose_.group_of_instance,
-          shared.pose_.group_boxes, buffers_.instances, fixed.polygons, fixed.polygon_corners, shared.boxes_})
+          shared.pose_.group_boxes, buffers_.instances, fixed.polygons, fixed.polygon_corners, shared.blocks_, whole.block})
         move.setArg(at++, buffer);
-    plan->add_step([&kernels, move, count = groups_for(group.count)] { kernels.launch(move, count); });
+    move.setArg(at++, whole.at);
+    move.setArg(at++, whole.bounds);
+    const uint64_t tiles = (group.count + DeviceBlocks::kTile - 1) / DeviceBlocks::kTile;
+    plan->add_step([&kernels, move, tiles] { kernels.launch(move, tiles); });
     const auto blocks = std::make_shared<DeviceBlocks>(kernels);
-    plan->add_step([blocks, &shared, &group] { blocks->run(shared.boxes_, nullptr, group.count, shared.blocks_); });
-    cl::Kernel keep(shared.program_, "keep_group_box");
-    keep.setArg(0, shared.blocks_);
-    keep.setArg(1, static_cast<cl_uint>(group.count));
-    keep.setArg(2, number);
-    keep.setArg(3, shared.pose_.group_boxes);
-    plan->add_step([&kernels, keep] { kernels.launch(keep, 1); });
+    plan->add_step([blocks, &shared, &group, whole] { blocks->run_above(group.count, shared.blocks_, whole); });
 
     const AccelData& built = *shared.built_;
     const rt_accel& accel = *built.layout->accel;
@@ -153,16 +148,30 @@ std::unique_ptr<DevicePlan> DeviceStructure::plan(rt_u32 number) {
     plan->plan_refit(*built.layout, shared.layout_, tree, plan->add(shared.blocks_), plan->add(shared.node_costs_),
                      shared.params_.data());
 
-    const uint64_t costs_each = std::max<uint64_t>(1024, (group.element_count + kCostGroups - 1) / kCostGroups);
-    const uint64_t parts = (group.element_count + costs_each - 1) / costs_each;
-    cl::Kernel add(shared.program_, "add_costs"), cost(shared.program_, "keep_cost");
-    add.setArg(0, shared.node_costs_);
-    add.setArg(1, static_cast<cl_uint>(group.element_count));
-    add.setArg(2, static_cast<cl_uint>(costs_each));
-    add.setArg(3, shared.sums_);
-    plan->add_step([&kernels, add, parts] { kernels.launch(add, parts); });
-    cost.setArg(0, shared.sums_);
-    cost.setArg(1, static_cast<cl_uint>(parts));
+    return plan;
+}
+
+std::unique_ptr<DevicePlan> DeviceStructure::plan_cost(rt_u32 number) {
+    const DeviceGroups& shared = groups_;
+    const BuildKernels& kernels = shared.kernels_;
+    const uint64_t count = shared.groups_[number].element_count;
+    auto plan = std::make_unique<DevicePlan>(kernels);
+    cl::Buffer summed = shared.node_costs_;
+    uint64_t left = count;
+    if (count > kCostsAlone) {
+        const uint64_t each = std::max(kCostsAlone, (count + kCostGroups - 1) / kCostGroups);
+        left = (count + each - 1) / each;
+        cl::Kernel add(shared.program_, "add_costs");
+        add.setArg(0, summed);
+        add.setArg(1, static_cast<cl_uint>(count));
+        add.setArg(2, static_cast<cl_uint>(each));
+        add.setArg(3, shared.sums_);
+        plan->add_step([&kernels, add, left] { kernels.launch(add, left); });
+        summed = shared.sums_;
+    }
+    cl::Kernel cost(shared.program_, "keep_cost");
+    cost.setArg(0, summed);
+    cost.setArg(1, static_cast<cl_uint>(left));
     cost.setArg(2, number);
     cost.setArg(3, shared.pose_.group_boxes);
     cost.setArg(4, shared.pose_.costs);
@@ -170,13 +179,18 @@ std::unique_ptr<DevicePlan> DeviceStructure::plan(rt_u32 number) {
     return plan;
 }
 
-void DeviceStructure::refit(rt_u32 number) {
-    if (groups_.groups_[number].count > 0) {
-        if (!plans_[number]) plans_[number] = plan(number);
-        plans_[number]->run();
+void DeviceStructure::refit(rt_u32 number, bool with_cost) {
+    if (groups_.groups_[number].count == 0) {
+        if (number == 0)
+            groups_.kernels_.device().queue().enqueueCopyBuffer(groups_.pose_.no_bounds, buffers_.bounds, 0, 0, kBoxBytes);
+        return;
     }
-    if (number == 0)
-        groups_.kernels_.device().queue().enqueueCopyBuffer(groups_.pose_.group_boxes, buffers_.bounds, 0, 0, kBoxBytes);
+    Plans& plans = plans_[number];
+    if (!plans.refit) plans.refit = plan(number);
+    plans.refit->run();
+    if (!with_cost) return;
+    if (!plans.cost) plans.cost = plan_cost(number);
+    plans.cost->run();
 }
 
 void DeviceStructure::take_normals(rt_u32 first_vertex, rt_u32 vertex_count) {

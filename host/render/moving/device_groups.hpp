@@ -28,7 +28,8 @@ struct DevicePose {
     cl::Buffer corners;            // rt_triangle for each ref
     cl::Buffer placements;         // DevicePlacement for each instance of the structure
     cl::Buffer group_of_instance;  // uint
-    cl::Buffer group_boxes;        // 6 floats for each group
+    cl::Buffer group_boxes;        // rt_block for each group
+    cl::Buffer no_bounds;          // 6 floats: +inf, then -inf
     cl::Buffer costs;              // a float for each group: expected cost of a ray
 };
 
@@ -39,8 +40,8 @@ class DeviceStructure;
 class DeviceGroups {
  public:
     // built: the structure of `on_device`. Throws Error if kernels cannot be compiled, or memory is missing.
-    DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const AccelData> built, std::shared_ptr<const DeviceScene> on_device,
-                 const DevicePose& pose);
+    DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const AccelData> built,
+                 std::shared_ptr<const DeviceScene> on_device, const DevicePose& pose);
 
     // Why the structure cannot be refitted on this device; empty: it can.
     const std::string& cannot() const { return cannot_; }
@@ -65,9 +66,9 @@ class DeviceGroups {
     const ParameterValues params_;
     std::string cannot_;
     std::vector<Group> groups_;
-    cl::Program program_;                           // move.cl
-    cl::Buffer ranges_;                             // rt_device_tree::ranges
-    cl::Buffer boxes_, blocks_, node_costs_, sums_;  // of one group at a time
+    cl::Program program_;                    // move.cl
+    cl::Buffer ranges_;                      // rt_device_tree::ranges
+    cl::Buffer blocks_, node_costs_, sums_;  // of one group at a time
 };
 
 class DeviceStructure {
@@ -75,9 +76,9 @@ class DeviceStructure {
     // Takes memory for a copy, and fills it with the structure as it was built.
     explicit DeviceStructure(const DeviceGroups& groups);
 
-    // Moves the leaves of a group to the pose, and refits its tree. Group 0 comes after the groups of its instances. Only
-    // enqueues.
-    void refit(rt_u32 group);
+    // Moves the leaves of a group to the pose, and refits its tree; with_cost: DevicePose::costs gets the cost of the group.
+    // Group 0 comes after the groups of its instances. Only enqueues.
+    void refit(rt_u32 group, bool with_cost);
     // Takes the normals of a mesh's vertices from the pose. Only enqueues.
     void take_normals(rt_u32 first_vertex, rt_u32 vertex_count);
 
@@ -85,12 +86,16 @@ class DeviceStructure {
     std::vector<uint64_t> version;  // of each group: the move that it has followed; 0: none. For the owner
 
  private:
+    struct Plans {
+        std::unique_ptr<DevicePlan> refit, cost;  // nullptr: not made yet
+    };
     std::unique_ptr<DevicePlan> plan(rt_u32 group);
+    std::unique_ptr<DevicePlan> plan_cost(rt_u32 group);
 
     const DeviceGroups& groups_;
     DeviceScene::Moving buffers_;
     std::shared_ptr<const DeviceScene> scene_;
-    std::vector<std::unique_ptr<DevicePlan>> plans_;  // of each group; nullptr: not made yet
+    std::vector<Plans> plans_;  // of each group
 };
 
 }  // namespace clarity

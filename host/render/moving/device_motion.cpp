@@ -12,6 +12,11 @@ namespace clarity {
 namespace {
 
 constexpr size_t kCopies = 3;
+constexpr uint64_t kCostsEvery = 4;  // moves
+
+bool is_complete(const cl::Event& event) {
+    return event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE;
+}
 
 }  // namespace
 
@@ -73,14 +78,15 @@ void DeviceMotion::start() {
     pose_.group_of_instance = filled(build.group_of_instance.data(), build.group_of_instance.size() * sizeof(rt_u32));
     std::vector<float> nothing;
     for (size_t g = 0; g < build.groups.size(); ++g)
-        for (const float bound : {INFINITY, -INFINITY}) nothing.insert(nothing.end(), 3, bound);
+        for (const float bound : {INFINITY, -INFINITY}) nothing.insert(nothing.end(), 4, bound);
     pose_.group_boxes = filled(nothing.data(), nothing.size() * sizeof(float));
+    pose_.no_bounds = filled(nothing.data() + 1, 6 * sizeof(float));  // three of either sign
     costs_.assign(build.groups.size(), 0);
     pose_.costs = filled(costs_.data(), costs_.size() * sizeof(float));
     is_deformed_.assign(scene_->meshes.size(), 0);
     version_.assign(build.groups.size(), ++moves_);
     structures_.clear();
-    bring_up(spare());
+    bring_up(spare(), true);
     queue.enqueueReadBuffer(pose_.costs, CL_TRUE, 0, costs_.size() * sizeof(float), costs_.data());
     built_costs_ = costs_;
     started_ = true;
@@ -174,7 +180,7 @@ DeviceStructure& DeviceMotion::spare() {
 }
 
 // Brings a structure to the pose. Returns how many primitives were refitted.
-uint64_t DeviceMotion::bring_up(DeviceStructure& structure) {
+uint64_t DeviceMotion::bring_up(DeviceStructure& structure, bool with_costs) {
     uint64_t refitted = 0;
     for (rt_u32 m = 0; !normals_.empty() && m < scene_->meshes.size(); ++m) {
         const rt_u32 group = built_->scene.group_of_mesh[m];
@@ -185,22 +191,16 @@ uint64_t DeviceMotion::bring_up(DeviceStructure& structure) {
         const rt_u32 g = k % static_cast<rt_u32>(version_.size());  // the world last: instances need the boxes of their meshes
         if (structure.version[g] == version_[g]) continue;
         structure.version[g] = 0;
-        structure.refit(g);
+        structure.refit(g, with_costs);
         structure.version[g] = version_[g];
         refitted += groups_->primitives(g);
     }
     return refitted;
 }
 
-void DeviceMotion::ask_for_costs() {
-    if (costs_known_() && costs_known_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() != CL_COMPLETE) return;
-    device_->queue().enqueueReadBuffer(pose_.costs, CL_FALSE, 0, costs_.size() * sizeof(float), costs_.data(), nullptr,
-                                       &costs_known_);
-}
-
 double DeviceMotion::worst_cost_ratio() {
     double worst = 1;
-    if (costs_known_() && costs_known_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() != CL_COMPLETE) return last_ratio_;
+    if (costs_known_() && !is_complete(costs_known_)) return last_ratio_;
     for (size_t g = 0; g < costs_.size(); ++g)
         if (built_costs_[g] > 0 && std::isfinite(costs_[g])) worst = std::max(worst, double(costs_[g]) / built_costs_[g]);
     return last_ratio_ = worst;
@@ -226,8 +226,11 @@ MovedOnDevice DeviceMotion::move(const Pose& pose) {
 void DeviceMotion::finish_move(MovedOnDevice& moved) {
     ++moves_;
     DeviceStructure& structure = spare();
-    moved.refitted = bring_up(structure);
-    ask_for_costs();
+    const bool asks = !costs_known_() || (moves_ % kCostsEvery == 0 && is_complete(costs_known_));
+    moved.refitted = bring_up(structure, asks);
+    if (asks)
+        device_->queue().enqueueReadBuffer(pose_.costs, CL_FALSE, 0, costs_.size() * sizeof(float), costs_.data(), nullptr,
+                                           &costs_known_);
     device_->queue().enqueueMarkerWithWaitList(nullptr, &moved.end);
     device_->queue().flush();
     moved.on_device = structure.on_device();

@@ -64,9 +64,8 @@ class DeviceMotion {
     void set_vertices(rt_u32 mesh, const float* positions, const float* normals);
     void send(const cl::Buffer& to, size_t at, size_t bytes, const void* data);
     DeviceStructure& spare();
-    uint64_t bring_up(DeviceStructure& structure);
+    uint64_t bring_up(DeviceStructure& structure, bool with_costs);
     void finish_move(MovedOnDevice& moved);
-    void ask_for_costs();
     double worst_cost_ratio();
 
     const std::shared_ptr<Device> device_;

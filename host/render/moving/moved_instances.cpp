@@ -15,8 +15,8 @@ void find_moved_instances(const Scene& scene, const BuildScene& build, const std
     moved.numbers.clear();
     moved.inverses.clear();
     if (pose.instances.size() != now.size()) {
-        moved.why = "the pose has " + std::to_string(pose.instances.size()) + " instances, the structure " +
-                    std::to_string(now.size());
+        moved.why =
+            "the pose has " + std::to_string(pose.instances.size()) + " instances, the structure " + std::to_string(now.size());
         return;
     }
     Affine inverse = kIdentity;

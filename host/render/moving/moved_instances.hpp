@@ -15,8 +15,8 @@ struct MovedInstances {
     std::vector<Affine> inverses;  // object_from_world of each
 };
 
-// now: where the instances of `scene` are. build: the scene as its structure was built. moved: receives the result; its memory is
-// used again.
+// now: where the instances of `scene` are. build: the scene as its structure was built. moved: receives the result; its memory
+// is used again.
 void find_moved_instances(const Scene& scene, const BuildScene& build, const std::vector<PosedInstance>& now, const Pose& pose,
                           MovedInstances& moved);
 
