@@ -89,7 +89,7 @@ RT_INLINE rt_block rt_leaf_box(const global float *leaf, uint ref, const global 
  * all[at], bounds: of the whole group, if it has no more than RT_BLOCK_TILE primitives. */
 RT_BUILD_KERNEL move_leaves(global float *leaves, uint first, uint count, uint moves, const global uint *corners,
                             const global float *positions, const global rt_placement *placements,
-                            const global uint *group_of_instance, const global rt_block *group_boxes,
+                            const global uint *group_of_instance, const global rt_block *group_boxes, const global uint *roots,
                             global rt_instance *instances, const global rt_polygon *polygons,
                             const global float *polygon_corners, global rt_block *made, global rt_block *all, uint at,
                             global float *bounds)
@@ -107,7 +107,9 @@ RT_BUILD_KERNEL move_leaves(global float *leaves, uint first, uint count, uint m
                 vstore3(vload3(corner.y, positions), 0, leaf + 4);
                 vstore3(vload3(corner.z, positions), 0, leaf + 8);
             } else if (kind == RT_REF_INSTANCE) {
-                const rt_block placed = rt_placed_box(group_boxes[group_of_instance[index]], placements + index);
+                const uint group = group_of_instance[index];
+                const rt_block placed = rt_placed_box(group_boxes[group], placements + index);
+                instances[index].root = roots[group];
                 for (uint k = 0u; k < 12u; ++k)
                     instances[index].object_from_world[k] = placements[index].object_from_world[k];
                 vstore3(placed.lo.xyz, 0, leaf);
@@ -138,13 +140,13 @@ RT_BUILD_KERNEL leaf_boxes(const global float *leaves, uint first, uint count, u
     }
 }
 
-/* Writes leaves in another order: place i of the group receives what was at order[i]. */
+/* Writes leaves in another order: place first + i of `to` receives what is at order[i] of `from`. */
 RT_BUILD_KERNEL order_leaves(const global float *from, global float *to, const global uint *order, uint first, uint count, uint each)
 {
     const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, count);
     for (uint i = begin + RT_ITEM; i < end; i += RT_GROUP)
         for (uint row = 0u; row < 3u; ++row)
-            vstore4(vload4(3u * (first + order[i]) + row, from), 3u * (first + i) + row, to);
+            vstore4(vload4(3u * order[i] + row, from), 3u * (first + i) + row, to);
 }
 
 /* The sum of costs[0] to costs[count - 1], by RT_BLOCK_TILE partial sums, which makes it the same on every device. */

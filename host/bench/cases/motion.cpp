@@ -177,7 +177,7 @@ class MotionCase {
             const auto begin = std::chrono::steady_clock::now();
             device->queue().enqueueCopyBuffer(from, state->motion->vertices(), 0, 0, from.getInfo<CL_MEM_SIZE>());
             for (const PosedMesh& mesh : poses_[0].meshes) state->motion->touch(mesh.mesh);
-            const MovedOnDevice moved = state->motion->refit();
+            const MovedOnDevice moved = state->motion->update();
             moved.end.wait();
             const double wall_ms = ms_since(begin);
             return Sample{span_ms(moved.begin, moved.end, wall_ms), wall_ms};

@@ -160,6 +160,7 @@ DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
     before_lights_[kNormals] = std::move(moving.normals);
     slots_ = std::move(moving.slots);
     bounds_ = std::move(moving.bounds);
+    roots_ = std::move(moving.roots);
 }
 
 DeviceScene::Fixed DeviceScene::fixed() const {
@@ -167,13 +168,16 @@ DeviceScene::Fixed DeviceScene::fixed() const {
 }
 
 DeviceScene::Moving DeviceScene::moving() const {
-    return {before_lights_[kLeaves], before_lights_[kInstances], before_lights_[kNormals], slots_, bounds_};
+    return {before_lights_[kLeaves], before_lights_[kInstances], before_lights_[kNormals], slots_, bounds_, roots_};
 }
 
-void DeviceScene::write_bounds(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
+void DeviceScene::complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
     if (!bounds_()) return;
-    for (size_t i = 0; i < count; ++i)
-        queue.enqueueCopyBuffer(bounds_, frames, 0, i * sizeof(rt_frame) + offsetof(rt_frame, bounds), sizeof(rt_frame::bounds));
+    for (size_t i = 0; i < count; ++i) {
+        const size_t frame = i * sizeof(rt_frame);
+        queue.enqueueCopyBuffer(bounds_, frames, 0, frame + offsetof(rt_frame, bounds), sizeof(rt_frame::bounds));
+        queue.enqueueCopyBuffer(roots_, frames, 0, frame + offsetof(rt_frame, root), sizeof(rt_frame::root));
+    }
 }
 
 void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {

@@ -10,10 +10,10 @@
 #include <set>
 
 #include "base/error.hpp"
+#include "moving_scenes.hpp"
 #include "plugin/extensions.hpp"
 #include "render/queries/query_scene.hpp"
 #include "render/queries/ray_queries.hpp"
-#include "moving_scenes.hpp"
 #include "render/settings/accel_choice.hpp"
 #include "support/workbench.hpp"
 
