@@ -187,7 +187,11 @@ void Session::post_frame() {
     if (moved) moved_at_s_ = now;
     moving_ = (now - moved_at_s_ < kMovingSeconds || playback_.playing()) && !sequence_.running();
     job.moving_fps = moving_ ? desired.moving_fps : 0;
-    const bool anew = first || moved || job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
+    // Pictures that are gone at once are not blurred.
+    const bool blurred = blurs(job.settings) && job.ready->request.pose.time_s && playback_.any() && !moving_;
+    job.open_s = blurred ? job.settings.shutter / playback_.fps(desired) : 0;
+    const bool other_times = job.open_s != posted_job_.open_s || (blurred && job.settings.spp != posted_job_.settings.spp);
+    const bool anew = first || moved || other_times || job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
                       job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
     const bool shown = first || !displays_same(job.settings, posted_job_.settings);
     const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous ||

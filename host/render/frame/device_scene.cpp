@@ -91,6 +91,21 @@ std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build
     return normals;
 }
 
+Content leaves_of(const AccelData& accel) {
+    return {{"leaves", (accel.leaf_count + kLeafPadding) * sizeof(rt_packed_prim)}, accel.leaves.data()};
+}
+
+void add_slots(const AccelData& accel, std::vector<Content>& contents) {
+    const rt_accel& table = *accel.layout->accel;
+    for (rt_u32 s = 0; s < table.slot_count; ++s)
+        if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))
+            contents.push_back(
+                {{table.slots[s].name, accel.slots[s].count * table.slots[s].elem_bytes}, accel.slots[s].memory.data()});
+}
+
+// Places in DeviceScene::before_lights_, which are those of the context's arguments: see kernel_source.cpp.
+constexpr size_t kLeavesAt = 0, kInstancesAt = 1, kMaterialsAt = 5, kNormalsAt = 7;
+
 }  // namespace
 
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel,
@@ -105,10 +120,8 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     }
     const bool moved = !scene_->normals.empty() && !build.flattened.empty();
     if (moved) normals_ = normals_as_placed(*scene_, build);
-    // In the order of the context's arguments: see kernel_source.cpp.
-    const size_t leaf_bytes = (accel_->leaf_count + kLeafPadding) * sizeof(rt_packed_prim);
     std::vector<Content> contents = {
-        {{"leaves", leaf_bytes}, accel_->leaves.data()},
+        leaves_of(*accel_),
         content("instances", accel_->instances),
         content("polygons", build.polygon_table),
         content("polygon corners", build.polygon_corners),
@@ -120,17 +133,12 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("texture table", scene_->textures),
         content("textures", scene_->texels),
     };
-    materials_at_ = 5;
     const size_t before_lights = contents.size();
     if (!build.shapes.empty()) {
         contents.push_back(content("shapes", build.shapes));
         contents.push_back(content("numbers of shapes", scene_->shape_numbers));
     }
-    const rt_accel& table = *accel_->layout->accel;
-    for (rt_u32 s = 0; s < table.slot_count; ++s)
-        if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))
-            contents.push_back(
-                {{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes}, accel_->slots[s].memory.data()});
+    add_slots(*accel_, contents);
     std::vector<MemoryPiece> pieces;
     for (const Content& content : contents) pieces.push_back(content.piece);
     check_fits(pieces, device.info(), std::to_string(accel_->leaf_count) + " primitives in " + accel_->plugin->id);
@@ -145,9 +153,39 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     normals_ = {};
 }
 
+DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
+                         const std::vector<PosedMesh>& deformed, Progress& progress)
+    : still_(std::move(still)),
+      scene_(still_->scene_),
+      accel_(std::move(accel)),
+      before_lights_(still_->before_lights_),
+      bytes_(still_->bytes_) {
+    std::vector<Content> contents = {leaves_of(*accel_), content("instances", accel_->instances)};
+    add_slots(*accel_, contents);
+    Uploader uploader(device, contents, progress);
+    before_lights_[kLeavesAt] = uploader.upload(contents[0]);
+    before_lights_[kInstancesAt] = uploader.upload(contents[1]);
+    // Shapes do not move.
+    const size_t shapes = still_->slots_.size() + 2 - contents.size();
+    for (size_t i = 0; i < still_->slots_.size(); ++i)
+        slots_.push_back(i < shapes ? still_->slots_[i] : uploader.upload(contents[2 + i - shapes]));
+    if (scene_->normals.empty() || deformed.empty()) return;
+    // A copy on the device, into which the normals of the deformed meshes are written.
+    const size_t normal_bytes = scene_->normals.size() * sizeof(float);
+    const cl::Buffer normals(device.context(), CL_MEM_READ_ONLY, normal_bytes);
+    cl::CommandQueue queue(device.context(), device.info().cl_device);
+    queue.enqueueCopyBuffer(before_lights_[kNormalsAt], normals, 0, 0, normal_bytes);
+    for (const PosedMesh& mesh : deformed)
+        if (!mesh.normals.empty())
+            queue.enqueueWriteBuffer(normals, CL_FALSE, 3 * sizeof(float) * size_t(scene_->meshes[mesh.mesh].first_vertex),
+                                     mesh.normals.size() * sizeof(float), mesh.normals.data());
+    queue.finish();
+    before_lights_[kNormalsAt] = normals;
+}
+
 void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {
     for (size_t i = 0; i < before_lights_.size(); ++i)
-        kernel.setArg(first++, materials && i == materials_at_ ? *materials : before_lights_[i]);
+        kernel.setArg(first++, materials && i == kMaterialsAt ? *materials : before_lights_[i]);
     kernel.setArg(first++, lights);
     for (const cl::Buffer& buffer : slots_) kernel.setArg(first++, buffer);
 }

@@ -7,6 +7,7 @@
 #include "base/progress.hpp"
 #include "device/device.hpp"
 #include "render/accel/accel_build.hpp"
+#include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -17,6 +18,10 @@ class DeviceScene {
     // Uploads piece by piece and reports progress. Throws Error(failed) with the sizes if the scene does not fit, and
     // Cancelled.
     DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel, Progress& progress);
+    // The same scene in another pose, with a refit of its structure. Shares with `still` what no pose moves: materials, textures,
+    // numbers of vertices. deformed: the meshes with other normals; none of them is flattened.
+    DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
+                const std::vector<PosedMesh>& deformed, Progress& progress);
 
     // Sets the kernel's scene arguments from number `first` on (kernel_source.cpp has their order). `lights` comes from the
     // frame. If given, `materials` replaces the scene's materials.
@@ -24,13 +29,13 @@ class DeviceScene {
     uint64_t bytes() const { return bytes_; }
 
  private:
+    std::shared_ptr<const DeviceScene> still_;  // whose buffers this one shares
     std::shared_ptr<const Scene> scene_;
     std::shared_ptr<const AccelData> accel_;
     std::vector<rt_material> materials_;
     std::vector<rt_triangle> attributes_;
     std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
     std::vector<cl::Buffer> before_lights_, slots_;
-    size_t materials_at_ = 0;  // index in before_lights_
     uint64_t bytes_ = 0;
 };
 
