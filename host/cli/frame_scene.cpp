@@ -1,5 +1,7 @@
 #include "cli/frame_scene.hpp"
 
+#include <algorithm>
+#include <functional>
 #include <utility>
 
 #include "cli/pose_options.hpp"
@@ -21,6 +23,8 @@ FrameScene::FrameScene(const PluginRegistry& plugins, const RenderOptions& optio
     : options_(options),
       words_(words),
       pose_(chosen_pose(options, words.pose)),
+      has_path_(
+          std::any_of(words.edits.begin(), words.edits.end(), [](const Word& word) { return word.key == "camera_path"; })),
       sequences_(plugins, options.scene.import, progress) {}
 
 void FrameScene::take(std::shared_ptr<const Scene> imported) {
@@ -29,16 +33,18 @@ void FrameScene::take(std::shared_ptr<const Scene> imported) {
 }
 
 bool FrameScene::follows_frames() const {
-    return !options_.frames.empty() && !pose_.time_s && moves(*imported_);
+    return !options_.frames.empty() && !pose_.time_s && (moves(*imported_) || has_path_);
 }
 
 void FrameScene::place(std::optional<int> frame) {
     PoseOptions pose = pose_;
     if (frame) pose.time_s = time_of_frame(*frame, frame_rate(find_clip(*imported_, pose.clip), options_.fps));
-    const bool at_rest = !pose.time_s && pose.clip.empty();
-    auto scene = at_rest ? imported_ : std::make_shared<const Scene>(at_pose(*imported_, pose, std::ref(sequences_)));
+    const bool at_rest = !pose.time_s && pose.clip.empty(), plays = moves(*imported_) || has_path_;
+    auto scene = at_rest || (has_path_ && !moves(*imported_))
+                     ? imported_
+                     : std::make_shared<const Scene>(at_pose(*imported_, pose, std::ref(sequences_)));
     time_s_.reset();
-    if (!at_rest && moves(*imported_)) {
+    if (!at_rest && plays) {
         const ClipInfo clip = find_clip(*imported_, pose.clip);
         time_s_ = pose.time_s.value_or(clip.begin_s);
         clip_ = clip.name;
@@ -48,10 +54,19 @@ void FrameScene::place(std::optional<int> frame) {
     EditedView edited;
     edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);
     for (const Word& word : words_.edits) apply_edit(*scene, edited, word.key, word.value);
+    // Frames follow a path in any case; a still picture only if its camera was not set after the path.
+    path_ = edited.follows_path || frame ? std::move(edited.camera_path) : CameraPath();
+    if (!path_.empty()) edited.view.camera = path_.at(time_s_.value_or(path_.keys.front().time_s));
     view_ = visible_view(edited);
     hidden_ = edited.hidden;
     if (!hidden_.empty()) scene = std::make_shared<const Scene>(without_instances(*scene, hidden_));
     scene_ = std::move(scene);
+}
+
+View FrameScene::view(const MotionBlur::Sample& sample) const {
+    View view = sample.view;
+    if (!path_.empty()) view.camera = path_.at(sample.time_s);
+    return view;
 }
 
 std::unique_ptr<MotionBlur> FrameScene::blur(std::shared_ptr<const MultiPrepared> prepared, MultiPreparer& preparer) {
@@ -66,9 +81,8 @@ std::unique_ptr<MotionBlur> FrameScene::blur(std::shared_ptr<const MultiPrepared
     source.prepare = [&preparer, &settings](std::shared_ptr<const Scene> scene, Progress& progress) {
         return preparer.prepare(std::move(scene), settings, progress);
     };
-    return std::make_unique<MotionBlur>(std::move(source),
-                                        Shutter{*time_s_, settings.shutter / fps, static_cast<unsigned>(settings.spp)},
-                                        std::move(prepared));
+    return std::make_unique<MotionBlur>(
+        std::move(source), Shutter{*time_s_, settings.shutter / fps, static_cast<unsigned>(settings.spp)}, std::move(prepared));
 }
 
 }  // namespace clarity

@@ -26,18 +26,23 @@ class FrameScene {
 
     const std::shared_ptr<const Scene>& scene() const { return scene_; }
     const View& view() const { return view_; }
-    // For pictures with motion blur; nullptr: all samples are at one time. prepared: of scene(). preparer: must outlive the result.
+    // The view of a sample of a picture with motion blur: the camera follows its path.
+    View view(const MotionBlur::Sample& sample) const;
+    // For pictures with motion blur; nullptr: all samples are at one time. prepared: of scene(). preparer: must outlive the
+    // result.
     std::unique_ptr<MotionBlur> blur(std::shared_ptr<const MultiPrepared> prepared, MultiPreparer& preparer);
 
  private:
     const RenderOptions& options_;
     const TraceWords& words_;
     const PoseOptions pose_;
+    const bool has_path_;  // for a camera
     import::SequenceReader sequences_;
     std::shared_ptr<const Scene> imported_, scene_;  // scene_: as shown
     std::optional<double> time_s_;                   // of scene_; none: at rest
     std::string clip_;
     std::vector<rt_u32> hidden_;
+    CameraPath path_;  // of the camera; empty: it follows none
     View view_;
 };
 

@@ -266,7 +266,7 @@ class RenderJob {
         for (unsigned i = first; i < first + how_many; ++i) {
             PartOf part(progress, double(i - first) / how_many, 1.0 / how_many);
             const MotionBlur::Sample& sample = blur_->at(i, scene_.view(), part);
-            const FrameStats one = frames.trace(sample.prepared, settings_, sample.view, i, count, part);
+            const FrameStats one = frames.trace(sample.prepared, settings_, scene_.view(sample), i, count, part);
             add_stats(stats, one);
             add_shares(stats.devices, one.devices);
         }
@@ -369,7 +369,7 @@ class RenderJob {
     const PluginRegistry& plugins_;
     ProgressBar bar_;
     Devices devices_;
-    std::function<bool()> superseded_;                 // with --watch: true if a save has made this round obsolete
+    std::function<bool()> superseded_;  // with --watch: true if a save has made this round obsolete
     FrameScene scene_;
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;

@@ -57,7 +57,8 @@ class StrategiesCase {
             if (!progress_.report(float(frame) / kAnimationFrames)) throw Cancelled();
             const Pose pose = animated_pose(*rest_, case_.motion, frame);
             auto scene = std::make_shared<const Scene>(posed_apart(pose));
-            // Frame 0 is built by all of them and does not count. The turns change, because the first to trace a pose finds it colder.
+            // Frame 0 is built by all of them and does not count. The turns change, because the first to trace a pose finds it
+            // colder.
             for (size_t i = 0; i < strategies_.size(); ++i)
                 play(strategies_[(i + frame) % strategies_.size()], scene, pose, frame);
         }
@@ -113,7 +114,7 @@ class StrategiesCase {
             row.accel = settings_.accel;
             row.accel_params = parameters_text(plugin_, settings_.accel_params);
             row.time_ms = summarize(s.frames_ms);
-            row.animation = {s.update_ms + s.trace_ms, s.update_ms, s.trace_ms, s.builds, s.worst_cost_ratio,
+            row.animation = {s.update_ms + s.trace_ms,         s.update_ms, s.trace_ms, s.builds, s.worst_cost_ratio,
                              (s.update_ms + s.trace_ms) / best};
             all.push_back(std::move(row));
         }

@@ -93,7 +93,7 @@ struct BenchRecord {
 
     Speedup speedup;
     Analysis analysis;
-    Played animation;  // of suite policy
+    Played animation;                                        // of suite policy
     std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
 
     Parts parts_ms;             // of breakdown: they add up to the frame

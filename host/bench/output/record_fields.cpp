@@ -88,8 +88,10 @@ const Fields<Speedup>& versus_fields() {
 }
 
 const Fields<Played>& played_fields() {
-    static const Fields<Played> fields = {plain("total_ms", &Played::total_ms),   plain("update_ms", &Played::update_ms),
-                                          plain("trace_ms", &Played::trace_ms),   plain("builds", &Played::builds),
+    static const Fields<Played> fields = {plain("total_ms", &Played::total_ms),
+                                          plain("update_ms", &Played::update_ms),
+                                          plain("trace_ms", &Played::trace_ms),
+                                          plain("builds", &Played::builds),
                                           plain("worst_cost_ratio", &Played::worst_cost_ratio),
                                           plain("to_best", &Played::to_best)};
     return fields;

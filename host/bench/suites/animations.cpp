@@ -30,7 +30,8 @@ void walk(float* p, const Bounds& box, double phase) {
     const bool leg = up < 0.5;
     const double joint = box.min[1] + (leg ? 0.45 : 0.75) * height;
     const double limb = leg ? smooth((0.5 - up) / 0.15) : smooth(3 * (std::fabs(aside) - 0.4)) * smooth((0.8 - up) / 0.1);
-    const double angle = 0.5 * std::sin(kFullTurn * phase) * left * limb * (leg ? 1 : -1), c = std::cos(angle), s = std::sin(angle);
+    const double angle = 0.5 * std::sin(kFullTurn * phase) * left * limb * (leg ? 1 : -1), c = std::cos(angle),
+                 s = std::sin(angle);
     const double y = p[1] - joint, mz = 0.5 * (double(box.min[2]) + box.max[2]), z = p[2] - mz;
     p[1] = static_cast<float>(joint + c * y - s * z + 0.02 * height * std::fabs(std::sin(kFullTurn * phase)));
     p[2] = static_cast<float>(mz + s * y + c * z);
@@ -94,8 +95,8 @@ Pose exploded(const Scene& scene, unsigned frame) {
                 const float center = 0.5f * (box.min[k] + box.max[k]);
                 way[k] = static_cast<float>((p[k] - center) / size + 0.3 * double(any(random)));
             }
-        for (int k = 0; k < 3; ++k) p[k] += static_cast<float>(1.5 * time * size * double(way[k]));
-        p[1] -= static_cast<float>(0.3 * size * time * time);
+        for (int k = 0; k < 3; ++k) p[k] += static_cast<float>(0.5 * time * size * double(way[k]));
+        p[1] -= static_cast<float>(0.1 * size * time * time);
     });
 }
 
@@ -123,14 +124,19 @@ Pose crowded(const Scene& scene, unsigned frame) {
     for (unsigned i = 0; i < pose.instances.size(); ++i) {
         const double radius = (0.1 + 0.4 * any(random)) * size, turns = 0.5 + 2.5 * any(random), begin = any(random);
         const double angle = kFullTurn * (begin + turns * frame / kAnimationFrames);
-        const double x = (double(i % kCopiesInRow) / kCopiesInRow - 0.5) * size, z = (double(i / kCopiesInRow) / kCopiesInRow - 0.5) * size;
+        const double x = (double(i % kCopiesInRow) / kCopiesInRow - 0.5) * size,
+                     z = (double(i / kCopiesInRow) / kCopiesInRow - 0.5) * size;
         const double c = std::cos(angle) * scale, s = std::sin(angle) * scale;
-        const double at[3] = {x + radius * std::cos(angle), 0.25 * size * std::sin(angle + 3 * begin), z + radius * std::sin(angle)};
+        const double at[3] = {x + radius * std::cos(angle), 0.25 * size * std::sin(angle + 3 * begin),
+                              z + radius * std::sin(angle)};
         const double middle[3] = {0.5 * (double(box.min[0]) + box.max[0]), 0.5 * (double(box.min[1]) + box.max[1]),
                                   0.5 * (double(box.min[2]) + box.max[2])};
-        pose.instances[i].world_from_object = {float(c), 0, float(s), float(middle[0] + at[0] - c * middle[0] - s * middle[2]),
-                                               0, float(scale), 0, float(middle[1] + at[1] - scale * middle[1]),
-                                               float(-s), 0, float(c), float(middle[2] + at[2] + s * middle[0] - c * middle[2])};
+        pose.instances[i].world_from_object = {float(c),  0,
+                                               float(s),  float(middle[0] + at[0] - c * middle[0] - s * middle[2]),
+                                               0,         float(scale),
+                                               0,         float(middle[1] + at[1] - scale * middle[1]),
+                                               float(-s), 0,
+                                               float(c),  float(middle[2] + at[2] + s * middle[0] - c * middle[2])};
     }
     return pose;
 }

@@ -10,9 +10,9 @@ namespace clarity::bench {
 
 inline constexpr unsigned kAnimationFrames = 200;
 
-// "walk": the lower half of the model swings like two legs, the upper half like two arms; a step takes 25 frames. "twist": a turn about the
-// upright axis, to and fro in 100 frames. "explosion": each triangle flies its own way. "crowd": 400 copies of the model, each on a
-// circle of its own, as instances.
+// "walk": the lower half of the model swings like two legs, the upper half like two arms; a step takes 25 frames. "twist": a
+// turn about the upright axis, to and fro in 100 frames. "explosion": each triangle flies its own way. "crowd": 400 copies of
+// the model, each on a circle of its own, as instances.
 const std::vector<std::string>& animation_names();
 // The first clip of the file, again and again.
 inline constexpr const char* kOwnClip = "clip";

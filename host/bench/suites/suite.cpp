@@ -414,7 +414,7 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel",  "scale", "large",
+    static const std::vector<std::string> names = {"thesis", "packets", "accel",  "scale",  "large",
                                                    "cpu",    "devices", "moving", "policy", "quick"};
     return names;
 }

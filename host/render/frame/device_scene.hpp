@@ -18,8 +18,8 @@ class DeviceScene {
     // Uploads piece by piece and reports progress. Throws Error(failed) with the sizes if the scene does not fit, and
     // Cancelled.
     DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel, Progress& progress);
-    // The same scene in another pose, with a refit of its structure. Shares with `still` what no pose moves: materials, textures,
-    // numbers of vertices. deformed: the meshes with other normals; none of them is flattened.
+    // The same scene in another pose, with a refit of its structure. Shares with `still` what no pose moves: materials,
+    // textures, numbers of vertices. deformed: the meshes with other normals; none of them is flattened.
     DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
                 const std::vector<PosedMesh>& deformed, Progress& progress);
 

@@ -57,7 +57,8 @@ const MotionBlur::Sample& MotionBlur::at(unsigned sample, const View& view, Prog
         sample_.prepared.reset();  // its structure is written next
         sample_.prepared = prepare(pose, progress);
     }
-    sample_.view = view_at(view, pose, time_s);
+    sample_.view = view_at(view, pose);
+    sample_.time_s = time_s;
     last_ = std::move(pose);
     return sample_;
 }
@@ -83,21 +84,21 @@ std::shared_ptr<const MultiPrepared> MotionBlur::refit(const Pose& pose, Progres
     for (const MultiPrepared::Part& part : prepared_->parts) {
         auto prepared = std::make_shared<Prepared>(*part.prepared);
         prepared->accel = moved.accel;
-        prepared->on_device = std::make_shared<DeviceScene>(*part.device, part.prepared->on_device, moved.accel, pose.meshes, progress);
+        prepared->on_device =
+            std::make_shared<DeviceScene>(*part.device, part.prepared->on_device, moved.accel, pose.meshes, progress);
         result->parts.push_back({part.device, prepared});
     }
     return result;
 }
 
 // What the user moved himself is none of the scene's and stays.
-View MotionBlur::view_at(const View& view, const Pose& pose, double time_s) const {
+View MotionBlur::view_at(const View& view, const Pose& pose) const {
     View moved = view;
     for (size_t i = 0; i < pose.cameras.size(); ++i)
         if (same_camera(view.camera, first_->cameras[i])) {
             moved.camera = pose.cameras[i];
             break;
         }
-    if (source_.camera) moved.camera = source_.camera(time_s);
     // Lights that are off are left out of a view, the others keep their order.
     size_t next = 0;
     for (rt_light& light : moved.lights)

@@ -6,9 +6,9 @@
 //       frames.trace(sample.prepared, settings, sample.view, i, ...);
 //   }
 //
-// The structure of a sample is that of the picture's time, refitted; or, where that is not possible, built for the sample. So it
-// depends on the picture and the number of the sample alone, and a picture looks the same in whatever order its samples and its
-// frames are traced. One pose is held at a time, whatever the number of samples. What a pose leaves in its place is neither
+// The structure of a sample is that of the picture's time, refitted; or, where that is not possible, built for the sample. So
+// it depends on the picture and the number of the sample alone, and a picture looks the same in whatever order its samples and
+// its frames are traced. One pose is held at a time, whatever the number of samples. What a pose leaves in its place is neither
 // built nor uploaded.
 #pragma once
 #include <functional>
@@ -36,8 +36,6 @@ class MotionBlur {
         FrameVertices read;                 // for sequences of files
         // Prepares a scene from the ground up, for poses in which the structure cannot be refitted.
         std::function<std::shared_ptr<const MultiPrepared>(std::shared_ptr<const Scene>, Progress&)> prepare;
-        // Where the user's camera is at a time; empty: cameras of the scene move with it, others stand still.
-        std::function<Camera(double time_s)> camera;
     };
     // prepared: of the scene in its pose at shutter.time_s, without the hidden instances.
     MotionBlur(Source source, const Shutter& shutter, std::shared_ptr<const MultiPrepared> prepared);
@@ -46,6 +44,7 @@ class MotionBlur {
     struct Sample {
         std::shared_ptr<const MultiPrepared> prepared;
         View view;
+        double time_s = 0;
     };
     // view: the picture's. Its camera and lights follow those of the scene that they are. The result is valid until the next
     // call. Throws as evaluate(), MovingAccel::move() and Source::prepare.
@@ -60,7 +59,7 @@ class MotionBlur {
     Pose pose_at(double time_s) const;
     std::shared_ptr<const MultiPrepared> prepare(const Pose& pose, Progress& progress);
     std::shared_ptr<const MultiPrepared> refit(const Pose& pose, Progress& progress);
-    View view_at(const View& view, const Pose& pose, double time_s) const;
+    View view_at(const View& view, const Pose& pose) const;
 
     const Source source_;
     const Shutter shutter_;

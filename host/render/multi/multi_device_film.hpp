@@ -19,8 +19,9 @@ namespace clarity {
 class SamplesLost : public Error {
  public:
     SamplesLost()
-        : Error(Exit::failed, "a device failed in the middle of a picture with motion blur, so that its part of the picture is "
-                              "lost: render the picture again") {}
+        : Error(Exit::failed,
+                "a device failed in the middle of a picture with motion blur, so that its part of the picture is "
+                "lost: render the picture again") {}
 };
 
 // Used from one thread. A device that fails takes no further part. Functions throw its error when no device is left.

@@ -8,8 +8,8 @@
 namespace clarity {
 namespace {
 
-// The part of sample i is i * step modulo their number. A step near the golden section of it spreads samples that follow each other; one
-// without a common divisor reaches every part.
+// The part of sample i is i * step modulo their number. A step near the golden section of it spreads samples that follow each
+// other; one without a common divisor reaches every part.
 uint64_t step_of(uint64_t count) {
     constexpr double kGolden = 0.6180339887498949;
     auto step = std::max<uint64_t>(1, static_cast<uint64_t>(std::llround(kGolden * static_cast<double>(count))));

@@ -23,8 +23,8 @@ std::string obj(const std::vector<std::string>& lines) {
 
 // A sail whose upper corners are moved aside by `lean`.
 std::string sail(double lean) {
-    return obj({"v 1.5 -1 0", "v 2.5 -1 0", "v " + std::to_string(2.5 + lean) + " 1 0", "v " + std::to_string(1.5 + lean) + " 1 0",
-                "f 1 2 3", "f 1 3 4"});
+    return obj({"v 1.5 -1 0", "v 2.5 -1 0", "v " + std::to_string(2.5 + lean) + " 1 0",
+                "v " + std::to_string(1.5 + lean) + " 1 0", "f 1 2 3", "f 1 3 4"});
 }
 
 class Blur : public ::testing::Test {
@@ -66,7 +66,9 @@ class Blur : public ::testing::Test {
         MotionBlur::Source source;
         source.rest = rest_;
         source.read = std::ref(*sequences_);
-        source.prepare = [&](const ScenePtr& posed, Progress& progress) { return team.preparer.prepare(posed, settings, progress); };
+        source.prepare = [&](const ScenePtr& posed, Progress& progress) {
+            return team.preparer.prepare(posed, settings, progress);
+        };
         MotionBlur blur(source, shutter, team.preparer.prepare(scene, settings, team.progress));
         for (unsigned i = 0; i < shutter.samples; ++i) {
             const MotionBlur::Sample& sample = blur.at(i, view_of(*scene), team.progress);
@@ -133,8 +135,7 @@ TEST_F(Blur, IsTheMeanOfStillPictures) {
         if (mean.pixels.empty()) mean = {one.width, one.height, one.channels, std::vector<float>(one.pixels.size())};
         for (size_t p = 0; p < one.pixels.size(); ++p) mean.pixels[p] += one.pixels[p] / 64;
     }
-    const double difference = mean_difference(blur.image, mean),
-                 without = mean_difference(still(team, 0.5, settings_), mean);
+    const double difference = mean_difference(blur.image, mean), without = mean_difference(still(team, 0.5, settings_), mean);
     RecordProperty("difference", std::to_string(difference));
     RecordProperty("without", std::to_string(without));
     EXPECT_LT(difference, 0.004);
