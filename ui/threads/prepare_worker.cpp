@@ -264,12 +264,17 @@ ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings,
     const PosedFrom from = {loaded_->scene, shown_.pose().clip};
     const Pose& pose = shown_.geometry();
     const std::shared_ptr<const Scene>& scene = shown_.visible();
+    if (settings.shutter > 0) follower.leave_devices();  // blurred pictures move the structure on the host
     const MovedStructure moved = follower.refit(from, scene, pose, way_of(settings.poses), frame_ms, progress);
     const auto prepared = side.preparer->prepare(scene, settings, progress, moved);
-    if (!moved.accel) follower.built(from, scene, pose, prepared->first()->accel, side.preparer->mover(scene, *prepared));
+    if (!moved.accel) {
+        const std::shared_ptr<const AccelData>& built = prepared->first()->accel;
+        follower.built(from, scene, pose, built,
+                       settings.shutter > 0 ? make_host_mover(scene, built) : side.preparer->mover(scene, *prepared));
+    }
     ReadySide ready = lend(side.devices, prepared);
     ready.pose_update = follower.update();
-    ready.is_moved = !moved.on_devices.empty();
+    ready.is_moved = prepared->first()->is_moved;
     if (ready.is_moved) ready.moved = prepared->first()->on_device;
     return ready;
 }

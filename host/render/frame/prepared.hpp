@@ -19,6 +19,7 @@ struct Prepared {
     std::shared_ptr<const Scene> scene;
     std::shared_ptr<const AccelData> accel;
     std::shared_ptr<const DeviceScene> on_device;
+    bool is_moved = false;  // a device has moved the structure since its build: accel's nodes and leaves are out of date
     std::shared_ptr<const TraceProgram> program;
     Settings settings;                     // as asked for; what was automatic is resolved
     Layout layout;                         // follows from these settings on this device

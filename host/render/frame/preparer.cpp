@@ -150,7 +150,7 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
     const rt_plugin& layout = plugins_.layout_of(plugin);
     // The library may have been replaced since the values were chosen.
     const ParameterValues params = fitting_parameters(plugin, settings.accel_params);
-    if (last_ && last_->scene == scene && asks_for(*last_->accel, settings)) return last_->accel;
+    if (last_ && !last_->is_moved && last_->scene == scene && asks_for(*last_->accel, settings)) return last_->accel;
     const SceneCounts counts = count_scene(*scene);
     const unsigned lanes = settings.lanes > 0 ? static_cast<unsigned>(settings.lanes) : info_.preferred_lanes();
     check_fits(plan_memory(counts, *scene, *layout.accel), info_,
@@ -175,9 +175,10 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
     next->layout = make_layout(next->settings, device_->info().cpu);
     try {
         next->accel = built ? std::move(built) : build_or_last(scene, next->settings, progress);
+        next->is_moved = moved != nullptr;
         if (moved)
             next->on_device = std::move(moved);
-        else if (last_ && last_->scene == scene && last_->accel == next->accel)
+        else if (last_ && !last_->is_moved && last_->scene == scene && last_->accel == next->accel)
             next->on_device = last_->on_device;
         if (!next->on_device) {
             progress.stage("uploading the scene");
