@@ -83,6 +83,7 @@ std::string stats_json(const RenderStats& stats) {
     json["lanes"] = used.lanes;
     json["size"] = std::to_string(stats.settings.width) + "x" + std::to_string(stats.settings.height);
     json["spp"] = stats.settings.spp;
+    json["shutter"] = stats.settings.shutter;
     json["aov"] = used.aov;
     json["shadows"] = stats.settings.shadows;
     json["frames_timed"] = stats.frame_ms.size();

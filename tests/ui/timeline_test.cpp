@@ -257,6 +257,8 @@ TEST_F(Timeline, AStillSceneHasOneForItsCamera) {
     window->settle();
     EXPECT_EQ(window->state()["eye"], nlohmann::json({2, 2, 7}));
     expect_as_command(*window);
+    const std::string line = window->query("timeline").dump();
+    EXPECT_NE(line.find("\"camera_keys\":[0.0,4.0]"), std::string::npos) << line;
     EXPECT_EQ(window->state()["message"], "");
 }
 

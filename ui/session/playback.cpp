@@ -55,6 +55,8 @@ const ClipInfo& Playback::clip(const DesiredState& desired) const {
 
 void Playback::play(DesiredState& desired) {
     if (!any() || playing_) return;
+    // Undo may have taken the loop back to when a still scene had no timeline.
+    if (has_stage_ && !(desired.loop[1] > desired.loop[0])) desired.loop = {clips_.front().begin_s, clips_.front().end_s};
     if (!desired.pose.time_s || !within(*desired.pose.time_s, desired.loop)) desired.pose.time_s = desired.loop[0];
     playing_ = true;
     last_s_ = 0;

@@ -88,15 +88,24 @@ class StrategiesCase {
         }
         const double update_ms = ms_since(begin);
         const auto prepared = preparer_.prepare(scene, settings_, progress_, s.accel);
-        const FrameStats stats = frames_.trace(*prepared, settings_, fixture_.view(), Samples{0}, false, progress_);
-        s.last_trace_ms = stats.device_ms;
+        s.last_trace_ms = trace_ms(*prepared);
         if (frame == 0) return;
         s.update_ms += update_ms;
-        s.trace_ms += stats.device_ms;
-        s.frames_ms.push_back(update_ms + stats.device_ms);
+        s.trace_ms += s.last_trace_ms;
+        s.frames_ms.push_back(update_ms + s.last_trace_ms);
         s.builds += builds;
         if (!s.follower.update().cost_ratios.empty())
             s.worst_cost_ratio = std::max(s.worst_cost_ratio, double(s.follower.update().cost_ratios.back()));
+    }
+
+    // Of short frames the least of three times, because a disturbance of the machine is as long as they are.
+    double trace_ms(const Prepared& prepared) {
+        constexpr double kShortMs = 20;
+        double least = std::numeric_limits<double>::infinity();
+        for (unsigned i = 0; i < 3 && (i == 0 || least < kShortMs); ++i)
+            least =
+                std::min(least, frames_.trace(prepared, settings_, fixture_.view(), Samples{0}, false, progress_).device_ms);
+        return least;
     }
 
     std::vector<BenchRecord> rows() {

@@ -138,7 +138,7 @@ const std::vector<Setting>& settings_table() {
         choice("poses", "Each pose",
                "how the structure follows a scene that plays in the window; refit: its boxes are fitted to what moved; build: "
                "it is built anew; auto: refitted until slower rays have cost as much as a build. Frames of `render` are "
-               "always built",
+               "always built; the samples of a picture with motion blur are refitted, unless this is build",
                {"auto", "refit", "build"}, Effect::rebuild, &Settings::poses),
         choice("tracer", "Tracer",
                "iterative: a work-item traces all generations of its packet; wavefront: rays that split continue in queues in "

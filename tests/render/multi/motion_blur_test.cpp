@@ -21,10 +21,25 @@ std::string obj(const std::vector<std::string>& lines) {
     return text;
 }
 
-// A sail whose upper corners are moved aside by `lean`.
+// A sail that bulges and whose upper edge is moved aside by `lean`. Its normals change with it.
 std::string sail(double lean) {
-    return obj({"v 1.5 -1 0", "v 2.5 -1 0", "v " + std::to_string(2.5 + lean) + " 1 0",
-                "v " + std::to_string(1.5 + lean) + " 1 0", "f 1 2 3", "f 1 3 4"});
+    constexpr int kColumns = 3, kRows = 6;
+    std::vector<std::string> lines = {"vn 0 0 1"};
+    for (int row = 0; row < kRows; ++row)
+        for (int column = 0; column < kColumns; ++column) {
+            const double up = double(row) / (kRows - 1);
+            lines.push_back("v " + std::to_string(1.5 + 0.5 * column + lean * up) + " " + std::to_string(2 * up - 1) + " " +
+                            std::to_string(lean * std::sin(3.14159 * up)));
+        }
+    for (int row = 0; row + 1 < kRows; ++row)
+        for (int column = 0; column + 1 < kColumns; ++column) {
+            const int first = row * kColumns + column + 1;
+            std::string face = "f";
+            for (const int corner : {first, first + 1, first + kColumns + 1, first + kColumns})
+                face += " " + std::to_string(corner) + "//1";
+            lines.push_back(face);
+        }
+    return obj(lines);
 }
 
 class Blur : public ::testing::Test {
@@ -147,13 +162,49 @@ TEST_F(Blur, IsTheMeanOfStillPictures) {
 TEST_F(Blur, BuildsWhereItCannotRefit) {
     Team team("cpu");
     const Shutter shutter = {0.5, 1, 8};
-    Settings settings = settings_, built = settings_;
-    settings.spp = built.spp = 8;
+    Settings settings = settings_, built = settings_, linear = settings_;
+    settings.spp = built.spp = linear.spp = 8;
     built.poses = "build";
-    const Blurred refits = blurred(team, shutter, settings), builds = blurred(team, shutter, built);
+    linear.accel = "linear";
+    const Blurred refits = blurred(team, shutter, settings), builds = blurred(team, shutter, built),
+                  cannot = blurred(team, shutter, linear);
     EXPECT_EQ(refits.built, 0u);
     EXPECT_EQ(builds.built, 8u);
+    EXPECT_EQ(cannot.built, 8u);
     EXPECT_LT(largest_difference(refits.image, builds.image), 1e-5);
+    EXPECT_LT(largest_difference(refits.image, cannot.image), 1e-5);
+}
+
+// Where only the camera and lights move, all samples share everything that is on the device.
+TEST_F(Blur, WhatDoesNotMoveIsNeitherBuiltNorUploaded) {
+    rest_ = load_scene(scratch_.write("still.scene",
+                                      "camera main eye 0 0 9 target 0 0 0 fov 40\n"
+                                      "light point position 0 0 6 name lamp\n"
+                                      "polygon vertices -6 -3 -2  6 -3 -2  6 3 -2  -6 3 -2\n"
+                                      "load box.obj\n"
+                                      "animate main rotate 0 0 1 0 0  1 0 1 0 4\n"
+                                      "animate lamp translate 0 -4 2 6  1 4 2 6\n"));
+    Team team("cpu");
+    const ScenePtr scene = scene_at(0.5);
+    const auto prepared = team.preparer.prepare(scene, settings_, team.progress);
+    MotionBlur blur({rest_, {}, {}, {}, {}}, {0.5, 1, 4}, prepared);
+    std::set<float> lamps, targets;
+    for (unsigned i = 0; i < 4; ++i) {
+        const MotionBlur::Sample& sample = blur.at(i, view_of(*scene), team.progress);
+        EXPECT_EQ(sample.prepared, prepared);
+        lamps.insert(sample.view.lights.at(0).position[0]);
+        targets.insert(sample.view.camera.target[0]);
+        EXPECT_EQ(sample.view.lights.at(0).position[0], evaluate(*rest_, {}, sample.time_s).lights.at(0).values.position[0]);
+    }
+    EXPECT_EQ(lamps.size(), 4u);
+    EXPECT_EQ(targets.size(), 4u);
+    // The user's own camera and light stand still.
+    View own = view_of(*scene);
+    own.camera.eye[0] += 1;
+    own.lights[0].position[1] += 1;
+    const MotionBlur::Sample& sample = blur.at(1, own, team.progress);
+    EXPECT_EQ(sample.view.camera.eye, own.camera.eye);
+    EXPECT_EQ(sample.view.lights[0].position[0], own.lights[0].position[0]);
 }
 
 TEST_F(Blur, PicturesBeforeLeaveNoTrace) {
