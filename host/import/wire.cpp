@@ -218,6 +218,13 @@ std::string move_to_file(int fd, std::vector<T>& array) {
     return why;
 }
 
+template <class T>
+std::string move_to_file(int fd, SharedArray<T>& array) {
+    std::string why = move_to_file(fd, array.own());
+    array.clear();
+    return why;
+}
+
 // Reserves memory and asks for large pages where it spans some, because half of the reading time is spent on page faults.
 template <class T>
 void reserve_on_large_pages(std::vector<T>& array, size_t count) {
@@ -262,6 +269,11 @@ bool move_from_file(int fd, const Section& section, std::vector<char>& buffer, s
         given_back = read_up_to;
     }
     return true;
+}
+
+template <class T>
+bool move_from_file(int fd, const Section& section, std::vector<char>& buffer, SharedArray<T>& array) {
+    return move_from_file(fd, section, buffer, array.own());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "rt_plugin.h"
 #include "rt_types.h"
 #include "scene/motion/motion.hpp"
+#include "scene/shared_array.hpp"
 
 namespace clarity {
 
@@ -98,11 +99,11 @@ struct Camera {
 // A scene is valid once validate() has accepted it: every index is in range, every number is finite, and materials[0] is the
 // default material.
 struct Scene {
-    std::vector<float> positions;            // 3 per vertex
-    std::vector<float> normals;              // 3 per vertex, (0,0,0) for meshes without normals; or empty
-    std::vector<float> uvs;                  // 2 per vertex; or empty
-    std::vector<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
-    std::vector<rt_u32> triangle_materials;  // 1 per triangle
+    SharedArray<float> positions;            // 3 per vertex
+    SharedArray<float> normals;              // 3 per vertex, (0,0,0) for meshes without normals; or empty
+    SharedArray<float> uvs;                  // 2 per vertex; or empty
+    SharedArray<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
+    SharedArray<rt_u32> triangle_materials;  // 1 per triangle
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;  // a mesh without an instance is not in the world
     std::vector<Sphere> spheres;
@@ -115,7 +116,7 @@ struct Scene {
     std::vector<float> shape_numbers;
     std::vector<Material> materials;
     std::vector<rt_texture> textures;
-    std::vector<uint32_t> texels;  // RGBA8, R in the low byte
+    SharedArray<uint32_t> texels;  // RGBA8, R in the low byte
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     std::array<float, 3> background{0.12f, 0.16f, 0.22f}, ambient{0.08f, 0.08f, 0.08f};

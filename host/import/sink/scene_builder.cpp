@@ -247,7 +247,8 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string&
     std::string bytes;
     rt_texture texture{};
     std::string why = try_read_file(found.path, kMaxTexelBytes, bytes);
-    if (why.empty()) why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels, texture);
+    if (why.empty())
+        why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels.own(), texture);
     const rt_u32 id = why.empty() ? static_cast<rt_u32>(scene_.textures.size()) : RT_NONE;
     if (why.empty()) scene_.textures.push_back(texture);
     textures_[found.path] = id;

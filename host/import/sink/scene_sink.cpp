@@ -203,8 +203,8 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
     rt_u32 index = RT_NONE;
     if (d.bytes) {
         rt_texture texture{};
-        const std::string why = d.height == 0 ? decode_texture(d.bytes, d.byte_count, scene.texels, texture)
-                                              : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene.texels, texture);
+        const std::string why = d.height == 0 ? decode_texture(d.bytes, d.byte_count, scene.texels.own(), texture)
+                                              : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene.texels.own(), texture);
         if (!why.empty()) {
             builder_.warn(path_, "an embedded texture is left out: " + why);
             return RT_NONE;

@@ -159,8 +159,8 @@ Scene posed(Scene scene, const Pose& pose) {
     for (Light& light : result.lights) light.node = RT_NONE;
     for (const PosedMesh& mesh : pose.meshes) {
         const auto first = 3 * static_cast<std::ptrdiff_t>(result.meshes[mesh.mesh].first_vertex);
-        std::copy(mesh.positions.begin(), mesh.positions.end(), result.positions.begin() + first);
-        std::copy(mesh.normals.begin(), mesh.normals.end(), result.normals.begin() + (mesh.normals.empty() ? 0 : first));
+        std::copy(mesh.positions.begin(), mesh.positions.end(), result.positions.own().begin() + first);
+        if (!mesh.normals.empty()) std::copy(mesh.normals.begin(), mesh.normals.end(), result.normals.own().begin() + first);
     }
     bake_flattened_instances(result);
     return result;
