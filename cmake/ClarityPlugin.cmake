@@ -1,6 +1,6 @@
 # clarity_add_plugin(accel|importer|primitive ID [LIBRARIES lib...]): builds the current folder as one plugin, which is one shared library.
 #
-# Compiles every .cpp and .c file of the folder. ID.cl and ID_types.h of an accel plugin, or ID.cl of a primitive, are embedded, with
+# Compiles every .cpp and .c file of the folder. ID.cl, ID_types.h and ID_build.cl (kernels that build: rt_device.h) of an accel plugin, or ID.cl of a primitive, are embedded, with
 # the parts that they include, ID_*.cl and ID_*.h. The plugin includes "ID.inc", which has rows of {path, text}.
 # LIBRARIES clarity::bvh links the builders' library (docs/clarity_bvh.md).
 # In clarity's tree the library is written to lib/clarity/plugins/{importers,accel,primitives} beside bin/. Elsewhere (with
@@ -39,7 +39,8 @@ function(clarity_add_plugin kind id)
   target_link_libraries(${target} PRIVATE clarity::sdk ${arg_LIBRARIES})
   # The map also hides the templates of libstdc++, which stay visible in spite of hidden visibility.
   target_link_options(${target} PRIVATE -Wl,--no-undefined "-Wl,--version-script=${CLARITY_PLUGIN_EXPORTS}")
-  file(GLOB embedded CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_types.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}.cl)
+  file(GLOB embedded CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${id}_types.h ${CMAKE_CURRENT_SOURCE_DIR}/${id}.cl
+    ${CMAKE_CURRENT_SOURCE_DIR}/${id}_build.cl)
   if(embedded)
     # The host watches the kernels there: see host/device/kernel_files.hpp. The note is not installed.
     file(WRITE ${libraries}/${id}.sources "${CMAKE_CURRENT_SOURCE_DIR}\n")

@@ -128,7 +128,9 @@ void App::turn() {
     }
     preferences_sync_.follow(*session_, state_);
     const auto ready = session_->ready();
-    overlay_->update(ready ? ready->main.accel : nullptr, ready && ready->other ? ready->other->accel : nullptr);
+    const auto structure = [](const ReadySide& side) { return ShownStructure{side.accel, side.moved, side.is_moved}; };
+    overlay_->update(ready ? structure(ready->main) : ShownStructure(),
+                     ready && ready->other ? structure(*ready->other) : ShownStructure());
     apply_theme(static_cast<float>(window_->content_scale()) * state_.text_scale);
     upload_picture();
     window_->begin_frame();

@@ -8,8 +8,16 @@
 #include <string>
 
 #include "base/log.hpp"
+#include "render/moving/read_back.hpp"
 
 namespace clarity::ui {
+namespace {
+
+bool same(const ShownStructure& a, const ShownStructure& b) {
+    return a.accel == b.accel && a.is_moved == b.is_moved && !a.moved.owner_before(b.moved) && !b.moved.owner_before(a.moved);
+}
+
+}  // namespace
 
 std::string level_name(rt_u32 level) {
     return level == RT_LEVEL_BOTTOM ? "bottom level" : "level " + std::to_string(level + 1);
@@ -34,12 +42,12 @@ size_t VolumeOverlay::count(unsigned side) const {
     return volumes ? volumes->boxes.size() + volumes->spheres.size() : 0;
 }
 
-void VolumeOverlay::update(const std::shared_ptr<const AccelData>& main, const std::shared_ptr<const AccelData>& other) {
+void VolumeOverlay::update(const ShownStructure& main, const ShownStructure& other) {
     update_side(sides_[0], main);
     update_side(sides_[1], other);
 }
 
-void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const AccelData>& accel) {
+void VolumeOverlay::update_side(Side& side, const ShownStructure& structure) {
     if (side.fetching.valid()) {
         if (side.fetching.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
         try {
@@ -50,20 +58,23 @@ void VolumeOverlay::update_side(Side& side, const std::shared_ptr<const AccelDat
         }
         ++side.revision;
     }
-    if (!accel || !level_) {
+    if (!structure.accel || !level_) {
         if (side.volumes) ++side.revision;
         side.volumes.reset();
-        side.accel.reset();
+        side.structure = {};
         side.fetched.reset();
         return;
     }
-    if (side.accel == accel && side.fetched == level_) return;
-    side.accel = accel;
+    if (same(side.structure, structure) && side.fetched == level_) return;
+    side.structure = structure;
     side.fetched = level_;
-    side.fetching = std::async(std::launch::async, [accel = side.accel, level = *level_, wake = wake_] {
+    side.fetching = std::async(std::launch::async, [structure, level = *level_, wake = wake_] {
         auto found = std::make_shared<Level>();
         // Ask for one volume more than is drawn, to know whether there are more.
-        static_cast<Volumes&>(*found) = accel_volumes(*accel, level, kLimit + 1);
+        if (!structure.is_moved)
+            static_cast<Volumes&>(*found) = accel_volumes(*structure.accel, level, kLimit + 1);
+        else if (const auto moved = structure.moved.lock())  // else a newer pose follows
+            static_cast<Volumes&>(*found) = accel_volumes(read_back(*structure.accel, *moved), level, kLimit + 1);
         found->more = found->boxes.size() + found->spheres.size() > kLimit;
         if (found->more && found->spheres.empty())
             found->boxes.pop_back();

@@ -8,10 +8,18 @@
 #include <optional>
 
 #include "render/accel/accel_volumes.hpp"
+#include "render/frame/device_scene.hpp"
 #include "ui/overlay/line_list.hpp"
 #include "ui/widgets/rect.hpp"
 
 namespace clarity::ui {
+
+// A structure, and its buffers if a device has moved it since its build.
+struct ShownStructure {
+    std::shared_ptr<const AccelData> accel;
+    std::weak_ptr<const DeviceScene> moved;
+    bool is_moved = false;
+};
 
 // The volumes of each side's structure. They are fetched on a separate thread, because to walk a large tree takes a while.
 class VolumeOverlay {
@@ -31,8 +39,8 @@ class VolumeOverlay {
     bool more(unsigned side = 0) const { return sides_[side].volumes && sides_[side].volumes->more; }
     static constexpr size_t kLimit = 20000;
 
-    // Fetches missing volumes; call once a frame. other: structure of the compared side, or nullptr.
-    void update(const std::shared_ptr<const AccelData>& main, const std::shared_ptr<const AccelData>& other = nullptr);
+    // Fetches missing volumes; call once a frame. other: structure of the compared side, if there is one.
+    void update(const ShownStructure& main, const ShownStructure& other = {});
     // A number which changes whenever the lines of a side do.
     uint64_t revision(unsigned side) const { return sides_[side].revision; }
     // Appends every stride-th volume of a side as lines. eye: where the outlines of spheres are seen from.
@@ -46,13 +54,13 @@ class VolumeOverlay {
     using Result = std::shared_ptr<const Level>;
     struct Side {
         // The structure and level of `volumes` and `fetching`.
-        std::shared_ptr<const AccelData> accel;
+        ShownStructure structure;
         std::optional<rt_u32> fetched;
         Result volumes;
         std::future<Result> fetching;
         uint64_t revision = 0;
     };
-    void update_side(Side& side, const std::shared_ptr<const AccelData>& accel);
+    void update_side(Side& side, const ShownStructure& structure);
 
     std::function<void()> wake_;
     std::optional<rt_u32> level_;

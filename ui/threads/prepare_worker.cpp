@@ -232,12 +232,15 @@ ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings,
     if (!is_posed || (follower.structure() && !side.preparer->asks_for(*follower.structure(), settings))) follower.reset();
     if (!is_posed) return lend(side.devices, side.preparer->prepare(shown_.visible(), settings, progress));
     const PosedFrom from = {loaded_->scene, shown_.pose().clip};
-    const Pose pose = shown_.geometry();
-    auto accel = follower.refit(from, shown_.visible(), pose, way_of(settings.poses), frame_ms, progress);
-    const auto prepared = side.preparer->prepare(shown_.visible(), settings, progress, accel);
-    if (!accel) follower.built(from, shown_.visible(), pose, prepared->first()->accel);
+    const Pose& pose = shown_.geometry();
+    const std::shared_ptr<const Scene>& scene = shown_.visible();
+    const MovedStructure moved = follower.refit(from, scene, pose, way_of(settings.poses), frame_ms, progress);
+    const auto prepared = side.preparer->prepare(scene, settings, progress, moved);
+    if (!moved.accel) follower.built(from, scene, pose, prepared->first()->accel, side.preparer->mover(scene, *prepared));
     ReadySide ready = lend(side.devices, prepared);
     ready.pose_update = follower.update();
+    ready.is_moved = !moved.on_devices.empty();
+    if (ready.is_moved) ready.moved = prepared->first()->on_device;
     return ready;
 }
 
@@ -264,6 +267,8 @@ void PrepareWorker::renew_devices() {
     tracers_.release();
     const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
     withdraw_loans();
+    main_.follower.leave_devices();
+    other_.follower.leave_devices();
     main_.devices.clear();
     other_.devices.clear();
     std::vector<DeviceInfo> other;
@@ -281,6 +286,7 @@ void PrepareWorker::open_side(const std::string& choice, SideState& state, const
     progress.stage("opening the device");
     Devices devices = open_devices(choose_devices(choice), neighbour.devices);
     state.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
+    state.follower.reset();
     state.devices = std::move(devices);
     state.choice = choice;
 }

@@ -78,8 +78,11 @@ struct ReadySide {
     double upload_ms = 0, compile_ms = 0;    // milliseconds; 0: shared with an earlier picture
     bool compile_cached = false;
     std::weak_ptr<const TraceProgram> program;  // of the first part
-    uint64_t device_bytes = 0;                  // of all buffers of the scene
-    PoseUpdate pose_update;                     // how the structure came to this pose
+    // Of the first part, if devices have moved the structure: `accel` is as it was built.
+    std::weak_ptr<const DeviceScene> moved;
+    bool is_moved = false;
+    uint64_t device_bytes = 0;  // of all buffers of the scene
+    PoseUpdate pose_update;     // how the structure came to this pose
     std::shared_ptr<DeviceLoan> loan;
     bool uses(const DeviceInfo& device) const;                              // as a whole or in parts
     std::string devices_text() const { return device_list_text(devices); }  // as --device reads it

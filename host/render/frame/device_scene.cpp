@@ -9,6 +9,9 @@
 namespace clarity {
 namespace {
 
+// Places of buffers in before_lights_.
+enum : size_t { kLeaves, kInstances, kPolygons, kPolygonCorners, kMaterials = 5, kTriangles, kNormals };
+
 constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two progress reports
 
 // A buffer to be made, and its content.
@@ -103,6 +106,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         for (size_t i = 0; i < attributes_.size(); ++i)
             for (int c = 0; c < 3; ++c) attributes_[i].v[c] = scene_->triangles[3 * size_t(build.attribute_triangle[i]) + c];
     }
+    has_triangles_ = !attributes_.empty();
     const bool moved = !scene_->normals.empty() && !build.flattened.empty();
     if (moved) normals_ = normals_as_placed(*scene_, build);
     // In the order of the context's arguments: see kernel_source.cpp.
@@ -120,7 +124,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("texture table", scene_->textures),
         content("textures", scene_->texels.all()),
     };
-    materials_at_ = 5;
+    materials_at_ = kMaterials;
     const size_t before_lights = contents.size();
     if (!build.shapes.empty()) {
         contents.push_back(content("shapes", build.shapes));
@@ -143,6 +147,33 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     // Only the upload needed these copies.
     attributes_ = {};
     normals_ = {};
+}
+
+DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
+    : at_rest_(at_rest.shared_from_this()),  // on a CPU it owns the memory of shared buffers
+      before_lights_(at_rest.before_lights_),
+      has_triangles_(at_rest.has_triangles_),
+      materials_at_(at_rest.materials_at_),
+      bytes_(at_rest.bytes_) {
+    before_lights_[kLeaves] = std::move(moving.leaves);
+    before_lights_[kInstances] = std::move(moving.instances);
+    before_lights_[kNormals] = std::move(moving.normals);
+    slots_ = std::move(moving.slots);
+    bounds_ = std::move(moving.bounds);
+}
+
+DeviceScene::Fixed DeviceScene::fixed() const {
+    return {before_lights_[kPolygons], before_lights_[kPolygonCorners], before_lights_[kTriangles]};
+}
+
+DeviceScene::Moving DeviceScene::moving() const {
+    return {before_lights_[kLeaves], before_lights_[kInstances], before_lights_[kNormals], slots_, bounds_};
+}
+
+void DeviceScene::write_bounds(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
+    if (!bounds_()) return;
+    for (size_t i = 0; i < count; ++i)
+        queue.enqueueCopyBuffer(bounds_, frames, 0, i * sizeof(rt_frame) + offsetof(rt_frame, bounds), sizeof(rt_frame::bounds));
 }
 
 void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {

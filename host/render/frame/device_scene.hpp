@@ -11,25 +11,46 @@
 
 namespace clarity {
 
-// Immutable. On a CPU the buffers are the host's own memory, and this object keeps that memory alive.
-class DeviceScene {
+// Immutable. On a CPU the buffers are the host's own memory, and this object keeps that memory alive. Always in a shared_ptr.
+class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
  public:
     // Uploads piece by piece and reports progress. Throws Error(failed) with the sizes if the scene does not fit, and
     // Cancelled.
     DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel, Progress& progress);
 
+    // The buffers that differ from pose to pose where a scene moves on the device.
+    struct Moving {
+        cl::Buffer leaves, instances, normals;
+        std::vector<cl::Buffer> slots;  // without those of the host
+        cl::Buffer bounds;              // of everything but planes: 6 floats. Null: frames have them from the host
+    };
+    // The same scene with other buffers. All others are shared.
+    DeviceScene(const DeviceScene& at_rest, Moving moving);
+    Moving moving() const;
+    // Polygons, their corners, and triangles as numbers of vertices (rt_triangle; empty if nothing shades by them).
+    struct Fixed {
+        const cl::Buffer &polygons, &polygon_corners, &triangles;
+    };
+    Fixed fixed() const;
+    bool has_triangles() const { return has_triangles_; }
+
+    // Writes the bounds into `count` rt_frame, if the host does not know them.
+    void write_bounds(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const;
     // Sets the kernel's scene arguments from number `first` on (kernel_source.cpp has their order). `lights` comes from the
     // frame. If given, `materials` replaces the scene's materials.
     void bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials = nullptr) const;
     uint64_t bytes() const { return bytes_; }
 
  private:
+    std::shared_ptr<const DeviceScene> at_rest_;  // whose buffers this one shares
     std::shared_ptr<const Scene> scene_;
     std::shared_ptr<const AccelData> accel_;
     std::vector<rt_material> materials_;
     std::vector<rt_triangle> attributes_;
     std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
     std::vector<cl::Buffer> before_lights_, slots_;
+    cl::Buffer bounds_;        // Moving::bounds
+    bool has_triangles_ = false;
     size_t materials_at_ = 0;  // index in before_lights_
     uint64_t bytes_ = 0;
 };

@@ -162,7 +162,7 @@ struct FrameRenderer::Impl {
             table = rows;
             table.resize(layout.groups_y(height));  // full size, so that the buffer does not grow row by row
         }
-        view.write(queue, *prepared.scene, frames, view_of, table);
+        view.write(queue, *prepared.scene, *prepared.on_device, frames, view_of, table);
 
         const auto go_on = [&progress = picture.progress] {
             if (progress.cancelled()) throw Cancelled();

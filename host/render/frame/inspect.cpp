@@ -72,7 +72,8 @@ RayTree Inspector::trace(const Prepared& prepared, const Settings& settings, con
     const auto program = im.programs.get(kernel_for(prepared, KernelKind::inspect));
     return wrap_cl_errors(*im.device, "inspecting a pixel", [&] {
         const cl::Context& context = im.device->context();
-        im.view.write(im.queue, *prepared.scene, {make_frame(view, settings, layout, *prepared.accel, 0)}, view);
+        im.view.write(im.queue, *prepared.scene, *prepared.on_device, {make_frame(view, settings, layout, *prepared.accel, 0)},
+                      view);
         const cl::Buffer& records = im.records.fit(context, kMostRecords * sizeof(rt_ray_record));
         const cl::Buffer& summary = im.summary.fit(context, kSummaryWords * sizeof(rt_u32));
         const PixelPlace place = layout.place_of(x, y, width);

@@ -71,7 +71,7 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
         lights(device.context(), CL_MEM_READ_ONLY, 256);
     if (program.is_wavefront()) {
         ViewBuffers view_buffers;
-        view_buffers.write(queue, *prepared.scene, {frame}, view);
+        view_buffers.write(queue, *prepared.scene, *prepared.on_device, {frame}, view);
         Launcher launcher;
         const WavefrontFrame pixel{prepared, view, view_buffers, layout, 1, 1, 0, 1, 1, 0, out, distances};
         Wavefront(opened).trace(queue, launcher, pixel, [] {});
@@ -164,7 +164,8 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
 }
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
-                                                  Progress& progress, std::shared_ptr<const AccelData> built) {
+                                                  Progress& progress, std::shared_ptr<const AccelData> built,
+                                                  std::shared_ptr<const DeviceScene> moved) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose a device again");
     auto next = std::make_shared<Prepared>();
@@ -174,7 +175,10 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
     next->layout = make_layout(next->settings, device_->info().cpu);
     try {
         next->accel = built ? std::move(built) : build_or_last(scene, next->settings, progress);
-        if (last_ && last_->scene == scene && last_->accel == next->accel) next->on_device = last_->on_device;
+        if (moved)
+            next->on_device = std::move(moved);
+        else if (last_ && last_->scene == scene && last_->accel == next->accel)
+            next->on_device = last_->on_device;
         if (!next->on_device) {
             progress.stage("uploading the scene");
             const auto start = std::chrono::steady_clock::now();

@@ -20,8 +20,8 @@ void check_materials(const Scene& scene, const std::vector<rt_material>& materia
 
 }  // namespace
 
-void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const std::vector<rt_frame>& frames, const View& view,
-                        const std::vector<rt_u32>& rows) {
+void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device,
+                        const std::vector<rt_frame>& frames, const View& view, const std::vector<rt_u32>& rows) {
     own_materials_ = !view.materials.empty();
     if (own_materials_) check_materials(scene, view.materials);
     const size_t frame_bytes = frames.size() * sizeof(rt_frame), row_bytes = rows.size() * sizeof(rt_u32);
@@ -29,6 +29,7 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const std::
     std::memcpy(frames_and_rows_.data(), frames.data(), frame_bytes);
     if (row_bytes > 0) std::memcpy(frames_and_rows_.data() + frame_bytes, rows.data(), row_bytes);
     frame_.write(queue, frames_and_rows_.data(), frames_and_rows_.size());
+    on_device.write_bounds(queue, frame_.get(), frames.size());
     lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
     if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
 }

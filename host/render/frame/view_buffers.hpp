@@ -14,10 +14,11 @@ class ViewBuffers {
     // frames: one for each sample that the next launch traces.
     // rows: numbers of the work-group rows that a device traces of a shared picture; row_count entries are valid, the rest is
     // padding.
+    // on_device: the buffers that the frames are traced in.
     // Throws Error(failed) if the view's materials do not match the scene's, since kernels index materials and textures by
     // number.
-    void write(cl::CommandQueue& queue, const Scene& scene, const std::vector<rt_frame>& frames, const View& view,
-               const std::vector<rt_u32>& rows = {});
+    void write(cl::CommandQueue& queue, const Scene& scene, const DeviceScene& on_device, const std::vector<rt_frame>& frames,
+               const View& view, const std::vector<rt_u32>& rows = {});
     const cl::Buffer& frame() const { return frame_.get(); }
     // Sets the scene's arguments of the kernel, from number `first` on.
     void bind(const DeviceScene& scene, cl::Kernel& kernel, cl_uint first) const;

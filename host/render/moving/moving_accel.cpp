@@ -55,10 +55,6 @@ std::shared_ptr<AccelData> copy_of(const AccelData& from) {
     return copy;
 }
 
-std::string name_of(const Instance& instance, size_t number) {
-    return "instance " + (instance.name.empty() ? std::to_string(number) : "`" + instance.name + "`");
-}
-
 }  // namespace
 
 // A structure, and the moves that its groups have followed.
@@ -151,38 +147,20 @@ void MovingAccel::touch(rt_u32 mesh) {
 // Takes over a pose. Returns why a build is needed; nothing is changed then.
 std::string MovingAccel::place(const Pose& pose) {
     const BuildScene& build = built_->scene;
-    if (pose.instances.size() != instances_.size())
-        return "the pose has " + std::to_string(pose.instances.size()) + " instances, the structure " +
-               std::to_string(instances_.size());
-    moved_.clear();
-    inverses_.clear();
-    Affine inverse = kIdentity;
-    for (size_t i = 0; i < instances_.size(); ++i) {
-        const PosedInstance& next = pose.instances[i];
-        const Instance& instance = scene_->instances[i];
-        if (next.visible != instances_[i].visible) return name_of(instance, i) + (next.visible ? " appears" : " is hidden");
-        if (next.mesh != instances_[i].mesh) return name_of(instance, i) + " has another mesh";
-        if (next.world_from_object == instances_[i].world_from_object) continue;
-        if (next.visible && !invert(next.world_from_object, inverse)) return name_of(instance, i) + " is scaled to nothing";
-        if (next.visible && build.number_of_instance[i] == RT_NONE && mirrors(next.world_from_object))
-            return name_of(instance, i) + " is mirrored";
-        moved_.push_back(static_cast<rt_u32>(i));
-        inverses_.push_back(inverse);
-    }
-    for (const PosedMesh& mesh : pose.meshes)
-        if (mesh.mesh >= scene_->meshes.size() || mesh.positions.size() != 3 * size_t(scene_->meshes[mesh.mesh].vertex_count))
-            return "mesh " + std::to_string(mesh.mesh) + " has another number of vertices";
+    find_moved_instances(*scene_, build, instances_, pose, moved_);
+    if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose);
+    if (!moved_.why.empty()) return moved_.why;
 
     is_posed_.assign(scene_->meshes.size(), 0);
     for (const PosedMesh& mesh : pose.meshes) is_posed_[mesh.mesh] = 1;
-    for (size_t k = 0; k < moved_.size(); ++k) {
-        const rt_u32 i = moved_[k], mesh = instances_[i].mesh, number = build.number_of_instance[i];
+    for (size_t k = 0; k < moved_.numbers.size(); ++k) {
+        const rt_u32 i = moved_.numbers[k], mesh = instances_[i].mesh, number = build.number_of_instance[i];
         instances_[i].world_from_object = pose.instances[i].world_from_object;
         if (!instances_[i].visible || scene_->meshes[mesh].triangle_count == 0) continue;
         version_[0] = moves_ + 1;
         if (number != RT_NONE) {
             world_from_object_[number] = instances_[i].world_from_object;
-            object_from_world_[number] = inverses_[k];
+            object_from_world_[number] = moved_.inverses[k];
         } else if (!is_posed_[mesh]) {
             transform_vertices(mesh, vertices_at_rest(mesh), &instances_[i].world_from_object);
         }

@@ -19,6 +19,7 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
+#include "render/moving/moved_instances.hpp"
 #include "render/moving/moved_leaves.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
@@ -96,8 +97,7 @@ class MovingAccel {
     UninitializedVector<float> positions_;         // in the space of their groups, then one more
     std::vector<Bounds> boxes_;                    // of the groups
     std::vector<rt_u32> flat_instance_;            // for each mesh: the instance that flattens it, or RT_NONE
-    std::vector<rt_u32> moved_;                    // instances that the pose moves
-    std::vector<Affine> inverses_;                 // of their transforms
+    MovedInstances moved_;
     std::vector<uint8_t> is_posed_, is_deformed_;  // for each mesh: by the pose that is taken over, and by the last one
     std::vector<uint64_t> version_;                // of each group: the number of the move that changed it last
     std::vector<double> cost_, built_cost_;        // of the groups

@@ -28,26 +28,27 @@ PoseFollower::Way way_of(const std::string& poses) {
 }
 
 std::string PoseFollower::why_not(const PosedFrom& from, const Pose& pose, Way way) const {
-    if (!moving_) return "the first pose";
+    if (!mover_) return "the first pose";
     if (!(from == from_)) return "another scene or clip";
     if (way == Way::build) return "the setting `poses` asks for it";
-    if (!moving_->cannot().empty()) return moving_->cannot();
+    if (!mover_->cannot().empty()) return mover_->cannot();
     if (deformed_by(pose) != deformed_) return "other meshes deform";
     if (way == Way::automatic && policy_.wants_build())
         return "slow rays have cost " + std::to_string(static_cast<long>(policy_.debt_ms())) + " ms since the last build";
     return {};
 }
 
-std::shared_ptr<const AccelData> PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed,
-                                                     const Pose& pose, Way way, double trace_ms, Progress& progress) {
-    if (posed == posed_ && from == from_ && accel_) return accel_;
+MovedStructure PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed, const Pose& pose, Way way,
+                                   double trace_ms, Progress& progress) {
+    if (posed == posed_ && from == from_ && now_.accel) return now_;
     update_.followed = true;
     update_.refitted = false;
     update_.why = why_not(from, pose, way);
-    if (!update_.why.empty()) return nullptr;
-    const MovedAccel moved = moving_->move(pose, progress);
+    if (!update_.why.empty()) return {};
+    now_ = {};  // lets go of what the mover may write next
+    MovedStructure moved = mover_->move(pose, progress);
     update_.why = moved.why;
-    if (!moved.accel) return nullptr;
+    if (!moved.accel) return {};
     refit_ms_ = moved.ms;
     policy_.refitted(moved.worst_cost_ratio, trace_ms);
     update_.refitted = true;
@@ -56,12 +57,12 @@ std::shared_ptr<const AccelData> PoseFollower::refit(const PosedFrom& from, cons
     update_.primitives = moved.refitted;
     note_cost(moved.worst_cost_ratio);
     posed_ = posed;
-    accel_ = moved.accel;
-    return accel_;
+    now_ = std::move(moved);
+    return now_;
 }
 
 void PoseFollower::built(const PosedFrom& from, std::shared_ptr<const Scene> posed, const Pose& pose,
-                         std::shared_ptr<const AccelData> accel) {
+                         std::shared_ptr<const AccelData> accel, std::unique_ptr<PoseMover> mover) {
     if (!(from == from_)) {
         policy_ = {};
         refit_ms_ = 0;
@@ -75,8 +76,9 @@ void PoseFollower::built(const PosedFrom& from, std::shared_ptr<const Scene> pos
     from_ = from;
     deformed_ = deformed_by(pose);
     posed_ = std::move(posed);
-    accel_ = std::move(accel);
-    moving_ = std::make_unique<MovingAccel>(posed_, accel_);
+    now_ = {};
+    now_.accel = std::move(accel);
+    mover_ = std::move(mover);
 }
 
 void PoseFollower::note_cost(double ratio) {

@@ -1,8 +1,8 @@
 // pose_follower.hpp -- the structure of a scene that is shown in one pose after another: refitted, or built anew where that
 // pays.
 //
-//   auto accel = follower.refit(from, posed, pose, way, trace_ms, progress);
-//   if (!accel) { accel = build(posed); follower.built(from, posed, pose, accel); }
+//   MovedStructure moved = follower.refit(from, posed, pose, way, trace_ms, progress);
+//   if (!moved.accel) { auto accel = build(posed); follower.built(from, posed, pose, accel, make_host_mover(posed, accel)); }
 #pragma once
 #include <deque>
 #include <memory>
@@ -11,7 +11,7 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
-#include "render/moving/moving_accel.hpp"
+#include "render/moving/pose_mover.hpp"
 #include "render/moving/refit_policy.hpp"
 #include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
@@ -35,22 +35,26 @@ struct PosedFrom {
     bool operator==(const PosedFrom& b) const { return scene == b.scene && clip == b.clip; }
 };
 
-// Used on one thread at a time. Keeps up to three structures, which are used again: see MovingAccel.
+// Used on one thread at a time.
 class PoseFollower {
  public:
     enum class Way { automatic, refit, build };
 
-    // Returns the structure of `posed`, which is the scene in `pose`. nullptr: it must be built, for the reason in
-    // update().why. trace_ms: time of a frame; 0: not known. Throws as MovingAccel::move().
-    std::shared_ptr<const AccelData> refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed, const Pose& pose,
-                                           Way way, double trace_ms, Progress& progress);
-    // Says that this structure was built for the pose.
+    // Returns the structure of `posed`, which is the scene in `pose`. Without `accel`: it must be built, for the reason in
+    // update().why. trace_ms: time of a frame; 0: not known. Throws as PoseMover::move().
+    MovedStructure refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed, const Pose& pose, Way way,
+                         double trace_ms, Progress& progress);
+    // Says that this structure was built for the pose. mover: moves it to other poses.
     void built(const PosedFrom& from, std::shared_ptr<const Scene> posed, const Pose& pose,
-               std::shared_ptr<const AccelData> accel);
+               std::shared_ptr<const AccelData> accel, std::unique_ptr<PoseMover> mover);
     // Forgets everything: the scene is at rest, or other settings ask for another structure.
     void reset() { *this = PoseFollower(); }
+    // Forgets everything if it holds buffers on devices: these will be closed.
+    void leave_devices() {
+        if (mover_ && mover_->on_devices()) reset();
+    }
 
-    const AccelData* structure() const { return accel_.get(); }  // the newest; nullptr: none
+    const AccelData* structure() const { return now_.accel.get(); }  // the newest; nullptr: none
     const PoseUpdate& update() const { return update_; }
 
  private:
@@ -58,10 +62,10 @@ class PoseFollower {
     void note_cost(double ratio);
 
     PosedFrom from_;
-    std::unique_ptr<MovingAccel> moving_;
+    std::unique_ptr<PoseMover> mover_;
     std::vector<rt_u32> deformed_;  // the meshes that poses deform
     std::shared_ptr<const Scene> posed_;
-    std::shared_ptr<const AccelData> accel_;
+    MovedStructure now_;  // of posed_
     RefitPolicy policy_;
     double refit_ms_ = 0;
     PoseUpdate update_;

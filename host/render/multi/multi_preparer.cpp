@@ -9,6 +9,17 @@
 
 namespace clarity {
 
+namespace {
+
+// The buffers of a structure on a device; nullptr: it has none there yet.
+std::shared_ptr<const DeviceScene> buffers_on(const std::shared_ptr<Device>& device, const MovedStructure& structure) {
+    for (const auto& [other, buffers] : structure.on_devices)
+        if (other == device) return buffers;
+    return nullptr;
+}
+
+}  // namespace
+
 Devices open_devices(const std::vector<DeviceInfo>& infos, const Devices& open) {
     Devices devices;
     std::vector<Error> failures;
@@ -61,22 +72,25 @@ MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devic
 }
 
 std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<const Scene> scene, const Settings& asked,
-                                                            Progress& progress, std::shared_ptr<const AccelData> built) {
+                                                            Progress& progress, const MovedStructure& given) {
     auto prepared = std::make_shared<MultiPrepared>();
     Settings settings = asked;
     resolve_accel(plugins_, kind_of(infos_), settings);
     if (preparers_.size() == 1) {
-        prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress, std::move(built))}};
+        prepared->parts = {{devices_[0], preparers_[0]->prepare(std::move(scene), settings, progress, given.accel,
+                                                                buffers_on(devices_[0], given))}};
         return prepared;
     }
     // The device with the most memory decides whether the scene is built at all. Devices that it is too large for fail below.
     const auto roomiest = std::max_element(
         infos_.begin(), infos_.end(), [](const DeviceInfo& a, const DeviceInfo& b) { return a.global_bytes < b.global_bytes; });
+    std::shared_ptr<const AccelData> built = given.accel;
     if (!built) built = preparers_[size_t(roomiest - infos_.begin())]->build(scene, settings, progress);
     std::vector<Error> failures;
     for (size_t i = 0; i < preparers_.size(); ++i) {
         try {
-            prepared->parts.push_back({devices_[i], preparers_[i]->prepare(scene, settings, progress, built)});
+            prepared->parts.push_back(
+                {devices_[i], preparers_[i]->prepare(scene, settings, progress, built, buffers_on(devices_[i], given))});
         } catch (const Error& e) {
             if (e.code() != Exit::failed && e.code() != Exit::no_device) throw;
             failures.push_back(e);
@@ -85,6 +99,20 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
     if (prepared->parts.empty()) throw failures.front();
     for (const Error& e : failures) log(LogLevel::warning, std::string(e.what()) + "; the other devices go on without it");
     return prepared;
+}
+
+std::unique_ptr<PoseMover> MultiPreparer::mover(const std::shared_ptr<const Scene>& scene,
+                                                const MultiPrepared& prepared) const {
+    std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>> on_devices;
+    for (const MultiPrepared::Part& part : prepared.parts)
+        if (!part.device->info().cpu) on_devices.emplace_back(part.device, part.prepared->on_device);
+    const std::shared_ptr<const AccelData>& built = prepared.first()->accel;
+    if (on_devices.size() == prepared.parts.size()) {
+        std::string why;
+        if (auto mover = make_device_mover(scene, built, on_devices, &why)) return mover;
+        log(LogLevel::info, "the scene moves on the host: " + why);
+    }
+    return make_host_mover(scene, built);
 }
 
 bool MultiPreparer::asks_for(const AccelData& accel, const Settings& asked) const {

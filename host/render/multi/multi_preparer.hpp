@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/frame/preparer.hpp"
+#include "render/moving/pose_mover.hpp"
 
 namespace clarity {
 
@@ -36,7 +37,10 @@ class MultiPreparer {
     // As Preparer::prepare(). A device that fails causes a warning, as long as another succeeds. Throws if all devices fail,
     // and for errors that do not concern a single device, such as a failed build or a program that does not compile.
     std::shared_ptr<const MultiPrepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
-                                                 Progress& progress, std::shared_ptr<const AccelData> built = nullptr);
+                                                 Progress& progress, const MovedStructure& built = {});
+    // What moves the structure that was prepared to other poses: the devices that trace it, or the host if one of them is a CPU
+    // or cannot. scene: what was prepared.
+    std::unique_ptr<PoseMover> mover(const std::shared_ptr<const Scene>& scene, const MultiPrepared& prepared) const;
     // As Preparer::asks_for().
     bool asks_for(const AccelData& accel, const Settings& settings) const;
     bool needs_reopen() const;

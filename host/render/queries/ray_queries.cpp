@@ -80,7 +80,8 @@ double RayQueries::trace(const Prepared& prepared, const RayBlocks& rays, RayQue
         const auto program = programs_.get(kernel_for(prepared, kind));
         tuning_ = {autotuner_.variant(), autotuner_.trying(), false};
         cl::CommandQueue& queue = device_->queue();
-        view_.write(queue, *prepared.scene, {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
+        view_.write(queue, *prepared.scene, *prepared.on_device,
+                    {make_frame(View(), prepared.settings, layout, *prepared.accel, 0)}, View());
         const cl::Buffer& in = in_.fit(device_->context(), rays.floats().size() * sizeof(float));
         const cl::Buffer& out = out_.fit(device_->context(), slots * fields * sizeof(float));
         // We upload before every run, even if the rays are unchanged. A CPU's caches are then equally warm each time.

@@ -8,6 +8,7 @@
 #include "clarity_bvh/assemble.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "clarity_bvh/wide/wide_levels.hpp"
+#include "device_build.hpp"
 #include "node_memory.hpp"
 #include "pack.hpp"
 #include "refit.hpp"
@@ -52,8 +53,18 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
 constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build_tree>, rt::guarded<levels>, kTraits,
                                       rt::guarded<pack_trees<pack, BVH4_LEAF_MAX>>);
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
-constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
-static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
+constexpr rt_device_build kDeviceBuild = {sizeof(rt_device_build),
+                                          0,
+                                          rt::file(kFiles, "bvh4_build.cl"),
+                                          nullptr,
+                                          device_elements,
+                                          rt::guarded<device_pack>,
+                                          rt::guarded<device_ranges>,
+                                          rt::guarded<device_refit>};
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit),
+                                        {RT_DEVICE_BUILD, RT_DEVICE_BUILD_VERSION, sizeof kDeviceBuild, &kDeviceBuild},
+                                        rt::kNoMoreExtensions};
+static_assert(kAccel.types.text && kAccel.traverse.text && kDeviceBuild.kernels.text, "the kernel files are embedded");
 
 }  // namespace
 }  // namespace bvh4

@@ -33,10 +33,11 @@ class Follower : public ::testing::Test {
     bool show(const Pose& pose, Way way = Way::automatic, const char* clip = "walk", const char* accel = "bvh2") {
         const auto scene = std::make_shared<const Scene>(posed(*rest_, pose));
         const auto refitted = follower_.refit({rest_, clip}, scene, pose, way, 10, progress_);
-        if (refitted) return true;
+        if (refitted.accel) return true;
         const rt_plugin& plugin = *Workbench::get().plugins().accel(accel);
-        follower_.built({rest_, clip}, scene, pose,
-                        std::make_shared<AccelData>(build_accel(*scene, plugin, default_parameters(plugin), progress_)));
+        const auto built =
+            std::make_shared<const AccelData>(build_accel(*scene, plugin, default_parameters(plugin), progress_));
+        follower_.built({rest_, clip}, scene, pose, built, make_host_mover(scene, built));
         return false;
     }
     ScenePtr rest_;
@@ -95,8 +96,8 @@ TEST_F(Follower, BuildsWhenSlowRaysHaveCostAsMuchAsABuild) {
 TEST_F(Follower, TheSamePoseIsNotDoneTwice) {
     show(leaning(0));
     const auto scene = std::make_shared<const Scene>(posed(*rest_, leaning(1)));
-    const auto first = follower_.refit({rest_, "walk"}, scene, leaning(1), Way::automatic, 10, progress_);
-    EXPECT_EQ(first, follower_.refit({rest_, "walk"}, scene, leaning(1), Way::automatic, 10, progress_));
+    const auto first = follower_.refit({rest_, "walk"}, scene, leaning(1), Way::automatic, 10, progress_).accel;
+    EXPECT_EQ(first, follower_.refit({rest_, "walk"}, scene, leaning(1), Way::automatic, 10, progress_).accel);
     EXPECT_EQ(follower_.update().cost_ratios.size(), 2u);
 }
 

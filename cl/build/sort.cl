@@ -1,0 +1,148 @@
+/* sort.cl -- one pass of a stable radix sort of (key, value) pairs, by one digit of at most 8 bits: count the digits of each
+ * tile, scan the counts (scan.cl), then move each pair to its place (Satish, Harris, Garland 2009, "Designing Efficient Sorting
+ * Algorithms for Manycore GPUs"). RT_KEY is uint or ulong, RT_SORT_TILE the number of pairs in a tile.
+ *
+ * counts[digit * tiles + tile]: so the scan over all of them gives the place of a tile's first pair with that digit. */
+#define RT_DIGITS 256u
+#define RT_DIGIT(key) ((uint)((key) >> shift) & mask)
+
+#if RT_GROUP == 1
+
+RT_BUILD_KERNEL sort_count(const global RT_KEY *keys, uint count, uint shift, uint mask, global uint *counts)
+{
+    const uint tile = RT_GROUP_NUMBER, tiles = (uint)get_num_groups(0);
+    const uint begin = tile * RT_SORT_TILE, end = min(begin + RT_SORT_TILE, count);
+    uint found[RT_DIGITS];
+    for (uint d = 0u; d < RT_DIGITS; ++d) found[d] = 0u;
+    for (uint i = begin; i < end; ++i) ++found[RT_DIGIT(keys[i])];
+    for (uint d = 0u; d <= mask; ++d) counts[d * tiles + tile] = found[d];
+}
+
+RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, uint count, uint shift, uint mask,
+                          const global uint *places, global RT_KEY *to_keys, global uint *to_values)
+{
+    const uint tile = RT_GROUP_NUMBER, tiles = (uint)get_num_groups(0);
+    const uint begin = tile * RT_SORT_TILE, end = min(begin + RT_SORT_TILE, count);
+    uint next[RT_DIGITS];
+    for (uint d = 0u; d <= mask; ++d) next[d] = places[d * tiles + tile];
+    for (uint i = begin; i < end; ++i) {
+        const RT_KEY key = keys[i];
+        const uint at = next[RT_DIGIT(key)]++;
+        to_keys[at] = key;
+        to_values[at] = values[i];
+    }
+}
+
+#else
+
+/* A team is 32 neighbouring work-items: a warp on NVIDIA's devices. */
+#define RT_TEAM 32u
+#define RT_TEAMS (RT_GROUP / RT_TEAM)
+#define RT_SORT_ROUNDS (RT_SORT_TILE / RT_GROUP)
+#define RT_NO_DIGIT 0xFFFFFFFFu
+
+RT_BUILD_KERNEL sort_count(const global RT_KEY *keys, uint count, uint shift, uint mask, global uint *counts)
+{
+    local uint found[RT_DIGITS];
+    const uint tile = RT_GROUP_NUMBER, tiles = (uint)get_num_groups(0), item = RT_ITEM;
+    const uint begin = tile * RT_SORT_TILE, end = min(begin + RT_SORT_TILE, count);
+    for (uint d = item; d < RT_DIGITS; d += RT_GROUP) found[d] = 0u;
+    RT_LOCAL_BARRIER();
+    for (uint i = begin + item; i < end; i += RT_GROUP) atomic_inc(&found[RT_DIGIT(keys[i])]);
+    RT_LOCAL_BARRIER();
+    for (uint d = item; d <= mask; d += RT_GROUP) counts[d * tiles + tile] = found[d];
+}
+
+#ifdef RT_MATCH_PTX
+/* The bits of the work-items of this team that have the same digit. */
+RT_INLINE uint rt_match(uint digit)
+{
+    uint bits;
+    __asm__ volatile("match.any.sync.b32 %0, %1, 0xffffffff;" : "=r"(bits) : "r"(digit) : "memory");
+    return bits;
+}
+#define RT_TEAM_BARRIER() __asm__ volatile("bar.warp.sync 0xffffffff;" ::: "memory")
+#else
+#define RT_TEAM_BARRIER() RT_LOCAL_BARRIER()
+#endif
+
+/* Pairs are ranked in rounds. In each round a team takes 32 neighbouring pairs. A pair's rank is the number of pairs with its
+ * digit that the team had in earlier rounds, plus those of lower work-items in this round. Then the tile is put in order in local
+ * memory, so that neighbours are written to neighbouring places. */
+RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, uint count, uint shift, uint mask,
+                          const global uint *places, global RT_KEY *to_keys, global uint *to_values)
+{
+    local uint of_team[RT_TEAMS * RT_DIGITS]; /* pairs of a digit so far; later, where the team's pairs of it begin in the tile */
+    local uint shared[2u * RT_GROUP], to_place[RT_DIGITS];
+    local RT_KEY sorted_keys[RT_SORT_TILE];
+    local uint sorted_values[RT_SORT_TILE];
+#ifndef RT_MATCH_PTX
+    local uint same[RT_TEAMS * RT_DIGITS];
+#endif
+    const uint tile = RT_GROUP_NUMBER, tiles = (uint)get_num_groups(0), item = RT_ITEM;
+    const uint begin = tile * RT_SORT_TILE, in_tile = min(RT_SORT_TILE, count - begin);
+    const uint team = item / RT_TEAM, lane = item % RT_TEAM, lower = (1u << lane) - 1u;
+    for (uint i = item; i < RT_TEAMS * RT_DIGITS; i += RT_GROUP) {
+        of_team[i] = 0u;
+#ifndef RT_MATCH_PTX
+        same[i] = 0u;
+#endif
+    }
+    RT_LOCAL_BARRIER();
+
+    RT_KEY key[RT_SORT_ROUNDS];
+    uint value[RT_SORT_ROUNDS], rank[RT_SORT_ROUNDS];
+    for (uint r = 0u; r < RT_SORT_ROUNDS; ++r) {
+        const uint at = (team * RT_SORT_ROUNDS + r) * RT_TEAM + lane;
+        key[r] = at < in_tile ? keys[begin + at] : (RT_KEY)0;
+        value[r] = at < in_tile ? values[begin + at] : 0u;
+    }
+    for (uint r = 0u; r < RT_SORT_ROUNDS; ++r) {
+        const bool there = (team * RT_SORT_ROUNDS + r) * RT_TEAM + lane < in_tile;
+        const uint digit = there ? RT_DIGIT(key[r]) : RT_NO_DIGIT, entry = team * RT_DIGITS + (there ? digit : 0u);
+#ifdef RT_MATCH_PTX
+        const uint bits = rt_match(digit);
+#else
+        if (there) atomic_or(&same[entry], 1u << lane);
+        RT_LOCAL_BARRIER();
+        const uint bits = there ? same[entry] : 0u;
+#endif
+        rank[r] = of_team[entry] + popcount(bits & lower);
+        RT_TEAM_BARRIER();
+        if (there && (bits & lower) == 0u) {
+            of_team[entry] += popcount(bits);
+#ifndef RT_MATCH_PTX
+            same[entry] = 0u;
+#endif
+        }
+        RT_TEAM_BARRIER();
+    }
+    RT_LOCAL_BARRIER();
+
+    /* RT_GROUP == RT_DIGITS: one work-item for each digit. */
+    uint in_digit = 0u, ignored;
+    for (uint t = 0u; t < RT_TEAMS; ++t) in_digit += of_team[t * RT_DIGITS + item];
+    uint next = rt_group_scan(shared, in_digit, &ignored);
+    to_place[item] = item <= mask ? places[item * tiles + tile] - next : 0u;
+    for (uint t = 0u; t < RT_TEAMS; ++t) {
+        const uint more = of_team[t * RT_DIGITS + item];
+        of_team[t * RT_DIGITS + item] = next;
+        next += more;
+    }
+    RT_LOCAL_BARRIER();
+
+    for (uint r = 0u; r < RT_SORT_ROUNDS; ++r)
+        if ((team * RT_SORT_ROUNDS + r) * RT_TEAM + lane < in_tile) {
+            const uint at = of_team[team * RT_DIGITS + RT_DIGIT(key[r])] + rank[r];
+            sorted_keys[at] = key[r];
+            sorted_values[at] = value[r];
+        }
+    RT_LOCAL_BARRIER();
+    for (uint i = item; i < in_tile; i += RT_GROUP) {
+        const RT_KEY k = sorted_keys[i];
+        const uint at = to_place[RT_DIGIT(k)] + i;
+        to_keys[at] = k;
+        to_values[at] = sorted_values[i];
+    }
+}
+#endif

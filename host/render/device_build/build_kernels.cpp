@@ -1,0 +1,54 @@
+#include "render/device_build/build_kernels.hpp"
+
+#include <algorithm>
+
+#include "device/cl_errors.hpp"
+#include "device/kernel_files.hpp"
+#include "device/program.hpp"
+
+namespace clarity {
+namespace {
+
+// CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV of the extension cl_nv_device_attribute_query.
+constexpr cl_device_info kComputeCapability = 0x4000;
+
+// NVIDIA's instruction `match` finds equal digits in a warp. It came with compute capability 7.
+bool has_match(const DeviceInfo& info) {
+    cl_uint major = 0;
+    return info.nvidia && clGetDeviceInfo(info.cl_device(), kComputeCapability, sizeof major, &major, nullptr) == CL_SUCCESS &&
+           major >= 7;
+}
+
+}  // namespace
+
+BuildKernels::BuildKernels(std::shared_ptr<Device> device, BuildForm form)
+    : device_(std::move(device)), serial_(form == BuildForm::serial || (form == BuildForm::automatic && device_->info().cpu)) {}
+
+cl::Program BuildKernels::compile(const std::string& text, const std::string& what, const std::string& more_options) const {
+    std::string options = "-cl-std=CL1.2 -DRT_GROUP=" + std::to_string(group()) +
+                          " -DRT_SORT_TILE=" + std::to_string(sort_tile()) + "u -DRT_SCAN_TILE=" + std::to_string(scan_tile()) +
+                          "u";
+    if (!serial_ && has_match(device_->info())) options += " -DRT_MATCH_PTX";
+    std::string headers;
+    for (const std::string name : {"build/groups.h", "build/blocks.h"})
+        headers += "#line 1 \"cl/" + name + "\"\n" + kernel_text(name);
+    return build_program(*device_, headers + text, options + (more_options.empty() ? "" : " " + more_options), what).program;
+}
+
+cl::Program BuildKernels::compile_file(const std::string& name, const std::string& more_options) const {
+    return compile("#line 1 \"cl/build/" + name + "\"\n" + kernel_text("build/" + name), "build/" + name, more_options);
+}
+
+cl::Event BuildKernels::launch(const cl::Kernel& kernel, size_t groups) const {
+    cl::Event done;
+    device_->queue().enqueueNDRangeKernel(kernel, cl::NullRange, cl::NDRange(groups * group()), cl::NDRange(group()), nullptr,
+                                          &done);
+    return done;
+}
+
+cl::Buffer BuildKernels::buffer(size_t bytes) const {
+    return wrap_cl_errors(*device_, "allocating memory for builds",
+                          [&] { return cl::Buffer(device_->context(), CL_MEM_READ_WRITE, std::max<size_t>(bytes, 256)); });
+}
+
+}  // namespace clarity

@@ -1,0 +1,232 @@
+#include "render/moving/device_motion.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstring>
+
+#include "base/elapsed.hpp"
+#include "device/cl_errors.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr size_t kCopies = 3;
+
+}  // namespace
+
+DeviceMotion::DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
+                           std::shared_ptr<const AccelData> built, std::shared_ptr<const DeviceScene> on_device, BuildForm form)
+    : device_(std::move(device)),
+      scene_(std::move(scene)),
+      built_(std::move(built)),
+      on_device_(std::move(on_device)),
+      kernels_(device_, form) {
+    wrap_cl_errors(*device_, "preparing a scene that moves", [&] {
+        groups_ = std::make_unique<DeviceGroups>(kernels_, built_, on_device_, pose_);
+        return 0;
+    });
+}
+
+DeviceMotion::~DeviceMotion() {
+    try {
+        for (const cl::Event& event : sent_) event.wait();
+        if (costs_known_()) costs_known_.wait();
+    } catch (const cl::Error&) {  // the device is lost: nothing reads or writes this memory any more
+    }
+}
+
+const std::string& DeviceMotion::cannot() const {
+    return groups_->cannot();
+}
+
+// Sends the pose of the build, and refits all of it once, to know the costs of the build.
+void DeviceMotion::start() {
+    const BuildScene& build = built_->scene;
+    cl::CommandQueue& queue = device_->queue();
+    const auto filled = [&](const void* data, size_t bytes) {
+        cl::Buffer buffer = kernels_.buffer(bytes);
+        if (bytes > 0) queue.enqueueWriteBuffer(buffer, CL_TRUE, 0, bytes, data);
+        return buffer;
+    };
+    positions_.assign(scene_->positions.begin(), scene_->positions.end());
+    normals_.assign(scene_->normals.begin(), scene_->normals.end());
+    pose_.positions = filled(positions_.data(), positions_.size() * sizeof(float));
+    pose_.normals = filled(normals_.data(), normals_.size() * sizeof(float));
+    if (on_device_->has_triangles()) {
+        pose_.corners = on_device_->fixed().triangles;
+    } else {
+        UninitializedVector<rt_u32> corners(3 * build.attribute_triangle.size());
+        for (size_t i = 0; i < build.attribute_triangle.size(); ++i)
+            std::copy_n(&scene_->triangles[3 * size_t(build.attribute_triangle[i])], 3, &corners[3 * i]);
+        pose_.corners = filled(corners.data(), corners.size() * sizeof(rt_u32));
+    }
+    instances_.clear();
+    for (const Instance& instance : scene_->instances)
+        instances_.push_back({instance.mesh, instance.world_from_object, instance.visible});
+    placements_.resize(build.instances.size());
+    for (size_t i = 0; i < placements_.size(); ++i) {
+        std::copy_n(build.world_from_object[i].begin(), 12, placements_[i].world_from_object);
+        std::copy_n(build.instances[i].object_from_world, 12, placements_[i].object_from_world);
+    }
+    pose_.placements = filled(placements_.data(), placements_.size() * sizeof(DevicePlacement));
+    pose_.group_of_instance = filled(build.group_of_instance.data(), build.group_of_instance.size() * sizeof(rt_u32));
+    std::vector<float> nothing;
+    for (size_t g = 0; g < build.groups.size(); ++g)
+        for (const float bound : {INFINITY, -INFINITY}) nothing.insert(nothing.end(), 3, bound);
+    pose_.group_boxes = filled(nothing.data(), nothing.size() * sizeof(float));
+    costs_.assign(build.groups.size(), 0);
+    pose_.costs = filled(costs_.data(), costs_.size() * sizeof(float));
+    is_deformed_.assign(scene_->meshes.size(), 0);
+    version_.assign(build.groups.size(), ++moves_);
+    structures_.clear();
+    refit(spare());
+    queue.enqueueReadBuffer(pose_.costs, CL_TRUE, 0, costs_.size() * sizeof(float), costs_.data());
+    built_costs_ = costs_;
+    started_ = true;
+}
+
+// Takes over a pose. Returns why a build is needed; nothing is changed then.
+std::string DeviceMotion::place(const Pose& pose) {
+    const BuildScene& build = built_->scene;
+    find_moved_instances(*scene_, build, instances_, pose, moved_);
+    if (moved_.why.empty()) moved_.why = wrong_vertices(*scene_, pose);
+    const auto in_world = [&](rt_u32 i) {
+        return instances_[i].visible && build.number_of_instance[i] == RT_NONE &&
+               scene_->meshes[instances_[i].mesh].triangle_count > 0;
+    };
+    is_posed_.assign(scene_->meshes.size(), 0);
+    for (const PosedMesh& mesh : pose.meshes)
+        if (mesh.mesh < is_posed_.size()) is_posed_[mesh.mesh] = 1;
+    for (const rt_u32 i : moved_.numbers)
+        if (in_world(i)) moved_.why = "instance " + std::to_string(i) + " is part of the world's tree";
+    for (rt_u32 i = 0; i < instances_.size(); ++i)
+        if (is_posed_[instances_[i].mesh] && in_world(i))
+            moved_.why = "mesh " + std::to_string(instances_[i].mesh) + " is part of the world's tree";
+    if (!moved_.why.empty()) return moved_.why;
+
+    for (const cl::Event& event : sent_) event.wait();  // what is sent may be changed again
+    sent_.clear();
+    rt_u32 first = RT_NONE, last = 0;
+    for (size_t k = 0; k < moved_.numbers.size(); ++k) {
+        const rt_u32 i = moved_.numbers[k], number = build.number_of_instance[i];
+        instances_[i].world_from_object = pose.instances[i].world_from_object;
+        if (number == RT_NONE) continue;
+        std::copy_n(instances_[i].world_from_object.begin(), 12, placements_[number].world_from_object);
+        std::copy_n(moved_.inverses[k].begin(), 12, placements_[number].object_from_world);
+        first = std::min(first, number);
+        last = std::max(last, number);
+    }
+    if (first != RT_NONE) {
+        version_[0] = moves_ + 1;
+        send(pose_.placements, first * sizeof(DevicePlacement), (last - first + 1) * sizeof(DevicePlacement),
+             &placements_[first]);
+    }
+    for (const PosedMesh& mesh : pose.meshes)
+        set_vertices(mesh.mesh, mesh.positions.data(), mesh.normals.empty() ? nullptr : mesh.normals.data());
+    for (rt_u32 m = 0; m < is_deformed_.size(); ++m)
+        if (is_deformed_[m] && !is_posed_[m]) {
+            const size_t at = 3 * size_t(scene_->meshes[m].first_vertex);
+            set_vertices(m, &scene_->positions[at], normals_.empty() ? nullptr : &scene_->normals[at]);
+        }
+    is_deformed_ = is_posed_;
+    return {};
+}
+
+// Takes over the vertices of a mesh, if they differ from those that are there.
+void DeviceMotion::set_vertices(rt_u32 mesh, const float* positions, const float* normals) {
+    const rt_u32 group = built_->scene.group_of_mesh[mesh];
+    const Mesh& range = scene_->meshes[mesh];
+    const size_t at = 3 * size_t(range.first_vertex), bytes = 12 * size_t(range.vertex_count);
+    if (group == 0 || bytes == 0) return;
+    const bool moves = std::memcmp(&positions_[at], positions, bytes) != 0;
+    const bool turns = normals && !normals_.empty() && std::memcmp(&normals_[at], normals, bytes) != 0;
+    if (moves) {
+        std::memcpy(&positions_[at], positions, bytes);
+        send(pose_.positions, at * sizeof(float), bytes, &positions_[at]);
+    }
+    if (turns) {
+        std::memcpy(&normals_[at], normals, bytes);
+        send(pose_.normals, at * sizeof(float), bytes, &normals_[at]);
+    }
+    if (moves || turns) version_[group] = version_[0] = moves_ + 1;
+}
+
+void DeviceMotion::send(const cl::Buffer& to, size_t at, size_t bytes, const void* data) {
+    sent_.emplace_back();
+    device_->queue().enqueueWriteBuffer(to, CL_FALSE, at, bytes, data, nullptr, &sent_.back());
+}
+
+// A structure that nobody else holds: the oldest one. Frames that still read it on the device come before what is enqueued now.
+DeviceStructure& DeviceMotion::spare() {
+    const auto unused = std::find_if(structures_.begin(), structures_.end(),
+                                     [](const auto& structure) { return structure->on_device().use_count() == 1; });
+    std::unique_ptr<DeviceStructure> taken;
+    if (unused != structures_.end()) {
+        taken = std::move(*unused);
+        structures_.erase(unused);
+    } else {
+        if (structures_.size() == kCopies) structures_.pop_front();
+        taken = std::make_unique<DeviceStructure>(*groups_);
+    }
+    structures_.push_back(std::move(taken));
+    return *structures_.back();
+}
+
+// Brings a structure to the pose. Returns how many primitives were refitted.
+uint64_t DeviceMotion::refit(DeviceStructure& structure) {
+    uint64_t refitted = 0;
+    for (rt_u32 m = 0; !normals_.empty() && m < scene_->meshes.size(); ++m) {
+        const rt_u32 group = built_->scene.group_of_mesh[m];
+        if (group > 0 && structure.version[group] != version_[group])
+            structure.take_normals(scene_->meshes[m].first_vertex, scene_->meshes[m].vertex_count);
+    }
+    for (rt_u32 k = 1; k <= version_.size(); ++k) {
+        const rt_u32 g = k % static_cast<rt_u32>(version_.size());  // the world last: instances need the boxes of their meshes
+        if (structure.version[g] == version_[g]) continue;
+        structure.version[g] = 0;
+        structure.refit(g);
+        structure.version[g] = version_[g];
+        refitted += groups_->primitives(g);
+    }
+    return refitted;
+}
+
+void DeviceMotion::ask_for_costs() {
+    if (costs_known_() && costs_known_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() != CL_COMPLETE) return;
+    device_->queue().enqueueReadBuffer(pose_.costs, CL_FALSE, 0, costs_.size() * sizeof(float), costs_.data(), nullptr,
+                                       &costs_known_);
+}
+
+double DeviceMotion::worst_cost_ratio() {
+    double worst = 1;
+    if (costs_known_() && costs_known_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() != CL_COMPLETE) return last_ratio_;
+    for (size_t g = 0; g < costs_.size(); ++g)
+        if (built_costs_[g] > 0 && std::isfinite(costs_[g])) worst = std::max(worst, double(costs_[g]) / built_costs_[g]);
+    return last_ratio_ = worst;
+}
+
+MovedOnDevice DeviceMotion::move(const Pose& pose) {
+    const auto begin = std::chrono::steady_clock::now();
+    MovedOnDevice result;
+    result.why = cannot();
+    if (!result.why.empty()) return result;
+    return wrap_cl_errors(*device_, "moving the scene", [&] {
+        if (!started_) start();
+        result.worst_cost_ratio = worst_cost_ratio();
+        device_->queue().enqueueMarkerWithWaitList(nullptr, &result.begin);
+        result.why = place(pose);
+        if (!result.why.empty()) return result;
+        ++moves_;
+        DeviceStructure& structure = spare();
+        result.refitted = refit(structure);
+        ask_for_costs();
+        device_->queue().enqueueMarkerWithWaitList(nullptr, &result.end);
+        device_->queue().flush();
+        result.on_device = structure.on_device();
+        result.ms = ms_since(begin);
+        return result;
+    });
+}
+
+}  // namespace clarity

@@ -1,0 +1,87 @@
+// device_motion.hpp -- a structure on a device that follows the poses of its scene there.
+//
+//   DeviceMotion motion(device, scene, structure, on_device);   // of a finished build
+//   if (motion.cannot().empty()) {
+//       const MovedOnDevice moved = motion.move(evaluate(scene, clip, time));
+//       if (moved.on_device) draw it; else build a new one, for the reason moved.why
+//   }
+//
+// As MovingAccel, but leaves, boxes and trees are written by the device that traces them: the host sends vertices and transforms
+// that have changed, and enqueues kernels. It waits for nothing. Commands of earlier frames in the device's queue run before those
+// of the move, and commands of later frames after them.
+//
+// Memory on the device: 24 B a vertex, 12 B and 40 B of scratch a triangle, and up to three copies of leaves and nodes.
+#pragma once
+#include <deque>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/aligned_bytes.hpp"
+#include "render/moving/device_groups.hpp"
+#include "render/moving/moved_instances.hpp"
+#include "scene/motion/pose.hpp"
+
+namespace clarity {
+
+struct MovedOnDevice {
+    std::shared_ptr<const DeviceScene> on_device;  // nullptr: a full build is needed
+    std::string why;                               // why a build is needed; empty: it is not
+    // The greatest expected cost of a ray in any group, by that after the build; as far as the device has told it: of one of the last
+    // moves.
+    double worst_cost_ratio = 1;
+    uint64_t refitted = 0;  // primitives
+    double ms = 0;          // time of the call; the device goes on after it
+    cl::Event begin, end;   // of the device's work
+};
+
+// Used from one thread at a time, which may differ from that of frames.
+class DeviceMotion {
+ public:
+    // built: the structure of `scene`, which may be in any pose itself. on_device: its buffers. Throws Error.
+    DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
+                 std::shared_ptr<const DeviceScene> on_device, BuildForm form = BuildForm::automatic);
+    ~DeviceMotion();
+
+    // Why the structure can only be built anew: "accel linear does not offer a refit on the device"; empty: it can follow poses.
+    const std::string& cannot() const;
+
+    // Moves the structure to a pose of the same scene, as MovingAccel::move(). Throws Error(failed).
+    MovedOnDevice move(const Pose& pose);
+
+ private:
+    void start();
+    std::string place(const Pose& pose);
+    void set_vertices(rt_u32 mesh, const float* positions, const float* normals);
+    void send(const cl::Buffer& to, size_t at, size_t bytes, const void* data);
+    DeviceStructure& spare();
+    uint64_t refit(DeviceStructure& structure);
+    void ask_for_costs();
+    double worst_cost_ratio();
+
+    const std::shared_ptr<Device> device_;
+    const std::shared_ptr<const Scene> scene_;
+    const std::shared_ptr<const AccelData> built_;
+    const std::shared_ptr<const DeviceScene> on_device_;
+    BuildKernels kernels_;
+    DevicePose pose_;
+    std::unique_ptr<DeviceGroups> groups_;
+
+    // The pose, on the host.
+    std::vector<PosedInstance> instances_;  // of the Scene
+    std::vector<DevicePlacement> placements_;
+    MovedInstances moved_;
+    UninitializedVector<float> positions_, normals_;  // what was sent last; the device may read it until sent_ is complete
+    std::vector<uint8_t> is_posed_, is_deformed_;     // for each mesh: by the pose that is taken over, and by the last one
+    std::vector<uint64_t> version_;                   // of each group: the number of the move that changed it last
+    uint64_t moves_ = 0;
+    std::vector<cl::Event> sent_;
+
+    std::deque<std::unique_ptr<DeviceStructure>> structures_;
+    std::vector<float> costs_, built_costs_;  // of the groups; costs_ is written by the device until costs_known_
+    cl::Event costs_known_;
+    double last_ratio_ = 1;
+    bool started_ = false;
+};
+
+}  // namespace clarity

@@ -1,0 +1,26 @@
+// moved_instances.hpp -- which instances a pose moves, and whether a built structure can follow them.
+#pragma once
+#include <string>
+#include <vector>
+
+#include "render/accel/build_scene.hpp"
+#include "scene/motion/pose.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+struct MovedInstances {
+    std::string why;               // why a build is needed: "instance `door` is hidden"; empty: it is not
+    std::vector<rt_u32> numbers;   // of the Scene's instances that move
+    std::vector<Affine> inverses;  // object_from_world of each
+};
+
+// now: where the instances of `scene` are. build: the scene as its structure was built. moved: receives the result; its memory is
+// used again.
+void find_moved_instances(const Scene& scene, const BuildScene& build, const std::vector<PosedInstance>& now, const Pose& pose,
+                          MovedInstances& moved);
+
+// Empty, or why the pose's vertices are not those of the scene's meshes.
+std::string wrong_vertices(const Scene& scene, const Pose& pose);
+
+}  // namespace clarity

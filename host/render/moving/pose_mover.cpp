@@ -1,0 +1,80 @@
+#include "render/moving/pose_mover.hpp"
+
+#include <algorithm>
+
+#include "device/cl_errors.hpp"
+#include "render/moving/device_motion.hpp"
+#include "render/moving/moving_accel.hpp"
+
+namespace clarity {
+namespace {
+
+class HostMover : public PoseMover {
+ public:
+    HostMover(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built)
+        : moving_(std::move(scene), std::move(built)) {}
+    const std::string& cannot() const override { return moving_.cannot(); }
+    MovedStructure move(const Pose& pose, Progress& progress) override {
+        MovedAccel moved = moving_.move(pose, progress);
+        return {std::move(moved.accel), {}, std::move(moved.why), moved.worst_cost_ratio, moved.refitted, moved.ms};
+    }
+
+ private:
+    MovingAccel moving_;
+};
+
+class DeviceMover : public PoseMover {
+ public:
+    DeviceMover(std::shared_ptr<const AccelData> built,
+                std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMotion>>> motions)
+        : built_(std::move(built)), motions_(std::move(motions)) {}
+    const std::string& cannot() const override { return motions_.front().second->cannot(); }
+    bool on_devices() const override { return true; }
+    MovedStructure move(const Pose& pose, Progress& progress) override {
+        if (progress.cancelled()) throw Cancelled();
+        std::vector<MovedOnDevice> parts;
+        for (const auto& [device, motion] : motions_) {
+            parts.push_back(motion->move(pose));
+            if (!parts.back().on_device) return {nullptr, {}, parts.back().why};
+        }
+        MovedStructure moved;
+        moved.accel = built_;
+        for (size_t i = 0; i < parts.size(); ++i) {
+            const Device& device = *motions_[i].first;
+            wrap_cl_errors(device, "moving the scene", [&] {
+                parts[i].end.wait();
+                return 0;
+            });
+            moved.on_devices.emplace_back(motions_[i].first, parts[i].on_device);
+            moved.worst_cost_ratio = std::max(moved.worst_cost_ratio, parts[i].worst_cost_ratio);
+            moved.refitted = parts[i].refitted;
+            moved.ms = std::max(moved.ms, span_ms(parts[i].begin, parts[i].end, parts[i].ms));
+        }
+        return moved;
+    }
+
+ private:
+    const std::shared_ptr<const AccelData> built_;
+    std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMotion>>> motions_;
+};
+
+}  // namespace
+
+std::unique_ptr<PoseMover> make_host_mover(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built) {
+    return std::make_unique<HostMover>(std::move(scene), std::move(built));
+}
+
+std::unique_ptr<PoseMover> make_device_mover(
+    std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
+    const std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>>& on_devices, std::string* why) {
+    std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMotion>>> motions;
+    for (const auto& [device, on_device] : on_devices) {
+        motions.emplace_back(device, std::make_unique<DeviceMotion>(device, scene, built, on_device));
+        *why = motions.back().second->cannot();
+        if (!why->empty()) return nullptr;
+    }
+    if (motions.empty()) return nullptr;
+    return std::make_unique<DeviceMover>(std::move(built), std::move(motions));
+}
+
+}  // namespace clarity

@@ -1,0 +1,130 @@
+/* rt_device.h -- the extension `device_build`, version 1: structures that are built, or refitted, on the device that traces them. A
+ * draft: it is not frozen yet, and not installed with the SDK.
+ *
+ * A plugin does not build there itself: it makes a *plan*, once, for a number of primitives. A plan is a list of steps: kernels of the
+ * plugin's own, and sorts, scans and reductions of the host's. The host takes the plan's memory once, and carries the plan out each
+ * time the primitives have moved. So a rebuild runs no code of the plugin, allocates nothing and sends nothing to the host and back.
+ *
+ * A structure that builds only a topology (rt_accel::topology) plans that; its layout (rt_accel::pack) plans the nodes that it
+ * traces, and their refit. A plugin with slots and a builder of its own may have all. A plugin that has an rt_device_build has the
+ * same build on the host, for devices that cannot run it.
+ *
+ * Kernels are OpenCL C 1.2 behind cl/build/groups.h (RT_BUILD_KERNEL, RT_GROUP work-items a group, RT_ITEM, RT_GROUP_NUMBER) and
+ * cl/build/blocks.h. No group may wait for another, and nothing that a group writes is read by another group of the same launch; the
+ * steps of a plan run one after the other. RT_GROUP is 1 on a CPU, so each kernel must be right for any power of two up to 256.
+ *
+ * Structs grow as those of rt_plugin.h do. */
+#ifndef RT_DEVICE_H
+#define RT_DEVICE_H
+#include "rt_plugin.h"
+
+#define RT_DEVICE_BUILD "device_build"
+#define RT_DEVICE_BUILD_VERSION 1u
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* An argument of a kernel: a buffer, or a number if buffer is RT_NONE. 8 B; it never grows. */
+typedef struct rt_device_arg {
+    rt_u32 buffer; /* as rt_device_plan::buffer returned it */
+    rt_u32 value;
+} rt_device_arg;
+
+/* The host's side of a plan. Calls that return int32_t return RT_OK, or RT_FAILED with the error recorded: then return RT_FAILED. */
+typedef struct rt_device_plan {
+    rt_u32 struct_bytes;
+    rt_u32 group_items; /* RT_GROUP */
+    rt_u32 units;       /* compute units of the device */
+    rt_u32 pad;
+    void *ctx;
+    /* Memory of the plan, of unknown content; it keeps its content from step to step. RT_NONE: failed. */
+    rt_u32 (*buffer)(void *ctx, uint64_t bytes);
+    /* A step: `groups` work-groups of a kernel of this plugin. */
+    int32_t (*launch)(void *ctx, const char *kernel, rt_u32 groups, const rt_device_arg *args, rt_u32 arg_count);
+    /* A step: the first `words` uints of a buffer become `value`. */
+    int32_t (*fill)(void *ctx, rt_u32 buffer, uint64_t words, rt_u32 value);
+    /* A step: sorts keys (ulong) and values (uint) by the lowest `bits` bits of the keys; pairs with equal bits keep their order. */
+    int32_t (*sort)(void *ctx, rt_u32 keys, rt_u32 values, uint64_t count, rt_u32 bits);
+    /* A step: each uint becomes the sum of those before it. */
+    int32_t (*scan)(void *ctx, rt_u32 data, uint64_t count);
+    /* A step: the bounds of `count` boxes (rt_prim) as 12 floats: least corner of the boxes and of their centres lo / 2 + hi / 2, then
+     * the greatest. */
+    int32_t (*bounds)(void *ctx, rt_u32 boxes, uint64_t count, rt_u32 result);
+    /* A step: the blocks (rt_block) of `count` boxes (rt_prim). order: a buffer of uint, which box stands at each place; RT_NONE: as
+     * they are. Returns their buffer; RT_NONE: failed. */
+    rt_u32 (*blocks)(void *ctx, rt_u32 boxes, rt_u32 order, uint64_t count);
+} rt_device_plan;
+
+typedef struct rt_device_input {
+    rt_u32 struct_bytes;
+    rt_u32 prims;    /* buffer of `count` rt_prim: one group; their boxes are finite, and lo is never above hi */
+    uint64_t count;  /* 0 or more */
+    const double *params; /* the plugin's own */
+} rt_device_input;
+
+/* A binary tree over one group on the device. A tree of n primitives has n - 1 inner nodes, the first of which is the root. A child is
+ * the index of an inner node, or RT_TOPOLOGY_LEAF | a place in `order`. With one primitive or none there are no nodes. */
+typedef struct rt_device_topology {
+    rt_u32 struct_bytes;
+    rt_u32 nodes;  /* buffer of rt_topology_node: the box of all that is below, left and right child */
+    rt_u32 counts; /* buffer of uint, for each inner node: primitives below it */
+    rt_u32 order;  /* buffer of uint: the number of the primitive at each place, 0 .. count - 1 */
+    rt_u32 depth;  /* inner nodes on the way from the root to a leaf, at most, whatever the boxes are */
+    rt_u32 pad;
+} rt_device_topology;
+
+/* The tree of one group in the layout's slots, which hold the trees of all groups. */
+typedef struct rt_device_tree {
+    rt_u32 struct_bytes, slot_count;
+    const rt_u32 *slots;           /* buffers */
+    const uint64_t *first_element; /* of each slot (for refit: of slot 0): where this tree's elements begin */
+    const uint64_t *element_count; /* and how many there are at most */
+    rt_u32 root;                   /* element of slot 0 */
+    rt_u32 first_leaf;             /* position of the group's first primitive in leaf order */
+    uint64_t count;                /* of its primitives; they stand side by side in leaf order */
+    /* Buffer of two uints for each element of slot 0: of a node the first position below it, counted from first_leaf, and the number
+     * of positions; of what is no node 0, 0. */
+    rt_u32 ranges;
+    rt_u32 pad;
+} rt_device_tree;
+
+/* The output of `pack`. */
+typedef struct rt_device_output {
+    rt_u32 struct_bytes;
+    rt_u32 leaves; /* buffer of uint, to be written: the numbers of the primitives in leaf order */
+    void *ctx;
+    void (*root)(void *ctx, rt_u32 element);
+    void (*define)(void *ctx, const char *name, rt_u32 value);
+} rt_device_output;
+
+/* The ranges of a tree that was built on the host; in host memory. */
+typedef struct rt_tree_ranges {
+    rt_u32 struct_bytes, pad;
+    uint64_t first_element, element_count; /* of slot 0, to be written: where the nodes of the group are */
+    rt_u32 *ranges; /* two for each element of slot 0, all 0: to be written as in rt_device_tree, but counted from 0 */
+} rt_tree_ranges;
+
+/* At least one of topology and pack is not NULL; elements goes with pack, ranges with refit. */
+typedef struct rt_device_build {
+    rt_u32 struct_bytes, pad;
+    rt_cl_file kernels; /* "<id>_build.cl" */
+    int32_t (*topology)(const rt_host *, const rt_device_plan *, const rt_device_input *, rt_device_topology *);
+    /* The most elements of a slot that a tree of `count` primitives takes. */
+    uint64_t (*elements)(rt_u32 slot, uint64_t count, const double *params);
+    /* Writes the tree: nodes, ranges and leaf order. tree->root is not given: it is reported. */
+    int32_t (*pack)(const rt_host *, const rt_device_plan *, const rt_device_input *, const rt_device_topology *,
+                    const rt_device_tree *, const rt_device_output *);
+    /* Finds the ranges of one group of a finished build. RT_FAILED if its positions do not stand side by side. */
+    int32_t (*ranges)(const rt_host *, const rt_built *, rt_u32 group, rt_tree_ranges *);
+    /* Writes the bounding volumes of a tree again. blocks: of the boxes of its primitives in leaf order. costs: buffer of a float for
+     * each element of slot 0 of the tree, to be written: its share of the expected cost of a ray, times the area of its tree's box;
+     * of what is no node 0. */
+    int32_t (*refit)(const rt_host *, const rt_device_plan *, const rt_device_tree *, rt_u32 blocks, rt_u32 costs,
+                     const double *params);
+} rt_device_build;
+
+#ifdef __cplusplus
+}
+#endif
+#endif

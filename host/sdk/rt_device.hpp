@@ -1,0 +1,62 @@
+// rt_device.hpp -- rt_device.h for C++: the steps of a plan.
+#pragma once
+#include <cstring>
+#include <initializer_list>
+
+#include "rt_device.h"
+
+namespace rt {
+
+// Adds steps to a plan until one fails; the host has then recorded why. Without an exception: `return steps.result();`.
+class DeviceSteps {
+ public:
+    explicit DeviceSteps(const rt_device_plan* plan) : plan_(plan) {}
+    rt_u32 buffer(uint64_t bytes) {
+        const rt_u32 made = ok_ ? plan_->buffer(plan_->ctx, bytes) : RT_NONE;
+        ok_ = ok_ && made != RT_NONE;
+        return made;
+    }
+    void launch(const char* kernel, uint64_t groups, std::initializer_list<rt_device_arg> args) {
+        step(plan_->launch, kernel, static_cast<rt_u32>(groups), args.begin(), static_cast<rt_u32>(args.size()));
+    }
+    void fill(rt_u32 buffer, uint64_t words, rt_u32 value) { step(plan_->fill, buffer, words, value); }
+    void sort(rt_u32 keys, rt_u32 values, uint64_t count, rt_u32 bits) { step(plan_->sort, keys, values, count, bits); }
+    void scan(rt_u32 data, uint64_t count) { step(plan_->scan, data, count); }
+    void bounds(rt_u32 boxes, uint64_t count, rt_u32 result) { step(plan_->bounds, boxes, count, result); }
+    rt_u32 blocks(rt_u32 boxes, rt_u32 order, uint64_t count) {
+        const rt_u32 made = ok_ ? plan_->blocks(plan_->ctx, boxes, order, count) : RT_NONE;
+        ok_ = ok_ && made != RT_NONE;
+        return made;
+    }
+    int32_t result() const { return ok_ ? RT_OK : RT_FAILED; }
+
+ private:
+    template <class Call, class... Args>
+    void step(Call call, Args... args) {
+        if (ok_) ok_ = call(plan_->ctx, args...) == RT_OK;
+    }
+    const rt_device_plan* const plan_;
+    bool ok_ = true;
+};
+
+// Arguments of kernels.
+inline rt_device_arg of(rt_u32 buffer) {
+    return {buffer, 0};
+}
+inline rt_device_arg number(uint64_t value) {
+    return {RT_NONE, static_cast<rt_u32>(value)};
+}
+
+inline rt_device_arg real(float value) {
+    rt_device_arg arg{RT_NONE, 0};
+    std::memcpy(&arg.value, &value, sizeof value);
+    return arg;
+}
+
+// The elements that a work-group takes in kernels that do the same for each: one for each work-item, or many where a work-item
+// does a group's work.
+inline uint64_t elements_each(const rt_device_plan* plan) {
+    return plan->group_items > 1 ? plan->group_items : 4096;
+}
+
+}  // namespace rt
