@@ -18,13 +18,14 @@
 #include "base/log.hpp"
 #include "cli/commands.hpp"
 #include "cli/frame_range.hpp"
+#include "cli/frame_scene.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "cli/render_progress.hpp"
 #include "cli/render_stats.hpp"
 #include "device/kernel_watch.hpp"
-#include "import/sequence_reader.hpp"
 #include "plugin/library_watch.hpp"
+#include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
 
 namespace clarity {
@@ -57,25 +58,16 @@ void check_options(const RenderOptions& options, const Settings& settings, const
     make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
 }
 
-// The time and the clip of the options; where they are silent, those of the preset.
-PoseOptions chosen_pose(const RenderOptions& options, const PoseTime& preset) {
-    PoseOptions pose = options.pose;
-    if (!pose.time_s && pose.clip.empty() && options.frames.empty()) pose.time_s = preset.time_s;
-    if (pose.clip.empty()) pose.clip = preset.clip;
-    return pose;
-}
-
 class RenderJob {
  public:
     RenderJob(const PluginRegistry& plugins, const RenderOptions& options)
         : options_(options),
           words_(read_trace_options(plugins, options.trace)),
           settings_(words_.settings),
-          pose_(chosen_pose(options, words_.pose)),
           range_(options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames)),
           plugins_(plugins),
           bar_(options.quiet),
-          sequences_(plugins, options.scene.import, bar_) {
+          scene_(plugins, options, words_, bar_) {
         stats_.files = options.scene.files;
         stats_.settings = settings_;
     }
@@ -94,13 +86,12 @@ class RenderJob {
  private:
     // Imports, builds and compiles what is not up to date, then renders all pictures.
     Exit round(Progress& progress) {
-        if (!file_scene_) import(progress);
-        // Frames of a scene that moves show it at times of their own.
-        const bool moving = !options_.frames.empty() && !pose_.time_s && moves(*file_scene_);
+        if (!scene_.imported()) import(progress);
+        const bool moving = scene_.follows_frames();
         MultiFrameRenderer frames(devices_);
         long rendered = 0;
         for (auto number = next(range_.first); number; number = next(long(*number) + range_.step), ++rendered) {
-            if (moving || !scene_) place(moving ? number : std::nullopt);
+            if (moving || !scene_.placed()) scene_.place(moving ? number : std::nullopt);
             if (moving || rendered == 0) prepare(progress);
             const bool whole = render(frames, *number, progress);
             if (!whole) return Exit::interrupted;
@@ -156,7 +147,7 @@ class RenderJob {
                 const FileWatch& from = scenes.revision() != scenes_seen ? scenes : *kernels;
                 for (const std::string& path : from.last_changed()) log(LogLevel::info, "changed: " + path);
             }
-            if (scenes.revision() != scenes_seen) file_scene_.reset();
+            if (scenes.revision() != scenes_seen) scene_.take(nullptr);
             // The new library of a structure may have other kernel files.
             if (take_libraries(libraries)) kernels = std::make_unique<KernelWatch>(plugins_.accels(), changed);
         }
@@ -170,7 +161,7 @@ class RenderJob {
             if (!library.now) {
                 log(LogLevel::error, library.why);
             } else if (library.now->importer) {
-                file_scene_.reset();
+                scene_.take(nullptr);
             } else {
                 structures = true;
                 if (library.before && words_.settings.accel == library.now->id)
@@ -213,6 +204,7 @@ class RenderJob {
 
     // A device closes when its last owner releases it, so everything which holds one goes first.
     void reopen_devices() {
+        blur_.reset();
         prepared_.reset();
         stats_.prepared.reset();
         take_devices({});
@@ -222,31 +214,17 @@ class RenderJob {
 
     void import(Progress& progress) {
         const auto begin = Clock::now();
-        file_scene_ = std::make_shared<const Scene>(
-            import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress));
+        scene_.take(std::make_shared<const Scene>(
+            import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress)));
         stats_.import_ms = ms_since(begin);
-        scene_.reset();
-    }
-
-    // Takes the scene at the time of a frame, or at the one that the options name.
-    void place(std::optional<int> frame) {
-        PoseOptions pose = pose_;
-        if (frame) pose.time_s = time_of_frame(*frame, frame_rate(find_clip(*file_scene_, pose.clip), options_.fps));
-        const bool at_rest = !pose.time_s && pose.clip.empty();
-        auto scene = at_rest ? file_scene_ : std::make_shared<const Scene>(at_pose(*file_scene_, pose, std::ref(sequences_)));
-        const float aspect = float(settings_.width) / float(settings_.height);
-        EditedView edited;
-        edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);
-        for (const Word& word : words_.edits) apply_edit(*scene, edited, word.key, word.value);
-        view_ = visible_view(edited);
-        if (!edited.hidden.empty()) scene = std::make_shared<const Scene>(without_instances(*scene, edited.hidden));
-        scene_ = std::move(scene);
     }
 
     void prepare(Progress& progress) {
         if (!preparer_) preparer_ = std::make_unique<MultiPreparer>(plugins_, devices_);
-        prepared_ = preparer_->prepare(scene_, settings_, progress);
+        blur_.reset();
+        prepared_ = preparer_->prepare(scene_.scene(), settings_, progress);
         stats_.prepared = prepared_->first();
+        blur_ = scene_.blur(prepared_, *preparer_);
         const Prepared& prepared = *stats_.prepared;
         char line[160];
         std::snprintf(line, sizeof line, "import %.0f ms, build %.0f ms, upload %.0f ms, compile %.0f ms%s", stats_.import_ms,
@@ -282,6 +260,19 @@ class RenderJob {
         return whole;
     }
 
+    FrameStats trace_samples(MultiFrameRenderer& frames, unsigned first, unsigned how_many, bool count, Progress& progress) {
+        if (!blur_) return frames.trace(prepared_, settings_, scene_.view(), first, count, progress, how_many);
+        FrameStats stats;
+        for (unsigned i = first; i < first + how_many; ++i) {
+            PartOf part(progress, double(i - first) / how_many, 1.0 / how_many);
+            const MotionBlur::Sample& sample = blur_->at(i, scene_.view(), part);
+            const FrameStats one = frames.trace(sample.prepared, settings_, scene_.view(sample), i, count, part);
+            add_stats(stats, one);
+            add_shares(stats.devices, one.devices);
+        }
+        return stats;
+    }
+
     // Traces all samples of one frame. Returns the number of complete samples.
     unsigned trace_pass(MultiFrameRenderer& frames, bool count, bool timed, double from, double share, Progress& progress) {
         if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
@@ -296,9 +287,11 @@ class RenderJob {
             PartOf part(progress, at, share * next / all);
             FrameStats frame;
             try {
-                frame = frames.trace(prepared_, settings_, view_, sample, count, part, next);
+                frame = trace_samples(frames, sample, next, count, part);
             } catch (const Cancelled&) {
                 return frames.samples();
+            } catch (const SamplesLost&) {
+                return trace_pass(frames, count, timed, from, share, progress);
             }
             device_ms += frame.device_ms;
             wall_ms += frame.wall_ms;
@@ -372,17 +365,15 @@ class RenderJob {
     const Clock::time_point begin_ = Clock::now();
     TraceWords words_;
     const Settings& settings_;
-    const PoseOptions pose_;
     const FrameRange range_;
     const PluginRegistry& plugins_;
     ProgressBar bar_;
     Devices devices_;
-    std::function<bool()> superseded_;                 // with --watch: true if a save has made this round obsolete
-    std::shared_ptr<const Scene> file_scene_, scene_;  // as imported; as shown
-    import::SequenceReader sequences_;
-    View view_;
+    std::function<bool()> superseded_;  // with --watch: true if a save has made this round obsolete
+    FrameScene scene_;
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;
+    std::unique_ptr<MotionBlur> blur_;  // nullptr: all samples of a picture are at one time
     RenderStats stats_;
 };
 

@@ -186,6 +186,80 @@ TEST_F(Timeline, PlaysAndSteps) {
     EXPECT_EQ(window->state()["undo"], "Loop range");
 }
 
+// The samples of a picture that stands still are at times of their own, as the command line makes them.
+TEST_F(Timeline, BlursWhatStandsStill) {
+    const auto window = open_moving({"--spp", "8"});
+    ASSERT_EQ(window->command("time 0.75"), "");
+    window->settle();
+    const Pixels sharp = window->picture();
+    ASSERT_EQ(window->command("set shutter 1"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["samples"], 8);
+    EXPECT_GT(difference(window->picture(), sharp), 0.001);
+    expect_as_command(*window);
+    // Another number of samples has other times.
+    ASSERT_EQ(window->command("set spp 12"), "");
+    window->settle();
+    expect_as_command(*window);
+    EXPECT_EQ(window->state()["message"], "");
+}
+
+TEST_F(Timeline, TheCameraGoesFromKeyToKey) {
+    const auto window = open_moving();
+    ASSERT_EQ(window->command("time 0"), "");
+    ASSERT_EQ(window->command("edit camera 0,2,7,0,0.5,0,40,0,1,0"), "");
+    window->settle();
+    window->click_on("camera key");
+    ASSERT_EQ(window->command("time 1"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["eye"], nlohmann::json({0, 2, 7})) << "one key: the camera rests";
+    ASSERT_EQ(window->command("edit camera 2,2,7,0,0.5,0,40,0,1,0"), "");
+    window->click_on("camera key");
+    EXPECT_EQ(timeline(*window)["camera_keys"], nlohmann::json({0.0, 1.0}));
+    ASSERT_EQ(window->command("time 0.5"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["eye"], nlohmann::json({1, 2, 7}));
+    expect_as_command(*window);
+    // Between keys the camera may be moved, until another time is shown. The command then has both.
+    ASSERT_EQ(window->command("edit camera 0,5,7,0,0.5,0,40,0,1,0"), "");
+    window->settle();
+    expect_as_command(*window);
+    const std::string preset = folder.path() + "/path.json";
+    ASSERT_EQ(window->command("save_preset " + preset), "");
+    ASSERT_EQ(window->command("time 1"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["eye"], nlohmann::json({2, 2, 7}));
+    window->click_on("camera key");  // the camera stands on it: takes it away
+    EXPECT_EQ(timeline(*window)["camera_keys"], nlohmann::json({0.0}));
+    EXPECT_EQ(window->state()["undo"], "Camera path");
+    window->key("ctrl+z");
+    EXPECT_EQ(timeline(*window)["camera_keys"], nlohmann::json({0.0, 1.0}));
+    ASSERT_EQ(window->command("camera_key remove"), "");
+    ASSERT_EQ(window->command("load_preset " + preset), "");
+    window->settle();
+    EXPECT_EQ(timeline(*window)["camera_keys"], nlohmann::json({0.0, 1.0}));
+    EXPECT_EQ(window->state()["eye"], nlohmann::json({0, 5, 7}));
+}
+
+// A scene that does not move gets a timeline with the first key.
+TEST_F(Timeline, AStillSceneHasOneForItsCamera) {
+    std::ofstream(scene) << "camera main eye 0 2 7\nlight point position -3 5 4\nplane\nsphere center 0 1 0\n";
+    const auto window = open_moving();
+    EXPECT_EQ(timeline(*window)["clips"], nlohmann::json::array());
+    ASSERT_EQ(window->command("camera_key set"), "");
+    window->settle();
+    EXPECT_EQ(timeline(*window)["loop"], nlohmann::json({0.0, 10.0}));
+    ASSERT_EQ(window->command("time 4"), "");
+    window->settle();
+    ASSERT_EQ(window->command("edit camera 4,2,7,0,0,0,45,0,1,0"), "");
+    ASSERT_EQ(window->command("camera_key set"), "");
+    ASSERT_EQ(window->command("time 2"), "");
+    window->settle();
+    EXPECT_EQ(window->state()["eye"], nlohmann::json({2, 2, 7}));
+    expect_as_command(*window);
+    EXPECT_EQ(window->state()["message"], "");
+}
+
 TEST_F(Timeline, ScrubbingWhileStructuresAreBuiltShowsOnlyWholePoses) {
     const auto window = open_moving({"--plugin", SLOW_BUILDER, "--accel", "slow_median"});
     ASSERT_EQ(window->command("moving_fps 0"), "");  // so that all pictures have all pixels

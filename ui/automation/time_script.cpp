@@ -22,7 +22,9 @@ std::string timeline_text(const Session& session) {
                            {"time_s", time_json(desired.pose.time_s)},
                            {"loop", desired.loop},
                            {"speed", desired.speed},
-                           {"playing", session.playback().playing()}};
+                           {"playing", session.playback().playing()},
+                           {"camera_keys", nlohmann::json::array()}};
+    for (const CameraKey& key : desired.camera_path.keys) json["camera_keys"].push_back(key.time_s);
     for (const ClipInfo& clip : session.playback().clips()) json["clips"].push_back(clip.name);
     if (const auto picture = session.picture()) json["shown_s"] = time_json(picture->job.ready->request.pose.time_s);
     return json.dump();
@@ -46,9 +48,9 @@ bool run_time_command(ScriptedWindow& window, const std::string& command, const 
     Session& session = window.session;
     Playback& playback = session.playback();
     const bool known = command == "play" || command == "time" || command == "clip" || command == "step" || command == "loop" ||
-                       command == "speed" || command == "timeline";
+                       command == "speed" || command == "timeline" || command == "camera_key";
     if (!known) return false;
-    if (!playback.any() && command != "timeline") throw Error(Exit::usage, "the scene has no clips");
+    if (!playback.any() && command != "timeline" && command != "camera_key") throw Error(Exit::usage, "the scene has no clips");
     if (command == "play") {
         text == "1" ? playback.play(session.desired) : playback.pause(session.desired);
     } else if (command == "time") {
@@ -62,6 +64,8 @@ bool run_time_command(ScriptedWindow& window, const std::string& command, const 
         const size_t space = text.find(' ');
         if (space == std::string::npos) throw Error(Exit::usage, "`loop A B` needs two times");
         playback.set_loop(session.desired, number_of(text.substr(0, space)), number_of(text.substr(space + 1)));
+    } else if (command == "camera_key") {
+        text == "remove" ? session.remove_camera_key() : session.set_camera_key();
     } else if (command == "speed") {
         session.desired.speed = static_cast<float>(number_of(text));
     } else {

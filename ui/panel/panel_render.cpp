@@ -19,7 +19,7 @@ struct Group {
 const std::vector<Group>& groups() {
     static const std::vector<Group> all = {
         {"TRACING", {"tracer", "depth", "packet", "lanes", "ray_slots", "shadows", "min_weight", "poses"}, false},
-        {"PICTURE", {"size", "spp", "aov", "scale_max", "exposure", "tone"}, true},
+        {"PICTURE", {"size", "spp", "shutter", "aov", "scale_max", "exposure", "tone"}, true},
     };
     return all;
 }

@@ -90,6 +90,18 @@ void camera_rows(Session& session, UiState& state) {
     if (button("Show all", "all of the scene, or what is selected, comes into view (G)", half)) session.frame_selection();
     ImGui::SameLine();
     if (button("Reset view", "the scene's own camera, lights and materials again (Home)", half)) session.reset_view();
+    CameraPath& path = session.desired.camera_path;
+    if (button("Set camera key",
+               "the camera is here at the time of the timeline; with a key at another time it moves from one to the other. A "
+               "scene that does not move gets a timeline of ten seconds",
+               half))
+        session.set_camera_key();
+    ImGui::SameLine();
+    const std::string keys = path.empty() ? "no keys" : "Clear " + plural(path.keys.size(), "key");
+    if (path.empty())
+        dim_text(keys);
+    else if (button(keys.c_str(), "takes the camera's path away; Ctrl+Z brings it back", half))
+        path = {};
 }
 
 }  // namespace

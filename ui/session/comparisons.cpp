@@ -58,7 +58,7 @@ bool displays_same(const Settings& a, const Settings& b) {
 }
 
 bool is_shared(const std::string& key) {
-    return key == "size" || key == "spp" || key == "aov" || only_displays(key);
+    return key == "size" || key == "spp" || key == "shutter" || key == "aov" || only_displays(key);
 }
 
 }  // namespace clarity::ui

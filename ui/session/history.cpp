@@ -37,6 +37,7 @@ std::vector<std::string> differences(const DesiredState& a, const DesiredState& 
         names.push_back("Clip");
     else if (a.loop != b.loop)
         names.push_back("Loop range");
+    if (!(a.camera_path == b.camera_path)) names.push_back("Camera path");
     if (a.speed != b.speed) names.push_back("Speed");
     if (a.resolution_scale != b.resolution_scale) names.push_back("Resolution");
     if (a.moving_fps != b.moving_fps) names.push_back("Frames/s while moving");

@@ -22,13 +22,25 @@ bool within(double time_s, const std::array<double, 2>& loop) {
 
 void Playback::open(const Scene& scene, DesiredState& desired) {
     clips_ = playable_clips(scene);
-    playing_ = held_ = false;
+    playing_ = held_ = has_stage_ = false;
     desired.pose = {};
     desired.loop = {};
     desired.speed = 1;
     if (!any()) return;
     desired.pose.clip = clips_.front().name;
     desired.loop = {clips_.front().begin_s, clips_.front().end_s};
+}
+
+void Playback::offer_stage(DesiredState& desired, double until_s) {
+    constexpr double kSeconds = 10;
+    if (any() && !has_stage_) return;
+    const double end_s = std::max(kSeconds, std::ceil(until_s));
+    if (has_stage_ && clips_.front().end_s >= end_s) return;
+    has_stage_ = true;
+    clips_ = {ClipInfo()};
+    clips_.front().end_s = end_s;
+    desired.pose.clip.clear();
+    desired.loop = {0, end_s};
 }
 
 bool Playback::has(const std::string& clip) const {

@@ -15,6 +15,8 @@ class Playback {
  public:
     // Takes the clips of a new scene, which is at rest at first.
     void open(const Scene& scene, DesiredState& desired);
+    // Gives a scene without clips a stretch of time for a camera that moves: 10 s, and up to this time. Does nothing to others.
+    void offer_stage(DesiredState& desired, double until_s);
     bool any() const { return !clips_.empty(); }
     const std::vector<ClipInfo>& clips() const { return clips_; }
     bool has(const std::string& clip) const;
@@ -41,7 +43,8 @@ class Playback {
  private:
     std::vector<ClipInfo> clips_;
     bool playing_ = false, held_ = false;
-    double last_s_ = 0;  // of the steady clock
+    bool has_stage_ = false;  // the only clip is none of the scene
+    double last_s_ = 0;       // of the steady clock
 };
 
 }  // namespace clarity::ui

@@ -177,7 +177,9 @@ void Session::post_frame() {
     if (ready_->main.settings.aov != "color") job.settings.spp = 1;
     job.other_settings.reset();
     if (desired.other) job.other_settings = desired.other->settings;
-    job.view = visible_view(edited_view(desired));
+    EditedView edited = edited_view(desired);
+    job.view = visible_view(edited);
+    job.camera_path = edited.follows_path ? std::move(edited.camera_path) : CameraPath();
     job.continuous = desired.continuous;
     job.resolution_scale = std::clamp(desired.resolution_scale, 0.05f, 4.0f);
     const bool first = !posted_job_.ready;
@@ -187,7 +189,13 @@ void Session::post_frame() {
     if (moved) moved_at_s_ = now;
     moving_ = (now - moved_at_s_ < kMovingSeconds || playback_.playing()) && !sequence_.running();
     job.moving_fps = moving_ ? desired.moving_fps : 0;
-    const bool anew = first || moved || job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
+    // Pictures that are gone at once are not blurred.
+    const bool blurred = blurs(job.settings) && job.ready->request.pose.time_s && playback_.any() && !moving_;
+    job.open_s = blurred ? job.settings.shutter / playback_.fps(desired) : 0;
+    const bool other_times =
+        job.open_s != posted_job_.open_s ||
+        (blurred && (job.settings.spp != posted_job_.settings.spp || !(job.camera_path == posted_job_.camera_path)));
+    const bool anew = first || moved || other_times || job.ready != posted_job_.ready || !same_frames(job, posted_job_) ||
                       job.settings.spp < posted_job_.settings.spp || job.resolution_scale != posted_job_.resolution_scale;
     const bool shown = first || !displays_same(job.settings, posted_job_.settings);
     const bool other = job.settings.spp != posted_job_.settings.spp || job.continuous != posted_job_.continuous ||
@@ -280,6 +288,7 @@ void Session::take_libraries() {
 
 void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     const std::shared_ptr<const Ready> before = std::exchange(ready_, ready);
+    follow_path();
     if (viewed_files_revision_ == ready->loaded->files_revision) return follow_pose(*before);
     const bool same_files = viewed_files_revision_ != 0 && ready->loaded->files_revision == reread_files_revision_;
     viewed_files_revision_ = ready->loaded->files_revision;
@@ -287,6 +296,7 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     const Camera camera = desired.camera;
     const PoseTime pose = desired.pose;
     playback_.open(*ready->loaded->scene, desired);
+    if (!same_files) desired.camera_path = {};
     reset_view();
     if (same_files) {
         desired.camera = camera;
@@ -329,6 +339,26 @@ void Session::follow_pose(const Ready& before) {
     if (number < std::min(before.cameras.size(), ready_->cameras.size())) desired.camera = ready_->cameras[number];
     follow_lights(desired, before.lights, ready_->lights);
     history_.lights_moved(before.lights, ready_->lights);
+}
+
+// The camera is on its path whenever another time is shown. In between the user may move it, to set another key.
+void Session::follow_path() {
+    const std::optional<double> time_s = ready_->request.pose.time_s;
+    if (std::exchange(path_time_s_, time_s) == time_s || !time_s || desired.camera_path.empty()) return;
+    desired.camera = desired.camera_path.at(*time_s);
+}
+
+void Session::set_camera_key() {
+    if (!playback_.any()) playback_.offer_stage(desired, 0);
+    if (!desired.pose.time_s) playback_.show(desired, desired.loop[0]);
+    playback_.pause(desired);
+    desired.camera_path.set(*desired.pose.time_s, desired.camera);
+}
+
+void Session::remove_camera_key() {
+    if (!desired.pose.time_s) return;
+    const int key = desired.camera_path.key_at(*desired.pose.time_s);
+    if (key >= 0) desired.camera_path.keys.erase(desired.camera_path.keys.begin() + key);
 }
 
 void Session::toggle_playing() {

@@ -84,6 +84,9 @@ class Session {
     const Playback& playback() const { return playback_; }
     // Plays the clip, or pauses it.
     void toggle_playing();
+    // Sets a key of the camera's path at the time that is shown, or takes it away. A scene without clips gets a timeline.
+    void set_camera_key();
+    void remove_camera_key();
 
     // Traces the rays of a pixel of the newest picture for the inspector.
     void inspect(unsigned x, unsigned y);
@@ -145,6 +148,7 @@ class Session {
     void post_request();
     void post_frame();
     void follow_pose(const Ready& before);  // the file's lights, and its camera if the user looks through one
+    void follow_path();
     void show_first_pose();
     View first_view() const;  // of the scene in its pose
     void follow_main();       // copies the shared settings of the main side to the other side
@@ -171,6 +175,7 @@ class Session {
     History history_;
     Sequence sequence_;
     Playback playback_;
+    std::optional<double> path_time_s_;  // for which the camera was set to its path
     bool moving_ = false;
     double moved_at_s_ = -1e9;
     uint64_t pick_request_ = 0, picked_request_ = 0;

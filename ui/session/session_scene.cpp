@@ -87,7 +87,11 @@ void Session::hide(rt_u32 instance, bool hidden) {
 }
 
 void Session::reset_view() {
-    if (ready_) adopt_view({first_view(), {}, {}});
+    if (!ready_) return;
+    EditedView edited;
+    edited.view = first_view();
+    edited.camera_path = desired.camera_path;
+    adopt_view(edited);
 }
 
 View Session::first_view() const {
@@ -107,6 +111,11 @@ void Session::adopt_view(const EditedView& edited) {
     const Scene& scene = *ready_->loaded->scene;
     const View& view = edited.view;
     desired.camera = view.camera;
+    desired.camera_path = edited.camera_path;
+    if (!desired.camera_path.empty()) playback_.offer_stage(desired, desired.camera_path.keys.back().time_s);
+    if (edited.follows_path)
+        desired.camera = desired.camera_path.at(desired.pose.time_s.value_or(desired.camera_path.keys.front().time_s));
+    path_time_s_.reset();
     desired.background = view.background;
     desired.ambient = view.ambient;
     desired.materials = view.materials;

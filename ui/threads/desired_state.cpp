@@ -13,6 +13,11 @@ EditedView edited_view(const DesiredState& desired) {
         edited.lights_on.push_back(light.on);
     }
     edited.hidden = desired.hidden;
+    edited.camera_path = desired.camera_path;
+    if (desired.pose.time_s && !desired.camera_path.empty()) {
+        CameraKey key{0, desired.camera};
+        edited.follows_path = key == CameraKey{0, desired.camera_path.at(*desired.pose.time_s)};
+    }
     return edited;
 }
 

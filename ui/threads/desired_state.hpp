@@ -35,6 +35,7 @@ struct DesiredState {
     std::vector<rt_material> materials;  // the edited materials; empty: those of the scene
     std::vector<rt_u32> hidden;          // indices of instances, ascending
     PoseTime pose;                       // when the scene is shown; its clip is the chosen one even while the scene is at rest
+    CameraPath camera_path;              // the camera is there when the time changes
     std::array<double, 2> loop{};        // the seconds of the clip that are played, again and again
     float speed = 1;                     // of the clip's clock while it plays
     bool continuous = false;             // trace again and again, to measure

@@ -6,6 +6,7 @@
 
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
+#include "render/multi/multi_device_film.hpp"
 #include "ui/threads/picture_difference.hpp"
 #include "ui/threads/thread_priority.hpp"
 
@@ -153,6 +154,7 @@ void FrameThread::run() {
             if (sample == 0 && retrace && !save) samples_ = 0;
         }
         std::string failure;
+        bool lost = false;
         try {
             if (settle)
                 finish(true);
@@ -161,6 +163,8 @@ void FrameThread::run() {
             else
                 trace(job, sample, retrace);
         } catch (const Cancelled&) {
+        } catch (const SamplesLost&) {
+            lost = true;
         } catch (const std::exception& error) {
             failure = std::string("tracing stopped: ") + error.what();
         }
@@ -169,6 +173,7 @@ void FrameThread::run() {
             const std::lock_guard<std::mutex> lock(mutex_);
             tracing_ = false;
             running_.reset();
+            if (lost) traced_revision_ = 0;  // the picture begins again
             if (!failure.empty()) {
                 failure_ = failure;
                 failed_ = job_.revision == job.revision;
@@ -301,6 +306,26 @@ void FrameThread::fit_tracer(Tracer& tracer, const Devices& devices, uint64_t ke
     tracer.kernel_revision = kernel_revision;
 }
 
+// What a sample of a side is traced with: with motion blur, the scene at a time of its own.
+MotionBlur::Sample FrameThread::sample_of(Tracer& tracer, const FrameJob& job, const ReadySide& side,
+                                          const OnDevices& on_devices, unsigned sample, Progress& progress) {
+    if (!(job.open_s > 0) || !job.ready->blur_source || !job.ready->request.pose.time_s) {
+        tracer.blur.reset();
+        tracer.blur_of.reset();
+        return {on_devices.prepared, job.view, 0};
+    }
+    const Shutter shutter = {*job.ready->request.pose.time_s, job.open_s, static_cast<unsigned>(job.settings.spp)};
+    if (!tracer.blur || tracer.blur_of != job.ready || !(tracer.blur->shutter() == shutter)) {
+        tracer.blur.reset();
+        tracer.blur = std::make_unique<MotionBlur>(job.ready->blur_source(on_devices.devices, side.settings), shutter,
+                                                   on_devices.prepared);
+        tracer.blur_of = job.ready;
+    }
+    MotionBlur::Sample posed = tracer.blur->at(sample, job.view, progress);
+    if (!job.camera_path.empty()) posed.view.camera = job.camera_path.at(posed.time_s);
+    return posed;
+}
+
 void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
     std::shared_ptr<StopProgress> progress;
     std::shared_ptr<const Picture> last, shown;
@@ -341,12 +366,16 @@ void FrameThread::trace(const FrameJob& job, unsigned sample, bool retrace) {
         tracers_[1] = {};
     const Order order{sample, retrace, distance};
     const PictureSide* before[2] = {last ? &last->main : nullptr, last && last->other ? &*last->other : nullptr};
-    picture->main = trace_side(tracers_[0], on_main->prepared, sized(job.ready->main, job.settings, before[0]), job.view, order,
-                               before[0], *progress, traced.images[0]);
+    const auto side_of = [&](size_t i, const ReadySide& side, const OnDevices& on_devices, const Settings& settings) {
+        const MotionBlur::Sample posed = retrace ? sample_of(tracers_[i], job, side, on_devices, sample, *progress)
+                                                 : MotionBlur::Sample{on_devices.prepared, job.view, 0};
+        return trace_side(tracers_[i], posed.prepared, sized(side, settings, before[i]), posed.view, order, before[i],
+                          *progress, traced.images[i]);
+    };
+    picture->main = side_of(0, job.ready->main, *on_main, job.settings);
     double ms = picture->main.frame_ms;
     if (two) {
-        picture->other = trace_side(tracers_[1], on_other->prepared, sized(*job.ready->other, *job.other_settings, before[1]),
-                                    job.view, order, before[1], *progress, traced.images[1]);
+        picture->other = side_of(1, *job.ready->other, *on_other, *job.other_settings);
         ms += picture->other->frame_ms;
     }
     picture->job.settings = picture->main.settings;

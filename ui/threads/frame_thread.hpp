@@ -62,6 +62,8 @@ class FrameThread {
         Devices devices;
         std::unique_ptr<MultiFrameRenderer> frames;
         uint64_t kernel_revision = 0;  // revision of the film's kernels
+        std::unique_ptr<MotionBlur> blur;
+        std::shared_ptr<const Ready> blur_of;  // what it was made for
     };
     // A traced picture, the images of which may still be in flight to the host.
     struct Traced {
@@ -81,6 +83,8 @@ class FrameThread {
     PictureSide trace_side(Tracer& tracer, const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
                            const View& view, const Order& order, const PictureSide* last, Progress& progress,
                            AsyncReadback& image);
+    static MotionBlur::Sample sample_of(Tracer& tracer, const FrameJob& job, const ReadySide& side, const OnDevices& on_devices,
+                                        unsigned sample, Progress& progress);
     bool finish(bool held_up);
     bool wants_work(unsigned& sample, bool& retrace) const;
     void fit_tracer(Tracer& tracer, const Devices& devices, uint64_t kernel_revision);

@@ -12,6 +12,32 @@ namespace clarity::ui {
 
 using Clock = std::chrono::steady_clock;
 
+namespace {
+
+// For the thread that traces. What it holds is its own, because the preparing thread works meanwhile.
+MotionBlur::Source blur_source(const PluginRegistry& plugins, const import::ImportOptions& options, const Ready& ready,
+                               const Devices& devices, const Settings& settings) {
+    struct Own {
+        Own(const PluginRegistry& plugins, const import::ImportOptions& options) : sequences(plugins, options, unwatched) {}
+        Progress unwatched;
+        import::SequenceReader sequences;
+        std::unique_ptr<MultiPreparer> preparer;
+    };
+    const auto own = std::make_shared<Own>(plugins, options);
+    MotionBlur::Source source;
+    source.rest = ready.loaded->scene;
+    source.clip = ready.request.pose.clip;
+    source.hidden = ready.request.hidden;
+    source.read = [own](const std::string& file) { return own->sequences(file); };
+    source.prepare = [own, &plugins, devices, settings](std::shared_ptr<const Scene> scene, Progress& progress) {
+        if (!own->preparer) own->preparer = std::make_unique<MultiPreparer>(plugins, devices);
+        return own->preparer->prepare(std::move(scene), settings, progress);
+    };
+    return source;
+}
+
+}  // namespace
+
 // Keeps the current stage for the window, and wakes the window at most 30 times a second.
 class PrepareWorker::StageProgress : public Progress {
  public:
@@ -200,6 +226,10 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     ready->scene = shown_.posed();
     ready->cameras = shown_.cameras();
     ready->lights = shown_.lights();
+    ready->blur_source = [&plugins = plugins_, import = import_, of = ready.get()](const Devices& devices,
+                                                                                   const Settings& settings) {
+        return blur_source(plugins, import, *of, devices, settings);
+    };
     prepare_sides(request, *ready, whole, progress);
     if (needs_reopen()) {
         // Preparation worked. Now repeat it on reopened devices; the compiler's cache has the programs.

@@ -2,6 +2,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -9,7 +10,7 @@
 #include <vector>
 
 #include "render/moving/pose_follower.hpp"
-#include "render/multi/multi_preparer.hpp"
+#include "render/multi/motion_blur.hpp"
 #include "ui/threads/desired_state.hpp"
 
 namespace clarity::ui {
@@ -98,6 +99,8 @@ struct Ready {
     std::vector<Light> lights;           // likewise
     ReadySide main;
     std::optional<ReadySide> other;
+    // What motion blur needs of a side with these devices and settings. Used by the thread that traces. May be empty.
+    std::function<MotionBlur::Source(const Devices&, const Settings&)> blur_source;
     // Whether its devices were closed. Its picture can still be shown, but not traced.
     bool withdrawn() const { return main.loan->withdrawn() || (other && other->loan->withdrawn()); }
 };

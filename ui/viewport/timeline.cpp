@@ -21,7 +21,7 @@ constexpr float kSpeeds[] = {0.1f, 0.25f, 0.5f, 1, 2, 4};
 
 float controls_width() {
     const float gap = ImGui::GetStyle().ItemSpacing.x;
-    return (3 * kButtonWidth + kSpeedWidth + kLeastClipWidth + kTextWidth) * ui_scale() + 5 * gap;
+    return (4 * kButtonWidth + kSpeedWidth + kLeastClipWidth + kTextWidth) * ui_scale() + 6 * gap;
 }
 
 bool narrow(float width) {
@@ -112,6 +112,22 @@ void draw_marks(ImDrawList& list, const Rect& track, const TimelineScale& scale,
     }
 }
 
+// A key of the camera's path.
+void draw_key(ImDrawList& list, const ImVec2& at, float size, ImU32 tint, bool filled) {
+    const ImVec2 corners[4] = {{at.x, at.y - size}, {at.x + size, at.y}, {at.x, at.y + size}, {at.x - size, at.y}};
+    if (filled)
+        list.AddConvexPolyFilled(corners, 4, tint);
+    else
+        list.AddPolyline(corners, 4, tint, ImDrawFlags_Closed, 1.6f * ui_scale());
+}
+
+void draw_keys(ImDrawList& list, const Rect& track, const TimelineScale& scale, const Session& session) {
+    for (const CameraKey& key : session.desired.camera_path.keys)
+        if (key.time_s >= scale.begin_s && key.time_s <= scale.end_s)
+            draw_key(list, {std::floor(scale.place_of(key.time_s)) + 0.5f, track.y + track.height - 8 * ui_scale()},
+                     5 * ui_scale(), color(colors::kAmber), true);
+}
+
 // The time that is asked for, and the one that the picture shows while it is behind.
 void draw_times(ImDrawList& list, const Rect& track, const TimelineScale& scale, const Session& session) {
     const float ui = ui_scale(), low = track.y + track.height;
@@ -146,11 +162,12 @@ void draw_track(const Rect& track, const TimelineScale& scale, Session& session)
                        color(colors::kAccent, 0.1f));
     draw_marks(list, track, scale, playback.fps(session.desired));
     draw_times(list, track, scale, session);
+    draw_keys(list, track, scale, session);
 }
 
 // ---- the row of buttons
 
-enum class Icon { play, pause, back, forward };
+enum class Icon { play, pause, back, forward, key, no_key };
 
 void draw_icon(Icon icon) {
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
@@ -170,6 +187,10 @@ void draw_icon(Icon icon) {
             list.AddTriangleFilled({x - r, y - r}, {x - r, y + r}, {x + 0.5f * r, y}, text);
             bar(x + 0.6f * r);
             break;
+        case Icon::key:
+        case Icon::no_key:
+            draw_key(list, {x, y}, 1.1f * r, icon == Icon::key ? color(colors::kAmber) : text, icon == Icon::key);
+            break;
         case Icon::back:
             list.AddTriangleFilled({x + r, y - r}, {x - 0.5f * r, y}, {x + r, y + r}, text);
             bar(x - 1.1f * r);
@@ -185,6 +206,22 @@ bool icon_button(const char* label, Icon icon, const char* help) {
     return pressed;
 }
 
+// Sets a key of the camera's path, or takes it away where the camera stands on it.
+void draw_key_button(Session& session) {
+    const CameraPath& path = session.desired.camera_path;
+    const auto& time = session.desired.pose.time_s;
+    const int at = time ? path.key_at(*time) : -1;
+    const bool stands_on_it = at >= 0 && path.keys[static_cast<size_t>(at)] ==
+                                             CameraKey{path.keys[static_cast<size_t>(at)].time_s, session.desired.camera};
+    const char* help = stands_on_it ? "take the camera's key away from this time"
+                       : at >= 0
+                           ? "the camera's key at this time: as the camera stands now"
+                           : "set a key of the camera's path here: move to another time, move the camera, set the next one; "
+                             "the camera goes from key to key as the clip plays";
+    if (!icon_button("camera key", at >= 0 ? Icon::key : Icon::no_key, help)) return;
+    stands_on_it ? session.remove_camera_key() : session.set_camera_key();
+}
+
 void draw_buttons(Session& session) {
     Playback& playback = session.playback();
     if (icon_button("step back", Icon::back, "the frame before (,)")) playback.step(session.desired, -1);
@@ -194,6 +231,8 @@ void draw_buttons(Session& session) {
         session.toggle_playing();
     ImGui::SameLine();
     if (icon_button("step forward", Icon::forward, "the frame after (.)")) playback.step(session.desired, 1);
+    ImGui::SameLine();
+    draw_key_button(session);
 }
 
 std::string speed_text(float speed) {

@@ -10,6 +10,7 @@
 #include "bench/cases/motion.hpp"
 #include "bench/cases/pictures.hpp"
 #include "bench/cases/ray_entries.hpp"
+#include "bench/cases/strategies.hpp"
 #include "bench/run/bench.hpp"
 #include "render/settings/accel_choice.hpp"
 
@@ -109,6 +110,7 @@ class CaseRunner {
 
 std::vector<BenchRecord> run_case(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
                                   const BenchCase& c, const MeasureRules& rules, Progress& progress) {
+    if (c.measure == "play") return measure_strategies(fixture, plugins, request, c, progress);
     if (!c.motion.empty()) return measure_motion(fixture, plugins, request, c, rules, progress);
     if (c.measure == "picture") return measure_pictures(fixture, plugins, request, c, rules, progress);
     return CaseRunner(fixture, plugins, request, c, rules, progress).run();

@@ -14,8 +14,8 @@
 #include "bench/cases/ray_entries.hpp"
 #include "bench/run/bench.hpp"
 #include "bench/suites/motions.hpp"
-#include "render/moving/moving_accel.hpp"
 #include "render/frame/preparer.hpp"
+#include "render/moving/moving_accel.hpp"
 
 namespace clarity::bench {
 namespace {

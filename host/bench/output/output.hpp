@@ -23,6 +23,8 @@ std::string breakdown_table(const BenchReport& report);
 std::string devices_table(const BenchReport& report);
 // Part of bench_table(): models that move.
 std::string moving_table(const BenchReport& report);
+// Part of bench_table(): animations by one rule for refits and builds after another.
+std::string policy_table(const BenchReport& report);
 // Part of bench_table(): our speed compared with the fastest baseline's.
 std::string speedup_table(const BenchReport& report);
 

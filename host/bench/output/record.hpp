@@ -42,6 +42,14 @@ struct Speedup {
     double bytes_ratio = 0;  // our memory divided by theirs, above 1 is more
 };
 
+// An animation that was played with one rule for refits and builds.
+struct Played {
+    double total_ms = 0, update_ms = 0, trace_ms = 0;  // of all frames: refits and builds, and tracing. 0: nothing was played
+    unsigned builds = 0;                               // frames whose structure was built
+    double worst_cost_ratio = 1;                       // expected cost of a ray (SAH), against that after the last build
+    double to_best = 0;                                // total_ms divided by that of the best fixed rule
+};
+
 struct BenchRecord {
     // ---- what was measured
     std::string suite;      // thesis | packets | accel | scale | cpu | devices | quick | breakdown
@@ -85,6 +93,7 @@ struct BenchRecord {
 
     Speedup speedup;
     Analysis analysis;
+    Played animation;                                        // of suite policy
     std::vector<std::pair<std::string, double>> kernels_ms;  // medians: trace, tone map, read-back
 
     Parts parts_ms;             // of breakdown: they add up to the frame

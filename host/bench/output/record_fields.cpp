@@ -87,6 +87,16 @@ const Fields<Speedup>& versus_fields() {
     return fields;
 }
 
+const Fields<Played>& played_fields() {
+    static const Fields<Played> fields = {plain("total_ms", &Played::total_ms),
+                                          plain("update_ms", &Played::update_ms),
+                                          plain("trace_ms", &Played::trace_ms),
+                                          plain("builds", &Played::builds),
+                                          plain("worst_cost_ratio", &Played::worst_cost_ratio),
+                                          plain("to_best", &Played::to_best)};
+    return fields;
+}
+
 const Fields<BenchRecord>& rays_fields() {
     static const Fields<BenchRecord> fields = {plain("primary", &BenchRecord::rays_primary),
                                                plain("shadow", &BenchRecord::rays_shadow),
@@ -230,6 +240,7 @@ const Fields<BenchRecord>& record_fields() {
         count_of(unless_empty("nodes", &R::nodes, {"nodes", "nodes"})),
         count_of(unless_empty("sah_cost", &R::sah_cost, {"SAH", "SAH cost"})),
         nested<Speedup>("versus", &R::speedup, versus_fields, [](const Speedup& v) { return !v.baseline.empty(); }),
+        nested<Played>("animation", &R::animation, played_fields, [](const Played& p) { return p.total_ms > 0; }),
         count_of(nested<Analysis>("analysis", &R::analysis, analysis_fields, [](const Analysis& a) { return a.present; })),
         parts("parts_ms", &R::parts_ms),
         parts("within_ms", &R::within_ms),

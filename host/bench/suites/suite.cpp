@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
+#include "bench/suites/animations.hpp"
 #include "bench/suites/motions.hpp"
 #include "render/settings/accel_choice.hpp"
 
@@ -62,6 +63,7 @@ class Planner {
         if (name == "cpu") return cpu();
         if (name == "devices") return devices();
         if (name == "moving") return moving();
+        if (name == "policy") return policy();
         if (name == "quick") return quick();
         std::string known;
         for (const std::string& suite : suite_names()) known += (known.empty() ? "" : ", ") + suite;
@@ -356,6 +358,25 @@ class Planner {
                 }
     }
 
+    // Animations, by fixed rules for refits and builds and by that of the window. A file plays its own clip besides.
+    void policy() {
+        const std::vector<size_t> scenes = chosen_or({catalog_.project("thesis/models/skull")});
+        limit(600.0 * double(scenes.size()));
+        Variant variant = {main_accel(), main_accel(), {}, false};
+        const auto is_size = [](const auto& pair) { return pair.first == "size"; };
+        if (std::none_of(request_.settings.begin(), request_.settings.end(), is_size))
+            variant.settings.emplace_back("size", "320x240");
+        for (const size_t scene : scenes) {
+            std::vector<std::string> animations = animation_names();
+            if (!request_.files.empty()) animations.push_back(kOwnClip);
+            for (const std::string& animation : animations) {
+                BenchCase& c = add_case("policy", scene, animation, "play");
+                c.motion = animation;
+                c.variants = {variant};
+            }
+        }
+    }
+
     void quick() {
         limit(55);
         const auto frame_case = [&](size_t scene) {
@@ -393,8 +414,8 @@ class Planner {
 }  // namespace
 
 const std::vector<std::string>& suite_names() {
-    static const std::vector<std::string> names = {"thesis", "packets", "accel",  "scale", "large",
-                                                   "cpu",    "devices", "moving", "quick"};
+    static const std::vector<std::string> names = {"thesis", "packets", "accel",  "scale",  "large",
+                                                   "cpu",    "devices", "moving", "policy", "quick"};
     return names;
 }
 

@@ -42,7 +42,7 @@ enum class Timing { timed, counted_only };
 struct BenchCase {
     std::string suite, name;
     std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture |
-                          // moving | refit | rebuild
+                          // moving | refit | rebuild | play
     size_t scene = 0;     // index into Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene

@@ -9,7 +9,7 @@
 namespace clarity {
 namespace {
 
-// Places of buffers in before_lights_.
+// Places of buffers in before_lights_, which are those of the context's arguments: see kernel_source.cpp.
 enum : size_t { kLeaves, kInstances, kPolygons, kPolygonCorners, kMaterials = 5, kTriangles, kNormals };
 
 constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two progress reports
@@ -94,6 +94,18 @@ std::vector<float> normals_as_placed(const Scene& scene, const BuildScene& build
     return normals;
 }
 
+Content leaves_of(const AccelData& accel) {
+    return {{"leaves", (accel.leaf_count + kLeafPadding) * sizeof(rt_packed_prim)}, accel.leaves.data()};
+}
+
+void add_slots(const AccelData& accel, std::vector<Content>& contents) {
+    const rt_accel& table = *accel.layout->accel;
+    for (rt_u32 s = 0; s < table.slot_count; ++s)
+        if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))
+            contents.push_back(
+                {{table.slots[s].name, accel.slots[s].count * table.slots[s].elem_bytes}, accel.slots[s].memory.data()});
+}
+
 }  // namespace
 
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel,
@@ -109,10 +121,8 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     has_triangles_ = !attributes_.empty();
     const bool moved = !scene_->normals.empty() && !build.flattened.empty();
     if (moved) normals_ = normals_as_placed(*scene_, build);
-    // In the order of the context's arguments: see kernel_source.cpp.
-    const size_t leaf_bytes = (accel_->leaf_count + kLeafPadding) * sizeof(rt_packed_prim);
     std::vector<Content> contents = {
-        {{"leaves", leaf_bytes}, accel_->leaves.data()},
+        leaves_of(*accel_),
         content("instances", accel_->instances),
         content("polygons", build.polygon_table),
         content("polygon corners", build.polygon_corners),
@@ -124,17 +134,12 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("texture table", scene_->textures),
         content("textures", scene_->texels.all()),
     };
-    materials_at_ = kMaterials;
     const size_t before_lights = contents.size();
     if (!build.shapes.empty()) {
         contents.push_back(content("shapes", build.shapes));
         contents.push_back(content("numbers of shapes", scene_->shape_numbers));
     }
-    const rt_accel& table = *accel_->layout->accel;
-    for (rt_u32 s = 0; s < table.slot_count; ++s)
-        if (!(table.slots[s].flags & RT_SLOT_HOST_ONLY))
-            contents.push_back(
-                {{table.slots[s].name, accel_->slots[s].count * table.slots[s].elem_bytes}, accel_->slots[s].memory.data()});
+    add_slots(*accel_, contents);
     std::vector<MemoryPiece> pieces;
     for (const Content& content : contents) pieces.push_back(content.piece);
     check_fits(pieces, device.info(), std::to_string(accel_->leaf_count) + " primitives in " + accel_->plugin->id);
@@ -150,10 +155,9 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
 }
 
 DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
-    : at_rest_(at_rest.shared_from_this()),  // on a CPU it owns the memory of shared buffers
+    : still_(at_rest.shared_from_this()),  // on a CPU it owns the memory of shared buffers
       before_lights_(at_rest.before_lights_),
       has_triangles_(at_rest.has_triangles_),
-      materials_at_(at_rest.materials_at_),
       bytes_(at_rest.bytes_) {
     before_lights_[kLeaves] = std::move(moving.leaves);
     before_lights_[kInstances] = std::move(moving.instances);
@@ -176,9 +180,40 @@ void DeviceScene::write_bounds(cl::CommandQueue& queue, const cl::Buffer& frames
         queue.enqueueCopyBuffer(bounds_, frames, 0, i * sizeof(rt_frame) + offsetof(rt_frame, bounds), sizeof(rt_frame::bounds));
 }
 
+DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
+                         const std::vector<PosedMesh>& deformed, Progress& progress)
+    : still_(std::move(still)),
+      scene_(still_->scene_),
+      accel_(std::move(accel)),
+      before_lights_(still_->before_lights_),
+      has_triangles_(still_->has_triangles_),
+      bytes_(still_->bytes_) {
+    std::vector<Content> contents = {leaves_of(*accel_), content("instances", accel_->instances)};
+    add_slots(*accel_, contents);
+    Uploader uploader(device, contents, progress);
+    before_lights_[kLeaves] = uploader.upload(contents[0]);
+    before_lights_[kInstances] = uploader.upload(contents[1]);
+    // Shapes do not move.
+    const size_t shapes = still_->slots_.size() + 2 - contents.size();
+    for (size_t i = 0; i < still_->slots_.size(); ++i)
+        slots_.push_back(i < shapes ? still_->slots_[i] : uploader.upload(contents[2 + i - shapes]));
+    if (scene_->normals.empty() || deformed.empty()) return;
+    // A copy on the device, into which the normals of the deformed meshes are written.
+    const size_t normal_bytes = scene_->normals.size() * sizeof(float);
+    const cl::Buffer normals(device.context(), CL_MEM_READ_ONLY, normal_bytes);
+    cl::CommandQueue queue(device.context(), device.info().cl_device);
+    queue.enqueueCopyBuffer(before_lights_[kNormals], normals, 0, 0, normal_bytes);
+    for (const PosedMesh& mesh : deformed)
+        if (!mesh.normals.empty())
+            queue.enqueueWriteBuffer(normals, CL_FALSE, 3 * sizeof(float) * size_t(scene_->meshes[mesh.mesh].first_vertex),
+                                     mesh.normals.size() * sizeof(float), mesh.normals.data());
+    queue.finish();
+    before_lights_[kNormals] = normals;
+}
+
 void DeviceScene::bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials) const {
     for (size_t i = 0; i < before_lights_.size(); ++i)
-        kernel.setArg(first++, materials && i == materials_at_ ? *materials : before_lights_[i]);
+        kernel.setArg(first++, materials && i == kMaterials ? *materials : before_lights_[i]);
     kernel.setArg(first++, lights);
     for (const cl::Buffer& buffer : slots_) kernel.setArg(first++, buffer);
 }

@@ -7,6 +7,7 @@
 #include "base/progress.hpp"
 #include "device/device.hpp"
 #include "render/accel/accel_build.hpp"
+#include "scene/motion/pose.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -17,6 +18,10 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     // Uploads piece by piece and reports progress. Throws Error(failed) with the sizes if the scene does not fit, and
     // Cancelled.
     DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> accel, Progress& progress);
+    // The same scene in another pose, with a refit of its structure. Shares with `still` what no pose moves: materials,
+    // textures, numbers of vertices. deformed: the meshes with other normals; none of them is flattened.
+    DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
+                const std::vector<PosedMesh>& deformed, Progress& progress);
 
     // The buffers that differ from pose to pose where a scene moves on the device.
     struct Moving {
@@ -42,16 +47,15 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     uint64_t bytes() const { return bytes_; }
 
  private:
-    std::shared_ptr<const DeviceScene> at_rest_;  // whose buffers this one shares
+    std::shared_ptr<const DeviceScene> still_;  // whose buffers this one shares
     std::shared_ptr<const Scene> scene_;
     std::shared_ptr<const AccelData> accel_;
     std::vector<rt_material> materials_;
     std::vector<rt_triangle> attributes_;
     std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
     std::vector<cl::Buffer> before_lights_, slots_;
-    cl::Buffer bounds_;        // Moving::bounds
+    cl::Buffer bounds_;  // Moving::bounds
     bool has_triangles_ = false;
-    size_t materials_at_ = 0;  // index in before_lights_
     uint64_t bytes_ = 0;
 };
 

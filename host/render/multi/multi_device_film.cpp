@@ -226,6 +226,7 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
     prepared_ = prepared;
     settings_ = settings;
     view_ = view;
+    if (fresh && sample > 0 && blurs(settings)) throw SamplesLost();
     if (fresh)
         cut();
     else
@@ -262,6 +263,7 @@ void MultiDeviceFilm::recover(Progress& progress) {
     for (unsigned complete = samples(); complete > 0;) {
         const std::vector<std::vector<unsigned>> more = orphans();
         if (std::all_of(more.begin(), more.end(), [](const auto& tiles) { return tiles.empty(); })) return;
+        if (blurs(settings_)) throw SamplesLost();
         on_all([&](size_t i) {
             if (more[i].empty()) return;
             members_[i].displayed = false;

@@ -23,7 +23,8 @@ class MultiFrameRenderer {
 
     // Traces samples [sample, sample + samples) of the picture; sample 0 starts a new picture. See FrameRenderer::trace(). The
     // returned figures are sums over these samples. Many samples in one call, from sample 0 on, are faster than one by one:
-    // devices wait for each other once, at the end, and GPUs trace many samples in one launch.
+    // devices wait for each other once, at the end, and GPUs trace many samples in one launch. Throws SamplesLost if a device
+    // fails in a picture with motion blur.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
                      unsigned sample, bool count_rays, Progress& progress, unsigned samples = 1,
                      const std::function<void()>& meanwhile = {});

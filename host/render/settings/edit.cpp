@@ -169,8 +169,8 @@ std::string light_text(const rt_light& light) {
 }  // namespace
 
 bool is_edit(const std::string& key) {
-    return key == "camera" || key == "background" || key == "ambient" || key == "hide" || begins(key, "light.") ||
-           begins(key, "material.");
+    return key == "camera" || key == "camera_path" || key == "background" || key == "ambient" || key == "hide" ||
+           begins(key, "light.") || begins(key, "material.");
 }
 
 void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
@@ -180,6 +180,10 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
         read_camera(camera, value);
         camera.name.clear();
         view.camera = camera;
+        edited.follows_path = false;
+    } else if (key == "camera_path") {
+        edited.camera_path = read_path(value);
+        edited.follows_path = !edited.camera_path.empty();
     } else if (key == "background" || key == "ambient") {
         float n[3];
         read_floats(key, value, n, 3, "r,g,b");
@@ -193,15 +197,16 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
     } else if (begins(key, "material.")) {
         read_material(scene, edited, key, value);
     } else {
-        throw Error(Exit::usage,
-                    "no edit `" + key + "`; there are camera, background, ambient, light.N, material.N.PART, hide");
+        throw Error(Exit::usage, "no edit `" + key +
+                                     "`; there are camera, camera_path, background, ambient, light.N, material.N.PART, hide");
     }
 }
 
 std::vector<Word> edits_between(const Scene& scene, const View& base, const EditedView& edited) {
     std::vector<Word> words;
     const View& view = edited.view;
-    words.push_back({"camera", camera_text(view.camera)});
+    if (!edited.camera_path.empty()) words.push_back({"camera_path", path_text(edited.camera_path)});
+    if (!edited.follows_path) words.push_back({"camera", camera_text(view.camera)});
     if (view.background != base.background) words.push_back({"background", numbers_text(view.background.data(), 3)});
     if (view.ambient != base.ambient) words.push_back({"ambient", numbers_text(view.ambient.data(), 3)});
     for (size_t i = 0; i < view.lights.size(); ++i) {

@@ -121,6 +121,10 @@ Setting lanes_setting() {
 
 }  // namespace
 
+bool blurs(const Settings& settings) {
+    return settings.shutter > 0 && settings.spp > 1 && settings.aov == "color";
+}
+
 void refuse_value(const std::string& key, const std::string& value, const std::string& expected) {
     throw Error(Exit::usage, key + ": `" + value + "` is not " + expected);
 }
@@ -149,6 +153,12 @@ const std::vector<Setting>& settings_table() {
                 Effect::recompile, &Settings::ray_slots),
         size("size", "Size", "pixels of the picture", 1, 16384, false, Effect::frame, &Settings::width, &Settings::height),
         integer("spp", "Samples", "samples a pixel", 1, 65536, Effect::frame, &Settings::spp),
+        real("shutter", "Shutter",
+             "motion blur: share of a frame's time that the shutter is open; 0: none. The samples of a pixel are spread over "
+             "this time, half of it before the frame's time and half after; each shows the scene at a time of its own. So it "
+             "takes several samples, 16 and more, and a scene that is shown at a time. While the window plays, pictures are "
+             "not blurred",
+             0, 1, Effect::frame, &Settings::shutter),
         boolean("shadows", "Shadows", "shadow rays to every light", Effect::frame, &Settings::shadows),
         real("min_weight", "Least weight", "rays that would add less than this share are not followed", 0, 1, Effect::frame,
              &Settings::min_weight),

@@ -27,7 +27,8 @@ struct Settings {
     bool debug = false;      // kernels check the bounds of traversal stacks
     // The picture.
     int width = 1024, height = 768;
-    int spp = 1;  // samples per pixel
+    int spp = 1;         // samples per pixel
+    double shutter = 0;  // share of a frame's time that the shutter is open; 0: no motion blur
     bool shadows = true;
     double min_weight = 1.0 / 512.0;  // rays that would add a smaller share are not followed
     std::string aov = "color";        // a name of aov_table()
@@ -36,6 +37,9 @@ struct Settings {
     std::string tone = "linear";  // linear|reinhard|aces|agx
     double scale_max = 0;         // value at the upper end of false colours; 0: the largest of the picture
 };
+
+// Whether the samples of such a picture are spread in time, if the scene moves. Only colours are means of samples.
+bool blurs(const Settings& settings);
 
 // One row of the table: how to show, read and write a setting.
 struct Setting {

@@ -58,11 +58,11 @@ struct Load {
 
 // Keys of one motion of a loaded object, a camera or a light.
 struct Animation {
-    enum class Motion { translate, rotate, scale };
+    enum class Motion { translate, rotate, scale, fov };
     Name target;
     Motion motion = Motion::translate;
-    std::vector<float> numbers;  // of each key: time, then x y z, or a unit axis and degrees
-    size_t numbers_per_key() const { return motion == Motion::rotate ? 5 : 4; }
+    std::vector<float> numbers;  // of each key: time, then x y z, or a unit axis and degrees, or degrees
+    size_t numbers_per_key() const { return motion == Motion::rotate ? 5 : motion == Motion::fov ? 2 : 4; }
     size_t key_count() const { return numbers.size() / numbers_per_key(); }
 };
 

@@ -105,7 +105,8 @@ bool Emitter::lights_and_cameras() {
             desc.target[i] -= desc.eye[i];
             desc.eye[i] = 0;  // the node is there
         }
-        if (sink_.camera(sink_.ctx, &desc) == RT_NONE) return false;
+        const rt_u32 id = sink_.camera(sink_.ctx, &desc);
+        if (id == RT_NONE || !motion_.emit_fov(camera, id)) return false;
     }
     return true;
 }

@@ -100,6 +100,29 @@ bool MotionEmitter::add_channels(const Animation& animation, rt_u32 node, rt_u32
     return true;
 }
 
+bool MotionEmitter::emit_fov(const Camera& camera, rt_u32 id) const {
+    if (clip_ == RT_NONE) return true;
+    for (const Animation& animation : document_.animations) {
+        if (animation.motion != Animation::Motion::fov || animation.target.text != camera.name.text) continue;
+        constexpr double rad_per_deg = 3.14159265358979323846 / 180;
+        Keys keys;
+        for (size_t k = 0; k < animation.key_count(); ++k) {
+            keys.times.push_back(double{animation.numbers[2 * k]});
+            keys.values.push_back(double{animation.numbers[2 * k + 1]} * rad_per_deg);
+        }
+        rt_channel_desc channel{};
+        channel.struct_bytes = sizeof channel;
+        channel.clip = clip_;
+        channel.moves = RT_MOVES_FOV;
+        channel.target = id;
+        channel.key_count = keys.times.size();
+        channel.times_s = keys.times.data();
+        channel.values = keys.values.data();
+        if (sink_.channel(sink_.ctx, &channel) != RT_OK) return false;
+    }
+    return true;
+}
+
 bool MotionEmitter::emit() {
     if (document_.animations.empty()) return true;
     if (!RT_HAS(&sink_, rt_scene_sink, vertex_frames)) {
@@ -116,13 +139,14 @@ bool MotionEmitter::emit() {
         clip.begin_s = std::min(clip.begin_s, double{animation.numbers.front()});
         clip.end_s = std::max(clip.end_s, double{animation.numbers[last]});
     }
-    const rt_u32 clip_id = sink_.clip(sink_.ctx, &clip);
-    if (clip_id == RT_NONE) return false;
+    clip_ = sink_.clip(sink_.ctx, &clip);
+    if (clip_ == RT_NONE) return false;
     for (const Animation& animation : document_.animations) {
+        if (animation.motion == Animation::Motion::fov) continue;
         const std::string& name = animation.target.text;
         auto [known, is_new] = nodes_.emplace(name, 0);
         if (is_new) known->second = add_node(name);
-        if (known->second == RT_NONE || !add_channels(animation, known->second, clip_id)) return false;
+        if (known->second == RT_NONE || !add_channels(animation, known->second, clip_)) return false;
     }
     return true;
 }

@@ -14,6 +14,8 @@ class MotionEmitter {
     MotionEmitter(const Document& document, const rt_scene_sink& sink) : document_(document), sink_(sink) {}
     // Emits all nodes, the clip and its channels. Returns false if the sink refused something.
     bool emit();
+    // To be called for each camera, after emit(), with the id that the sink gave it.
+    bool emit_fov(const Camera& camera, rt_u32 id) const;
     // Ids of nodes; 0 for what does not move. The node of a load has its whole placement, that of a camera or point light its
     // position.
     rt_u32 node_of_load(const Load& load) const { return node_of(load.name); }
@@ -28,6 +30,7 @@ class MotionEmitter {
     const Document& document_;
     const rt_scene_sink& sink_;
     std::map<std::string, rt_u32> nodes_;
+    rt_u32 clip_ = RT_NONE;
 };
 
 }  // namespace scene_format

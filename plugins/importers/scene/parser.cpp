@@ -97,6 +97,8 @@ void check_names(const Document& document, Diagnostics& diagnostics) {
         const std::string& name = animation.target.text;
         if (animation.motion == Animation::Motion::scale && movable.count(name) != 0 && loads.count(name) == 0)
             diagnostics.error({animation.target.position, in_quotes(name) + " is no loaded object; only those can be scaled"});
+        if (animation.motion == Animation::Motion::fov && movable.count(name) != 0 && cameras.count(name) == 0)
+            diagnostics.error({animation.target.position, in_quotes(name) + " is no camera; only cameras have a `fov`"});
         if (!moved.emplace(name, animation.motion).second)
             diagnostics.error({animation.target.position, "the same motion of " + in_quotes(name) +
                                                               " for the second time; put all its keys into one line"});

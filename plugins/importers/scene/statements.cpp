@@ -312,9 +312,10 @@ void read_load(Statement& s, Document& document, Diagnostics&) {
 void read_animate(Statement& s, Document& document, Diagnostics&) {
     Animation animation;
     animation.target = s.name("the name of a loaded object, a camera or a light");
-    animation.motion = static_cast<Animation::Motion>(s.choice("motion", {"translate", "rotate", "scale"}));
+    animation.motion = static_cast<Animation::Motion>(s.choice("motion", {"translate", "rotate", "scale", "fov"}));
     const bool rotates = animation.motion == Animation::Motion::rotate;
-    constexpr const char* what[] = {"`translate` (time x y z)", "`rotate` (time, axis x y z, degrees)", "`scale` (time x y z)"};
+    constexpr const char* what[] = {"`translate` (time x y z)", "`rotate` (time, axis x y z, degrees)", "`scale` (time x y z)",
+                                    "`fov` (time degrees)"};
     const char* expected = what[static_cast<int>(animation.motion)];
     const size_t count = animation.numbers_per_key();
     std::vector<float>& numbers = animation.numbers;
@@ -324,10 +325,13 @@ void read_animate(Statement& s, Document& document, Diagnostics&) {
             if (i == 0 && numbers.size() > count && !(numbers.back() > numbers[numbers.size() - 1 - count]))
                 s.fail_at_last("times must grow; expected a later time than the one before");
         }
+        if (animation.motion == Animation::Motion::fov && !(numbers.back() > 0 && numbers.back() < 180))
+            s.fail_at_last("a field of view is between 0 and 180 degrees");
+        if (!rotates) continue;
         float* axis = numbers.data() + numbers.size() - count + 1;
         const float length = std::sqrt(axis[0] * axis[0] + axis[1] * axis[1] + axis[2] * axis[2]);
-        if (rotates && !(length > 0)) s.fail_at_last("the zero vector has no direction; expected another axis for `rotate`");
-        for (int i = 0; rotates && i < 3; ++i) axis[i] /= length;
+        if (!(length > 0)) s.fail_at_last("the zero vector has no direction; expected another axis for `rotate`");
+        for (int i = 0; i < 3; ++i) axis[i] /= length;
     } while (!s.done());
     document.animations.push_back(std::move(animation));
 }

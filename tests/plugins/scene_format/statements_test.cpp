@@ -102,6 +102,17 @@ TEST(SceneFormat, RotationsMayTurnFurtherThanHalf) {
     EXPECT_NEAR(r.channels[0].values[4 * 3 + 1], 1, 1e-9) << "half a turn about y at the middle";
 }
 
+TEST(SceneFormat, FieldsOfViewMayChange) {
+    const Recording r = import_good("camera zoom eye 1 2 3 fov 30\nanimate zoom fov 0 30  2 60\n");
+    EXPECT_TRUE(r.nodes.empty()) << "the camera stands still";
+    ASSERT_EQ(r.channels.size(), 1u);
+    EXPECT_EQ(r.channels[0].moves, rt_u32(RT_MOVES_FOV));
+    EXPECT_EQ(r.channels[0].times, (std::vector<double>{0, 2}));
+    EXPECT_NEAR(r.channels[0].values.at(1), std::acos(-1.0) / 3, 1e-6);
+    ASSERT_EQ(r.clips.size(), 1u);
+    EXPECT_EQ(r.clips[0].end_s, 2);
+}
+
 TEST(SceneFormat, FillsInDefaults) {
     const Recording r = import_good("camera c\nlight point\nlight directional\nmaterial m\nsphere\nplane\nload x.obj\n");
     expect_near(r.cameras.at(0).values.eye, {0, 0, 5});

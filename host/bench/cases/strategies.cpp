@@ -1,0 +1,142 @@
+#include "bench/cases/strategies.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+
+#include "base/elapsed.hpp"
+#include "base/error.hpp"
+#include "bench/cases/entry.hpp"
+#include "bench/output/row.hpp"
+#include "bench/run/bench.hpp"
+#include "bench/suites/animations.hpp"
+#include "render/frame/preparer.hpp"
+#include "render/moving/pose_follower.hpp"
+
+namespace clarity::bench {
+namespace {
+
+// A rule, and what it has done so far.
+struct Strategy {
+    std::string name;
+    unsigned every = 0;  // frames from one build to the next; 0: never after the first
+    bool is_policy = false;
+    PoseFollower follower;
+    std::shared_ptr<const AccelData> accel;
+    double update_ms = 0, trace_ms = 0, last_trace_ms = 0;
+    std::vector<double> frames_ms;
+    unsigned builds = 0;
+    double worst_cost_ratio = 1;
+};
+
+class StrategiesCase {
+ public:
+    StrategiesCase(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request, const BenchCase& c,
+                   Progress& progress)
+        : fixture_(fixture),
+          case_(c),
+          progress_(progress),
+          settings_(variant_settings(plugins, request, c.variants.front())),
+          plugin_(*plugins.accel(settings_.accel)),
+          preparer_(plugins, fixture.opened(0)),
+          frames_(fixture.opened(0)) {}
+
+    std::vector<BenchRecord> run() {
+        rest_ = std::make_shared<const Scene>(staged(*fixture_.scene(), case_.motion));
+        strategies_.resize(8);
+        const unsigned every[] = {0, 50, 20, 10, 5, 2, 1};
+        for (size_t i = 0; i < 7; ++i) {
+            strategies_[i].every = every[i];
+            strategies_[i].name = every[i] == 0   ? "always refit"
+                                  : every[i] == 1 ? "always build"
+                                                  : "build every " + std::to_string(every[i]) + " frames";
+        }
+        strategies_[7].name = "policy";
+        strategies_[7].is_policy = true;
+        for (unsigned frame = 0; frame <= kAnimationFrames; ++frame) {
+            if (!progress_.report(float(frame) / kAnimationFrames)) throw Cancelled();
+            const Pose pose = animated_pose(*rest_, case_.motion, frame);
+            auto scene = std::make_shared<const Scene>(posed_apart(pose));
+            // Frame 0 is built by all of them and does not count. The turns change, because the first to trace a pose finds it
+            // colder.
+            for (size_t i = 0; i < strategies_.size(); ++i)
+                play(strategies_[(i + frame) % strategies_.size()], scene, pose, frame);
+        }
+        return rows();
+    }
+
+ private:
+    // What moves is kept apart from the flattened world, as in scenes with clips.
+    Scene posed_apart(const Pose& pose) const {
+        Scene scene = posed(*rest_, pose);
+        for (Instance& instance : scene.instances) instance.apart = true;
+        return scene;
+    }
+
+    void play(Strategy& s, const std::shared_ptr<const Scene>& scene, const Pose& pose, unsigned frame) {
+        using Way = PoseFollower::Way;
+        const PosedFrom from = {rest_, case_.motion};
+        const Way way = s.is_policy ? Way::automatic : s.every > 0 && frame % s.every == 0 ? Way::build : Way::refit;
+        const auto begin = std::chrono::steady_clock::now();
+        s.accel.reset();
+        s.accel = s.follower.refit(from, scene, pose, way, s.last_trace_ms, progress_);
+        const bool builds = !s.accel;
+        if (builds) {
+            s.accel = std::make_shared<const AccelData>(
+                build_accel(*scene, plugin_, settings_.accel_params, progress_, fixture_.target_of(plugin_)));
+            s.follower.built(from, scene, pose, s.accel);
+        }
+        const double update_ms = ms_since(begin);
+        const auto prepared = preparer_.prepare(scene, settings_, progress_, s.accel);
+        const FrameStats stats = frames_.trace(*prepared, settings_, fixture_.view(), Samples{0}, false, progress_);
+        s.last_trace_ms = stats.device_ms;
+        if (frame == 0) return;
+        s.update_ms += update_ms;
+        s.trace_ms += stats.device_ms;
+        s.frames_ms.push_back(update_ms + stats.device_ms);
+        s.builds += builds;
+        if (!s.follower.update().cost_ratios.empty())
+            s.worst_cost_ratio = std::max(s.worst_cost_ratio, double(s.follower.update().cost_ratios.back()));
+    }
+
+    std::vector<BenchRecord> rows() {
+        double best = std::numeric_limits<double>::infinity();
+        for (const Strategy& s : strategies_)
+            if (!s.is_policy) best = std::min(best, s.update_ms + s.trace_ms);
+        std::vector<BenchRecord> all;
+        for (const Strategy& s : strategies_) {
+            BenchRecord row = make_row(case_);
+            describe(row, *rest_);
+            describe(row, fixture_.device(0));
+            describe(row, settings_);
+            describe(row, *s.accel);
+            row.variant = s.name;
+            row.accel = settings_.accel;
+            row.accel_params = parameters_text(plugin_, settings_.accel_params);
+            row.time_ms = summarize(s.frames_ms);
+            row.animation = {s.update_ms + s.trace_ms,         s.update_ms, s.trace_ms, s.builds, s.worst_cost_ratio,
+                             (s.update_ms + s.trace_ms) / best};
+            all.push_back(std::move(row));
+        }
+        return all;
+    }
+
+    Fixture& fixture_;
+    const BenchCase& case_;
+    Progress& progress_;
+    const Settings settings_;
+    const rt_plugin& plugin_;
+    Preparer preparer_;
+    FrameRenderer frames_;
+    std::shared_ptr<const Scene> rest_;
+    std::vector<Strategy> strategies_;
+};
+
+}  // namespace
+
+std::vector<BenchRecord> measure_strategies(Fixture& fixture, const PluginRegistry& plugins, const BenchRequest& request,
+                                            const BenchCase& c, Progress& progress) {
+    return StrategiesCase(fixture, plugins, request, c, progress).run();
+}
+
+}  // namespace clarity::bench

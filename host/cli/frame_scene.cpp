@@ -1,0 +1,88 @@
+#include "cli/frame_scene.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <utility>
+
+#include "cli/pose_options.hpp"
+
+namespace clarity {
+namespace {
+
+// The time and the clip of the options; where they are silent, those of the preset.
+PoseOptions chosen_pose(const RenderOptions& options, const PoseTime& preset) {
+    PoseOptions pose = options.pose;
+    if (!pose.time_s && pose.clip.empty() && options.frames.empty()) pose.time_s = preset.time_s;
+    if (pose.clip.empty()) pose.clip = preset.clip;
+    return pose;
+}
+
+}  // namespace
+
+FrameScene::FrameScene(const PluginRegistry& plugins, const RenderOptions& options, const TraceWords& words, Progress& progress)
+    : options_(options),
+      words_(words),
+      pose_(chosen_pose(options, words.pose)),
+      has_path_(
+          std::any_of(words.edits.begin(), words.edits.end(), [](const Word& word) { return word.key == "camera_path"; })),
+      sequences_(plugins, options.scene.import, progress) {}
+
+void FrameScene::take(std::shared_ptr<const Scene> imported) {
+    imported_ = std::move(imported);
+    scene_.reset();
+}
+
+bool FrameScene::follows_frames() const {
+    return !options_.frames.empty() && !pose_.time_s && (moves(*imported_) || has_path_);
+}
+
+void FrameScene::place(std::optional<int> frame) {
+    PoseOptions pose = pose_;
+    if (frame) pose.time_s = time_of_frame(*frame, frame_rate(find_clip(*imported_, pose.clip), options_.fps));
+    const bool at_rest = !pose.time_s && pose.clip.empty(), plays = moves(*imported_) || has_path_;
+    auto scene = at_rest || (has_path_ && !moves(*imported_))
+                     ? imported_
+                     : std::make_shared<const Scene>(at_pose(*imported_, pose, std::ref(sequences_)));
+    time_s_.reset();
+    if (!at_rest && plays) {
+        const ClipInfo clip = find_clip(*imported_, pose.clip);
+        time_s_ = pose.time_s.value_or(clip.begin_s);
+        clip_ = clip.name;
+    }
+    const Settings& settings = words_.settings;
+    const float aspect = float(settings.width) / float(settings.height);
+    EditedView edited;
+    edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);
+    for (const Word& word : words_.edits) apply_edit(*scene, edited, word.key, word.value);
+    // Frames follow a path in any case; a still picture only if its camera was not set after the path.
+    path_ = edited.follows_path || frame ? std::move(edited.camera_path) : CameraPath();
+    if (!path_.empty()) edited.view.camera = path_.at(time_s_.value_or(path_.keys.front().time_s));
+    view_ = visible_view(edited);
+    hidden_ = edited.hidden;
+    if (!hidden_.empty()) scene = std::make_shared<const Scene>(without_instances(*scene, hidden_));
+    scene_ = std::move(scene);
+}
+
+View FrameScene::view(const MotionBlur::Sample& sample) const {
+    View view = sample.view;
+    if (!path_.empty()) view.camera = path_.at(sample.time_s);
+    return view;
+}
+
+std::unique_ptr<MotionBlur> FrameScene::blur(std::shared_ptr<const MultiPrepared> prepared, MultiPreparer& preparer) {
+    const Settings& settings = words_.settings;
+    if (!blurs(settings) || !time_s_) return nullptr;
+    const double fps = frame_rate(find_clip(*imported_, clip_), options_.fps);
+    MotionBlur::Source source;
+    source.rest = imported_;
+    source.clip = clip_;
+    source.hidden = hidden_;
+    source.read = std::ref(sequences_);
+    source.prepare = [&preparer, &settings](std::shared_ptr<const Scene> scene, Progress& progress) {
+        return preparer.prepare(std::move(scene), settings, progress);
+    };
+    return std::make_unique<MotionBlur>(
+        std::move(source), Shutter{*time_s_, settings.shutter / fps, static_cast<unsigned>(settings.spp)}, std::move(prepared));
+}
+
+}  // namespace clarity

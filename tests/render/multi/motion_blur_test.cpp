@@ -1,0 +1,199 @@
+// motion_blur_test.cpp -- pictures whose samples are spread in time, beside still pictures of the samples' times.
+#include "render/multi/motion_blur.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "import/sequence_reader.hpp"
+#include "render/multi/multi_device_film.hpp"
+#include "render/multi/team.hpp"
+#include "support/scratch.hpp"
+
+using namespace clarity;
+using namespace clarity::test;
+
+namespace {
+
+std::string obj(const std::vector<std::string>& lines) {
+    std::string text;
+    for (const std::string& line : lines) text += line + "\n";
+    return text;
+}
+
+// A sail whose upper corners are moved aside by `lean`.
+std::string sail(double lean) {
+    return obj({"v 1.5 -1 0", "v 2.5 -1 0", "v " + std::to_string(2.5 + lean) + " 1 0",
+                "v " + std::to_string(1.5 + lean) + " 1 0", "f 1 2 3", "f 1 3 4"});
+}
+
+class Blur : public ::testing::Test {
+ protected:
+    // A box that moves, a mesh that deforms, a camera that turns and a lamp that passes by.
+    void SetUp() override {
+        scratch_.write("box.obj", obj({"v -.5 -.5 0", "v .5 -.5 0", "v .5 .5 0", "v -.5 .5 0", "f 1 2 3 4"}));
+        scratch_.write("sail_00.obj", sail(0));
+        scratch_.write("sail_24.obj", sail(-1.2));
+        const std::string path = scratch_.write("moves.scene",
+                                                "camera main eye 0 0 9 target 0 0 0 fov 40\n"
+                                                "light point position 0 0 6 color 1 1 1 name lamp\n"
+                                                "background .2 .3 .5\n"
+                                                "material red color .9 .2 .1\n"
+                                                "polygon vertices -6 -3 -2  6 -3 -2  6 3 -2  -6 3 -2\n"
+                                                "load box.obj name box material red\n"
+                                                "load \"sail_##.obj\" material red\n"
+                                                "animate box translate 0 -2 0 0  1 0 1 0\n"
+                                                "animate main rotate 0 0 1 0 0  1 0 1 0 4\n"
+                                                "animate lamp translate 0 -4 2 6  1 4 2 6\n");
+        rest_ = load_scene(path);
+        sequences_ = std::make_unique<import::SequenceReader>(Workbench::get().plugins(), import::ImportOptions(), progress_);
+    }
+    Pose pose(double time_s) { return evaluate(*rest_, {}, time_s, std::ref(*sequences_)); }
+    ScenePtr scene_at(double time_s) { return std::make_shared<const Scene>(posed(*rest_, pose(time_s))); }
+    static View view_of(const Scene& scene) { return make_view(scene, 64.0f / 48); }
+
+    FloatImage still(Team& team, double time_s, const Settings& settings) {
+        const ScenePtr scene = scene_at(time_s);
+        team.trace(scene, settings, view_of(*scene), 0, unsigned(settings.spp));
+        return team.frames.read_values();
+    }
+    struct Blurred {
+        FloatImage image;
+        unsigned refitted = 0, built = 0;
+    };
+    Blurred blurred(Team& team, const Shutter& shutter, const Settings& settings) {
+        const ScenePtr scene = scene_at(shutter.time_s);
+        MotionBlur::Source source;
+        source.rest = rest_;
+        source.read = std::ref(*sequences_);
+        source.prepare = [&](const ScenePtr& posed, Progress& progress) {
+            return team.preparer.prepare(posed, settings, progress);
+        };
+        MotionBlur blur(source, shutter, team.preparer.prepare(scene, settings, team.progress));
+        for (unsigned i = 0; i < shutter.samples; ++i) {
+            const MotionBlur::Sample& sample = blur.at(i, view_of(*scene), team.progress);
+            team.frames.trace(sample.prepared, settings, sample.view, i, false, team.progress);
+        }
+        return {team.frames.read_values(), blur.refitted(), blur.built()};
+    }
+    static double mean_difference(const FloatImage& a, const FloatImage& b) {
+        double sum = 0;
+        for (size_t i = 0; i < a.pixels.size(); ++i) sum += std::fabs(double(a.pixels[i]) - double(b.pixels[i]));
+        return sum / double(a.pixels.size());
+    }
+    static double largest_difference(const FloatImage& a, const FloatImage& b) {
+        double most = 0;
+        for (size_t i = 0; i < a.pixels.size(); ++i)
+            most = std::max(most, std::fabs(double(a.pixels[i]) - double(b.pixels[i])));
+        return most;
+    }
+
+    const Settings settings_ = make_settings({{"size", "64x48"}, {"spp", "64"}, {"shutter", "1"}});
+    Scratch scratch_;
+    ScenePtr rest_;
+    Progress progress_;
+    std::unique_ptr<import::SequenceReader> sequences_;
+};
+
+TEST(Shutter, EachPartOfTheTimeHasOneSample) {
+    for (const unsigned count : {2u, 3u, 4u, 16u, 60u, 64u, 1000u}) {
+        std::set<long> parts;
+        for (unsigned i = 0; i < count; ++i) {
+            const double part = (sample_time({5, 2, count}, i) - 4) / 2 * count - 0.5;
+            EXPECT_NEAR(part, std::round(part), 1e-6);
+            parts.insert(std::lround(part));
+        }
+        EXPECT_EQ(parts.size(), count);
+        EXPECT_EQ(*parts.begin(), 0);
+        EXPECT_EQ(*parts.rbegin(), long(count) - 1);
+    }
+}
+
+TEST(Shutter, OneSampleIsAtThePicturesTime) {
+    EXPECT_EQ(sample_time({5, 2, 1}, 0), 5);
+    EXPECT_EQ(sample_time({5, 0, 64}, 7), 5);
+}
+
+TEST(Shutter, TheFirstSamplesAreSpreadToo) {
+    double sum = 0;
+    for (unsigned i = 0; i < 16; ++i) sum += sample_time({0, 1, 1024}, i) / 16;
+    EXPECT_NEAR(sum, 0, 0.05);
+}
+
+// 64 samples at times of their own are the mean of 64 still pictures, each built from the ground up.
+TEST_F(Blur, IsTheMeanOfStillPictures) {
+    Team team("cpu");
+    const Shutter shutter = {0.5, 1, 64};
+    const Blurred blur = blurred(team, shutter, settings_);
+    EXPECT_EQ(blur.refitted, 64u);
+    EXPECT_EQ(blur.built, 0u);
+    Settings of_still = settings_;
+    of_still.spp = 16;
+    FloatImage mean;
+    for (int i = 0; i < 64; ++i) {
+        const FloatImage one = still(team, (i + 0.5) / 64, of_still);
+        if (mean.pixels.empty()) mean = {one.width, one.height, one.channels, std::vector<float>(one.pixels.size())};
+        for (size_t p = 0; p < one.pixels.size(); ++p) mean.pixels[p] += one.pixels[p] / 64;
+    }
+    const double difference = mean_difference(blur.image, mean), without = mean_difference(still(team, 0.5, settings_), mean);
+    RecordProperty("difference", std::to_string(difference));
+    RecordProperty("without", std::to_string(without));
+    EXPECT_LT(difference, 0.004);
+    EXPECT_LT(largest_difference(blur.image, mean), 0.12) << "no pixel is of another time";
+    EXPECT_GT(without, 10 * difference) << "the picture is not blurred without it";
+}
+
+// Structures without refits, poses of which the structure cannot be refitted, and `poses=build` are built for each sample.
+TEST_F(Blur, BuildsWhereItCannotRefit) {
+    Team team("cpu");
+    const Shutter shutter = {0.5, 1, 8};
+    Settings settings = settings_, built = settings_;
+    settings.spp = built.spp = 8;
+    built.poses = "build";
+    const Blurred refits = blurred(team, shutter, settings), builds = blurred(team, shutter, built);
+    EXPECT_EQ(refits.built, 0u);
+    EXPECT_EQ(builds.built, 8u);
+    EXPECT_LT(largest_difference(refits.image, builds.image), 1e-5);
+}
+
+TEST_F(Blur, PicturesBeforeLeaveNoTrace) {
+    Team team("cpu");
+    Settings settings = settings_;
+    settings.spp = 8;
+    const FloatImage first = blurred(team, {0.5, 1, 8}, settings).image;
+    blurred(team, {0.1, 0.2, 8}, settings);
+    EXPECT_EQ(differing(first.pixels, blurred(team, {0.5, 1, 8}, settings).image.pixels), 0u);
+}
+
+TEST_F(Blur, DevicesThatShareThePictureMakeTheSame) {
+    if (const std::string why = why_no_parts(); !why.empty()) GTEST_SKIP() << why;
+    Team whole("cpu"), parts("0:0/2");
+    Settings settings = settings_;
+    settings.spp = 8;
+    const FloatImage one = blurred(whole, {0.5, 1, 8}, settings).image, two = blurred(parts, {0.5, 1, 8}, settings).image;
+    EXPECT_EQ(differing(one.pixels, two.pixels), 0u);
+}
+
+// What a lost device has traced cannot be traced again: its poses are gone. The picture begins anew without it.
+TEST_F(Blur, APictureThatLostADeviceBeginsAnew) {
+    if (const std::string why = why_no_parts(); !why.empty()) GTEST_SKIP() << why;
+    Team team("0:0/2");
+    Settings settings = settings_;
+    settings.spp = 8;
+    const ScenePtr scene = scene_at(0.5);
+    const auto prepared = team.preparer.prepare(scene, settings, team.progress);
+    team.frames.trace(prepared, settings, view_of(*scene), 0, false, team.progress, 2);
+    team.devices[1]->queue() = cl::CommandQueue();
+    team.devices[1]->context() = cl::Context();
+    EXPECT_THROW(team.frames.trace(prepared, settings, view_of(*scene), 2, false, team.progress), SamplesLost);
+    EXPECT_EQ(team.frames.trace(prepared, settings, view_of(*scene), 0, false, team.progress, 8).samples, 8u);
+}
+
+TEST(Shutter, IsOffByDefault) {
+    EXPECT_FALSE(blurs(Settings()));
+    EXPECT_FALSE(blurs(make_settings({{"shutter", "0.5"}}))) << "one sample cannot be spread";
+    EXPECT_TRUE(blurs(make_settings({{"shutter", "0.5"}, {"spp", "2"}})));
+    EXPECT_FALSE(blurs(make_settings({{"shutter", "0.5"}, {"spp", "2"}, {"aov", "t"}})));
+}
+
+}  // namespace
