@@ -4,9 +4,10 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF /* the same boxes as the host's build_scene.cpp */
 
-/* Where an instance is. 96 B. Rows of 3x4 matrices. */
+/* Where an instance is. 112 B. Rows of 3x4 matrices. */
 typedef struct rt_placement {
     float world_from_object[12], object_from_world[12];
+    uint hidden, pad[3]; /* of rt_instance */
 } rt_placement;
 
 RT_INLINE void rt_grow(rt_block *box, const float *p)
@@ -93,6 +94,7 @@ RT_BUILD_KERNEL move_leaves(global rt_packed_prim *leaves, uint first, uint coun
                 const rt_block placed = rt_placed_box(group_boxes[group_of_instance[index]], placements + index);
                 for (uint k = 0u; k < 12u; ++k)
                     instances[index].object_from_world[k] = placements[index].object_from_world[k];
+                instances[index].hidden = placements[index].hidden;
                 for (uint k = 0u; k < 3u; ++k) leaf->a[k] = placed.lo[k], leaf->b[k] = placed.hi[k];
             }
             for (uint k = 0u; k < 3u; ++k) box.lo[k] = leaf->a[k], box.hi[k] = leaf->b[k];

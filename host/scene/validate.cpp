@@ -45,8 +45,10 @@ std::string check_arrays(const Scene& s) {
          {s.triangles.size() / 3, s.instances.size(), s.spheres.size(), s.polygons.size(), s.shape_parts.size()}) {
         if (count > RT_REF_INDEX_MAX) return std::to_string(count) + " primitives of one kind are more than a ref can name";
     }
-    const std::pair<const char*, const std::vector<float>*> numbers[] = {
-        {"position", &s.positions.all()}, {"normal", &s.normals.all()}, {"uv", &s.uvs.all()}, {"polygon corner", &s.polygon_corners}};
+    const std::pair<const char*, const std::vector<float>*> numbers[] = {{"position", &s.positions.all()},
+                                                                         {"normal", &s.normals.all()},
+                                                                         {"uv", &s.uvs.all()},
+                                                                         {"polygon corner", &s.polygon_corners}};
     for (const auto& [what, values] : numbers) {
         if (all_finite(*values)) continue;
         const auto bad = std::find_if(values->begin(), values->end(), [](float x) { return !std::isfinite(x); });

@@ -79,12 +79,12 @@ class StrategiesCase {
         const Way way = s.is_policy ? Way::automatic : s.every > 0 && frame % s.every == 0 ? Way::build : Way::refit;
         const auto begin = std::chrono::steady_clock::now();
         s.accel.reset();
-        s.accel = s.follower.refit(from, scene, pose, way, s.last_trace_ms, progress_);
+        s.accel = s.follower.refit(from, scene, pose, way, s.last_trace_ms, progress_).accel;
         const bool builds = !s.accel;
         if (builds) {
             s.accel = std::make_shared<const AccelData>(
                 build_accel(*scene, plugin_, settings_.accel_params, progress_, fixture_.target_of(plugin_)));
-            s.follower.built(from, scene, pose, s.accel);
+            s.follower.built(from, scene, pose, s.accel, make_host_mover(scene, s.accel));
         }
         const double update_ms = ms_since(begin);
         const auto prepared = preparer_.prepare(scene, settings_, progress_, s.accel);

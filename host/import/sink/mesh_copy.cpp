@@ -168,8 +168,7 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
             if (unusable[i]) std::fill(positions, positions + 3, 0.f);
         }
     }
-    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, all_positions.capacity(),
-                   scene.normals.own());
+    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, all_positions.capacity(), scene.normals.own());
     copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, all_positions.capacity(), scene.uvs.own());
 
     Mesh mesh;

@@ -201,8 +201,7 @@ rt_u32 MotionSink::morph(const rt_morph_desc& d, std::string name, const std::ve
         target.count = from.count;
         target.first = motion.morph_vertices.size();
         std::vector<rt_u32>& vertices = motion.morph_vertices.own();
-        for (uint64_t k = 0; k < from.count; ++k)
-            vertices.push_back(from.vertices ? from.vertices[k] : static_cast<rt_u32>(k));
+        for (uint64_t k = 0; k < from.count; ++k) vertices.push_back(from.vertices ? from.vertices[k] : static_cast<rt_u32>(k));
         append(motion.morph_positions, from.positions, 3 * from.count);
         target.has_normals = from.normals ? 1 : 0;
         if (from.normals) target.first_normal = append(motion.morph_normals, from.normals, 3 * from.count);

@@ -129,6 +129,7 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     if (observer_) observer_->running(path, plugin->id);
     open_.push_back(canonical);
     auto content = std::make_unique<FileContent>();
+    content->first_material = static_cast<rt_u32>(scene_.materials.size());
     reserve_arrays(path, scene_);
     HostServices services(path, progress_);
     SceneSink sink(*this, services, path, *content);
@@ -284,6 +285,9 @@ Scene SceneBuilder::take() {
     scene_.shapes = std::move(world_.shapes);
     scene_.lights = std::move(world_.lights);
     scene_.cameras = std::move(world_.cameras);
+    scene_.edits = std::move(world_.edits);
+    for (const auto& [path, content] : files_) scene_.sources.push_back(path);
+    for (const auto& [path, texture] : textures_) scene_.sources.push_back(path);
     take_motion();
     bake_flattened_instances(scene_);
     for (const FileContent::PolygonCorners& polygon : world_.polygons) {

@@ -12,8 +12,8 @@ class DeviceBlocks {
     // Bytes of the blocks of `count` boxes.
     static uint64_t bytes(uint64_t count) { return 24 * (2 * count + 64); }
 
-    // Writes the blocks of `count` boxes (rt_prim) to `result`. order: which box stands at each place; nullptr: as they are. Only
-    // enqueues.
+    // Writes the blocks of `count` boxes (rt_prim) to `result`. order: which box stands at each place; nullptr: as they are.
+    // Only enqueues.
     void run(const cl::Buffer& boxes, const cl::Buffer* order, uint64_t count, const cl::Buffer& result);
 
  private:

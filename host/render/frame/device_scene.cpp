@@ -177,7 +177,8 @@ DeviceScene::Moving DeviceScene::moving() const {
 void DeviceScene::write_bounds(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
     if (!bounds_()) return;
     for (size_t i = 0; i < count; ++i)
-        queue.enqueueCopyBuffer(bounds_, frames, 0, i * sizeof(rt_frame) + offsetof(rt_frame, bounds), sizeof(rt_frame::bounds));
+        queue.enqueueCopyBuffer(bounds_, frames, 0, i * sizeof(rt_frame) + offsetof(rt_frame, bounds),
+                                sizeof(rt_frame::bounds));
 }
 
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,

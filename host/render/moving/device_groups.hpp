@@ -19,6 +19,7 @@ namespace clarity {
 // Where an instance is, as kernels read it: rt_placement of move.cl.
 struct DevicePlacement {
     float world_from_object[12], object_from_world[12];
+    uint32_t hidden, pad[3];
 };
 
 // Buffers that all structures of a scene share while it moves. They hold the newest pose.
@@ -39,8 +40,8 @@ class DeviceStructure;
 class DeviceGroups {
  public:
     // built: the structure of `on_device`. Throws Error if kernels cannot be compiled, or memory is missing.
-    DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const AccelData> built, std::shared_ptr<const DeviceScene> on_device,
-                 const DevicePose& pose);
+    DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const AccelData> built,
+                 std::shared_ptr<const DeviceScene> on_device, const DevicePose& pose);
 
     // Why the structure cannot be refitted on this device; empty: it can.
     const std::string& cannot() const { return cannot_; }
@@ -65,8 +66,8 @@ class DeviceGroups {
     const ParameterValues params_;
     std::string cannot_;
     std::vector<Group> groups_;
-    cl::Program program_;                           // move.cl
-    cl::Buffer ranges_;                             // rt_device_tree::ranges
+    cl::Program program_;                            // move.cl
+    cl::Buffer ranges_;                              // rt_device_tree::ranges
     cl::Buffer boxes_, blocks_, node_costs_, sums_;  // of one group at a time
 };
 

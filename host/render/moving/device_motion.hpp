@@ -6,9 +6,9 @@
 //       if (moved.on_device) draw it; else build a new one, for the reason moved.why
 //   }
 //
-// As MovingAccel, but leaves, boxes and trees are written by the device that traces them: the host sends vertices and transforms
-// that have changed, and enqueues kernels. It waits for nothing. Commands of earlier frames in the device's queue run before those
-// of the move, and commands of later frames after them.
+// As MovingAccel, but leaves, boxes and trees are written by the device that traces them: the host sends vertices and
+// transforms that have changed, and enqueues kernels. It waits for nothing. Commands of earlier frames in the device's queue
+// run before those of the move, and commands of later frames after them.
 //
 // Memory on the device: 24 B a vertex, 12 B and 40 B of scratch a triangle, and up to three copies of leaves and nodes.
 #pragma once
@@ -27,8 +27,8 @@ namespace clarity {
 struct MovedOnDevice {
     std::shared_ptr<const DeviceScene> on_device;  // nullptr: a full build is needed
     std::string why;                               // why a build is needed; empty: it is not
-    // The greatest expected cost of a ray in any group, by that after the build; as far as the device has told it: of one of the last
-    // moves.
+    // The greatest expected cost of a ray in any group, by that after the build; as far as the device has told it: of one of
+    // the last moves.
     double worst_cost_ratio = 1;
     uint64_t refitted = 0;  // primitives
     double ms = 0;          // time of the call; the device goes on after it
@@ -43,7 +43,8 @@ class DeviceMotion {
                  std::shared_ptr<const DeviceScene> on_device, BuildForm form = BuildForm::automatic);
     ~DeviceMotion();
 
-    // Why the structure can only be built anew: "accel linear does not offer a refit on the device"; empty: it can follow poses.
+    // Why the structure can only be built anew: "accel linear does not offer a refit on the device"; empty: it can follow
+    // poses.
     const std::string& cannot() const;
 
     // Moves the structure to a pose of the same scene, as MovingAccel::move(). Throws Error(failed).

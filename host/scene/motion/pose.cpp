@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "scene/camera.hpp"
 #include "scene/flatten.hpp"
+#include "scene/instance_edit.hpp"
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
 #include "scene/motion/file_sequence.hpp"
@@ -36,10 +37,12 @@ std::vector<PosedInstance> pose_instances(const Scene& scene, const std::vector<
         if (instance.node != RT_NONE) {
             const PlacedNode& node = nodes[instance.node];
             posed.mesh = instance.moving_mesh;
-            posed.visible = node.visible;
+            posed.visible = node.visible && !instance.hidden;
             const bool skinned = root_of_skinned.count(posed.mesh) != 0;
             const Matrix root = instance.root == RT_NONE ? kIdentityMatrix : nodes[instance.root].world;
             posed.world_from_object = to_affine(skinned ? root : node.world * to_matrix(instance.node_from_object));
+            if (instance.shift != InstanceShift())
+                posed.world_from_object = shifted(instance.shift, instance.pivot, posed.world_from_object);
         }
         instances.push_back(posed);
     }
@@ -151,7 +154,7 @@ Scene posed(Scene scene, const Pose& pose) {
         instance.world_from_object = pose.instances[i].world_from_object;
         instance.visible = pose.instances[i].visible;
         instance.node = instance.root = RT_NONE;
-        instance.apart = moving[i];
+        instance.apart = instance.apart || moving[i];
     }
     result.cameras = pose.cameras;
     result.lights = pose.lights;
