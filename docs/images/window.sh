@@ -65,7 +65,7 @@ wait idle 300
 screenshot $out/window_large_text.png
 COMMANDS
 
-# The showpiece with a chest that hovers and turns.
+# The showpiece with a chest that hovers and turns, and a camera that moves from key to key.
 cp -r "$here/../../scenes" "$work/scenes"
 scene=$work/scenes/showpiece.scene
 cat >>"$scene" <<ANIMATED
@@ -75,6 +75,13 @@ ANIMATED
 shoot 1280x800 1 856x660 <<COMMANDS
 wait idle 300
 loop 0.25 1.5
+time 0.25
+wait idle 300
+camera_key set
+time 1.5
+wait idle 300
+edit camera 2.2,2.1,5.2,-0.05,1.2,-1,40,0,1,0
+camera_key set
 time 0.75
 wait idle 300
 screenshot $out/window_timeline.png

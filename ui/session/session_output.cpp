@@ -61,6 +61,8 @@ void Session::load_preset(const std::string& path) {
             playback_.choose(desired, preset.pose.clip);
             desired.pose.time_s = preset.pose.time_s;
         }
+        // A camera that has left its path stays where the preset has it.
+        if (!edited.follows_path) path_time_s_ = desired.pose.time_s;
     }
     log(LogLevel::info, "preset " + path);
 }

@@ -14,7 +14,10 @@
 #include "bench/cases/ray_entries.hpp"
 #include "bench/run/bench.hpp"
 #include "bench/suites/motions.hpp"
+#include "device/cl_errors.hpp"
+#include "plugin/extensions.hpp"
 #include "render/frame/preparer.hpp"
+#include "render/moving/device_motion.hpp"
 #include "render/moving/moving_accel.hpp"
 
 namespace clarity::bench {
@@ -49,6 +52,7 @@ class MotionCase {
             if (case_.measure != "refit") moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
         }
         for (const Variant& variant : case_.variants) {
+            if (variant.on_device && !moves_on_device(variant)) continue;
             Entry& entry = state_.add_entry();
             run_or_mark_failed(entry, [&](BenchRecord&) { add(variant, entry); });
         }
@@ -79,11 +83,13 @@ class MotionCase {
         row.variant = variant.label;
         row.accel = settings.accel;
         row.accel_params = parameters_text(plugin, settings.accel_params);
-        if (case_.measure == "refit" || case_.measure == "rebuild")
+        if (!variant.on_device && (case_.measure == "refit" || case_.measure == "rebuild"))
             describe_host(row, std::thread::hardware_concurrency());
         else
             describe(row, fixture_.device(0));
-        if (case_.measure == "refit")
+        if (variant.on_device)
+            add_device_refit(settings, entry);
+        else if (case_.measure == "refit")
             add_refit(plugin, settings, entry);
         else if (case_.measure == "rebuild")
             add_rebuild(plugin, settings, entry);
@@ -134,6 +140,49 @@ class MotionCase {
             row.bytes_per_triangle = double(row.accel_bytes) / double(row.triangles);
             row.sah_cost *= mover->moved.worst_cost_ratio;
         };
+    }
+
+    bool moves_on_device(const Variant& variant) const {
+        const rt_plugin* plugin = plugins_.accel(variant.accel.substr(0, variant.accel.find(',')));
+        return !fixture_.device(0).cpu && plugin && device_build_of(plugins_.layout_of(*plugin)).refit;
+    }
+
+    // time_ms: from the start of the first kernel to the end of the last one, by the device's clock. Vertices are in place.
+    // wall_ms: from the call to the end, with the copy of the vertices within the device.
+    void add_device_refit(const Settings& settings, Entry& entry) {
+        struct State {
+            std::shared_ptr<const Prepared> prepared;
+            std::unique_ptr<DeviceMotion> motion;
+            std::vector<cl::Buffer> poses;
+            size_t next = 0;
+        };
+        const auto state = std::make_shared<State>();
+        const std::shared_ptr<Device> device = fixture_.opened(0);
+        auto apart = std::make_shared<Scene>(*fixture_.scene());
+        for (Instance& instance : apart->instances) instance.apart = true;
+        state->prepared = Preparer(plugins_, device).prepare(apart, settings, progress_);
+        state->motion = std::make_unique<DeviceMotion>(device, apart, state->prepared->accel, state->prepared->on_device);
+        if (!state->motion->cannot().empty()) throw Error(Exit::usage, state->motion->cannot());
+        for (const Pose& pose : poses_) {
+            const MovedOnDevice moved = state->motion->move(pose);
+            if (!moved.on_device) throw Error(Exit::failed, "the structure cannot follow: " + moved.why);
+            const cl::Buffer& now = state->motion->vertices();
+            const auto bytes = now.getInfo<CL_MEM_SIZE>();
+            state->poses.emplace_back(device->context(), CL_MEM_READ_WRITE, bytes);
+            device->queue().enqueueCopyBuffer(now, state->poses.back(), 0, 0, bytes);
+        }
+        device->queue().finish();
+        entry.once = [=] {
+            const cl::Buffer& from = state->poses[state->next++ % state->poses.size()];
+            const auto begin = std::chrono::steady_clock::now();
+            device->queue().enqueueCopyBuffer(from, state->motion->vertices(), 0, 0, from.getInfo<CL_MEM_SIZE>());
+            for (const PosedMesh& mesh : poses_[0].meshes) state->motion->touch(mesh.mesh);
+            const MovedOnDevice moved = state->motion->update();
+            moved.end.wait();
+            const double wall_ms = ms_since(begin);
+            return Sample{span_ms(moved.begin, moved.end, wall_ms), wall_ms};
+        };
+        entry.finish = [=](BenchRecord& row) { describe(row, *state->prepared->accel); };
     }
 
     void add_rebuild(const rt_plugin& plugin, const Settings& settings, Entry& entry) {

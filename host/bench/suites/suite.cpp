@@ -344,6 +344,10 @@ class Planner {
                     for (Variant variant : variants) {
                         if (!rays) {
                             c.variants.push_back(variant);
+                            if (c.measure != "refit") continue;
+                            variant.label += ", on the device";
+                            variant.on_device = true;
+                            c.variants.push_back(variant);
                             continue;
                         }
                         const std::string name = variant.label;

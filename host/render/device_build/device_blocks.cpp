@@ -3,29 +3,47 @@
 namespace clarity {
 namespace {
 
-constexpr uint64_t kBlocksAtOnce = 256;  // of a work-group of make_blocks
-constexpr unsigned kSizesAtOnce = 8;
+constexpr unsigned kSizes = 8;  // RT_BLOCK_SIZES: that a launch adds
 
 }  // namespace
 
-DeviceBlocks::DeviceBlocks(const BuildKernels& kernels)
-    : kernels_(kernels), make_(kernels.compile_file("blocks.cl"), "make_blocks") {}
+DeviceBlocks::DeviceBlocks(const BuildKernels& kernels) : kernels_(kernels) {
+    const cl::Program program = kernels.compile_file("blocks.cl");
+    make_ = cl::Kernel(program, "make_blocks");
+    larger_ = cl::Kernel(program, "make_larger_blocks");
+    unused_ = {kernels.buffer(kBytes), 0, kernels.buffer(kBytes)};
+}
 
 void DeviceBlocks::run(const cl::Buffer& boxes, const cl::Buffer* order, uint64_t count, const cl::Buffer& result) {
+    if (count == 0) return;
+    make_.setArg(0, boxes);
+    make_.setArg(1, order ? *order : boxes);
+    make_.setArg(2, cl_uint{order != nullptr});
+    make_.setArg(3, static_cast<cl_uint>(count));
+    make_.setArg(4, result);
+    make_.setArg(5, unused_.block);
+    make_.setArg(6, cl_uint{0});
+    make_.setArg(7, unused_.bounds);
+    kernels_.launch(make_, (count + kTile - 1) / kTile);
+    run_above(count, result, unused_);
+}
+
+void DeviceBlocks::run_above(uint64_t count, const cl::Buffer& result, const Whole& whole) {
     uint64_t begin = 0, blocks = count;
-    for (unsigned size = 0; blocks > 0 && (size == 0 || blocks > 1); size += kSizesAtOnce) {
-        make_.setArg(0, boxes);
-        make_.setArg(1, order ? *order : boxes);
-        make_.setArg(2, cl_uint{order != nullptr});
-        make_.setArg(3, cl_uint{size});
-        make_.setArg(4, static_cast<cl_uint>(begin));
-        make_.setArg(5, static_cast<cl_uint>(blocks));
-        make_.setArg(6, result);
-        kernels_.launch(make_, (blocks + kBlocksAtOnce - 1) / kBlocksAtOnce);
-        for (unsigned s = 0; s < kSizesAtOnce && blocks > 1; ++s) {
+    const auto rise = [&] {
+        for (unsigned s = 0; s < kSizes && blocks > 1; ++s) {
             begin += blocks;
             blocks = (blocks + 1) / 2;
         }
+    };
+    for (rise(); blocks > 1; rise()) {
+        larger_.setArg(0, static_cast<cl_uint>(begin));
+        larger_.setArg(1, static_cast<cl_uint>(blocks));
+        larger_.setArg(2, result);
+        larger_.setArg(3, whole.block);
+        larger_.setArg(4, whole.at);
+        larger_.setArg(5, whole.bounds);
+        kernels_.launch(larger_, (blocks + kTile - 1) / kTile);
     }
 }
 

@@ -9,7 +9,7 @@
 namespace clarity {
 namespace {
 
-// Places of buffers in before_lights_, which are those of the context's arguments: see kernel_source.cpp.
+// Places in DeviceScene::before_lights_, which are those of the context's arguments: see kernel_source.cpp.
 enum : size_t { kLeaves, kInstances, kPolygons, kPolygonCorners, kMaterials = 5, kTriangles, kNormals };
 
 constexpr uint64_t kPiece = 256u << 20;  // bytes uploaded between two progress reports
@@ -138,6 +138,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
     if (!build.shapes.empty()) {
         contents.push_back(content("shapes", build.shapes));
         contents.push_back(content("numbers of shapes", scene_->shape_numbers));
+        shape_buffers_ = 2;
     }
     add_slots(*accel_, contents);
     std::vector<MemoryPiece> pieces;
@@ -157,13 +158,16 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
 DeviceScene::DeviceScene(const DeviceScene& at_rest, Moving moving)
     : still_(at_rest.shared_from_this()),  // on a CPU it owns the memory of shared buffers
       before_lights_(at_rest.before_lights_),
+      slots_(at_rest.slots_),
+      shape_buffers_(at_rest.shape_buffers_),
       has_triangles_(at_rest.has_triangles_),
       bytes_(at_rest.bytes_) {
     before_lights_[kLeaves] = std::move(moving.leaves);
     before_lights_[kInstances] = std::move(moving.instances);
     before_lights_[kNormals] = std::move(moving.normals);
-    slots_ = std::move(moving.slots);
+    std::move(moving.slots.begin(), moving.slots.end(), slots_.begin() + static_cast<std::ptrdiff_t>(shape_buffers_));
     bounds_ = std::move(moving.bounds);
+    roots_ = std::move(moving.roots);
 }
 
 DeviceScene::Fixed DeviceScene::fixed() const {
@@ -171,14 +175,21 @@ DeviceScene::Fixed DeviceScene::fixed() const {
 }
 
 DeviceScene::Moving DeviceScene::moving() const {
-    return {before_lights_[kLeaves], before_lights_[kInstances], before_lights_[kNormals], slots_, bounds_};
+    return {before_lights_[kLeaves],
+            before_lights_[kInstances],
+            before_lights_[kNormals],
+            {slots_.begin() + static_cast<std::ptrdiff_t>(shape_buffers_), slots_.end()},
+            bounds_,
+            roots_};
 }
 
-void DeviceScene::write_bounds(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
+void DeviceScene::complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const {
     if (!bounds_()) return;
-    for (size_t i = 0; i < count; ++i)
-        queue.enqueueCopyBuffer(bounds_, frames, 0, i * sizeof(rt_frame) + offsetof(rt_frame, bounds),
-                                sizeof(rt_frame::bounds));
+    for (size_t i = 0; i < count; ++i) {
+        const size_t frame = i * sizeof(rt_frame);
+        queue.enqueueCopyBuffer(bounds_, frames, 0, frame + offsetof(rt_frame, bounds), sizeof(rt_frame::bounds));
+        queue.enqueueCopyBuffer(roots_, frames, 0, frame + offsetof(rt_frame, root), sizeof(rt_frame::root));
+    }
 }
 
 DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> still, std::shared_ptr<const AccelData> accel,
@@ -187,6 +198,8 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> stil
       scene_(still_->scene_),
       accel_(std::move(accel)),
       before_lights_(still_->before_lights_),
+      slots_(still_->slots_),
+      shape_buffers_(still_->shape_buffers_),
       has_triangles_(still_->has_triangles_),
       bytes_(still_->bytes_) {
     std::vector<Content> contents = {leaves_of(*accel_), content("instances", accel_->instances)};
@@ -194,10 +207,7 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const DeviceScene> stil
     Uploader uploader(device, contents, progress);
     before_lights_[kLeaves] = uploader.upload(contents[0]);
     before_lights_[kInstances] = uploader.upload(contents[1]);
-    // Shapes do not move.
-    const size_t shapes = still_->slots_.size() + 2 - contents.size();
-    for (size_t i = 0; i < still_->slots_.size(); ++i)
-        slots_.push_back(i < shapes ? still_->slots_[i] : uploader.upload(contents[2 + i - shapes]));
+    for (size_t i = 2; i < contents.size(); ++i) slots_[shape_buffers_ + i - 2] = uploader.upload(contents[i]);  // shapes stay
     if (scene_->normals.empty() || deformed.empty()) return;
     // A copy on the device, into which the normals of the deformed meshes are written.
     const size_t normal_bytes = scene_->normals.size() * sizeof(float);

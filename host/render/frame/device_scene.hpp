@@ -28,6 +28,7 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
         cl::Buffer leaves, instances, normals;
         std::vector<cl::Buffer> slots;  // without those of the host
         cl::Buffer bounds;              // of everything but planes: 6 floats. Null: frames have them from the host
+        cl::Buffer roots;               // of the groups' trees, the world's first: uints. Null as `bounds`
     };
     // The same scene with other buffers. All others are shared.
     DeviceScene(const DeviceScene& at_rest, Moving moving);
@@ -39,8 +40,8 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     Fixed fixed() const;
     bool has_triangles() const { return has_triangles_; }
 
-    // Writes the bounds into `count` rt_frame, if the host does not know them.
-    void write_bounds(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const;
+    // Writes bounds and root into `count` rt_frame, if the host does not know them.
+    void complete(cl::CommandQueue& queue, const cl::Buffer& frames, size_t count) const;
     // Sets the kernel's scene arguments from number `first` on (kernel_source.cpp has their order). `lights` comes from the
     // frame. If given, `materials` replaces the scene's materials.
     void bind(cl::Kernel& kernel, cl_uint first, const cl::Buffer& lights, const cl::Buffer* materials = nullptr) const;
@@ -54,7 +55,8 @@ class DeviceScene : public std::enable_shared_from_this<DeviceScene> {
     std::vector<rt_triangle> attributes_;
     std::vector<float> normals_;  // replace the scene's normals if meshes were flattened
     std::vector<cl::Buffer> before_lights_, slots_;
-    cl::Buffer bounds_;  // Moving::bounds
+    cl::Buffer bounds_, roots_;  // of Moving
+    size_t shape_buffers_ = 0;   // at the begin of slots_
     bool has_triangles_ = false;
     uint64_t bytes_ = 0;
 };

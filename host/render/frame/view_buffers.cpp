@@ -29,7 +29,7 @@ void ViewBuffers::write(cl::CommandQueue& queue, const Scene& scene, const Devic
     std::memcpy(frames_and_rows_.data(), frames.data(), frame_bytes);
     if (row_bytes > 0) std::memcpy(frames_and_rows_.data() + frame_bytes, rows.data(), row_bytes);
     frame_.write(queue, frames_and_rows_.data(), frames_and_rows_.size());
-    on_device.write_bounds(queue, frame_.get(), frames.size());
+    on_device.complete(queue, frame_.get(), frames.size());
     lights_.write(queue, view.lights.data(), view.lights.size() * sizeof(rt_light));
     if (own_materials_) materials_.write(queue, view.materials.data(), view.materials.size() * sizeof(rt_material));
 }

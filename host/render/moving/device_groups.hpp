@@ -1,8 +1,5 @@
-// device_groups.hpp -- refits the trees of a structure on the device that traces it, one group at a time.
-//
-// The host only enqueues: leaves follow vertices and transforms (cl/build/move.cl), blocks of neighbouring leaves give boxes
-// (cl/build/blocks.h), the layout's own kernels write them into its nodes (rt_device_build::refit). Nothing comes back but the
-// expected costs of rays, some frames later.
+// device_groups.hpp -- the groups of a structure whose trees are refitted or built on the device that traces it: where they
+// are, and what all copies of the structure share.
 #pragma once
 #include <memory>
 #include <string>
@@ -29,12 +26,10 @@ struct DevicePose {
     cl::Buffer corners;            // rt_triangle for each ref
     cl::Buffer placements;         // DevicePlacement for each instance of the structure
     cl::Buffer group_of_instance;  // uint
-    cl::Buffer group_boxes;        // 6 floats for each group
+    cl::Buffer group_boxes;        // rt_block for each group
+    cl::Buffer no_bounds;          // 6 floats: +inf, then -inf
     cl::Buffer costs;              // a float for each group: expected cost of a ray
 };
-
-// One copy of what differs from pose to pose, with the steps that refit it.
-class DeviceStructure;
 
 // What all copies have in common. Used from one thread at a time.
 class DeviceGroups {
@@ -45,53 +40,42 @@ class DeviceGroups {
 
     // Why the structure cannot be refitted on this device; empty: it can.
     const std::string& cannot() const { return cannot_; }
+    // Whether its trees can be built there, too: by the structure's own builder.
+    bool can_build() const { return builder_.topology && layout_.pack && layout_.elements; }
     uint64_t primitives(rt_u32 group) const { return groups_[group].count; }
+    size_t count() const { return groups_.size(); }
 
  private:
     friend class DeviceStructure;
-    // The tree of a group in the slots, and its leaves.
+    static constexpr uint64_t kCostGroups = 512;  // work-groups that add costs, at most
+    // Where a tree is in the slots: of each slot of the table, the first element and how many there are.
+    struct Place {
+        std::vector<uint64_t> first, count;
+    };
     struct Group {
-        uint64_t first_element = 0, element_count = 0;  // of slot 0
+        Place at_rest;  // of the tree that the host has built; slot 0 alone
+        Place built;    // for the tree that the device builds
         rt_u32 first_leaf = 0;
         uint64_t count = 0;  // primitives
     };
     std::string find_groups();
+    void place_trees();
     void make_scratch();
 
     const BuildKernels& kernels_;
     const std::shared_ptr<const AccelData> built_;
     const std::shared_ptr<const DeviceScene> on_device_;
     const DevicePose& pose_;
-    const rt_device_build layout_;
+    const rt_device_build layout_, builder_;  // builder_: without functions if the host builds for this layout itself
     const ParameterValues params_;
     std::string cannot_;
     std::vector<Group> groups_;
-    cl::Program program_;                            // move.cl
-    cl::Buffer ranges_;                              // rt_device_tree::ranges
-    cl::Buffer boxes_, blocks_, node_costs_, sums_;  // of one group at a time
-};
-
-class DeviceStructure {
- public:
-    // Takes memory for a copy, and fills it with the structure as it was built.
-    explicit DeviceStructure(const DeviceGroups& groups);
-
-    // Moves the leaves of a group to the pose, and refits its tree. Group 0 comes after the groups of its instances. Only
-    // enqueues.
-    void refit(rt_u32 group);
-    // Takes the normals of a mesh's vertices from the pose. Only enqueues.
-    void take_normals(rt_u32 first_vertex, rt_u32 vertex_count);
-
-    const std::shared_ptr<const DeviceScene>& on_device() const { return scene_; }
-    std::vector<uint64_t> version;  // of each group: the move that it has followed; 0: none. For the owner
-
- private:
-    std::unique_ptr<DevicePlan> plan(rt_u32 group);
-
-    const DeviceGroups& groups_;
-    DeviceScene::Moving buffers_;
-    std::shared_ptr<const DeviceScene> scene_;
-    std::vector<std::unique_ptr<DevicePlan>> plans_;  // of each group; nullptr: not made yet
+    cl::Program program_;                  // move.cl
+    cl::Buffer ranges_;                    // rt_device_tree::ranges of the structure as it was built
+    std::vector<uint64_t> slot_elements_;  // of each slot of the table, with room for trees that the device builds
+    // Of one group at a time.
+    cl::Buffer blocks_, node_costs_, sums_;
+    cl::Buffer boxes_, order_, old_leaves_;  // for builds
 };
 
 }  // namespace clarity

@@ -12,6 +12,11 @@ namespace clarity {
 namespace {
 
 constexpr size_t kCopies = 3;
+constexpr uint64_t kCostsEvery = 4;  // moves
+
+bool is_complete(const cl::Event& event) {
+    return event.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() == CL_COMPLETE;
+}
 
 }  // namespace
 
@@ -21,7 +26,8 @@ DeviceMotion::DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const
       scene_(std::move(scene)),
       built_(std::move(built)),
       on_device_(std::move(on_device)),
-      kernels_(device_, form) {
+      kernels_(device_, form),
+      accel_(built_) {
     wrap_cl_errors(*device_, "preparing a scene that moves", [&] {
         groups_ = std::make_unique<DeviceGroups>(kernels_, built_, on_device_, pose_);
         return 0;
@@ -74,14 +80,17 @@ void DeviceMotion::start() {
     pose_.group_of_instance = filled(build.group_of_instance.data(), build.group_of_instance.size() * sizeof(rt_u32));
     std::vector<float> nothing;
     for (size_t g = 0; g < build.groups.size(); ++g)
-        for (const float bound : {INFINITY, -INFINITY}) nothing.insert(nothing.end(), 3, bound);
+        for (const float bound : {INFINITY, -INFINITY}) nothing.insert(nothing.end(), 4, bound);
     pose_.group_boxes = filled(nothing.data(), nothing.size() * sizeof(float));
+    pose_.no_bounds = filled(nothing.data() + 1, 6 * sizeof(float));  // three of either sign
     costs_.assign(build.groups.size(), 0);
     pose_.costs = filled(costs_.data(), costs_.size() * sizeof(float));
     is_deformed_.assign(scene_->meshes.size(), 0);
     version_.assign(build.groups.size(), ++moves_);
+    built_in_.assign(build.groups.size(), 0);
+    is_fresh_.assign(build.groups.size(), 0);
     structures_.clear();
-    refit(spare());
+    bring_up(spare(), Update::refit, true);
     queue.enqueueReadBuffer(pose_.costs, CL_TRUE, 0, costs_.size() * sizeof(float), costs_.data());
     built_costs_ = costs_;
     started_ = true;
@@ -179,7 +188,7 @@ DeviceStructure& DeviceMotion::spare() {
 }
 
 // Brings a structure to the pose. Returns how many primitives were refitted.
-uint64_t DeviceMotion::refit(DeviceStructure& structure) {
+uint64_t DeviceMotion::bring_up(DeviceStructure& structure, Update update, bool with_costs) {
     uint64_t refitted = 0;
     for (rt_u32 m = 0; !normals_.empty() && m < scene_->meshes.size(); ++m) {
         const rt_u32 group = built_->scene.group_of_mesh[m];
@@ -190,28 +199,39 @@ uint64_t DeviceMotion::refit(DeviceStructure& structure) {
         const rt_u32 g = k % static_cast<rt_u32>(version_.size());  // the world last: instances need the boxes of their meshes
         if (structure.version[g] == version_[g]) continue;
         structure.version[g] = 0;
-        structure.refit(g);
+        if (update == Update::build && version_[g] == moves_) {
+            structure.build(g, true);
+            structure.built_in[g] = built_in_[g] = moves_;
+            is_fresh_[g] = 1;
+        } else {
+            if (structure.built_in[g] != built_in_[g]) structure.take_tree(g, with_tree_of(g));
+            structure.refit(g, with_costs);
+        }
         structure.version[g] = version_[g];
         refitted += groups_->primitives(g);
     }
     return refitted;
 }
 
-void DeviceMotion::ask_for_costs() {
-    if (costs_known_() && costs_known_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() != CL_COMPLETE) return;
-    device_->queue().enqueueReadBuffer(pose_.costs, CL_FALSE, 0, costs_.size() * sizeof(float), costs_.data(), nullptr,
-                                       &costs_known_);
+// A structure that has the newest tree of a group.
+const DeviceStructure& DeviceMotion::with_tree_of(rt_u32 group) const {
+    const auto found = std::find_if(structures_.begin(), structures_.end(),
+                                    [&](const auto& structure) { return structure->built_in[group] == built_in_[group]; });
+    return **found;
 }
 
 double DeviceMotion::worst_cost_ratio() {
     double worst = 1;
-    if (costs_known_() && costs_known_.getInfo<CL_EVENT_COMMAND_EXECUTION_STATUS>() != CL_COMPLETE) return last_ratio_;
-    for (size_t g = 0; g < costs_.size(); ++g)
+    if (costs_known_() && !is_complete(costs_known_)) return last_ratio_;
+    for (size_t g = 0; g < costs_.size(); ++g) {
+        if (is_fresh_[g]) built_costs_[g] = costs_[g];
+        is_fresh_[g] = 0;
         if (built_costs_[g] > 0 && std::isfinite(costs_[g])) worst = std::max(worst, double(costs_[g]) / built_costs_[g]);
+    }
     return last_ratio_ = worst;
 }
 
-MovedOnDevice DeviceMotion::move(const Pose& pose) {
+MovedOnDevice DeviceMotion::move(const Pose& pose, Update update) {
     const auto begin = std::chrono::steady_clock::now();
     MovedOnDevice result;
     result.why = cannot();
@@ -221,14 +241,79 @@ MovedOnDevice DeviceMotion::move(const Pose& pose) {
         result.worst_cost_ratio = worst_cost_ratio();
         device_->queue().enqueueMarkerWithWaitList(nullptr, &result.begin);
         result.why = place(pose);
-        if (!result.why.empty()) return result;
-        ++moves_;
-        DeviceStructure& structure = spare();
-        result.refitted = refit(structure);
-        ask_for_costs();
-        device_->queue().enqueueMarkerWithWaitList(nullptr, &result.end);
-        device_->queue().flush();
-        result.on_device = structure.on_device();
+        if (result.why.empty()) finish_move(update, result);
+        result.ms = ms_since(begin);
+        return result;
+    });
+}
+
+// Kernels are made for the deepest tree that a device may build: so none is compiled later.
+void DeviceMotion::raise_defines(const std::map<std::string, rt_u32>& defines) {
+    const auto enough = [&](const auto& define) {
+        const auto known = accel_->defines.find(define.first);
+        return known != accel_->defines.end() && known->second >= define.second;
+    };
+    if (std::all_of(defines.begin(), defines.end(), enough)) return;
+    struct Raised {
+        std::shared_ptr<const AccelData> from;  // owns slots and leaves
+        AccelData data;
+    };
+    auto raised = std::make_shared<Raised>();
+    raised->from = accel_;
+    AccelData& data = raised->data;
+    data.plugin = accel_->plugin;
+    data.layout = accel_->layout;
+    data.params = accel_->params;
+    const auto borrowed = [](const AlignedBytes& memory) {
+        return AlignedBytes::borrow(const_cast<void*>(memory.data()), memory.bytes());
+    };
+    for (const AccelData::Slot& slot : accel_->slots) data.slots.push_back({borrowed(slot.memory), slot.count});
+    data.leaves = borrowed(accel_->leaves);
+    data.leaf_count = accel_->leaf_count;
+    data.roots = accel_->roots;
+    data.defines = accel_->defines;
+    for (const auto& [name, value] : defines) data.defines[name] = std::max(data.defines[name], value);
+    data.stats = accel_->stats;
+    data.instances = accel_->instances;
+    data.scene = accel_->scene;
+    data.build_ms = accel_->build_ms;
+    data.pack_ms = accel_->pack_ms;
+    data.bytes = accel_->bytes;
+    accel_ = std::shared_ptr<const AccelData>(raised, &raised->data);
+}
+
+// Refits or builds what version_ says that move number moves_ + 1 has changed.
+void DeviceMotion::finish_move(Update update, MovedOnDevice& moved) {
+    ++moves_;
+    DeviceStructure& structure = spare();
+    const bool asks = update == Update::build || !costs_known_() || (moves_ % kCostsEvery == 0 && is_complete(costs_known_));
+    moved.refitted = bring_up(structure, update, asks);
+    raise_defines(structure.defines());
+    if (asks && costs_known_()) costs_known_.wait();
+    if (asks)
+        device_->queue().enqueueReadBuffer(pose_.costs, CL_FALSE, 0, costs_.size() * sizeof(float), costs_.data(), nullptr,
+                                           &costs_known_);
+    device_->queue().enqueueMarkerWithWaitList(nullptr, &moved.end);
+    device_->queue().flush();
+    moved.on_device = structure.on_device();
+}
+
+void DeviceMotion::touch(rt_u32 mesh) {
+    const rt_u32 group = built_->scene.group_of_mesh[mesh];
+    if (group == 0) return;
+    version_[group] = version_[0] = moves_ + 1;
+    is_deformed_[mesh] = 1;
+    positions_[3 * size_t(scene_->meshes[mesh].first_vertex)] =
+        NAN;  // no longer what is there: the next pose sends its vertices
+}
+
+MovedOnDevice DeviceMotion::update(Update update) {
+    const auto begin = std::chrono::steady_clock::now();
+    MovedOnDevice result;
+    return wrap_cl_errors(*device_, "moving the scene", [&] {
+        result.worst_cost_ratio = worst_cost_ratio();
+        device_->queue().enqueueMarkerWithWaitList(nullptr, &result.begin);
+        finish_move(update, result);
         result.ms = ms_since(begin);
         return result;
     });

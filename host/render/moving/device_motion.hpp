@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "base/aligned_bytes.hpp"
-#include "render/moving/device_groups.hpp"
+#include "render/moving/device_structure.hpp"
 #include "render/moving/moved_instances.hpp"
 #include "scene/motion/pose.hpp"
 
@@ -38,6 +38,9 @@ struct MovedOnDevice {
 // Used from one thread at a time, which may differ from that of frames.
 class DeviceMotion {
  public:
+    // What is done with the trees of groups that have changed; `build`: only if can_build().
+    enum class Update { refit, build };
+
     // built: the structure of `scene`, which may be in any pose itself. on_device: its buffers. Throws Error.
     DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
                  std::shared_ptr<const DeviceScene> on_device, BuildForm form = BuildForm::automatic);
@@ -48,7 +51,19 @@ class DeviceMotion {
     const std::string& cannot() const;
 
     // Moves the structure to a pose of the same scene, as MovingAccel::move(). Throws Error(failed).
-    MovedOnDevice move(const Pose& pose);
+    MovedOnDevice move(const Pose& pose, Update update = Update::refit);
+    bool can_build() const { return groups_->can_build(); }
+    // The structure as it was built, but with the defines that trees need which the device builds: what kernels are made for.
+    // It changes with the first build only.
+    const std::shared_ptr<const AccelData>& accel() const { return accel_; }
+
+    // Where the vertices of the Scene are on the device, 3 floats each, in the space of their groups: for those who compute
+    // them there. Null before the first move.
+    const cl::Buffer& vertices() const { return pose_.positions; }
+    // Says that commands in the device's queue write the vertices of a mesh.
+    void touch(rt_u32 mesh);
+    // Refits what was touched. As move().
+    MovedOnDevice update(Update update = Update::refit);
 
  private:
     void start();
@@ -56,8 +71,10 @@ class DeviceMotion {
     void set_vertices(rt_u32 mesh, const float* positions, const float* normals);
     void send(const cl::Buffer& to, size_t at, size_t bytes, const void* data);
     DeviceStructure& spare();
-    uint64_t refit(DeviceStructure& structure);
-    void ask_for_costs();
+    void raise_defines(const std::map<std::string, rt_u32>& defines);
+    uint64_t bring_up(DeviceStructure& structure, Update update, bool with_costs);
+    void finish_move(Update update, MovedOnDevice& moved);
+    const DeviceStructure& with_tree_of(rt_u32 group) const;
     double worst_cost_ratio();
 
     const std::shared_ptr<Device> device_;
@@ -65,6 +82,7 @@ class DeviceMotion {
     const std::shared_ptr<const AccelData> built_;
     const std::shared_ptr<const DeviceScene> on_device_;
     BuildKernels kernels_;
+    std::shared_ptr<const AccelData> accel_;  // see accel()
     DevicePose pose_;
     std::unique_ptr<DeviceGroups> groups_;
 
@@ -78,8 +96,11 @@ class DeviceMotion {
     uint64_t moves_ = 0;
     std::vector<cl::Event> sent_;
 
-    std::deque<std::unique_ptr<DeviceStructure>> structures_;
-    std::vector<float> costs_, built_costs_;  // of the groups; costs_ is written by the device until costs_known_
+    std::vector<uint64_t> built_in_;                           // of each group: the move in which its tree was built
+    std::deque<std::unique_ptr<DeviceStructure>> structures_;  // the newest last
+    // Of the groups: costs_ is written by the device until costs_known_. A build makes built_costs_ of the next ones.
+    std::vector<float> costs_, built_costs_;
+    std::vector<uint8_t> is_fresh_;  // of each group: costs_ is that after its build
     cl::Event costs_known_;
     double last_ratio_ = 1;
     bool started_ = false;

@@ -27,12 +27,18 @@ PoseFollower::Way way_of(const std::string& poses) {
                               : PoseFollower::Way::automatic;
 }
 
-std::string PoseFollower::why_not(const PosedFrom& from, const Pose& pose, Way way) const {
+// Why nothing that is there can become the pose; empty: it can.
+std::string PoseFollower::why_not(const PosedFrom& from, const Pose& pose) const {
     if (!mover_) return "the first pose";
     if (!(from == from_)) return "another scene or clip";
-    if (way == Way::build) return "the setting `poses` asks for it";
     if (!mover_->cannot().empty()) return mover_->cannot();
     if (deformed_by(pose) != deformed_) return "other meshes deform";
+    return {};
+}
+
+// Why trees should be built anew, although they could be refitted; empty: they should not.
+std::string PoseFollower::why_build(Way way) const {
+    if (way == Way::build) return "the setting `poses` asks for it";
     if (way == Way::automatic && policy_.wants_build())
         return "slow rays have cost " + std::to_string(static_cast<long>(policy_.debt_ms())) + " ms since the last build";
     return {};
@@ -43,19 +49,30 @@ MovedStructure PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<
     if (posed == posed_ && from == from_ && now_.accel) return now_;
     update_.followed = true;
     update_.refitted = false;
-    update_.why = why_not(from, pose, way);
+    update_.why = why_not(from, pose);
     if (!update_.why.empty()) return {};
+    const std::string why_build = this->why_build(way);
+    const bool builds = !why_build.empty();
+    update_.why = why_build;
+    if (builds && !mover_->can_build()) return {};
     now_ = {};  // lets go of what the mover may write next
-    MovedStructure moved = mover_->move(pose, progress);
-    update_.why = moved.why;
-    if (!moved.accel) return {};
-    refit_ms_ = moved.ms;
-    policy_.refitted(moved.worst_cost_ratio, trace_ms);
-    update_.refitted = true;
-    update_.why = cost_text(moved.worst_cost_ratio);
+    MovedStructure moved = mover_->move(pose, builds, progress);
+    if (!moved.accel) {
+        update_.why = moved.why;
+        return {};
+    }
+    update_.refitted = !builds;
     update_.ms = moved.ms;
-    update_.primitives = moved.refitted;
-    note_cost(moved.worst_cost_ratio);
+    update_.primitives = builds ? 0 : moved.refitted;
+    if (builds) {
+        policy_.built(moved.ms - refit_ms_);
+        note_cost(1);
+    } else {
+        refit_ms_ = moved.ms;
+        policy_.refitted(moved.worst_cost_ratio, trace_ms);
+        update_.why = cost_text(moved.worst_cost_ratio);
+        note_cost(moved.worst_cost_ratio);
+    }
     posed_ = posed;
     now_ = std::move(moved);
     return now_;

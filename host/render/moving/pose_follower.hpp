@@ -44,8 +44,9 @@ class PoseFollower {
  public:
     enum class Way { automatic, refit, build };
 
-    // Returns the structure of `posed`, which is the scene in `pose`. Without `accel`: it must be built, for the reason in
-    // update().why. trace_ms: time of a frame; 0: not known. Throws as PoseMover::move().
+    // Returns the structure of `posed`, which is the scene in `pose`: refitted, or built by devices. Without `accel`: the
+    // caller must build it, for the reason in update().why. trace_ms: time of a frame; 0: not known. Throws as
+    // PoseMover::move().
     MovedStructure refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed, const Pose& pose, Way way,
                          double trace_ms, Progress& progress);
     // Says that this structure was built for the pose. mover: moves it to other poses.
@@ -62,7 +63,8 @@ class PoseFollower {
     const PoseUpdate& update() const { return update_; }
 
  private:
-    std::string why_not(const PosedFrom& from, const Pose& pose, Way way) const;
+    std::string why_not(const PosedFrom& from, const Pose& pose) const;
+    std::string why_build(Way way) const;
     void note_cost(double ratio);
 
     PosedFrom from_;

@@ -14,7 +14,7 @@ class HostMover : public PoseMover {
     HostMover(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built)
         : moving_(std::move(scene), std::move(built)) {}
     const std::string& cannot() const override { return moving_.cannot(); }
-    MovedStructure move(const Pose& pose, Progress& progress) override {
+    MovedStructure move(const Pose& pose, bool, Progress& progress) override {
         MovedAccel moved = moving_.move(pose, progress);
         return {std::move(moved.accel), {}, std::move(moved.why), moved.worst_cost_ratio, moved.refitted, moved.ms};
     }
@@ -25,20 +25,20 @@ class HostMover : public PoseMover {
 
 class DeviceMover : public PoseMover {
  public:
-    DeviceMover(std::shared_ptr<const AccelData> built,
-                std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMotion>>> motions)
-        : built_(std::move(built)), motions_(std::move(motions)) {}
+    explicit DeviceMover(std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMotion>>> motions)
+        : motions_(std::move(motions)) {}
     const std::string& cannot() const override { return motions_.front().second->cannot(); }
     bool on_devices() const override { return true; }
-    MovedStructure move(const Pose& pose, Progress& progress) override {
+    bool can_build() const override { return motions_.front().second->can_build(); }
+    MovedStructure move(const Pose& pose, bool build, Progress& progress) override {
         if (progress.cancelled()) throw Cancelled();
         std::vector<MovedOnDevice> parts;
         for (const auto& [device, motion] : motions_) {
-            parts.push_back(motion->move(pose));
+            parts.push_back(motion->move(pose, build ? DeviceMotion::Update::build : DeviceMotion::Update::refit));
             if (!parts.back().on_device) return {nullptr, {}, parts.back().why};
         }
         MovedStructure moved;
-        moved.accel = built_;
+        moved.accel = motions_.front().second->accel();
         for (size_t i = 0; i < parts.size(); ++i) {
             const Device& device = *motions_[i].first;
             wrap_cl_errors(device, "moving the scene", [&] {
@@ -54,7 +54,6 @@ class DeviceMover : public PoseMover {
     }
 
  private:
-    const std::shared_ptr<const AccelData> built_;
     std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMotion>>> motions_;
 };
 
@@ -74,7 +73,7 @@ std::unique_ptr<PoseMover> make_device_mover(
         if (!why->empty()) return nullptr;
     }
     if (motions.empty()) return nullptr;
-    return std::make_unique<DeviceMover>(std::move(built), std::move(motions));
+    return std::make_unique<DeviceMover>(std::move(motions));
 }
 
 }  // namespace clarity

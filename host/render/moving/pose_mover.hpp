@@ -32,8 +32,11 @@ class PoseMover {
     // Why the structure can only be built anew; empty: it can follow poses.
     virtual const std::string& cannot() const = 0;
     virtual bool on_devices() const { return false; }
-    // Returns the structure in a pose of its scene. Throws Error(failed) and Cancelled. One call at a time.
-    virtual MovedStructure move(const Pose& pose, Progress& progress) = 0;
+    // Whether move() can build trees, where they are traced; otherwise the caller builds.
+    virtual bool can_build() const { return false; }
+    // Returns the structure in a pose of its scene. build: trees of what has moved are built anew, instead of refitted. Throws
+    // Error(failed) and Cancelled. One call at a time.
+    virtual MovedStructure move(const Pose& pose, bool build, Progress& progress) = 0;
 };
 
 // On the host: see MovingAccel.

@@ -201,8 +201,8 @@ RT_BUILD_KERNEL bvh4_refit(global float *nodes, const global uint2 *ranges, cons
         global float *const node = nodes + 32u * (ulong)index;
         const uint4 codes = vload4(6u ^ (index & 7u), (const global uint *)node);
         const uint code[4] = {codes.x, codes.y, codes.z, codes.w};
-        float box[6][4], cost = 0.0f;
-        rt_block whole = rt_no_block();
+        float cost = 0.0f;
+        rt_block child[4], whole = rt_no_block();
         for (uint s = 0u; s < 4u; ++s) {
             uint2 below = (uint2)(0u, 0u);
             const bool leaf = code[s] >= BVH4_LEAF;
@@ -210,13 +210,17 @@ RT_BUILD_KERNEL bvh4_refit(global float *nodes, const global uint2 *ranges, cons
                 below = ranges[BVH4_INDEX(code[s])];
             else if (code[s] != BVH4_EMPTY)
                 below = (uint2)(BVH4_LEAF_FIRST(code[s]) - first_leaf, BVH4_LEAF_COUNT(code[s]));
-            const rt_block child = rt_box_of_range(blocks, count, below.x, below.x + below.y);
-            for (uint a = 0u; a < 3u; ++a) box[a][s] = child.lo[a], box[3u + a][s] = child.hi[a];
-            if (below.y > 0u) cost += rt_block_area(child) * (leaf ? primitive_cost * (float)below.y : node_cost);
-            whole = rt_join_blocks(whole, child);
+            child[s] = rt_box_of_range(blocks, count, below.x, below.x + below.y);
+            if (below.y > 0u) cost += rt_block_area(child[s]) * (leaf ? primitive_cost * (float)below.y : node_cost);
+            whole = rt_join_blocks(whole, child[s]);
         }
         costs[e] = cost + (index == root ? node_cost * rt_block_area(whole) : 0.0f);
-        for (uint k = 0u; k < 6u; ++k)
-            vstore4((float4)(box[k][0], box[k][1], box[k][2], box[k][3]), k ^ (index & 7u), node);
+        const uint turn = index & 7u;
+        vstore4((float4)(child[0].lo.x, child[1].lo.x, child[2].lo.x, child[3].lo.x), 0u ^ turn, node);
+        vstore4((float4)(child[0].lo.y, child[1].lo.y, child[2].lo.y, child[3].lo.y), 1u ^ turn, node);
+        vstore4((float4)(child[0].lo.z, child[1].lo.z, child[2].lo.z, child[3].lo.z), 2u ^ turn, node);
+        vstore4((float4)(child[0].hi.x, child[1].hi.x, child[2].hi.x, child[3].hi.x), 3u ^ turn, node);
+        vstore4((float4)(child[0].hi.y, child[1].hi.y, child[2].hi.y, child[3].hi.y), 4u ^ turn, node);
+        vstore4((float4)(child[0].hi.z, child[1].hi.z, child[2].hi.z, child[3].hi.z), 5u ^ turn, node);
     }
 }

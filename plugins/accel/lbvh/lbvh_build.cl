@@ -77,7 +77,8 @@ RT_BUILD_KERNEL lbvh_nodes(const global ulong *keys, const global rt_block *bloc
         const uint first = min(i, (uint)other), last = max(i, (uint)other);
         const rt_block box = rt_box_of_range(blocks, count, first, last + 1u);
         lbvh_node node;
-        for (uint a = 0u; a < 3u; ++a) node.lo[a] = box.lo[a], node.hi[a] = box.hi[a];
+        vstore3(box.lo.xyz, 0, node.lo);
+        vstore3(box.hi.xyz, 0, node.hi);
         node.left = first == middle ? LBVH_LEAF | middle : middle;
         node.right = last == middle + 1u ? LBVH_LEAF | last : middle + 1u;
         nodes[i] = node;

@@ -126,9 +126,14 @@ TEST_P(DeviceMotionTest, CostsTellHowMuchATreeHasSuffered) {
     Progress progress;
     MovingAccel host(rings_apart(), built_);
     const double expected = host.move(pose, progress).worst_cost_ratio;
-    motion->move(pose);
-    device().queue().finish();
-    EXPECT_NEAR(motion->move(pose).worst_cost_ratio, expected, 1e-3 * expected) << "one move later";
+    Pose other = pose;
+    other.meshes[0].positions[0] += 1e-4f;
+    double ratio = 0;
+    for (int i = 0; i < 10; ++i) {
+        ratio = motion->move(i % 2 ? pose : other).worst_cost_ratio;
+        device().queue().finish();
+    }
+    EXPECT_NEAR(ratio, expected, 1e-3 * expected) << "some moves later";
 }
 
 TEST_P(DeviceMotionTest, SaysWhenABuildIsNeeded) {
@@ -150,23 +155,7 @@ TEST_P(DeviceMotionTest, SaysWhenABuildIsNeeded) {
 INSTANTIATE_TEST_SUITE_P(, DeviceMotionTest, ::testing::Values(BuildForm::groups, BuildForm::serial),
                          [](const auto& info) { return info.param == BuildForm::groups ? "groups" : "serial"; });
 
-// Rays see what they see in a scene that was built for the pose, the bounds of the frame included.
-TEST(DeviceMotion, RaysHitWhatTheyHitInAFreshBuild) {
-    Progress progress;
-    Workbench& bench = Workbench::get();
-    const rt_plugin& plugin = *bench.plugins().accel("bvh4");
-    const auto built = build(rings_apart(), plugin);
-    Settings settings;
-    settings.lanes = 1;
-    auto& device = const_cast<Device&>(bench.device());
-    const auto prepared = prepare_queries(device, rings_apart(), built, settings, progress);
-    DeviceMotion motion(bench.shared_device(), rings_apart(), built, prepared->on_device);
-    const Pose pose = waved(*rings_apart(), 3);
-    auto moved = std::make_shared<Prepared>(*prepared);
-    moved->on_device = motion.move(pose).on_device;
-    auto scene = std::make_shared<Scene>(posed(*rings_apart(), pose));
-    scene->instances[0].apart = scene->instances[1].apart = true;
-    const auto fresh = prepare_queries(device, scene, build(scene, plugin), settings, progress);
+std::vector<rt_ray> some_rays() {
     std::mt19937 random(3);
     std::normal_distribution<float> any;
     std::vector<rt_ray> rays;
@@ -177,17 +166,113 @@ TEST(DeviceMotion, RaysHitWhatTheyHitInAFreshBuild) {
         for (float& d : ray.direction) d /= std::sqrt(length);
         rays.push_back(ray);
     }
-    RayQueries queries(bench.shared_device());
-    std::vector<rt_hit> hits[2];
-    queries.trace(*moved, RayBlocks(rays, 1), {}, &hits[0]);
-    queries.trace(*fresh, RayBlocks(rays, 1), {}, &hits[1]);
-    size_t hit = 0;
-    for (size_t i = 0; i < rays.size(); ++i) {
-        ASSERT_EQ(hits[0][i].t, hits[1][i].t) << "ray " << i;
-        ASSERT_EQ(hits[0][i].prim, hits[1][i].prim) << "ray " << i;
-        hit += std::isfinite(hits[1][i].t);
+    return rays;
+}
+
+// A structure that moves on the device, whose rays are compared with those of a scene that the host has built for the pose.
+class DeviceRays : public ::testing::Test {
+ protected:
+    void start(const char* accel) {
+        Progress progress;
+        plugin_ = Workbench::get().plugins().accel(accel);
+        ASSERT_TRUE(plugin_);
+        settings_.lanes = 1;
+        const auto built = build(rings_apart(), *plugin_);
+        prepared_ = prepare_queries(device(), rings_apart(), built, settings_, progress);
+        motion_ = std::make_unique<DeviceMotion>(Workbench::get().shared_device(), rings_apart(), built, prepared_->on_device);
+        ASSERT_EQ(motion_->cannot(), "");
     }
-    EXPECT_GT(hit, rays.size() / 10);
+    static Device& device() { return const_cast<Device&>(Workbench::get().device()); }
+    // Moves, and returns the rays' hits.
+    std::vector<rt_hit> hits_after(const Pose& pose, DeviceMotion::Update update) {
+        Prepared moved = *prepared_;
+        const MovedOnDevice result = motion_->move(pose, update);
+        EXPECT_TRUE(result.on_device) << result.why;
+        moved.on_device = result.on_device;
+        moved.accel = motion_->accel();
+        return trace(moved);
+    }
+    std::vector<rt_hit> fresh_hits(const Pose& pose) {
+        Progress progress;
+        auto scene = std::make_shared<Scene>(posed(*rings_apart(), pose));
+        scene->instances[0].apart = scene->instances[1].apart = true;
+        return trace(*prepare_queries(device(), scene, build(scene, *plugin_), settings_, progress));
+    }
+    std::vector<rt_hit> trace(const Prepared& prepared) {
+        std::vector<rt_hit> hits;
+        queries_.trace(prepared, RayBlocks(rays_, 1), {}, &hits);
+        return hits;
+    }
+    static void expect_same(const std::vector<rt_hit>& a, const std::vector<rt_hit>& b) {
+        size_t hit = 0;
+        for (size_t i = 0; i < a.size(); ++i) {
+            ASSERT_EQ(a[i].t, b[i].t) << "ray " << i;
+            hit += std::isfinite(b[i].t);
+        }
+        EXPECT_GT(hit, a.size() / 10);
+    }
+
+    const rt_plugin* plugin_ = nullptr;
+    Settings settings_;
+    std::shared_ptr<const Prepared> prepared_;
+    std::unique_ptr<DeviceMotion> motion_;
+    const std::vector<rt_ray> rays_ = some_rays();
+    RayQueries queries_{Workbench::get().shared_device()};
+};
+
+TEST_F(DeviceRays, HitWhatTheyHitInAFreshBuild) {
+    start("bvh4");
+    EXPECT_FALSE(motion_->can_build()) << "the host builds by the heuristic";
+    const Pose pose = waved(*rings_apart(), 3);
+    expect_same(hits_after(pose, DeviceMotion::Update::refit), fresh_hits(pose));
+}
+
+TEST_F(DeviceRays, HitTheSameInTreesThatTheDeviceBuilds) {
+    using Update = DeviceMotion::Update;
+    start("lbvh");
+    ASSERT_TRUE(motion_->can_build());
+    const Pose poses[] = {waved(*rings_apart(), 1), waved(*rings_apart(), 3), pose_of(*rings_apart())};
+    std::vector<rt_hit> expected[3];
+    for (int p = 0; p < 3; ++p) expected[p] = fresh_hits(poses[p]);
+    // Trees that were built, refitted, built once more, and refitted in copies that take over the tree of another copy.
+    std::vector<std::shared_ptr<const DeviceScene>> held;
+    for (const auto& [p, update] : std::vector<std::pair<int, Update>>{{0, Update::build},
+                                                                       {1, Update::refit},
+                                                                       {2, Update::refit},
+                                                                       {1, Update::build},
+                                                                       {0, Update::refit},
+                                                                       {2, Update::refit},
+                                                                       {1, Update::refit}}) {
+        SCOPED_TRACE(p);
+        expect_same(hits_after(poses[p], update), expected[p]);
+    }
+    const auto accel = motion_->accel();
+    motion_->move(poses[0], Update::build);
+    EXPECT_EQ(motion_->accel(), accel) << "kernels are compiled once more at most";
+}
+
+TEST_F(DeviceRays, CostsCountFromTheLastBuild) {
+    start("lbvh");
+    Pose pose = pose_of(*rings_apart());
+    PosedMesh mesh{0, {}, {}};
+    std::mt19937 random(1);
+    std::uniform_real_distribution<float> any(-3, 3);
+    for (rt_u32 v = 0; v < 3 * rings()->meshes[0].vertex_count; ++v) mesh.positions.push_back(any(random));
+    pose.meshes.push_back(mesh);
+    Pose other = pose;
+    other.meshes[0].positions[0] += 1e-4f;
+    double ratio = 0;
+    for (int i = 0; i < 10; ++i) {
+        ratio = motion_->move(i % 2 ? pose : other).worst_cost_ratio;
+        device().queue().finish();
+    }
+    EXPECT_GT(ratio, 5) << "a tree of another pose";
+    motion_->move(other, DeviceMotion::Update::build);
+    for (int i = 1; i < 11; ++i) {
+        device().queue().finish();
+        ratio = motion_->move(i % 2 ? pose : other).worst_cost_ratio;
+    }
+    EXPECT_LT(ratio, 1.1);
 }
 
 }  // namespace
