@@ -171,8 +171,9 @@ PlannedLayout DevicePlan::plan_layout(const rt_plugin& plugin, const rt_device_b
     out.ctx = &result;
     out.root = [](void* ctx, rt_u32 node) { static_cast<PlannedLayout*>(ctx)->root = node; };
     out.define = [](void* ctx, const char* name, rt_u32 value) { static_cast<PlannedLayout*>(ctx)->defines[name] = value; };
-    plan(plugin, build,
-         [&](const rt_host* host, const rt_device_plan* table) { return build.pack(host, table, &input, &topology, &tree, &out); });
+    plan(plugin, build, [&](const rt_host* host, const rt_device_plan* table) {
+        return build.pack(host, table, &input, &topology, &tree, &out);
+    });
     return result;
 }
 

@@ -17,8 +17,8 @@ struct PlannedLayout {
     std::map<std::string, rt_u32> defines;
 };
 
-// The steps of one build or refit. Plugins add steps and memory while it is made; then run() enqueues all of them, again and again,
-// without an allocation. Used from one thread.
+// The steps of one build or refit. Plugins add steps and memory while it is made; then run() enqueues all of them, again and
+// again, without an allocation. Used from one thread.
 class DevicePlan {
  public:
     // `kernels` must outlive this object.

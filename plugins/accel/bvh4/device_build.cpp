@@ -54,10 +54,9 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
     steps.scan(wide, binaries + 1);
     const uint64_t elements = tree->element_count[0];
     steps.launch("bvh4_write", (std::max(binaries, elements) + each - 1) / each,
-                 {of(input->prims), of(topology->nodes), of(topology->counts), of(topology->order), number(n),
-                  number(binaries), number(elements), number(each), number(max_leaf), of(children), of(wide),
-                  number(tree->first_element[0]), number(tree->first_leaf), of(tree->slots[0]), of(tree->ranges),
-                  of(out->leaves)});
+                 {of(input->prims), of(topology->nodes), of(topology->counts), of(topology->order), number(n), number(binaries),
+                  number(elements), number(each), number(max_leaf), of(children), of(wide), number(tree->first_element[0]),
+                  number(tree->first_leaf), of(tree->slots[0]), of(tree->ranges), of(out->leaves)});
     out->root(out->ctx, static_cast<rt_u32>(tree->first_element[0]));
     out->define(out->ctx, "BVH4_STACK", clarity::bvh::stack_places(3 * topology->depth));
     return steps.result();
@@ -96,11 +95,11 @@ int32_t device_refit(const rt_host*, const rt_device_plan* plan, const rt_device
     const clarity::bvh::Rules rules = clarity::bvh::wide_rules(params);
     const uint64_t each = rt::elements_each(plan), elements = tree->element_count[0];
     rt::DeviceSteps steps(plan);
-    steps.launch("bvh4_refit", (elements + each - 1) / each,
-                 {of(tree->slots[0]), of(tree->ranges), of(blocks), number(tree->count), number(tree->first_element[0]),
-                  number(elements), number(each), number(tree->first_leaf), number(tree->root),
-                  rt::real(static_cast<float>(rules.traversal_cost)), rt::real(static_cast<float>(rules.intersection_cost)),
-                  of(costs)});
+    steps.launch(
+        "bvh4_refit", (elements + each - 1) / each,
+        {of(tree->slots[0]), of(tree->ranges), of(blocks), number(tree->count), number(tree->first_element[0]),
+         number(elements), number(each), number(tree->first_leaf), number(tree->root),
+         rt::real(static_cast<float>(rules.traversal_cost)), rt::real(static_cast<float>(rules.intersection_cost)), of(costs)});
     return steps.result();
 }
 

@@ -11,8 +11,8 @@ constexpr rt_cl_file kFiles[] = {
 #include "lbvh.inc"
 };
 constexpr rt_accel kAccel = rt::topology("bvh4", rt::guarded<topology>, rt::Traits());
-constexpr rt_device_build kBuild = {sizeof(rt_device_build), 0,       rt::file(kFiles, "lbvh_build.cl"),
-                                    rt::guarded<plan>,       nullptr, nullptr, nullptr, nullptr};
+constexpr rt_device_build kBuild = {
+    sizeof(rt_device_build), 0, rt::file(kFiles, "lbvh_build.cl"), rt::guarded<plan>, nullptr, nullptr, nullptr, nullptr};
 constexpr rt_extension kExtensions[] = {{RT_DEVICE_BUILD, RT_DEVICE_BUILD_VERSION, sizeof kBuild, &kBuild},
                                         rt::kNoMoreExtensions};
 static_assert(kBuild.kernels.text, "the kernel file is embedded");
