@@ -32,7 +32,7 @@ typedef struct rt_instance {
     rt_u32 root;       /* root of the mesh's tree, as the builder reported it */
     rt_u32 first_prim; /* number of the instance's first triangle */
     rt_u32 material;   /* of the whole instance; RT_NONE: each triangle has its own */
-    rt_u32 pad;
+    rt_u32 hidden;     /* not 0: no ray hits it */
 } rt_instance;
 
 /* Whitted material. Colours are linear RGB. The share 1 - reflect - refract is diffuse. 64 B. */

@@ -4,9 +4,10 @@
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF /* the same boxes as the host's build_scene.cpp */
 
-/* Where an instance is. 96 B. Rows of 3x4 matrices. */
+/* Where an instance is. 112 B. Rows of 3x4 matrices. */
 typedef struct rt_placement {
     float world_from_object[12], object_from_world[12];
+    uint hidden, pad[3]; /* of rt_instance */
 } rt_placement;
 
 /* Room for rounding, since kernels compute with what is in the box in another order. */
@@ -112,6 +113,7 @@ RT_BUILD_KERNEL move_leaves(global float *leaves, uint first, uint count, uint m
                 instances[index].root = roots[group];
                 for (uint k = 0u; k < 12u; ++k)
                     instances[index].object_from_world[k] = placements[index].object_from_world[k];
+                instances[index].hidden = placements[index].hidden;
                 vstore3(placed.lo.xyz, 0, leaf);
                 vstore3(placed.hi.xyz, 0, leaf + 4);
             }

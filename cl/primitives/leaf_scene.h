@@ -20,6 +20,7 @@ void RT_FN(rt_hit_instance)(const rt_ctx *ctx, uint at, const rt_rays *r, rt_hit
     if (active == 0u) return;
     const uint index = RT_REF_INDEX(leaf->ref);
     const global rt_instance *instance = ctx->instances + index;
+    if (instance->hidden) return;
     const global float *m = instance->object_from_world;
     rt_rays inner;
     inner.ox = fma(rt_vfloat(m[0]), r->ox, fma(rt_vfloat(m[1]), r->oy, fma(rt_vfloat(m[2]), r->oz, rt_vfloat(m[3]))));

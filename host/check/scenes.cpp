@@ -17,7 +17,7 @@ class Maker {
     void triangle(const Point& a, const Point& b, const Point& c) {
         for (const Point& p : {a, b, c}) {
             scene.triangles.push_back(static_cast<rt_u32>(scene.positions.size() / 3));
-            scene.positions.insert(scene.positions.end(), p.begin(), p.end());
+            scene.positions.append(p.begin(), p.end());
         }
         scene.triangle_materials.push_back(0);
     }
@@ -256,7 +256,7 @@ Scene rippled(Scene mixed) {
     for (const Instance& instance : mixed.instances) ++uses[instance.mesh];
     for (size_t m = 0; m < mixed.meshes.size(); ++m)
         for (rt_u32 v = 0; v < mixed.meshes[m].vertex_count; ++v) {
-            float* const p = &mixed.positions[3 * size_t(mixed.meshes[m].first_vertex + v)];
+            float* const p = &mixed.positions.own()[3 * size_t(mixed.meshes[m].first_vertex + v)];
             if (uses[m] > 1)
                 moved(p, {0, 0, 0}, 1);  // in its own space
             else if (const Region* region = nearest(p))

@@ -29,7 +29,11 @@ FrameScene::FrameScene(const PluginRegistry& plugins, const RenderOptions& optio
 
 void FrameScene::take(std::shared_ptr<const Scene> imported) {
     imported_ = std::move(imported);
+    rest_ = imported_;
     scene_.reset();
+    if (!imported_) return;
+    const InstanceEdits instances = instance_edits(*imported_, words_.edits);
+    if (!instances.empty()) rest_ = std::make_shared<const Scene>(with_edits(*imported_, instances));
 }
 
 bool FrameScene::follows_frames() const {
@@ -40,9 +44,8 @@ void FrameScene::place(std::optional<int> frame) {
     PoseOptions pose = pose_;
     if (frame) pose.time_s = time_of_frame(*frame, frame_rate(find_clip(*imported_, pose.clip), options_.fps));
     const bool at_rest = !pose.time_s && pose.clip.empty(), plays = moves(*imported_) || has_path_;
-    auto scene = at_rest || (has_path_ && !moves(*imported_))
-                     ? imported_
-                     : std::make_shared<const Scene>(at_pose(*imported_, pose, std::ref(sequences_)));
+    const bool is_still = at_rest || (has_path_ && !moves(*imported_));
+    scene_ = is_still ? rest_ : std::make_shared<const Scene>(at_pose(*rest_, pose, std::ref(sequences_)));
     time_s_.reset();
     if (!at_rest && plays) {
         const ClipInfo clip = find_clip(*imported_, pose.clip);
@@ -52,15 +55,14 @@ void FrameScene::place(std::optional<int> frame) {
     const Settings& settings = words_.settings;
     const float aspect = float(settings.width) / float(settings.height);
     EditedView edited;
-    edited.view = make_view(*scene, aspect, options_.trace.camera, options_.trace.light);
-    for (const Word& word : words_.edits) apply_edit(*scene, edited, word.key, word.value);
+    // Moved objects move neither the camera nor the lights that a scene gets which has none.
+    edited.view = make_view(is_still ? *imported_ : *scene_, aspect, options_.trace.camera, options_.trace.light);
+    apply_scene_edits(*scene_, edited);
+    for (const Word& word : words_.edits) apply_edit(*scene_, edited, word.key, word.value);
     // Frames follow a path in any case; a still picture only if its camera was not set after the path.
     path_ = edited.follows_path || frame ? std::move(edited.camera_path) : CameraPath();
     if (!path_.empty()) edited.view.camera = path_.at(time_s_.value_or(path_.keys.front().time_s));
     view_ = visible_view(edited);
-    hidden_ = edited.hidden;
-    if (!hidden_.empty()) scene = std::make_shared<const Scene>(without_instances(*scene, hidden_));
-    scene_ = std::move(scene);
 }
 
 View FrameScene::view(const MotionBlur::Sample& sample) const {
@@ -74,9 +76,8 @@ std::unique_ptr<MotionBlur> FrameScene::blur(std::shared_ptr<const MultiPrepared
     if (!blurs(settings) || !time_s_) return nullptr;
     const double fps = frame_rate(find_clip(*imported_, clip_), options_.fps);
     MotionBlur::Source source;
-    source.rest = imported_;
+    source.rest = rest_;
     source.clip = clip_;
-    source.hidden = hidden_;
     source.read = std::ref(sequences_);
     source.prepare = [&preparer, &settings](std::shared_ptr<const Scene> scene, Progress& progress) {
         return preparer.prepare(std::move(scene), settings, progress);

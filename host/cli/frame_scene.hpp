@@ -38,10 +38,10 @@ class FrameScene {
     const PoseOptions pose_;
     const bool has_path_;  // for a camera
     import::SequenceReader sequences_;
-    std::shared_ptr<const Scene> imported_, scene_;  // scene_: as shown
-    std::optional<double> time_s_;                   // of scene_; none: at rest
+    // As imported; with its instances edited; as shown.
+    std::shared_ptr<const Scene> imported_, rest_, scene_;
+    std::optional<double> time_s_;  // of scene_; none: at rest
     std::string clip_;
-    std::vector<rt_u32> hidden_;
     CameraPath path_;  // of the camera; empty: it follows none
     View view_;
 };

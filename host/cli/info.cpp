@@ -13,6 +13,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
 #include "import/sequence_reader.hpp"
+#include "render/settings/edit.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {
@@ -163,7 +164,7 @@ int run_info(const PluginRegistry& plugins, const SceneOptions& options, const P
     const CancelOnSignal cancel(progress);
     import::ImportOptions import = options.import;
     import.log_warnings = false;  // because they are printed with the rest
-    Scene scene = import::import_scene(plugins, options.files, import, progress);
+    Scene scene = with_scene_edits(import::import_scene(plugins, options.files, import, progress));
     const std::vector<ClipInfo> animations = clips(scene);
     scene = at_pose(std::move(scene), pose, import::SequenceReader(plugins, import, progress));
     progress.clear();

@@ -13,6 +13,7 @@
 #include "render/queries/ray_queries.hpp"
 #include "render/queries/ray_text.hpp"
 #include "render/settings/accel_choice.hpp"
+#include "render/settings/edit.hpp"
 
 namespace clarity {
 namespace {
@@ -38,8 +39,8 @@ int run_trace(const PluginRegistry& plugins, const TraceCommand& command) {
     ProgressBar progress(command.quiet);
     const CancelOnSignal cancel(progress);
     const auto device = std::make_shared<Device>(choose_device(device_text));
-    const auto scene =
-        std::make_shared<const Scene>(import::import_scene(plugins, command.scene.files, command.scene.import, progress));
+    const auto scene = std::make_shared<const Scene>(
+        with_scene_edits(import::import_scene(plugins, command.scene.files, command.scene.import, progress)));
 
     const rt_plugin& plugin = *plugins.accel(settings.accel);
     progress.stage(std::string("building ") + plugin.id);

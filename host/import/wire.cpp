@@ -18,7 +18,7 @@ namespace clarity::import {
 namespace {
 
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
-constexpr uint32_t kSectionCount = 45;
+constexpr uint32_t kSectionCount = 47;
 constexpr uint64_t kPieceAlignment = 64;
 // Writing is not sealed, because the reader gives pages back behind its reading, which counts as writing. The reader copies
 // each byte once and checks the copy, so that what is written later does nothing.
@@ -86,7 +86,7 @@ struct Converted {
     std::vector<WireClip> clips;
     std::vector<WireMorph> morphs;
     std::vector<WireSequence> sequences;
-    std::vector<uint32_t> shape_kinds, warnings;  // length of each text in `names`, in bytes
+    std::vector<uint32_t> shape_kinds, warnings, edits, sources;  // length of each text in `names`, in bytes
     std::vector<char> names;
 };
 
@@ -100,7 +100,8 @@ void visit(S& s, C& c, Visitor&& v) {
     auto& m = s.motion;
     v(m.layers), v(m.channels), v(m.key_times), v(m.key_values), v(m.key_handles), v(m.key_spans), v(m.skins), v(m.bones);
     v(m.weights), v(m.shares), v(m.morph_targets), v(m.morph_vertices), v(m.morph_positions), v(m.morph_normals), v(m.frames);
-    v(m.frame_times), v(m.frame_positions), v(m.sequence_numbers), v(c.sequences), v(c.warnings), v(c.names);
+    v(m.frame_times), v(m.frame_positions), v(m.sequence_numbers), v(c.sequences), v(c.warnings), v(c.edits), v(c.sources),
+        v(c.names);
 }
 
 Converted convert(const Scene& s) {
@@ -128,6 +129,9 @@ Converted convert(const Scene& s) {
     for (const FileSequence& q : s.motion.sequences)
         c.sequences.push_back({name(q.pattern), q.first_mesh, q.mesh_count, q.first_number, q.number_count, 0, q.fps});
     for (const std::string& warning : s.warnings) c.warnings.push_back(name(warning));
+    for (const SceneEdit& edit : s.edits)
+        for (const std::string* text : {&edit.key, &edit.value, &edit.where}) c.edits.push_back(name(*text));
+    for (const std::string& source : s.sources) c.sources.push_back(name(source));
     return c;
 }
 
@@ -171,6 +175,15 @@ bool convert_back(const Converted& c, Scene& s) {
     for (const WireSequence& q : c.sequences)
         s.motion.sequences.push_back({name(q.name_bytes), q.first_mesh, q.mesh_count, q.first_number, q.number_count, q.fps});
     for (const uint32_t bytes : c.warnings) s.warnings.push_back(name(bytes));
+    good = good && c.edits.size() % 3 == 0;
+    for (size_t i = 0; good && i < c.edits.size(); i += 3) {
+        SceneEdit edit;
+        edit.key = name(c.edits[i]);
+        edit.value = name(c.edits[i + 1]);
+        edit.where = name(c.edits[i + 2]);
+        s.edits.push_back(std::move(edit));
+    }
+    for (const uint32_t bytes : c.sources) s.sources.push_back(name(bytes));
     return good && at == c.names.size();
 }
 
@@ -218,6 +231,13 @@ std::string move_to_file(int fd, std::vector<T>& array) {
     return why;
 }
 
+template <class T>
+std::string move_to_file(int fd, SharedArray<T>& array) {
+    std::string why = move_to_file(fd, array.own());
+    array.clear();
+    return why;
+}
+
 // Reserves memory and asks for large pages where it spans some, because half of the reading time is spent on page faults.
 template <class T>
 void reserve_on_large_pages(std::vector<T>& array, size_t count) {
@@ -262,6 +282,11 @@ bool move_from_file(int fd, const Section& section, std::vector<char>& buffer, s
         given_back = read_up_to;
     }
     return true;
+}
+
+template <class T>
+bool move_from_file(int fd, const Section& section, std::vector<char>& buffer, SharedArray<T>& array) {
+    return move_from_file(fd, section, buffer, array.own());
 }
 
 }  // namespace

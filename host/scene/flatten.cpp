@@ -16,13 +16,14 @@ void bake_flattened_instances(Scene& scene) {
         Mesh baked = source;
         baked.first_vertex = scene.vertex_count();
         baked.first_triangle = scene.triangle_count();
-        const auto repeat = [](auto& values, size_t first, size_t count) {
+        const auto repeat = [](auto& shared, size_t first, size_t count) {
+            auto& values = shared.own();
             values.reserve(values.size() + count);
             for (size_t i = first; i < first + count; ++i) values.push_back(values[i]);
         };
         for (size_t v = source.first_vertex; v < size_t(source.first_vertex) + source.vertex_count; ++v) {
             const std::array<float, 3> p = transform_point(instance.world_from_object, &scene.positions[3 * v]);
-            scene.positions.insert(scene.positions.end(), p.begin(), p.end());
+            scene.positions.append(p.begin(), p.end());
         }
         // The copy has no vertex normals; it is shaded with the normals of its triangles.
         if (!scene.normals.empty()) scene.normals.resize(scene.positions.size(), 0.f);

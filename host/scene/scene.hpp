@@ -8,6 +8,7 @@
 #include "rt_plugin.h"
 #include "rt_types.h"
 #include "scene/motion/motion.hpp"
+#include "scene/shared_array.hpp"
 
 namespace clarity {
 
@@ -30,6 +31,16 @@ struct Mesh {
     rt_u32 polygon_count = 0;  // faces in the file, before triangulation
 };
 
+// What a user does to an instance, on top of where its file or its pose has it. It is scaled along the world's axes, then
+// turned about x, about y and about z, all about `pivot`, and then moved.
+struct InstanceShift {
+    std::array<float, 3> translate{}, degrees{}, scale{1, 1, 1};
+    bool operator==(const InstanceShift& b) const {
+        return translate == b.translate && degrees == b.degrees && scale == b.scale;
+    }
+    bool operator!=(const InstanceShift& b) const { return !(*this == b); }
+};
+
 struct Instance {
     std::string name;
     rt_u32 mesh = 0;
@@ -40,7 +51,11 @@ struct Instance {
     // node's space. moving_mesh: its mesh, where a transform that is flat at rest has made another mesh of it.
     rt_u32 node = RT_NONE, root = RT_NONE, moving_mesh = 0;
     Affine node_from_object = kIdentity;
-    bool apart = false;  // moves, so that its mesh is kept apart from the flattened world and can move alone
+    bool apart = false;   // moves, so that its mesh is kept apart from the flattened world and can move alone
+    bool hidden = false;  // by the user, in all poses
+    // By the user: see instance_edit.hpp. world_from_object has it already, poses get it. pivot: in the object's space.
+    InstanceShift shift{};
+    std::array<float, 3> pivot{};
 };
 
 struct Sphere {
@@ -95,14 +110,20 @@ struct Camera {
     rt_u32 source = 0;                                          // for the import only: by which channels name it
 };
 
+// A change that a file makes to what it and the files that it loads hold: words of host/render/settings/edit.hpp.
+struct SceneEdit {
+    std::string key, value;
+    std::string where;  // "FILE:LINE:COLUMN"
+};
+
 // A scene is valid once validate() has accepted it: every index is in range, every number is finite, and materials[0] is the
 // default material.
 struct Scene {
-    std::vector<float> positions;            // 3 per vertex
-    std::vector<float> normals;              // 3 per vertex, (0,0,0) for meshes without normals; or empty
-    std::vector<float> uvs;                  // 2 per vertex; or empty
-    std::vector<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
-    std::vector<rt_u32> triangle_materials;  // 1 per triangle
+    SharedArray<float> positions;            // 3 per vertex
+    SharedArray<float> normals;              // 3 per vertex, (0,0,0) for meshes without normals; or empty
+    SharedArray<float> uvs;                  // 2 per vertex; or empty
+    SharedArray<rt_u32> triangles;           // 3 per triangle, indices into the vertices of the whole scene
+    SharedArray<rt_u32> triangle_materials;  // 1 per triangle
     std::vector<Mesh> meshes;
     std::vector<Instance> instances;  // a mesh without an instance is not in the world
     std::vector<Sphere> spheres;
@@ -115,14 +136,16 @@ struct Scene {
     std::vector<float> shape_numbers;
     std::vector<Material> materials;
     std::vector<rt_texture> textures;
-    std::vector<uint32_t> texels;  // RGBA8, R in the low byte
+    SharedArray<uint32_t> texels;  // RGBA8, R in the low byte
     std::vector<Light> lights;
     std::vector<Camera> cameras;
     std::array<float, 3> background{0.12f, 0.16f, 0.22f}, ambient{0.08f, 0.08f, 0.08f};
     rt_u32 up_axis = 1;
     double unit_scale = 0;  // metres per unit; 0: the file does not say
     std::vector<std::string> warnings;
-    Motion motion;  // what the arrays above look like at other times
+    std::vector<SceneEdit> edits;      // not yet in force in the arrays above
+    std::vector<std::string> sources;  // files that were read: absolute paths, without those of sequences
+    Motion motion;                     // what the arrays above look like at other times
 
     rt_u32 vertex_count() const { return static_cast<rt_u32>(positions.size() / 3); }
     rt_u32 triangle_count() const { return static_cast<rt_u32>(triangles.size() / 3); }

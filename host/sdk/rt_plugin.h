@@ -23,7 +23,7 @@
  *   2  Structs and arrays that can grow. What a structure can do is data. The kernel contract has a number. Materials and lights
  *      are described in structs of this file. A plugin may build only a tree and leave its layout to another plugin.
  *      Appended: shapes (rt_plugin::primitive; primitive_kind and primitive of rt_scene_sink); motion (node, clip, channel, skin,
- *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads). */
+ *      morph and vertex_frames of rt_scene_sink; `node` of instances, cameras, lights and loads); edit of rt_scene_sink. */
 #ifndef RT_PLUGIN_H
 #define RT_PLUGIN_H
 #include <stddef.h>
@@ -580,6 +580,10 @@ typedef struct rt_scene_sink {
     int32_t (*channel)(void *ctx, const rt_channel_desc *);
     int32_t (*skin)(void *ctx, const rt_skin_desc *);
     int32_t (*vertex_frames)(void *ctx, const rt_vertex_frames *);
+    /* Appended. A change of what the file holds together with the files that it loads, in the words of `clarity render --set`:
+     * "instance.3.translate" and "1,0,0". Keys are instance.N..., material.N... and light.N, counted as `clarity info` counts them.
+     * where: "FILE:LINE:COLUMN" of the statement, or NULL. Returns RT_OK, or RT_FAILED with the error recorded. */
+    int32_t (*edit)(void *ctx, const char *key, const char *value, const char *where);
 } rt_scene_sink;
 
 typedef struct rt_importer {

@@ -34,9 +34,9 @@ rt_u32 add_mesh(Scene& scene, const TriangleMesh& mesh, rt_u32 material) {
     m.vertex_count = static_cast<rt_u32>(mesh.positions.size() / 3);
     m.first_triangle = scene.triangle_count();
     m.triangle_count = m.polygon_count = static_cast<rt_u32>(mesh.triangles.size() / 3);
-    scene.positions.insert(scene.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    scene.positions.append(mesh.positions.begin(), mesh.positions.end());
     for (const rt_u32 v : mesh.triangles) scene.triangles.push_back(m.first_vertex + v);
-    scene.triangle_materials.insert(scene.triangle_materials.end(), m.triangle_count, material);
+    scene.triangle_materials.resize(scene.triangle_count(), material);
     scene.meshes.push_back(m);
     return static_cast<rt_u32>(scene.meshes.size() - 1);
 }

@@ -64,7 +64,7 @@ TEST(Texture, IsBilinearBetweenTexels) {
 
 TEST(Texture, RepeatsOutsideItsRange) {
     Scene scene = textured_square();
-    for (float& uv : scene.uvs) uv += -3;
+    for (float& uv : scene.uvs.own()) uv += -3;
     const Picture shifted = trace(scene, flat_view(), 64, 64, 1), plain = trace(textured_square(), flat_view(), 64, 64, 1);
     for (size_t i = 0; i < plain.image.pixels.size(); ++i)
         ASSERT_NEAR(shifted.image.pixels[i], plain.image.pixels[i], 1e-3) << i;

@@ -49,8 +49,8 @@ class PoseTest : public testing::Test {
         c.first_key = m.key_times.size();
         c.first_value = m.key_values.size();
         c.key_count = 2;
-        m.key_times.insert(m.key_times.end(), {0, 1});
-        m.key_values.insert(m.key_values.end(), {from, to});
+        for (const double time_s : {0.0, 1.0}) m.key_times.push_back(time_s);
+        for (const double value : {from, to}) m.key_values.push_back(value);
         m.key_spans.resize(m.key_times.size(), RT_SPAN_LINEAR);
         m.channels.push_back(c);
     }
@@ -173,7 +173,7 @@ TEST_F(PoseTest, DamagedMotionIsFound) {
     EXPECT_NE(why([](Motion& m) { m.channels[0].target = 2; }), "");
     EXPECT_NE(why([](Motion& m) { m.channels[0].key_count = 3; }), "");
     EXPECT_NE(why([](Motion& m) { m.channels[0].key_count = uint64_t(1) << 62; }), "");
-    EXPECT_NE(why([](Motion& m) { m.key_times[1] = -1; }), "");
+    EXPECT_NE(why([](Motion& m) { m.key_times.own()[1] = -1; }), "");
     EXPECT_NE(why([](Motion& m) { m.nodes[0].values.parent = 1; }), "");
     EXPECT_NE(why([](Motion& m) { m.clips[0].layer_count = 2; }), "");
 }

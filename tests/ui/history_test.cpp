@@ -63,13 +63,13 @@ TEST(History, UndoDoesNotMoveTheCamera) {
     History history;
     DesiredState desired;
     history.observe(desired, false);
-    desired.hidden = {4};
+    desired.instances.hidden = {4};
     history.observe(desired, false);
     desired.camera.eye = {1, 2, 3};
     history.observe(desired, false);
     EXPECT_EQ(history.undo_name(), "Visibility");
     history.undo(desired);
-    EXPECT_TRUE(desired.hidden.empty());
+    EXPECT_TRUE(desired.instances.hidden.empty());
     EXPECT_EQ(desired.camera.eye[2], 3);
 }
 

@@ -62,7 +62,7 @@ class ShownSceneTest : public ::testing::Test {
     void show(const PoseTime& pose, const std::vector<rt_u32>& hidden = {}) {
         PrepareRequest request;
         request.pose = pose;
-        request.hidden = hidden;
+        request.instances.hidden = hidden;
         shown_.update(loaded_, request);
     }
     const PluginRegistry plugins_ = PluginRegistry::of({});
@@ -72,45 +72,73 @@ class ShownSceneTest : public ::testing::Test {
 
 TEST_F(ShownSceneTest, CamerasAndLightsAloneNeedNoNewScene) {
     show({});
-    EXPECT_EQ(shown_.visible(), loaded_->scene);
+    EXPECT_EQ(shown_.scene(), loaded_->scene);
     show({0.5, "light"});
-    EXPECT_EQ(shown_.visible(), loaded_->scene);
+    EXPECT_EQ(shown_.scene(), loaded_->scene);
     EXPECT_EQ(shown_.cameras()[0].eye[0], 5);
     EXPECT_EQ(shown_.lights()[0].values.position[0], 5);
     show({0.5, "all"});
-    const auto moved = shown_.visible();
+    const auto moved = shown_.scene();
     EXPECT_NE(moved, loaded_->scene);
     EXPECT_EQ(moved->instances[0].world_from_object[3], 5);
     show({0.5, "all"});
-    EXPECT_EQ(shown_.visible(), moved);
+    EXPECT_EQ(shown_.scene(), moved);
     show({});
-    EXPECT_EQ(shown_.visible(), loaded_->scene);
+    EXPECT_EQ(shown_.scene(), loaded_->scene);
     EXPECT_EQ(shown_.lights()[0].values.position[0], 0);
 }
 
 TEST_F(ShownSceneTest, HiddenInstancesStayHiddenInEveryPose) {
     show({0.5, "all"}, {1});
-    EXPECT_FALSE(shown_.visible()->instances[1].visible);
-    EXPECT_TRUE(shown_.posed()->instances[1].visible);
-    const auto before = shown_.visible();
+    EXPECT_FALSE(shown_.scene()->instances[1].visible);
+    const auto before = shown_.scene();
     show({1.0, "all"}, {1});
-    EXPECT_NE(shown_.visible(), before);
-    EXPECT_FALSE(shown_.visible()->instances[1].visible);
+    EXPECT_NE(shown_.scene(), before);
+    EXPECT_FALSE(shown_.scene()->instances[1].visible);
     show({1.0, "all"});
-    EXPECT_EQ(shown_.visible(), shown_.posed());
+    EXPECT_TRUE(shown_.scene()->instances[1].visible);
 }
 
 TEST_F(ShownSceneTest, AClipThatIsMissingChangesNothing) {
     show({1.0, "all"});
-    const auto before = shown_.visible();
+    const auto before = shown_.scene();
     EXPECT_ANY_THROW(show({1.0, "none"}));
-    EXPECT_EQ(shown_.visible(), before);
+    EXPECT_EQ(shown_.scene(), before);
     EXPECT_EQ(shown_.pose().clip, "all");
     // A request for files that could not be read keeps what is shown.
     PrepareRequest other;
     other.files_revision = 7;
     shown_.update(loaded_, other);
-    EXPECT_EQ(shown_.visible(), before);
+    EXPECT_EQ(shown_.scene(), before);
+}
+
+TEST_F(ShownSceneTest, EditsAreFollowedFromTheFirstOneOn) {
+    PrepareRequest request;
+    shown_.update(loaded_, request);
+    EXPECT_FALSE(shown_.follows());
+    request.apart = {1};  // it is about to be moved
+    shown_.update(loaded_, request);
+    EXPECT_TRUE(shown_.follows());
+    EXPECT_TRUE(shown_.scene()->instances[1].apart);
+    const PosedFrom from = shown_.from();
+    request.instances.set_shift(1, {{0, 2, 0}, {}, {1, 1, 1}});
+    shown_.update(loaded_, request);
+    EXPECT_TRUE(shown_.from() == from) << "so that it is a refit";
+    ASSERT_EQ(shown_.geometry().instances.size(), 2u);
+    EXPECT_EQ(shown_.geometry().instances[1].world_from_object[7], 2);
+    EXPECT_TRUE(shown_.scene()->positions.shares(loaded_->scene->positions));
+    request.instances = {};
+    request.apart.clear();
+    shown_.update(loaded_, request);
+    EXPECT_TRUE(shown_.from() == from) << "and so is undo";
+    EXPECT_EQ(shown_.scene()->instances[1].world_from_object[7], 0);
+    // In a pose, too.
+    request.pose = {0.5, "all"};
+    request.instances.set_shift(0, {{0, 3, 0}, {}, {1, 1, 1}});
+    shown_.update(loaded_, request);
+    EXPECT_EQ(shown_.scene()->instances[0].world_from_object[3], 5);
+    EXPECT_EQ(shown_.scene()->instances[0].world_from_object[7], 3);
+    EXPECT_FALSE(shown_.from() == from) << "another instance moves";
 }
 
 }  // namespace

@@ -48,6 +48,8 @@ void add_common(KeyMap& map) {
         once(GLFW_KEY_R, "R", "follow the rays of the pixel under the mouse", toggle_inspector),
         once(GLFW_KEY_L, "L", "show the lights, to drag them",
              [](KeyTarget& to) { to.state.show_lights = !to.state.show_lights; }),
+        once(GLFW_KEY_M, "M", "show handles that move, turn and scale what is selected",
+             [](KeyTarget& to) { to.state.move_handles = !to.state.move_handles; }),
         once(GLFW_KEY_G, "G", "bring what is selected into view, or all", [](KeyTarget& to) { to.session.frame_selection(); }),
         once(GLFW_KEY_B, "B", "bookmark this view", add_bookmark),
         once(GLFW_KEY_N, "N", "next bookmark, or camera of the file", go_to_next_bookmark),
@@ -59,6 +61,12 @@ void add_common(KeyMap& map) {
         with_ctrl(GLFW_KEY_O, "Ctrl+O", "open a file", [](KeyTarget& to) { to.state.browser_open = true; }),
         with_ctrl(GLFW_KEY_S, "Ctrl+S", "save the picture",
                   [](KeyTarget& to) { to.session.save_picture(next_picture_path(to.state.pictures_folder)); }),
+        with_ctrl(GLFW_KEY_E, "Ctrl+E", "save the scene with its edits",
+                  [](KeyTarget& to) {
+                      const std::string path = to.session.scene_path();
+                      to.session.save_scene(path);
+                      to.state.notify("saved " + path);
+                  }),
         once(GLFW_KEY_HOME, "Home", "back to the first view of the scene", [](KeyTarget& to) { to.session.reset_view(); }),
         once(GLFW_KEY_ESCAPE, "Esc", "cancel what is being prepared; close what is open", close_or_cancel),
         once(GLFW_KEY_F1, "F1", "this list", [](KeyTarget& to) { to.state.keys_open = !to.state.keys_open; }),

@@ -219,6 +219,12 @@ bool Script::run(ScriptedWindow& window, const std::string& line) {
         std::printf("%s\n", inspection_text(session).c_str());
     } else if (command == "continuous") {
         session.desired.continuous = text == "1";
+    } else if (command == "save_scene") {
+        session.save_scene(text);
+    } else if (command == "select") {
+        session.selection = {static_cast<rt_i32>(std::strtol(text.c_str(), nullptr, 10)), -1, -1};
+    } else if (command == "handles") {
+        window.state.move_handles = text == "1";
     } else if (command == "tab") {
         choose_tab(window.state, text);
     } else if (command == "map") {
@@ -286,7 +292,18 @@ std::string Script::state_text(ScriptedWindow& window) const {
         json["light"] = session.desired.lights[session.selected_light].values.position;
     json["selected"] = {
         {"prim", session.selection.prim}, {"instance", session.selection.instance}, {"material", session.selection.material}};
-    json["hidden"] = session.desired.hidden;
+    json["hidden"] = session.desired.instances.hidden;
+    json["moved"] = nlohmann::json::array();
+    for (const InstanceEdits::Moved& moved : session.desired.instances.moved)
+        json["moved"].push_back({{"instance", moved.instance},
+                                 {"translate", moved.shift.translate},
+                                 {"rotate", moved.shift.degrees},
+                                 {"scale", moved.shift.scale}});
+    json["move_handles"] = window.state.move_handles;
+    if (const auto ready = session.ready()) {
+        const PoseUpdate& update = ready->main.pose_update;
+        json["update"] = {{"followed", update.followed}, {"refitted", update.refitted}, {"why", update.why}, {"ms", update.ms}};
+    }
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();
     json["kernel_revision"] = session.sources_revision();

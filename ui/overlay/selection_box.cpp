@@ -17,14 +17,18 @@ Corners corners_of(const Bounds& bounds, const Affine& place) {
 
 }  // namespace
 
-std::optional<Corners> selection_box(const Scene& scene, const Selection& selection) {
+std::array<std::array<float, 3>, 8> SelectionBox::corners() const {
+    return corners_of(own, place);
+}
+
+std::optional<SelectionBox> selection_box(const Scene& scene, const Selection& selection) {
     Bounds bounds;
     if (selection.instance >= 0 && static_cast<size_t>(selection.instance) < scene.instances.size()) {
         const Instance& instance = scene.instances[static_cast<size_t>(selection.instance)];
         const Mesh& mesh = scene.meshes[instance.mesh];
         for (rt_u32 v = 0; v < mesh.vertex_count; ++v) bounds.add(&scene.positions[size_t{3} * (mesh.first_vertex + v)]);
         if (bounds.empty) return std::nullopt;
-        return corners_of(bounds, instance.world_from_object);
+        return SelectionBox{bounds, instance.world_from_object};
     }
     const PrimPlace place = place_of_prim(scene, selection.prim);
     if (place.kind == PrimPlace::Kind::sphere) {
@@ -41,10 +45,10 @@ std::optional<Corners> selection_box(const Scene& scene, const Selection& select
     }
     if (place.kind == PrimPlace::Kind::shape) {
         const Shape& shape = scene.shapes[place.index];
-        return corners_of(shape_bounds(scene, shape), shape.world_from_object);
+        return SelectionBox{shape_bounds(scene, shape), shape.world_from_object};
     }
     if (bounds.empty) return std::nullopt;
-    return corners_of(bounds, kIdentity);
+    return SelectionBox{bounds, kIdentity};
 }
 
 }  // namespace clarity::ui

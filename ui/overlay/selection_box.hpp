@@ -7,8 +7,14 @@
 
 namespace clarity::ui {
 
-// Returns the corners in the order of Volumes. The box of an instance lies along its own axes. nullopt: the selection has no
-// bounds. Takes time linear in the mesh's vertices.
-std::optional<std::array<std::array<float, 3>, 8>> selection_box(const Scene& scene, const Selection& selection);
+// A box along an object's own axes.
+struct SelectionBox {
+    Bounds own;  // not empty
+    Affine place = kIdentity;
+    std::array<std::array<float, 3>, 8> corners() const;  // in the order of Volumes
+};
+
+// nullopt: the selection has no bounds. Takes time linear in the mesh's vertices.
+std::optional<SelectionBox> selection_box(const Scene& scene, const Selection& selection);
 
 }  // namespace clarity::ui

@@ -15,6 +15,7 @@ void draw_output_rows(Session& session, UiState& state);  // in the Render tab: 
 void draw_scene_tab(Session& session, UiState& state);
 void draw_scene_tree(Session& session, UiState& state);
 void draw_material_rows(Session& session);
+void draw_object_rows(Session& session, UiState& state);
 void draw_light_rows(Session& session, UiState& state);
 void draw_bookmark_rows(Session& session, UiState& state);
 void draw_inspect_tab(Session& session, UiState& state);

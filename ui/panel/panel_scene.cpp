@@ -36,6 +36,22 @@ void open_rows(Session& session, UiState& state) {
     if (entered && !state.path.empty()) session.open({state.path});
 }
 
+void save_row(Session& session, UiState& state) {
+    static std::string path;
+    const float width = ImGui::CalcTextSize("Save scene").x + 2 * ImGui::GetStyle().FramePadding.x;
+    ImGui::SetNextItemWidth(-width - ImGui::GetStyle().ItemSpacing.x);
+    ImGui::InputTextWithHint("##scene path", file_name(session.scene_path()).c_str(), &path);
+    note_rect("Scene path");
+    tooltip("a path that ends in .scene; empty: " + session.scene_path());
+    ImGui::SameLine();
+    if (button("Save scene", "a text scene that loads these files and makes the edits of this window (Ctrl+E)", width))
+        attempt(session, [&] {
+            const std::string to = path.empty() ? session.scene_path() : path;
+            session.save_scene(to);
+            state.notify("saved " + to);
+        });
+}
+
 void fact_rows(const Ready& ready) {
     const Scene& scene = *ready.loaded->scene;
     row_text("Triangles", count_text(static_cast<double>(ready.loaded->placed_triangles)),
@@ -118,8 +134,10 @@ void draw_scene_tab(Session& session, UiState& state) {
         ImGui::TextUnformatted(cut_front_to(file_name(file), ImGui::GetContentRegionAvail().x).c_str());
         tooltip(file);
     }
+    save_row(session, state);
     if (folding_section("WHAT IT HOLDS", false)) fact_rows(*ready);
     if (folding_section("TREE")) draw_scene_tree(session, state);
+    if (folding_section("OBJECT")) draw_object_rows(session, state);
     if (folding_section("MATERIAL")) draw_material_rows(session);
     if (folding_section("LIGHTS")) draw_light_rows(session, state);
     if (folding_section("CAMERA")) camera_rows(session, state);

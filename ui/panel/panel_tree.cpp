@@ -163,15 +163,15 @@ void draw_scene_tree(Session& session, UiState&) {
         tree.first_prim = first_prims(*scene);
         tree.filter.clear();
     }
-    const bool some_hidden = !session.desired.hidden.empty();
+    const bool some_hidden = !session.desired.instances.hidden.empty();
     const float all = ImGui::CalcTextSize("Show all objects").x + 2 * ImGui::GetStyle().FramePadding.x;
     ImGui::SetNextItemWidth(some_hidden ? -all - ImGui::GetStyle().ItemSpacing.x : -FLT_MIN);
     ImGui::InputTextWithHint("##filter", "find by name", &tree.filter);
     note_rect("find by name");
     if (some_hidden) {
         ImGui::SameLine();
-        if (button("Show all objects", plural(session.desired.hidden.size(), "object") + " hidden here", all))
-            session.desired.hidden.clear();
+        if (button("Show all objects", plural(session.desired.instances.hidden.size(), "object") + " hidden here", all))
+            session.desired.instances.hidden.clear();
     }
     const std::vector<SceneRow>& rows = tree.rows.update(scene, tree.filter, tree.open);
     const float line = ImGui::GetTextLineHeightWithSpacing();

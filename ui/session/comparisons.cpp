@@ -39,13 +39,12 @@ bool same_view(const View& a, const View& b) {
 }
 
 bool prepares_same(const PrepareRequest& a, const PrepareRequest& b) {
-    return prepares_same_but_pose(a, b) && same_pose(a.pose, b.pose);
+    return prepares_same_but_pose(a, b) && same_pose(a.pose, b.pose) && a.instances == b.instances && a.apart == b.apart;
 }
 
 bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b) {
     return a.files_revision == b.files_revision && a.kernel_revision == b.kernel_revision && prepares_same(a.main, b.main) &&
-           a.other.has_value() == b.other.has_value() && (!a.other || prepares_same(*a.other, *b.other)) &&
-           a.hidden == b.hidden;
+           a.other.has_value() == b.other.has_value() && (!a.other || prepares_same(*a.other, *b.other));
 }
 
 bool traces_same(const Settings& a, const Settings& b) {

@@ -16,10 +16,10 @@ bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
 
 bool same_view(const View& a, const View& b);
 
-// Whether two requests prepare the same: equal files, kernels, devices, hidden instances and poses, and equal settings except
+// Whether two requests prepare the same: equal files, kernels, devices, instances and poses, and equal settings except
 // for those that apply to the next frame at once.
 bool prepares_same(const PrepareRequest& a, const PrepareRequest& b);
-// The same, whatever the poses.
+// The same, whatever the poses, and whatever the user has done to instances: that moves the scene as a pose does.
 bool prepares_same_but_pose(const PrepareRequest& a, const PrepareRequest& b);
 
 bool same_camera(const Camera& a, const Camera& b);

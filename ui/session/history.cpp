@@ -32,7 +32,8 @@ std::vector<std::string> differences(const DesiredState& a, const DesiredState& 
     if (a.background != b.background) names.push_back("Background");
     if (a.ambient != b.ambient) names.push_back("Ambient light");
     if (!same_bytes(a.materials, b.materials)) names.push_back("Material");
-    if (a.hidden != b.hidden) names.push_back("Visibility");
+    if (a.instances.moved != b.instances.moved) names.push_back("Place of objects");
+    if (a.instances.hidden != b.instances.hidden) names.push_back("Visibility");
     if (a.pose.clip != b.pose.clip)
         names.push_back("Clip");
     else if (a.loop != b.loop)

@@ -105,7 +105,8 @@ void Session::cancel() {
         back(*desired.other, *was.other);
     else
         desired.other = was.other;
-    desired.hidden = was.hidden;
+    desired.instances = was.instances;
+    apart_ = was.apart;
     playback_.rest(desired);
     if (was.pose.time_s) {
         if (was.pose.clip != desired.pose.clip) playback_.choose(desired, was.pose.clip);
@@ -143,7 +144,8 @@ PrepareRequest Session::desired_request() const {
     request.kernel_revision = sources_revision_;
     // Indices of instances and names of clips are only valid in the scene that they were chosen in.
     if (files_revision_ == viewed_files_revision_) {
-        request.hidden = desired.hidden;
+        request.instances = desired.instances;
+        request.apart = apart_;
         if (desired.pose.time_s) request.pose = desired.pose;
     }
     return request;
@@ -184,7 +186,8 @@ void Session::post_frame() {
     job.resolution_scale = std::clamp(desired.resolution_scale, 0.05f, 4.0f);
     const bool first = !posted_job_.ready;
     const bool moved = !first && (!same_view(job.view, posted_job_.view) ||
-                                  !same_pose(job.ready->request.pose, posted_job_.ready->request.pose));
+                                  !same_pose(job.ready->request.pose, posted_job_.ready->request.pose) ||
+                                  job.ready->request.instances != posted_job_.ready->request.instances);
     const double now = now_s();
     if (moved) moved_at_s_ = now;
     moving_ = (now - moved_at_s_ < kMovingSeconds || playback_.playing()) && !sequence_.running();
@@ -212,6 +215,7 @@ void Session::update(bool gesture) {
     take_outcomes();
     take_kernels();
     take_libraries();
+    take_scene_files();
     if (auto why = frames_.take_failure(); !why.empty()) report(why);
     sequence_.update(*this);
     if (sequence_.running()) playback_.pause(desired);
@@ -280,10 +284,36 @@ void Session::take_libraries() {
         kernels_ = std::make_unique<KernelWatch>(plugins_.accels(), wake_);
         seen_kernels_ = 0;
     }
-    if (importers && !files_.empty()) {
-        open(files_);
-        reread_files_revision_ = files_revision_;
-    }
+    if (importers && !files_.empty()) reopen();
+}
+
+// Reads the same files again: camera, time and edits stay.
+void Session::reopen() {
+    open(files_);
+    reread_files_revision_ = files_revision_;
+}
+
+void Session::take_scene_files() {
+    if (!scene_files_ || scene_files_->revision() == seen_scene_files_) return;
+    seen_scene_files_ = scene_files_->revision();
+    log(LogLevel::info, "changed: " + scene_files_->last_changed());
+    if (files_revision_ == viewed_files_revision_ || files_revision_ == reread_files_revision_) reopen();
+}
+
+void Session::watch_scene_files() {
+    std::vector<std::string> files = ready_->loaded->scene->sources;
+    files.insert(files.end(), ready_->loaded->files.begin(), ready_->loaded->files.end());
+    scene_files_ = std::make_unique<TimesWatch>(std::move(files), wake_);
+    seen_scene_files_ = 0;
+}
+
+// What the user has changed of a scene that is read again, in words that hold for the new one.
+std::vector<Word> Session::edits_to_keep(const Ready& before) const {
+    EditedView edited = edited_view(desired);
+    edited.camera_path = {};
+    std::vector<Word> words = edits_between(*before.loaded->scene, first_view_of(before), edited);
+    words.erase(std::remove_if(words.begin(), words.end(), [](const Word& word) { return word.key == "camera"; }), words.end());
+    return words;
 }
 
 void Session::adopt(const std::shared_ptr<const Ready>& ready) {
@@ -292,15 +322,28 @@ void Session::adopt(const std::shared_ptr<const Ready>& ready) {
     if (viewed_files_revision_ == ready->loaded->files_revision) return follow_pose(*before);
     const bool same_files = viewed_files_revision_ != 0 && ready->loaded->files_revision == reread_files_revision_;
     viewed_files_revision_ = ready->loaded->files_revision;
-    selection = {};
+    if (same_files) first_edits_ = edits_to_keep(*before);
+    const Selection selected = std::exchange(selection, {});
+    if (same_files && before->loaded->scene->instances.size() == ready->loaded->scene->instances.size()) selection = selected;
+    watch_scene_files();
+    apart_.clear();
+    middles_ = {};
     const Camera camera = desired.camera;
     const PoseTime pose = desired.pose;
+    const CameraPath path = desired.camera_path;
+    const std::array<double, 2> loop = desired.loop;
+    const float speed = desired.speed;
     playback_.open(*ready->loaded->scene, desired);
     if (!same_files) desired.camera_path = {};
     reset_view();
     if (same_files) {
         desired.camera = camera;
-        if (playback_.has(pose.clip)) desired.pose = pose;
+        desired.camera_path = path;
+        if (playback_.has(pose.clip)) {
+            desired.pose = pose;
+            desired.loop = loop;
+            desired.speed = speed;
+        }
     }
     show_first_pose();
     if (!ready->loaded->view_error.empty()) report(ready->loaded->view_error);

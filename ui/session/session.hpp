@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "base/files/times_watch.hpp"
 #include "device/kernel_watch.hpp"
 #include "plugin/library_watch.hpp"
 #include "render/settings/preset.hpp"
@@ -73,6 +74,10 @@ class Session {
     // Throw Error; the desired state then stays as it was.
     void save_preset(const std::string& path) const;
     void load_preset(const std::string& path);
+    // Writes the scene with its edits as a text scene: see scene_text.hpp. Throws Error.
+    void save_scene(const std::string& path) const;
+    // Where save_scene() writes if the user names no path: the open text scene itself, else one beside the first file.
+    std::string scene_path() const;
     // Returns the `clarity render ...` command which makes the main picture as desired, on its device.
     std::string render_command(const std::string& output) const;
     // Saves the current picture once its samples are traced: .png as shown, .exr or .pfm with the film's values. Success is a
@@ -106,6 +111,10 @@ class Session {
     const rt_material& material(rt_u32 index) const;
     bool hidden(rt_u32 instance) const;
     void hide(rt_u32 instance, bool hidden);
+    // Says that this instance will be moved: it is kept apart in the structure, so that the first step is quick.
+    void prepare_to_move(rt_u32 instance);
+    // Where the middle of an instance is as desired: what it turns about. nullopt: there is no such instance.
+    std::optional<std::array<float, 3>> middle_of(rt_u32 instance);
 
     // Called once a frame of the window. gesture: a slider is being dragged or a key is down.
     void update(bool gesture);
@@ -150,13 +159,18 @@ class Session {
     void follow_pose(const Ready& before);  // the file's lights, and its camera if the user looks through one
     void follow_path();
     void show_first_pose();
-    View first_view() const;  // of the scene in its pose
-    void follow_main();       // copies the shared settings of the main side to the other side
+    EditedView first_view() const { return first_view_of(*ready_); }
+    static EditedView first_view_of(const Ready& ready);  // of the scene in its pose, with the edits of its files
+    void take_scene_files();
+    void watch_scene_files();
+    void reopen();
+    std::vector<Word> edits_to_keep(const Ready& before) const;
+    void follow_main();  // copies the shared settings of the main side to the other side
     void take_saved();
     void take_pick();
     PrepareRequest desired_request() const;
     bool is_posted(const PrepareRequest& request) const;
-    Preset desired_preset(View base) const;
+    Preset desired_preset(EditedView base) const;
 
     const PluginRegistry& plugins_;
     std::string first_camera_, first_light_;  // from the command line, for the first scene
@@ -176,6 +190,8 @@ class Session {
     Sequence sequence_;
     Playback playback_;
     std::optional<double> path_time_s_;  // for which the camera was set to its path
+    std::vector<rt_u32> apart_;          // instances that the user is about to move
+    MeshMiddles middles_;                // of the imported scene
     bool moving_ = false;
     double moved_at_s_ = -1e9;
     uint64_t pick_request_ = 0, picked_request_ = 0;
@@ -183,6 +199,8 @@ class Session {
     const std::function<void()> wake_;
     std::unique_ptr<KernelWatch> kernels_;
     LibraryWatch libraries_;
+    std::unique_ptr<TimesWatch> scene_files_;  // of the scene on the screen, with all that it loads
+    uint64_t seen_scene_files_ = 0;
     uint64_t seen_kernels_ = 0, sources_revision_ = 0;
     FrameThread frames_;
     InspectThread inspector_;

@@ -5,6 +5,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "render/settings/scene_text.hpp"
 #include "ui/session/session.hpp"
 
 namespace clarity::ui {
@@ -25,21 +26,21 @@ uint64_t Session::save_picture(const std::string& path) {
     return frames_.save(path);
 }
 
-Preset Session::desired_preset(View base) const {
+Preset Session::desired_preset(EditedView base) const {
     Preset preset{desired.main.device, desired.main.settings, {}};
     if (preset.settings.aov != "color") preset.settings.spp = 1;  // as in post_frame()
     if (desired.pose.time_s) {
         preset.pose = desired.pose;
         // Lights for a scene that has none suit its size, which is another in another pose. So they are always named.
         if (ready_ && ready_->loaded->scene->lights.empty())
-            for (rt_light& light : base.lights) light.color[0] = -1;
+            for (rt_light& light : base.view.lights) light.color[0] = -1;
     }
     if (ready_) preset.edits = edits_between(*ready_->loaded->scene, base, edited_view(desired));
     return preset;
 }
 
 void Session::save_preset(const std::string& path) const {
-    clarity::save_preset(plugins_, desired_preset(ready_ ? first_view() : View()), path);
+    clarity::save_preset(plugins_, desired_preset(ready_ ? first_view() : EditedView()), path);
 }
 
 void Session::load_preset(const std::string& path) {
@@ -49,7 +50,7 @@ void Session::load_preset(const std::string& path) {
                     path + ": this preset changes the view of a scene, but no scene is open; open the scene first");
     EditedView edited;
     if (ready_) {
-        edited.view = first_view();
+        edited = first_view();
         for (const Word& word : preset.edits) apply_edit(*ready_->loaded->scene, edited, word.key, word.value);
     }
     desired.main = {preset.device.empty() ? desired.main.device : preset.device, preset.settings};
@@ -66,6 +67,21 @@ void Session::load_preset(const std::string& path) {
     log(LogLevel::info, "preset " + path);
 }
 
+std::string Session::scene_path() const {
+    if (!ready_) return {};
+    const std::filesystem::path first = ready_->loaded->files.front();
+    if (ready_->loaded->files.size() == 1 && first.extension() == ".scene") return first.string();
+    return (first.parent_path() / (first.stem().string() + "_edited.scene")).string();
+}
+
+void Session::save_scene(const std::string& path) const {
+    if (!ready_) throw Error(Exit::usage, path + ": cannot save, because no scene is open; open a scene first");
+    clarity::save_scene({*ready_->loaded->scene, ready_->loaded->files, edited_view(desired)}, path);
+    log(LogLevel::info, "saved " + path);
+    for (const std::string& folder : folders_outside(ready_->loaded->files, path))
+        log(LogLevel::warning, path + ": it loads files outside of its folder; open it with --search-path '" + folder + "'");
+}
+
 std::string Session::render_command(const std::string& output) const {
     if (!ready_) throw Error(Exit::usage, "there is no command line, because no scene is open; open a scene first");
     // Starts from the defaults of the command line, whatever options this window was started with.
@@ -73,8 +89,10 @@ std::string Session::render_command(const std::string& output) const {
     const Settings& s = desired.main.settings;
     const auto scaled = [&](int n) { return std::max(1, static_cast<int>(std::lround(n * desired.resolution_scale))); };
     const int width = scaled(s.width), height = scaled(s.height);
-    View base = make_view(*ready_->loaded->scene, static_cast<float>(width) / static_cast<float>(height));
-    for (size_t i = 0; i < ready_->lights.size(); ++i) base.lights[i] = ready_->lights[i].values;
+    EditedView base;
+    base.view = make_view(*ready_->loaded->scene, static_cast<float>(width) / static_cast<float>(height));
+    for (size_t i = 0; i < ready_->lights.size(); ++i) base.view.lights[i] = ready_->lights[i].values;
+    apply_scene_edits(*ready_->loaded->scene, base);
     preset = desired_preset(base);
     preset.settings.width = width;
     preset.settings.height = height;

@@ -76,35 +76,50 @@ const rt_material& Session::material(rt_u32 index) const {
 }
 
 bool Session::hidden(rt_u32 instance) const {
-    return std::binary_search(desired.hidden.begin(), desired.hidden.end(), instance);
+    return desired.instances.is_hidden(instance);
 }
 
 void Session::hide(rt_u32 instance, bool hidden) {
-    const auto at = std::lower_bound(desired.hidden.begin(), desired.hidden.end(), instance);
-    const bool is = at != desired.hidden.end() && *at == instance;
-    if (hidden && !is) desired.hidden.insert(at, instance);
-    if (!hidden && is) desired.hidden.erase(at);
+    desired.instances.hide(instance, hidden);
+}
+
+void Session::prepare_to_move(rt_u32 instance) {
+    const auto at = std::lower_bound(apart_.begin(), apart_.end(), instance);
+    if (at == apart_.end() || *at != instance) apart_.insert(at, instance);
+}
+
+std::optional<std::array<float, 3>> Session::middle_of(rt_u32 number) {
+    if (!ready_ || number >= ready_->scene->instances.size()) return std::nullopt;
+    const Instance& instance = ready_->loaded->scene->instances[number];
+    const rt_u32 mesh = instance.node == RT_NONE ? instance.mesh : instance.moving_mesh;
+    const std::array<float, 3>& pivot = middles_.of(*ready_->loaded->scene, mesh);
+    std::array<float, 3> middle = transform_point(ready_->scene->instances[number].world_from_object, pivot.data());
+    const InstanceShift shown = ready_->request.instances.shift_of(number), wanted = desired.instances.shift_of(number);
+    for (size_t k = 0; k < 3; ++k) middle[k] += wanted.translate[k] - shown.translate[k];
+    return middle;
 }
 
 void Session::reset_view() {
     if (!ready_) return;
-    EditedView edited;
-    edited.view = first_view();
+    EditedView edited = first_view();
     edited.camera_path = desired.camera_path;
     adopt_view(edited);
 }
 
-View Session::first_view() const {
-    View view = ready_->loaded->first_view;
-    const Scene& rest = *ready_->loaded->scene;
+EditedView Session::first_view_of(const Ready& ready) {
+    EditedView first;
+    View& view = first.view;
+    view = ready.loaded->first_view;
+    const Scene& rest = *ready.loaded->scene;
     for (size_t i = 0; i < rest.cameras.size(); ++i)
         if (same_camera(view.camera, rest.cameras[i])) {
-            view.camera = ready_->cameras[i];
+            view.camera = ready.cameras[i];
             break;
         }
     for (size_t i = 0; i < std::min(view.lights.size(), rest.lights.size()); ++i)
-        if (same_light(view.lights[i], rest.lights[i].values)) view.lights[i] = ready_->lights[i].values;
-    return view;
+        if (same_light(view.lights[i], rest.lights[i].values)) view.lights[i] = ready.lights[i].values;
+    apply_scene_edits(rest, first);
+    return first;
 }
 
 void Session::adopt_view(const EditedView& edited) {
@@ -119,7 +134,7 @@ void Session::adopt_view(const EditedView& edited) {
     desired.background = view.background;
     desired.ambient = view.ambient;
     desired.materials = view.materials;
-    desired.hidden = edited.hidden;
+    desired.instances = edited.instances;
     desired.lights.clear();
     selected_light = 0;
     for (size_t i = 0; i < view.lights.size(); ++i) {

@@ -12,7 +12,7 @@ EditedView edited_view(const DesiredState& desired) {
         edited.view.lights.push_back(light.values);
         edited.lights_on.push_back(light.on);
     }
-    edited.hidden = desired.hidden;
+    edited.instances = desired.instances;
     edited.camera_path = desired.camera_path;
     if (desired.pose.time_s && !desired.camera_path.empty()) {
         CameraKey key{0, desired.camera};

@@ -33,7 +33,7 @@ struct DesiredState {
     std::vector<DesiredLight> lights;
     std::array<float, 3> background{}, ambient{};
     std::vector<rt_material> materials;  // the edited materials; empty: those of the scene
-    std::vector<rt_u32> hidden;          // indices of instances, ascending
+    InstanceEdits instances;             // moved and hidden
     PoseTime pose;                       // when the scene is shown; its clip is the chosen one even while the scene is at rest
     CameraPath camera_path;              // the camera is there when the time changes
     std::array<double, 2> loop{};        // the seconds of the clip that are played, again and again

@@ -25,9 +25,8 @@ MotionBlur::Source blur_source(const PluginRegistry& plugins, const import::Impo
     };
     const auto own = std::make_shared<Own>(plugins, options);
     MotionBlur::Source source;
-    source.rest = ready.loaded->scene;
+    source.rest = ready.rest;
     source.clip = ready.request.pose.clip;
-    source.hidden = ready.request.hidden;
     source.read = [own](const std::string& file) { return own->sequences(file); };
     source.prepare = [own, &plugins, devices, settings](std::shared_ptr<const Scene> scene, Progress& progress) {
         if (!own->preparer) own->preparer = std::make_unique<MultiPreparer>(plugins, devices);
@@ -220,10 +219,12 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     ready->request.main.device = main_.choice;
     ready->request.files = loaded_->files;
     ready->request.files_revision = loaded_->files_revision;
-    ready->request.hidden = shown_.hidden();
+    ready->request.instances = shown_.instances();
+    ready->request.apart = shown_.asked_apart();
     ready->request.pose = shown_.pose();
     ready->loaded = loaded_;
-    ready->scene = shown_.posed();
+    ready->scene = shown_.scene();
+    ready->rest = shown_.rest();
     ready->cameras = shown_.cameras();
     ready->lights = shown_.lights();
     ready->blur_source = [&plugins = plugins_, import = import_, of = ready.get()](const Devices& devices,
@@ -258,19 +259,25 @@ void PrepareWorker::prepare_sides(const PrepareRequest& request, Ready& ready, b
 
 ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings, double frame_ms, StageProgress& progress) {
     PoseFollower& follower = side.follower;
-    const bool is_posed = shown_.pose().time_s.has_value();
-    if (!is_posed || (follower.structure() && !side.preparer->asks_for(*follower.structure(), settings))) follower.reset();
-    if (!is_posed) return lend(side.devices, side.preparer->prepare(shown_.visible(), settings, progress));
-    const PosedFrom from = {loaded_->scene, shown_.pose().clip};
+    const bool follows = shown_.follows();
+    if (!follows || (follower.structure() && !side.preparer->asks_for(*follower.structure(), settings))) {
+        follower.reset();
+        side.built.reset();
+    }
+    if (!follows) return lend(side.devices, side.preparer->prepare(shown_.scene(), settings, progress));
+    const PosedFrom from = shown_.from();
     const Pose& pose = shown_.geometry();
-    const std::shared_ptr<const Scene>& scene = shown_.visible();
+    const std::shared_ptr<const Scene>& scene = shown_.scene();
     if (settings.shutter > 0) follower.leave_devices();  // blurred pictures move the structure on the host
-    const MovedStructure moved = follower.refit(from, scene, pose, way_of(settings.poses), frame_ms, progress);
+    MovedStructure moved = follower.refit(from, scene, pose, way_of(settings.poses), frame_ms, progress);
+    if (moved.accel && moved.on_devices.empty() && side.built)
+        moved.on_devices = side.built->moved_buffers(pose, moved.accel, progress);
     const auto prepared = side.preparer->prepare(scene, settings, progress, moved);
     if (!moved.accel) {
         const std::shared_ptr<const AccelData>& built = prepared->first()->accel;
         follower.built(from, scene, pose, built,
                        settings.shutter > 0 ? make_host_mover(scene, built) : side.preparer->mover(scene, *prepared));
+        side.built = prepared;
     }
     ReadySide ready = lend(side.devices, prepared);
     ready.pose_update = follower.update();
@@ -302,8 +309,10 @@ void PrepareWorker::renew_devices() {
     tracers_.release();
     const std::shared_ptr<void> resume(nullptr, [this](void*) { tracers_.resume(); });
     withdraw_loans();
-    main_.follower.leave_devices();
-    other_.follower.leave_devices();
+    for (SideState* side : {&main_, &other_}) {
+        side->follower.leave_devices();
+        side->built.reset();
+    }
     main_.devices.clear();
     other_.devices.clear();
     std::vector<DeviceInfo> other;
@@ -322,6 +331,7 @@ void PrepareWorker::open_side(const std::string& choice, SideState& state, const
     Devices devices = open_devices(choose_devices(choice), neighbour.devices);
     state.preparer = std::make_unique<MultiPreparer>(plugins_, devices);
     state.follower.reset();
+    state.built.reset();
     state.devices = std::move(devices);
     state.choice = choice;
 }
@@ -335,6 +345,7 @@ void PrepareWorker::import_files(const PrepareRequest& request, StageProgress& p
     auto loaded = std::make_shared<ImportedScene>();
     loaded->scene = std::make_shared<const Scene>(import::import_scene(plugins_, request.files, import_, progress));
     loaded->import_ms = ms_since(begin);
+    instance_edits(*loaded->scene, {});  // a file with an edit that cannot be made is not loaded
     loaded->files = request.files;
     loaded->files_revision = request.files_revision;
     loaded->bounds = loaded->scene->bounds();

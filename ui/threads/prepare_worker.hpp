@@ -67,6 +67,7 @@ class PrepareWorker {
         std::string choice;
         std::unique_ptr<MultiPreparer> preparer;
         PoseFollower follower;
+        std::shared_ptr<const MultiPrepared> built;  // of the last build that the follower follows
     };
     // Prepares what is shown for one side. The structure follows a pose.
     ReadySide prepare_side(SideState& side, const Settings& settings, double frame_ms, StageProgress& progress);

@@ -22,7 +22,8 @@ struct PrepareRequest {
     std::string camera, light;    // as on the command line; for the first view of newly imported files
     Side main;
     std::optional<Side> other;
-    std::vector<rt_u32> hidden;    // indices of instances
+    InstanceEdits instances;       // moved and hidden
+    std::vector<rt_u32> apart;     // instances that are about to be moved: ascending
     uint64_t kernel_revision = 0;  // the kernels are read (again) when it changes
     PoseTime pose;
     bool only_pose = false;  // differs from the request before it in nothing else, so that work in hand goes on
@@ -95,6 +96,7 @@ struct Ready {
     PrepareRequest request;
     std::shared_ptr<const ImportedScene> loaded;
     std::shared_ptr<const Scene> scene;  // what was imported, in its pose. Its own cameras and lights may be of another pose
+    std::shared_ptr<const Scene> rest;   // what was imported, with its instances moved and hidden by the user, at rest
     std::vector<Camera> cameras;         // those of the scene, in its pose
     std::vector<Light> lights;           // likewise
     ReadySide main;

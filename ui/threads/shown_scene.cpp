@@ -32,44 +32,63 @@ ShownScene::ShownScene(const PluginRegistry& plugins, const import::ImportOption
 void ShownScene::update(const std::shared_ptr<const ImportedScene>& loaded, const PrepareRequest& request) {
     const bool same_files = request.files_revision == loaded->files_revision, fresh = loaded_ != loaded;
     const PoseTime pose = same_files ? request.pose : fresh ? PoseTime() : pose_;
-    const std::vector<rt_u32> hidden = same_files ? request.hidden : fresh ? std::vector<rt_u32>() : hidden_;
+    const InstanceEdits edits = same_files ? request.instances : fresh ? InstanceEdits() : instances_;
+    const std::vector<rt_u32> apart = same_files ? request.apart : fresh ? std::vector<rt_u32>() : asked_apart_;
     if (fresh) {
-        posed_ = loaded->scene;
-        cameras_ = posed_->cameras;
-        lights_ = posed_->lights;
+        rest_ = scene_ = loaded->scene;
+        cameras_ = scene_->cameras;
+        lights_ = scene_->lights;
         pose_ = {};
         geometry_ = {};
+        instances_ = {};
+        apart_.clear();
+        asked_apart_.clear();
+        middles_ = {};
         loaded_ = loaded;
-        visible_.reset();
     }
-    const std::shared_ptr<const Scene> before = posed_;
-    if (!same_pose(pose, pose_)) place(pose);
-    if (!visible_ || posed_ != before || hidden_ != hidden) {
-        hidden_ = hidden;
-        visible_ = hidden_.empty() ? posed_ : std::make_shared<const Scene>(without_instances(*posed_, hidden_));
-    }
-    for (size_t i = 0; i < geometry_.instances.size(); ++i) geometry_.instances[i].visible = visible_->instances[i].visible;
+    const bool edited = edit(edits, apart);
+    if (edited || !same_pose(pose, pose_)) place(pose, edited);
 }
 
-// Whether posed() has the geometry of a pose. The scene at rest never has it if instances move, even where they stand as at
+// Returns whether the scene at rest is another one now.
+bool ShownScene::edit(const InstanceEdits& edits, const std::vector<rt_u32>& apart) {
+    if (edits == instances_ && apart == asked_apart_) return false;
+    std::vector<rt_u32> all = apart_;
+    for (const InstanceEdits::Moved& moved : edits.moved) all.push_back(moved.instance);
+    for (const auto* more : {&edits.hidden, &apart}) all.insert(all.end(), more->begin(), more->end());
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    const bool same = edits == instances_ && all == apart_;
+    instances_ = edits;
+    asked_apart_ = apart;
+    apart_ = std::move(all);
+    if (same) return false;
+    rest_ = std::make_shared<const Scene>(with_edits(*loaded_->scene, instances_, apart_, middles_));
+    return true;
+}
+
+// Whether scene() has the geometry of a pose. The scene at rest never has it if instances move, even where they stand as at
 // rest: they are not kept apart in it.
 bool ShownScene::shows(const Pose& pose) const {
-    if (!has_geometry_of(*posed_, pose)) return false;
-    if (posed_ != loaded_->scene) return true;
-    const std::vector<bool> moving = moving_instances(*posed_);
-    return std::find(moving.begin(), moving.end(), true) == moving.end();
+    if (!has_geometry_of(*scene_, pose)) return false;
+    if (scene_ != rest_) return true;
+    const std::vector<bool> moving = moving_instances(*scene_);
+    for (size_t i = 0; i < moving.size(); ++i)
+        if (moving[i] && !scene_->instances[i].apart) return false;
+    return true;
 }
 
-void ShownScene::place(const PoseTime& time) {
-    const Scene& rest = *loaded_->scene;
+void ShownScene::place(const PoseTime& time, bool edited) {
     if (!time.time_s) {
-        posed_ = loaded_->scene;
+        scene_ = rest_;
         geometry_ = {};
-        cameras_ = rest.cameras;
-        lights_ = rest.lights;
+        if (!apart_.empty())
+            for (const Instance& i : rest_->instances) geometry_.instances.push_back({i.mesh, i.world_from_object, i.visible});
+        cameras_ = rest_->cameras;
+        lights_ = rest_->lights;
     } else {
-        Pose pose = evaluate(rest, time.clip, *time.time_s, std::ref(sequences_));
-        if (!shows(pose)) posed_ = std::make_shared<const Scene>(clarity::posed(rest, pose));
+        Pose pose = evaluate(*rest_, time.clip, *time.time_s, std::ref(sequences_));
+        if (edited || !shows(pose)) scene_ = std::make_shared<const Scene>(posed(*rest_, pose));
         cameras_ = std::move(pose.cameras);
         lights_ = std::move(pose.lights);
         geometry_ = std::move(pose);

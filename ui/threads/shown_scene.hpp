@@ -1,12 +1,14 @@
-// shown_scene.hpp -- the scene that is prepared: what was imported, in a pose, and without its hidden instances.
+// shown_scene.hpp -- the scene that is prepared: what was imported, with the instances moved and hidden as the user wants them,
+// in a pose.
 //
-// Every new Scene object needs a new structure, new buffers and so on. So objects are kept as long as they look right.
+// Every new Scene object needs a new structure, or a refit of it. So objects are kept as long as they look right.
 #pragma once
 #include <memory>
 #include <vector>
 
 #include "base/progress.hpp"
 #include "import/sequence_reader.hpp"
+#include "scene/instance_edit.hpp"
 #include "ui/threads/prepared_scene.hpp"
 
 namespace clarity::ui {
@@ -15,30 +17,40 @@ namespace clarity::ui {
 class ShownScene {
  public:
     ShownScene(const PluginRegistry& plugins, const import::ImportOptions& options);
-    // Shows what the request asks for. A request for other files than `loaded` changes neither pose nor hidden instances.
-    // Throws what evaluate() throws; everything then stays as it was.
+    // Shows what the request asks for. A request for other files than `loaded` changes neither pose nor edits. Throws what
+    // evaluate() throws; everything then stays as it was.
     void update(const std::shared_ptr<const ImportedScene>& loaded, const PrepareRequest& request);
 
-    const std::shared_ptr<const Scene>& posed() const { return posed_; }
-    const std::shared_ptr<const Scene>& visible() const { return visible_; }  // posed() without the hidden instances
+    // In its pose. Hidden instances are in it, but not visible.
+    const std::shared_ptr<const Scene>& scene() const { return scene_; }
+    // At rest, with the edits; poses are made of it.
+    const std::shared_ptr<const Scene>& rest() const { return rest_; }
     const PoseTime& pose() const { return pose_; }
-    // The instances and deformed meshes of visible(); no cameras and lights. Empty for a scene at rest.
+    // Whether a structure should follow geometry() by refits: a clip plays, or the user has moved or hidden something. Once he
+    // has, this stays so until another scene is loaded, so that undo is a refit, too.
+    bool follows() const { return pose_.time_s || !apart_.empty(); }
+    PosedFrom from() const { return {loaded_->scene, pose_.clip, !pose_.time_s, apart_}; }
+    // The instances and deformed meshes of scene(); no cameras and lights. Empty unless follows().
     const Pose& geometry() const { return geometry_; }
-    const std::vector<rt_u32>& hidden() const { return hidden_; }
+    const InstanceEdits& instances() const { return instances_; }
+    const std::vector<rt_u32>& asked_apart() const { return asked_apart_; }
     const std::vector<Camera>& cameras() const { return cameras_; }
     const std::vector<Light>& lights() const { return lights_; }
 
  private:
-    void place(const PoseTime& pose);
+    bool edit(const InstanceEdits& edits, const std::vector<rt_u32>& apart);
+    void place(const PoseTime& pose, bool edited);
     bool shows(const Pose& pose) const;
 
     Progress unwatched_;  // of files of sequences
     import::SequenceReader sequences_;
     std::shared_ptr<const ImportedScene> loaded_;
-    std::shared_ptr<const Scene> posed_, visible_;
-    Pose geometry_;  // of visible_
+    std::shared_ptr<const Scene> rest_, scene_;
+    Pose geometry_;
     PoseTime pose_;
-    std::vector<rt_u32> hidden_;
+    InstanceEdits instances_;
+    std::vector<rt_u32> apart_, asked_apart_;  // instances that the user has moved or hidden, or is about to; ascending
+    MeshMiddles middles_;
     std::vector<Camera> cameras_;
     std::vector<Light> lights_;
 };

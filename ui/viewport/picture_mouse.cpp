@@ -29,6 +29,7 @@ void PictureMouse::find_hovered(const Target& target, const glm::vec2& mouse, bo
     hover_.reset();
     hovered_light_ = -1;
     wipe_hovered_ = false;
+    if (grab_ != Grab::instance) move_handle_ = MoveHandle::none;
     if (!hovered) return;
     const ByteImage& image = target.picture.main.image;
     for (size_t i = 0; i < target.places.size() && !hover_; ++i) {
@@ -44,7 +45,8 @@ void PictureMouse::find_hovered(const Target& target, const glm::vec2& mouse, bo
             nearest = away;
             hovered_light_ = static_cast<int>(handle.index);
         }
-    if (target.wipe && hovered_light_ < 0) {
+    if (target.move && hovered_light_ < 0 && grab_ == Grab::nothing) move_handle_ = handle_at(*target.move, mouse, ui_scale());
+    if (target.wipe && hovered_light_ < 0 && move_handle_ == MoveHandle::none) {
         const Rect& right = target.places.back().shown;
         wipe_hovered_ = std::abs(mouse.x - right.x) <= 7 * ui_scale() && mouse.y >= right.y && mouse.y < right.y + right.height;
     }
@@ -66,6 +68,10 @@ void PictureMouse::press(const Target& target, Session& session, const glm::vec2
         session.selected_light = light_;
         for (const LightHandle& handle : target.handles)
             if (handle.index == light_) offset_ = handle.place - mouse;
+    } else if (target.move && move_handle_ != MoveHandle::none && session.selection.instance >= 0) {
+        grab_ = Grab::instance;
+        moved_instance_ = static_cast<rt_u32>(session.selection.instance);
+        move_drag_ = {move_handle_, mouse, target.move->middle, session.desired.instances.shift_of(moved_instance_)};
     } else if (wipe_hovered_) {
         grab_ = Grab::wipe;
         offset_.x = target.places.back().shown.x - mouse.x;
@@ -111,6 +117,10 @@ void PictureMouse::drag(const Target& target, Session& session, UiState& state, 
                 drag_point_light(light, projection, mouse + offset_);
             break;
         }
+        case Grab::instance:
+            session.desired.instances.set_shift(moved_instance_,
+                                                dragged(move_drag_, Projection(area, camera_of(target.picture)), mouse));
+            break;
         case Grab::nothing:
             break;
     }
@@ -194,7 +204,8 @@ void PictureMouse::update(const Target& target, Session& session, UiState& state
     }
     if (grab_ == Grab::wipe || (resting && wipe_hovered_))
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
-    else if (grab_ == Grab::light || (resting && hovered_light_ >= 0))
+    else if (grab_ == Grab::light || grab_ == Grab::instance ||
+             (resting && (hovered_light_ >= 0 || move_handle_ != MoveHandle::none)))
         ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     else if (active && moved_ && button_ != ImGuiMouseButton_Left)
         ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeAll);

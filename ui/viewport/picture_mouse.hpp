@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ui/overlay/light_handles.hpp"
+#include "ui/overlay/move_handles.hpp"
 #include "ui/session/session.hpp"
 #include "ui/viewport/picture_layout.hpp"
 
@@ -27,7 +28,8 @@ class PictureMouse {
         const std::vector<PicturePlace>& places;
         const std::vector<LightHandle>& handles;  // in places[0]
         float handle_radius;
-        bool wipe;  // whether there is a handle between the places
+        bool wipe;                // whether there is a handle between the places
+        const MoveHandles* move;  // of the selected instance, in places[0]; nullptr: none are shown
     };
     struct Hover {
         size_t place = 0;
@@ -37,13 +39,14 @@ class PictureMouse {
     // Handles the mouse for this frame. The last ImGui item must be the button that covers the pictures.
     void update(const Target& target, Session& session, UiState& state);
     std::optional<Hover> hover() const { return hover_; }
-    int hovered_light() const { return hovered_light_; }  // -1: none
+    int hovered_light() const { return hovered_light_; }     // -1: none
+    MoveHandle move_handle() const { return move_handle_; }  // that is hovered or held
     bool wipe_hovered() const { return wipe_hovered_; }
     // Whether the last click asked for a pixel's rays and not for a selection.
     bool rays_asked() const { return rays_asked_; }
 
  private:
-    enum class Grab { nothing, camera, wipe, light };
+    enum class Grab { nothing, camera, wipe, light, instance };
     void find_hovered(const Target& target, const glm::vec2& mouse, bool hovered);
     void press(const Target& target, Session& session, const glm::vec2& mouse);
     void drag(const Target& target, Session& session, UiState& state, const glm::vec2& mouse, const glm::vec2& moved);
@@ -57,6 +60,9 @@ class PictureMouse {
     int hovered_light_ = -1;
     unsigned light_ = 0;
     glm::vec2 pressed_{}, last_{}, offset_{};  // of the mouse; from the mouse to what it holds
+    MoveHandle move_handle_ = MoveHandle::none;
+    MoveDrag move_drag_;
+    rt_u32 moved_instance_ = 0;
     std::optional<Hover> hover_;
     uint64_t hover_revision_ = 0;
     std::optional<Hover> inspected_hover_;

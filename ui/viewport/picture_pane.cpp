@@ -9,7 +9,6 @@
 
 #include "base/elapsed.hpp"
 #include "ui/overlay/ray_lines.hpp"
-#include "ui/overlay/selection_box.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/viewport/picture_captions.hpp"
 #include "ui/widgets/theme.hpp"
@@ -35,6 +34,10 @@ void add_part(ImDrawList& list, unsigned texture, const Rect& area, const Rect& 
     list.AddImage(reinterpret_cast<ImTextureID>(static_cast<intptr_t>(texture)), {shown.x, shown.y},
                   {shown.x + shown.width, shown.y + shown.height}, {left, top_first ? 0.0f : 1.0f},
                   {right, top_first ? 1.0f : 0.0f});
+}
+
+const Instance& instance_of(const Scene& scene, const Selection& selection) {
+    return scene.instances[static_cast<size_t>(selection.instance)];
 }
 
 void blend_premultiplied(const ImDrawList*, const ImDrawCmd*) {
@@ -123,10 +126,16 @@ void PicturePane::collect_marks(const Session& session, const UiState& state) {
     if (selection.any() && session.ready() && session.ready()->loaded == ready.loaded) {
         const bool known = selected_.scene == scene && selected_.selection.instance == selection.instance &&
                            selected_.selection.prim == selection.prim;
-        if (!known) selected_ = {scene, selection, selection_box(*scene, selection)};
+        const bool moved = !known && selected_.box && selection.instance >= 0 && selected_.scene &&
+                           selected_.selection.instance == selection.instance &&
+                           selected_.scene->positions.shares(scene->positions);
+        if (moved)
+            selected_ = {scene, selection, SelectionBox{selected_.box->own, instance_of(*scene, selection).world_from_object}};
+        else if (!known)
+            selected_ = {scene, selection, selection_box(*scene, selection)};
         if (selected_.box) {
-            marks.box(*selected_.box, IM_COL32(0, 0, 0, 130), 3.4f * scale);
-            marks.box(*selected_.box, ImGui::GetColorU32(colors::kAccent), 1.6f * scale);
+            marks.box(selected_.box->corners(), IM_COL32(0, 0, 0, 130), 3.4f * scale);
+            marks.box(selected_.box->corners(), ImGui::GetColorU32(colors::kAccent), 1.6f * scale);
         }
     } else {
         selected_ = {};
@@ -224,13 +233,15 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         draw_lines(list, overlay, session.moving());
         handles_.clear();
         if (state.show_lights) handles_ = light_handles(Projection(area_, picture_->job.view.camera), session.desired.lights);
+        place_move_handles(session, state);
         ImGui::SetCursorScreenPos({room.x, room.y});
         ImGui::InvisibleButton(
             "picture", {room.width, room.height},
             ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle | ImGuiButtonFlags_MouseButtonRight);
         ImGui::SetItemAllowOverlap();
         const bool wipe = places_.size() == 2 && !side_by_side();
-        mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe}, session, state);
+        mouse_.update({*picture_, places_, handles_, 11 * ui_scale(), wipe, move_handles_ ? &*move_handles_ : nullptr}, session,
+                      state);
         if (wipe) draw_wipe(list);
         draw_pixel_marks(list, session, state);
         list.ChannelsSplit(2);  // boxes are drawn over handles; the handles' labels avoid the boxes
@@ -238,6 +249,7 @@ void PicturePane::draw(const Rect& area, Session& session, VolumeOverlay& overla
         draw_hud(list, session, overlay);
         list.ChannelsSetCurrent(0);
         draw_handles(list, session);
+        draw_move_handles(list);
         list.ChannelsMerge();
         session.want_distance(overlay.level().has_value() || !marks_.empty() || state.show_lights);
     }

@@ -10,6 +10,7 @@
 #include "ui/hud/picture_hud.hpp"
 #include "ui/overlay/gl_lines.hpp"
 #include "ui/overlay/overlay.hpp"
+#include "ui/overlay/selection_box.hpp"
 #include "ui/session/session.hpp"
 #include "ui/viewport/picture_mouse.hpp"
 #include "ui/viewport/picture_texture.hpp"
@@ -29,6 +30,7 @@ class PicturePane {
     const Rect& area() const { return area_; }
     const std::vector<PicturePlace>& places() const { return places_; }
     const std::vector<LightHandle>& handles() const { return handles_; }
+    const std::optional<MoveHandles>& move_handles() const { return move_handles_; }
     size_t lines_drawn(unsigned side) const { return lines_[side].any ? lines_[side].layer.drawn() : 0; }
     // Milliseconds that the last update of lines took, without waiting for OpenGL.
     double lines_ms() const { return lines_ms_; }
@@ -53,7 +55,7 @@ class PicturePane {
     struct Selected {
         std::shared_ptr<const Scene> scene;
         Selection selection;
-        std::optional<std::array<std::array<float, 3>, 8>> box;
+        std::optional<SelectionBox> box;
     };
 
     void lay_out(const Rect& room, const Session& session, const UiState& state);
@@ -67,6 +69,8 @@ class PicturePane {
     void draw_volume_hud(ImDrawList& list, size_t place, VolumeOverlay& overlay);
     void draw_ray_legend(ImDrawList& list);
     void draw_handles(ImDrawList& list, const Session& session);
+    void place_move_handles(Session& session, const UiState& state);
+    void draw_move_handles(ImDrawList& list) const;
     void draw_pixel_marks(ImDrawList& list, const Session& session, const UiState& state);
     void draw_wipe(ImDrawList& list) const;
     const PictureSide& side_of(const PicturePlace& place) const;
@@ -91,9 +95,10 @@ class PicturePane {
     Rect area_;
     std::vector<PicturePlace> places_;
     std::vector<LightHandle> handles_;
-    std::array<HudStack, 2> stacks_, below_;  // over the pictures; under pictures which lie side by side
-    std::vector<Rect> hud_boxes_;             // rectangles taken in this frame
-    float foot_ = 0;                          // height that boxes wanted below the pictures in the last frame
+    std::optional<MoveHandles> move_handles_;  // of the selected instance
+    std::array<HudStack, 2> stacks_, below_;   // over the pictures; under pictures which lie side by side
+    std::vector<Rect> hud_boxes_;              // rectangles taken in this frame
+    float foot_ = 0;                           // height that boxes wanted below the pictures in the last frame
     PictureMouse mouse_;
 };
 

@@ -40,6 +40,7 @@ struct UiState {
     float wipe = 0.5f;           // position of the divider as a share of the picture's width; `main` is to the left of it
     bool inspect_hover = false;  // the inspector follows the mouse
     bool show_lights = false;    // lights have handles in the picture, which can be dragged
+    bool move_handles = false;   // so has the selected instance
     bool show_rays = true;       // the rays of the inspected pixel are drawn in the scene
     bool browser_open = false;   // whether the file browser is shown
     BrowseFor browse_for = BrowseFor::scene;

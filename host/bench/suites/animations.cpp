@@ -69,12 +69,13 @@ Scene single_triangles(const Scene& scene) {
     soup.positions.clear();
     soup.normals.clear();
     soup.uvs.clear();
+    std::vector<rt_u32>& corners = soup.triangles.own();
     for (Mesh& mesh : soup.meshes) {
         const rt_u32 first = soup.vertex_count();
         for (size_t i = 3 * size_t(mesh.first_triangle); i < 3 * size_t(mesh.first_triangle + mesh.triangle_count); ++i) {
             const float* p = &scene.positions[3 * size_t(scene.triangles[i])];
-            soup.triangles[i] = soup.vertex_count();
-            soup.positions.insert(soup.positions.end(), p, p + 3);
+            corners[i] = soup.vertex_count();
+            soup.positions.append(p, p + 3);
         }
         mesh.first_vertex = first;
         mesh.vertex_count = soup.vertex_count() - first;

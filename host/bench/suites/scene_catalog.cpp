@@ -12,6 +12,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "bench/suites/gunzip.hpp"
+#include "render/settings/edit.hpp"
 
 namespace clarity::bench {
 namespace {
@@ -186,7 +187,7 @@ LoadedScene load_scene(const PluginRegistry& plugins, const BenchScene& scene, f
     }
     LoadedScene loaded;
     const auto begin = std::chrono::steady_clock::now();
-    loaded.scene = std::make_shared<const Scene>(import::import_scene(plugins, files, options, progress));
+    loaded.scene = std::make_shared<const Scene>(with_scene_edits(import::import_scene(plugins, files, options, progress)));
     loaded.import_ms = ms_since(begin);
     loaded.view = make_view(*loaded.scene, aspect, scene.camera, scene.light);
     return loaded;

@@ -186,13 +186,15 @@ Scene subdivide(const Scene& scene, unsigned n) {
     const double size = scene.bounds().diagonal();
     const double finest = size / (std::sqrt(double(mesh.triangles.size())) * n);
     const size_t per_triangle = size_t(n) * n;
-    out.positions.resize(3 * refined.count());
-    out.triangles.resize(3 * mesh.triangles.size() * per_triangle);
-    out.triangle_materials.resize(mesh.triangles.size() * per_triangle);
+    std::vector<float>& positions = out.positions.own();
+    std::vector<rt_u32>&triangles = out.triangles.own(), &triangle_materials = out.triangle_materials.own();
+    positions.resize(3 * refined.count());
+    triangles.resize(3 * mesh.triangles.size() * per_triangle);
+    triangle_materials.resize(mesh.triangles.size() * per_triangle);
     const auto put = [&](size_t triangle, unsigned i, unsigned j) {
         const double weights[3] = {double(n - i - j) / n, double(i) / n, double(j) / n};
         const Vec3 p = place(mesh, mesh.triangles[triangle], weights, size, finest);
-        for (int k = 0; k < 3; ++k) out.positions[3 * refined.index(triangle, i, j) + k] = static_cast<float>(p[k]);
+        for (int k = 0; k < 3; ++k) positions[3 * refined.index(triangle, i, j) + k] = static_cast<float>(p[k]);
     };
     parallel_for(static_cast<uint32_t>(mesh.triangles.size()), [&](uint32_t t) {
         const std::array<unsigned, 2> corners[] = {{0, 0}, {n, 0}, {0, n}};
@@ -205,7 +207,7 @@ Scene subdivide(const Scene& scene, unsigned n) {
                 if (c == 2) put(t, 0, n - s);
             }
         }
-        rt_u32* at = &out.triangles[3 * t * per_triangle];
+        rt_u32* at = &triangles[3 * t * per_triangle];
         const auto corner = [&](unsigned i, unsigned j) { *at++ = static_cast<rt_u32>(refined.index(t, i, j)); };
         for (unsigned j = 0; j < n; ++j)
             for (unsigned i = 0; i + j < n; ++i) {
@@ -213,7 +215,7 @@ Scene subdivide(const Scene& scene, unsigned n) {
                 corner(i, j), corner(i + 1, j), corner(i, j + 1);
                 if (i + j + 1 < n) corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1);
             }
-        std::fill_n(out.triangle_materials.begin() + t * per_triangle, per_triangle, mesh.materials[t]);
+        std::fill_n(triangle_materials.begin() + t * per_triangle, per_triangle, mesh.materials[t]);
     });
     Mesh whole;
     whole.name = "subdivided";

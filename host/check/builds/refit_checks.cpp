@@ -19,7 +19,8 @@ constexpr double kRefitLimit_s = 20;
 // Calls move(p) for each vertex, in the space of its mesh.
 template <class Move>
 Scene each_vertex(Scene scene, Move&& move) {
-    for (size_t v = 0; v + 2 < scene.positions.size(); v += 3) move(&scene.positions[v]);
+    std::vector<float>& positions = scene.positions.own();
+    for (size_t v = 0; v + 2 < positions.size(); v += 3) move(&positions[v]);
     return scene;
 }
 
@@ -45,10 +46,11 @@ Scene twisted(Scene scene) {
 Scene scattered(Scene scene) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> any(-40, 40);
+    std::vector<float>& positions = scene.positions.own();
     for (size_t t = 0; t + 2 < scene.triangles.size(); t += 3) {
         const float by[3] = {any(random), any(random), any(random)};
         for (int c = 0; c < 3; ++c)
-            for (int k = 0; k < 3; ++k) scene.positions[3 * size_t(scene.triangles[t + c]) + k] += by[k];
+            for (int k = 0; k < 3; ++k) positions[3 * size_t(scene.triangles[t + c]) + k] += by[k];
     }
     for (Instance& instance : scene.instances)
         for (int k = 0; k < 3; ++k) instance.world_from_object[4 * k + 3] += any(random);

@@ -23,6 +23,11 @@ struct FileContent {
     std::vector<Light> lights, included_lights;
     std::vector<Camera> cameras, included_cameras;
 
+    // Numbers count this file's instances, its lights before included ones, and materials from first_material on (0 is the
+    // default one).
+    std::vector<SceneEdit> edits;
+    rt_u32 first_material = 1;
+
     std::vector<Node> nodes;  // a node without parent has RT_NONE there
     std::vector<Clip> clips;
     std::vector<rt_layer> layers;
@@ -33,6 +38,12 @@ struct FileContent {
     bool deforms = false;  // one of its meshes has morphs or vertex frames
     bool moves() const { return !clips.empty() || !skins.empty() || deforms; }
 };
+
+// What the key of an edit changes, and the number in it: "instance.3.scale", "light.0".
+enum class EditOf { nothing, instance, material, light };
+EditOf edit_number(const std::string& key, rt_u32& number);
+// The key with another number.
+std::string with_number(const std::string& key, rt_u32 number);
 
 // How a file is placed in another file.
 struct Placement {

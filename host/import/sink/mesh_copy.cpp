@@ -105,11 +105,12 @@ bool copy_all_triangles(const rt_mesh& m, rt_u32 first_vertex, const FaceMateria
     for (uint64_t i = 0; i < m.index_count; ++i) highest = std::max(highest, m.indices[i]);
     if (highest >= m.vertex_count) return false;
     const size_t before = scene.triangles.size();
-    scene.triangles.resize(before + m.index_count);
-    for (uint64_t i = 0; i < m.index_count; ++i) scene.triangles[before + i] = m.indices[i] + first_vertex;
-    scene.triangle_materials.resize(scene.triangles.size() / 3, materials.of(0));
+    std::vector<rt_u32>&triangles = scene.triangles.own(), &triangle_materials = scene.triangle_materials.own();
+    triangles.resize(before + m.index_count);
+    for (uint64_t i = 0; i < m.index_count; ++i) triangles[before + i] = m.indices[i] + first_vertex;
+    triangle_materials.resize(triangles.size() / 3, materials.of(0));
     for (uint64_t i = 0; !materials.same_for_all() && i < m.face_count; ++i) {
-        scene.triangle_materials[before / 3 + i] = materials.of(i);
+        triangle_materials[before / 3 + i] = materials.of(i);
     }
     return true;
 }
@@ -117,7 +118,7 @@ bool copy_all_triangles(const rt_mesh& m, rt_u32 first_vertex, const FaceMateria
 std::string copy_faces(const rt_mesh& m, rt_u32 first_vertex, const std::vector<bool>& unusable, const FaceMaterials& materials,
                        Scene& scene, Triangulator& triangulator, FaceCount& faces) {
     const float* positions = scene.positions.data() + 3 * size_t(first_vertex);
-    std::vector<rt_u32>& out = scene.triangles;
+    std::vector<rt_u32>&out = scene.triangles.own(), &triangle_materials = scene.triangle_materials.own();
     const rt_u32* corners = m.indices;
     for (uint64_t face = 0; face < m.face_count; ++face) {
         const rt_u32 size = m.face_sizes ? m.face_sizes[face] : 3;
@@ -137,7 +138,7 @@ std::string copy_faces(const rt_mesh& m, rt_u32 first_vertex, const std::vector<
         triangulator.add(positions, begin, size, out);
         if (out.size() / 3 > RT_REF_INDEX_MAX) return kTooManyTriangles;
         for (size_t i = before; i < out.size(); ++i) out[i] += first_vertex;
-        scene.triangle_materials.resize(out.size() / 3, materials.of(face));
+        triangle_materials.resize(out.size() / 3, materials.of(face));
         ++scene.meshes.back().polygon_count;
     }
     return {};
@@ -156,8 +157,9 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
     if (uint64_t(first_vertex) + m.vertex_count > kMaxVertices) return "more than 4294967294 vertices in all";
     if (scene.triangle_count() + (m.face_sizes ? 0 : m.face_count) > RT_REF_INDEX_MAX) return kTooManyTriangles;
 
-    scene.positions.resize(3 * (size_t(first_vertex) + m.vertex_count));
-    float* positions = scene.positions.data() + 3 * size_t(first_vertex);
+    std::vector<float>& all_positions = scene.positions.own();
+    all_positions.resize(3 * (size_t(first_vertex) + m.vertex_count));
+    float* positions = all_positions.data() + 3 * size_t(first_vertex);
     std::vector<bool> unusable;
     if (m.vertex_count > 0 && !copy_strided(m.positions, m.position_stride, m.vertex_count, 3, positions)) {
         unusable.resize(m.vertex_count, false);
@@ -166,8 +168,8 @@ std::string copy_mesh(const rt_mesh& m, const std::vector<rt_u32>& known, Scene&
             if (unusable[i]) std::fill(positions, positions + 3, 0.f);
         }
     }
-    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, scene.positions.capacity(), scene.normals);
-    copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, scene.positions.capacity(), scene.uvs);
+    copy_attribute(m.normals, m.normal_stride, first_vertex, m.vertex_count, 3, all_positions.capacity(), scene.normals.own());
+    copy_attribute(m.uvs, m.uv_stride, first_vertex, m.vertex_count, 2, all_positions.capacity(), scene.uvs.own());
 
     Mesh mesh;
     mesh.name = m.name ? m.name : "";

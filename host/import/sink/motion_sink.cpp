@@ -39,8 +39,8 @@ rt_u32 mesh_of(rt_u32 id, const std::vector<rt_u32>& meshes, const char* what) {
 }
 
 template <class T>
-uint64_t append(std::vector<T>& to, const T* from, uint64_t count) {
-    to.insert(to.end(), from, from + count);
+uint64_t append(SharedArray<T>& to, const T* from, uint64_t count) {
+    to.append(from, from + count);
     return to.size() - count;
 }
 
@@ -200,8 +200,8 @@ rt_u32 MotionSink::morph(const rt_morph_desc& d, std::string name, const std::ve
         target.weight = from.weight;
         target.count = from.count;
         target.first = motion.morph_vertices.size();
-        for (uint64_t k = 0; k < from.count; ++k)
-            motion.morph_vertices.push_back(from.vertices ? from.vertices[k] : static_cast<rt_u32>(k));
+        std::vector<rt_u32>& vertices = motion.morph_vertices.own();
+        for (uint64_t k = 0; k < from.count; ++k) vertices.push_back(from.vertices ? from.vertices[k] : static_cast<rt_u32>(k));
         append(motion.morph_positions, from.positions, 3 * from.count);
         target.has_normals = from.normals ? 1 : 0;
         if (from.normals) target.first_normal = append(motion.morph_normals, from.normals, 3 * from.count);
@@ -239,20 +239,21 @@ void MotionSink::skin(const rt_skin_desc& d, const std::vector<rt_u32>& meshes) 
     }
     Motion& motion = scene_.motion;
     const rt_u32 vertex_count = scene_.meshes[skin.mesh].vertex_count;
-    skin.first_weight = motion.weights.size();
+    std::vector<rt_weight>& weights = motion.weights.own();
+    skin.first_weight = weights.size();
     for (uint64_t i = 0; i < d.weight_count; ++i) {
         const rt_weight& w = d.weights[i];
         demand(w.bone < d.bone_count,
                "skin: bone " + std::to_string(w.bone) + " of " + std::to_string(d.bone_count) + " in a weight");
         if (w.vertex < vertex_count && is_usable(w.weight) && w.weight >= 0) {
-            if (w.weight > 0) motion.weights.push_back(w);
+            if (w.weight > 0) weights.push_back(w);
         } else {
             ++lost_weights_;
         }
     }
-    const auto first = motion.weights.begin() + static_cast<std::ptrdiff_t>(skin.first_weight);
-    std::stable_sort(first, motion.weights.end(), [](const rt_weight& a, const rt_weight& b) { return a.vertex < b.vertex; });
-    skin.weight_count = motion.weights.size() - skin.first_weight;
+    const auto first = weights.begin() + static_cast<std::ptrdiff_t>(skin.first_weight);
+    std::stable_sort(first, weights.end(), [](const rt_weight& a, const rt_weight& b) { return a.vertex < b.vertex; });
+    skin.weight_count = weights.size() - skin.first_weight;
     if (d.method == RT_SKIN_BLENDED) {
         skin.has_shares = 1;
         skin.first_share = motion.shares.size();

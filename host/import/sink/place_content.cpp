@@ -51,6 +51,8 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
         }
     };
     size_t lost = 0;
+    std::vector<rt_u32> numbers;  // of the instances in `into`
+    const size_t lights_before = into.lights.size();
     for (const Instance& own : content.instances) {
         Instance instance = own;
         instance.name = name_of(own.name, content.instances.size() == 1);
@@ -59,6 +61,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
         if (own.node == RT_NONE) instance.node_from_object = own.world_from_object;
         hang(instance.node);
         if (instance.node != RT_NONE) instance.root = own.root == RT_NONE ? root : own.root + first_node;
+        numbers.push_back(are_usable(instance.world_from_object) ? static_cast<rt_u32>(into.instances.size()) : RT_NONE);
         if (are_usable(instance.world_from_object)) {
             into.instances.push_back(std::move(instance));
         } else {
@@ -153,6 +156,7 @@ void SceneBuilder::place(const std::string& from, const FileContent& content, co
             if (make_sound(camera)) (is_root ? into.cameras : into.included_cameras).push_back(std::move(camera));
         }
     }
+    place_edits(from, content, numbers, lights_before, into);
     if (lost > 0) {
         warn(from, std::to_string(lost) + " objects are left out: their transform is not finite, too large or without volume");
     }

@@ -129,6 +129,7 @@ const FileContent& SceneBuilder::content_of(const std::string& path, const std::
     if (observer_) observer_->running(path, plugin->id);
     open_.push_back(canonical);
     auto content = std::make_unique<FileContent>();
+    content->first_material = static_cast<rt_u32>(scene_.materials.size());
     reserve_arrays(path, scene_);
     HostServices services(path, progress_);
     SceneSink sink(*this, services, path, *content);
@@ -247,7 +248,8 @@ rt_u32 SceneBuilder::texture_of_file(const std::string& from, const std::string&
     std::string bytes;
     rt_texture texture{};
     std::string why = try_read_file(found.path, kMaxTexelBytes, bytes);
-    if (why.empty()) why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels, texture);
+    if (why.empty())
+        why = decode_texture(reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size(), scene_.texels.own(), texture);
     const rt_u32 id = why.empty() ? static_cast<rt_u32>(scene_.textures.size()) : RT_NONE;
     if (why.empty()) scene_.textures.push_back(texture);
     textures_[found.path] = id;
@@ -283,6 +285,9 @@ Scene SceneBuilder::take() {
     scene_.shapes = std::move(world_.shapes);
     scene_.lights = std::move(world_.lights);
     scene_.cameras = std::move(world_.cameras);
+    scene_.edits = std::move(world_.edits);
+    for (const auto& [path, content] : files_) scene_.sources.push_back(path);
+    for (const auto& [path, texture] : textures_) scene_.sources.push_back(path);
     take_motion();
     bake_flattened_instances(scene_);
     for (const FileContent::PolygonCorners& polygon : world_.polygons) {

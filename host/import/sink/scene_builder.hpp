@@ -55,6 +55,8 @@ class SceneBuilder {
     const FileContent& content_of(const std::string& path, const std::string& canonical);
     const FileContent& content_or_sequence(const std::string& path, const std::string& file, const std::string& canonical);
     void place(const std::string& from, const FileContent& content, const Placement& placement, FileContent& into);
+    void place_edits(const std::string& from, const FileContent& content, const std::vector<rt_u32>& instances, size_t lights,
+                     FileContent& into);
     void take_motion();
 
     const PluginRegistry& plugins_;

@@ -145,6 +145,9 @@ SceneSink::SceneSink(SceneBuilder& builder, HostServices& services, std::string 
         return guarded(ctx, kFailed, [&](SceneSink& s) { return s.primitive(taken(d, "rt_primitive_desc")); });
     };
     offer_motion();
+    sink_.edit = [](void* ctx, const char* key, const char* value, const char* where) {
+        return guarded(ctx, int32_t(RT_FAILED), [&](SceneSink& s) { return s.edit(key, value, where); });
+    };
 }
 
 void SceneSink::offer_motion() {
@@ -203,8 +206,9 @@ rt_u32 SceneSink::texture(const rt_texture_desc& d) {
     rt_u32 index = RT_NONE;
     if (d.bytes) {
         rt_texture texture{};
-        const std::string why = d.height == 0 ? decode_texture(d.bytes, d.byte_count, scene.texels, texture)
-                                              : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene.texels, texture);
+        const std::string why = d.height == 0
+                                    ? decode_texture(d.bytes, d.byte_count, scene.texels.own(), texture)
+                                    : copy_texture(d.bytes, d.byte_count, d.width, d.height, scene.texels.own(), texture);
         if (!why.empty()) {
             builder_.warn(path_, "an embedded texture is left out: " + why);
             return RT_NONE;
@@ -409,6 +413,18 @@ rt_u32 SceneSink::primitive(const rt_primitive_desc& d) {
     add_shape_parts(*plugin->primitive, d, speaker, builder_.progress(), builder_.scene(), shape);
     content_.shapes.push_back(shape);
     return static_cast<rt_u32>(content_.shapes.size() - 1);
+}
+
+int32_t SceneSink::edit(const char* key, const char* value, const char* where) {
+    const SceneEdit edit = {clean_name(key), clean_name(value), clean_name(where)};
+    rt_u32 number = 0;
+    if (edit_number(edit.key, number) == EditOf::nothing) {
+        fail((edit.where.empty() ? "" : edit.where + ": ") + "no edit `" + edit.key +
+             "`; there are instance.N, material.N, light.N");
+        return RT_FAILED;
+    }
+    content_.edits.push_back(edit);
+    return RT_OK;
 }
 
 std::string SceneSink::finish() {

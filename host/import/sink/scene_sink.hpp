@@ -40,6 +40,7 @@ class SceneSink {
     void info(const rt_scene_info& info);
     int32_t load(const rt_load& load);
     rt_u32 primitive(const rt_primitive_desc& desc);
+    int32_t edit(const char* key, const char* value, const char* where);
 
     rt_u32 fail(const std::string& why);
     // Finds the scene material of an id. If the plugin never received this id, records an error and returns false.

@@ -245,6 +245,7 @@ void add_shapes(const Scene& scene, rt_u32 run, rt_u32& next_prim, uint64_t& at,
 // moves need not be, so that its tree can move without the world's.
 struct Placement {
     std::vector<Affine> inverse;  // of each instance
+    std::vector<bool> built;      // for each instance: it is in the structure. One that is apart may be hidden there
     std::vector<bool> flat;       // for each instance: it is flattened
     std::vector<rt_u32> group_of_mesh;
     rt_u32 group_count = 1;
@@ -256,6 +257,7 @@ Placement place(const Scene& scene) {
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
     out.inverse.resize(scene.instances.size());
+    out.built.resize(scene.instances.size());
     out.flat.resize(scene.instances.size());
     out.group_of_mesh.assign(scene.meshes.size(), 0);
     out.world_prims = scene.spheres.size() + scene.polygons.size();
@@ -263,8 +265,9 @@ Placement place(const Scene& scene) {
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const rt_u32 count = scene.meshes[instance.mesh].triangle_count;
-        if (!instance.visible) continue;
         const bool singular = !invert(instance.world_from_object, out.inverse[i]);
+        out.built[i] = instance.visible || (instance.apart && !singular && count > 0);
+        if (!out.built[i]) continue;
         const bool together = uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !instance.apart;
         out.flat[i] = together || singular || count == 0;
         if (out.flat[i]) {
@@ -384,7 +387,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& instance = scene.instances[i];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        if (!instance.visible) {
+        if (!placement.built[i]) {
             // It only keeps its range of primitive numbers.
         } else if (flat[i]) {
             const bool identity = instance.world_from_object == kIdentity;
@@ -402,6 +405,7 @@ BuildScene make_build_scene(const Scene& scene, Progress& progress) {
             std::memcpy(placed.object_from_world, inverse[i].data(), sizeof placed.object_from_world);
             placed.first_prim = next_prim;
             placed.material = instance.material;
+            placed.hidden = instance.visible ? 0 : 1;
             const rt_u32 group = group_of_mesh[instance.mesh], index = static_cast<rt_u32>(out.instances.size());
             if (group_boxes[group].empty) group_boxes[group] = bounds_of(out, group);
             rt_prim prim = box_of_instance(group_boxes[group], instance.world_from_object, inverse[i], index);

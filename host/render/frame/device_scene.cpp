@@ -129,10 +129,10 @@ DeviceScene::DeviceScene(Device& device, std::shared_ptr<const Scene> scene, std
         content("planes", build.planes),
         content("materials", materials_),
         content("triangles", attributes_),
-        content("normals", moved ? normals_ : scene_->normals),
-        content("texture coordinates", scene_->uvs),
+        content("normals", moved ? normals_ : scene_->normals.all()),
+        content("texture coordinates", scene_->uvs.all()),
         content("texture table", scene_->textures),
-        content("textures", scene_->texels),
+        content("textures", scene_->texels.all()),
     };
     const size_t before_lights = contents.size();
     if (!build.shapes.empty()) {

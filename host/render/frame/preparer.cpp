@@ -165,7 +165,7 @@ std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<c
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                   Progress& progress, std::shared_ptr<const AccelData> built,
-                                                  std::shared_ptr<const DeviceScene> moved) {
+                                                  const MovedBuffers& moved) {
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!programs_) throw Error(Exit::no_device, "the device was closed and could not be opened again: choose a device again");
     auto next = std::make_shared<Prepared>();
@@ -175,9 +175,9 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
     next->layout = make_layout(next->settings, device_->info().cpu);
     try {
         next->accel = built ? std::move(built) : build_or_last(scene, next->settings, progress);
-        next->is_moved = moved != nullptr;
-        if (moved)
-            next->on_device = std::move(moved);
+        next->is_moved = moved.by_device;
+        if (moved.buffers)
+            next->on_device = moved.buffers;
         else if (last_ && !last_->is_moved && last_->scene == scene && last_->accel == next->accel)
             next->on_device = last_->on_device;
         if (!next->on_device) {

@@ -16,6 +16,12 @@ namespace clarity {
 
 class ProgramCache;
 
+// The buffers of a structure on a device, made by others than the Preparer.
+struct MovedBuffers {
+    std::shared_ptr<const DeviceScene> buffers;
+    bool by_device = false;  // the device has moved the structure: its nodes and leaves on the host are out of date
+};
+
 // Makes Prepared objects for one device. Thread-safe; each object runs one prepare() at a time.
 class Preparer {
  public:
@@ -23,12 +29,11 @@ class Preparer {
     ~Preparer();
     // Builds, uploads and compiles what has changed since the last call, and returns the result.
     // built: the result of build() for these settings, possibly made for another device. Without it, prepare() builds.
-    // moved: its buffers on this device, if they are there already.
+    // moved: its buffers, if they are on this device already.
     // Throws Error(failed) if the build or the upload fails, Error(kernel_build_failed) with the compiler's log in details(),
     // Error(usage) for an unknown structure, and Cancelled. The previous Prepared stays valid.
     std::shared_ptr<const Prepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings, Progress& progress,
-                                            std::shared_ptr<const AccelData> built = nullptr,
-                                            std::shared_ptr<const DeviceScene> moved = nullptr);
+                                            std::shared_ptr<const AccelData> built = nullptr, const MovedBuffers& moved = {});
     // Whether a structure is of the kind that these settings ask for, so that it may be passed as `built`.
     bool asks_for(const AccelData& accel, const Settings& settings) const;
     // Builds the structure alone. This needs no device.

@@ -16,6 +16,7 @@ namespace clarity {
 // Where an instance is, as kernels read it: rt_placement of move.cl.
 struct DevicePlacement {
     float world_from_object[12], object_from_world[12];
+    uint32_t hidden, pad[3];
 };
 
 // Buffers that all structures of a scene share while it moves. They hold the newest pose.

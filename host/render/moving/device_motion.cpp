@@ -74,6 +74,7 @@ void DeviceMotion::start() {
     for (size_t i = 0; i < placements_.size(); ++i) {
         std::copy_n(build.world_from_object[i].begin(), 12, placements_[i].world_from_object);
         std::copy_n(build.instances[i].object_from_world, 12, placements_[i].object_from_world);
+        placements_[i].hidden = build.instances[i].hidden;
     }
     pose_.placements = filled(placements_.data(), placements_.size() * sizeof(DevicePlacement));
     pose_.group_of_instance = filled(build.group_of_instance.data(), build.group_of_instance.size() * sizeof(rt_u32));
@@ -120,9 +121,13 @@ std::string DeviceMotion::place(const Pose& pose) {
     for (size_t k = 0; k < moved_.numbers.size(); ++k) {
         const rt_u32 i = moved_.numbers[k], number = build.number_of_instance[i];
         instances_[i].world_from_object = pose.instances[i].world_from_object;
+        instances_[i].visible = pose.instances[i].visible;
         if (number == RT_NONE) continue;
-        std::copy_n(instances_[i].world_from_object.begin(), 12, placements_[number].world_from_object);
-        std::copy_n(moved_.inverses[k].begin(), 12, placements_[number].object_from_world);
+        placements_[number].hidden = instances_[i].visible ? 0 : 1;
+        if (instances_[i].visible) {  // else its box stays where it was
+            std::copy_n(instances_[i].world_from_object.begin(), 12, placements_[number].world_from_object);
+            std::copy_n(moved_.inverses[k].begin(), 12, placements_[number].object_from_world);
+        }
         first = std::min(first, number);
         last = std::max(last, number);
     }

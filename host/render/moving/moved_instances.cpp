@@ -1,5 +1,7 @@
 #include "render/moving/moved_instances.hpp"
 
+#include <algorithm>
+
 namespace clarity {
 namespace {
 
@@ -23,20 +25,29 @@ void find_moved_instances(const Scene& scene, const BuildScene& build, const std
     for (size_t i = 0; i < now.size(); ++i) {
         const PosedInstance& next = pose.instances[i];
         const Instance& instance = scene.instances[i];
-        if (next.visible != now[i].visible)
+        const bool alone = build.number_of_instance[i] != RT_NONE;
+        if (next.visible != now[i].visible && !alone)
             moved.why = name_of(instance, i) + (next.visible ? " appears" : " is hidden");
         else if (next.mesh != now[i].mesh)
             moved.why = name_of(instance, i) + " has another mesh";
-        else if (next.world_from_object == now[i].world_from_object)
+        else if (next.world_from_object == now[i].world_from_object && next.visible == now[i].visible)
             continue;
         else if (next.visible && !invert(next.world_from_object, inverse))
             moved.why = name_of(instance, i) + " is scaled to nothing";
-        else if (next.visible && build.number_of_instance[i] == RT_NONE && mirrors(next.world_from_object))
+        else if (next.visible && !alone && mirrors(next.world_from_object))
             moved.why = name_of(instance, i) + " is mirrored";
         if (!moved.why.empty()) return;
         moved.numbers.push_back(static_cast<rt_u32>(i));
         moved.inverses.push_back(inverse);
     }
+}
+
+bool moves_flattened_mesh(const Pose& pose, const Scene& scene, const BuildScene& build) {
+    return std::any_of(build.flattened.begin(), build.flattened.end(), [&](uint32_t i) {
+        const auto is_mesh = [&](const PosedMesh& mesh) { return mesh.mesh == scene.instances[i].mesh; };
+        return pose.instances[i].world_from_object != scene.instances[i].world_from_object ||
+               std::any_of(pose.meshes.begin(), pose.meshes.end(), is_mesh);
+    });
 }
 
 std::string wrong_vertices(const Scene& scene, const Pose& pose) {

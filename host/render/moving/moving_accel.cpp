@@ -89,12 +89,14 @@ void MovingAccel::start(Progress& progress) {
     flat_instance_.assign(scene_->meshes.size(), RT_NONE);
     object_from_world_.assign(build.instances.size(), kIdentity);
     world_from_object_ = build.world_from_object;
+    hidden_.assign(build.instances.size(), 0);
     for (size_t i = 0; i < scene_->instances.size(); ++i) {
         const Instance& instance = scene_->instances[i];
         instances_.push_back({instance.mesh, instance.world_from_object, instance.visible});
         const rt_u32 number = build.number_of_instance[i];
+        if (number != RT_NONE) std::copy_n(build.instances[number].object_from_world, 12, object_from_world_[number].begin());
         if (number != RT_NONE)
-            std::copy_n(build.instances[number].object_from_world, 12, object_from_world_[number].begin());
+            hidden_[number] = build.instances[number].hidden;
         else if (instance.visible)
             flat_instance_[instance.mesh] = static_cast<rt_u32>(i);
     }
@@ -155,10 +157,14 @@ std::string MovingAccel::place(const Pose& pose) {
     for (const PosedMesh& mesh : pose.meshes) is_posed_[mesh.mesh] = 1;
     for (size_t k = 0; k < moved_.numbers.size(); ++k) {
         const rt_u32 i = moved_.numbers[k], mesh = instances_[i].mesh, number = build.number_of_instance[i];
+        const bool was_visible = instances_[i].visible, visible = pose.instances[i].visible;
         instances_[i].world_from_object = pose.instances[i].world_from_object;
-        if (!instances_[i].visible || scene_->meshes[mesh].triangle_count == 0) continue;
+        instances_[i].visible = visible;
+        if ((!visible && !was_visible) || scene_->meshes[mesh].triangle_count == 0) continue;
         version_[0] = moves_ + 1;
         if (number != RT_NONE) {
+            hidden_[number] = visible ? 0 : 1;
+            if (!visible) continue;  // its box stays where it was
             world_from_object_[number] = instances_[i].world_from_object;
             object_from_world_[number] = moved_.inverses[k];
         } else if (!is_posed_[mesh]) {
@@ -225,6 +231,7 @@ void MovingAccel::place_instances(AccelData& accel) {
             scene.world_from_object[i] = world;
             std::copy(object.begin(), object.end(), scene.instances[i].object_from_world);
             std::copy(object.begin(), object.end(), accel.instances[i].object_from_world);
+            scene.instances[i].hidden = accel.instances[i].hidden = hidden_[i];
         }
     });
 }

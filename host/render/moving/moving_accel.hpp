@@ -94,6 +94,7 @@ class MovingAccel {
     std::vector<PosedInstance> instances_;   // of the Scene
     std::vector<Affine> object_from_world_;  // of the structure's instances
     std::vector<Affine> world_from_object_;
+    std::vector<rt_u32> hidden_;            // rt_instance::hidden of each
     UninitializedVector<float> positions_;  // in the space of their groups, then one more
     std::vector<Bounds> boxes_;             // of the groups
     std::vector<rt_u32> flat_instance_;     // for each mesh: the instance that flattens it, or RT_NONE

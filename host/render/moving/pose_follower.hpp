@@ -30,9 +30,13 @@ struct PoseUpdate {
 
 // What the poses belong to: poses of another scene or clip need a build.
 struct PosedFrom {
-    std::shared_ptr<const Scene> scene;  // at rest
+    std::shared_ptr<const Scene> scene;  // as imported
     std::string clip;
-    bool operator==(const PosedFrom& b) const { return scene == b.scene && clip == b.clip; }
+    bool at_rest = false;         // no clip plays
+    std::vector<rt_u32> apart{};  // instances that a user moves, ascending
+    bool operator==(const PosedFrom& b) const {
+        return scene == b.scene && clip == b.clip && at_rest == b.at_rest && apart == b.apart;
+    }
 };
 
 // Used on one thread at a time.

@@ -39,6 +39,7 @@ class DeviceMover : public PoseMover {
         }
         MovedStructure moved;
         moved.accel = motions_.front().second->accel();
+        moved.by_devices = true;
         for (size_t i = 0; i < parts.size(); ++i) {
             const Device& device = *motions_[i].first;
             wrap_cl_errors(device, "moving the scene", [&] {

@@ -17,13 +17,14 @@ namespace clarity {
 // A structure in a pose.
 struct MovedStructure {
     std::shared_ptr<const AccelData> accel;  // nullptr: it must be built, for the reason in `why`
-    // Its buffers, where devices moved it. Then `accel` is the structure as it was built, whose nodes and leaves are out of
-    // date.
+    // Its buffers, where they are on devices already.
     std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>> on_devices;
     std::string why;
     double worst_cost_ratio = 1;  // expected cost of a ray by that after the build, of the group that has suffered most
     uint64_t refitted = 0;        // primitives
     double ms = 0;
+    // Devices moved it: `accel` is the structure as it was built, whose nodes and leaves are out of date.
+    bool by_devices = false;
 };
 
 class PoseMover {

@@ -25,15 +25,6 @@ bool same_camera(const Camera& a, const Camera& b) {
     return a.eye == b.eye && a.target == b.target && a.up == b.up && a.fov_y_rad == b.fov_y_rad;
 }
 
-// Whether vertices of a mesh that the structure holds moved into the world's space would move.
-bool moves_flattened_mesh(const Pose& pose, const Scene& scene, const BuildScene& build) {
-    return std::any_of(build.flattened.begin(), build.flattened.end(), [&](uint32_t i) {
-        const auto is_mesh = [&](const PosedMesh& mesh) { return mesh.mesh == scene.instances[i].mesh; };
-        return pose.instances[i].world_from_object != scene.instances[i].world_from_object ||
-               std::any_of(pose.meshes.begin(), pose.meshes.end(), is_mesh);
-    });
-}
-
 }  // namespace
 
 MotionBlur::MotionBlur(Source source, const Shutter& shutter, std::shared_ptr<const MultiPrepared> prepared)
@@ -41,10 +32,7 @@ MotionBlur::MotionBlur(Source source, const Shutter& shutter, std::shared_ptr<co
 MotionBlur::~MotionBlur() = default;
 
 Pose MotionBlur::pose_at(double time_s) const {
-    Pose pose = evaluate(*source_.rest, source_.clip, time_s, source_.read);
-    for (const rt_u32 i : source_.hidden)
-        if (i < pose.instances.size()) pose.instances[i].visible = false;
-    return pose;
+    return evaluate(*source_.rest, source_.clip, time_s, source_.read);
 }
 
 const MotionBlur::Sample& MotionBlur::at(unsigned sample, const View& view, Progress& progress) {

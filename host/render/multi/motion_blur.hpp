@@ -30,14 +30,13 @@ class MotionBlur {
  public:
     // What moves.
     struct Source {
-        std::shared_ptr<const Scene> rest;  // with its motion
+        std::shared_ptr<const Scene> rest;  // with its motion, and with what the user did to its instances
         std::string clip;                   // a name; empty: the first one
-        std::vector<rt_u32> hidden;         // instances that the picture leaves out
         FrameVertices read;                 // for sequences of files
         // Prepares a scene from the ground up, for poses in which the structure cannot be refitted.
         std::function<std::shared_ptr<const MultiPrepared>(std::shared_ptr<const Scene>, Progress&)> prepare;
     };
-    // prepared: of the scene in its pose at shutter.time_s, without the hidden instances.
+    // prepared: of the scene in its pose at shutter.time_s.
     MotionBlur(Source source, const Shutter& shutter, std::shared_ptr<const MultiPrepared> prepared);
     ~MotionBlur();
 

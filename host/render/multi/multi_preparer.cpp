@@ -5,6 +5,8 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "render/frame/device_scene.hpp"
+#include "render/moving/moved_instances.hpp"
 #include "render/settings/accel_choice.hpp"
 
 namespace clarity {
@@ -12,10 +14,10 @@ namespace clarity {
 namespace {
 
 // The buffers of a structure on a device; nullptr: it has none there yet.
-std::shared_ptr<const DeviceScene> buffers_on(const std::shared_ptr<Device>& device, const MovedStructure& structure) {
+MovedBuffers buffers_on(const std::shared_ptr<Device>& device, const MovedStructure& structure) {
     for (const auto& [other, buffers] : structure.on_devices)
-        if (other == device) return buffers;
-    return nullptr;
+        if (other == device) return {buffers, structure.by_devices};
+    return {};
 }
 
 }  // namespace
@@ -64,6 +66,16 @@ const std::shared_ptr<const Prepared>* MultiPrepared::of(const std::shared_ptr<D
     for (const Part& part : parts)
         if (part.device == device) return &part.prepared;
     return nullptr;
+}
+
+std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>> MultiPrepared::moved_buffers(
+    const Pose& pose, const std::shared_ptr<const AccelData>& refitted, Progress& progress) const {
+    std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>> buffers;
+    if (moves_flattened_mesh(pose, *first()->scene, first()->accel->scene)) return buffers;
+    for (const Part& part : parts)
+        buffers.emplace_back(part.device, std::make_shared<DeviceScene>(*part.device, part.prepared->on_device, refitted,
+                                                                        pose.meshes, progress));
+    return buffers;
 }
 
 MultiPreparer::MultiPreparer(const PluginRegistry& plugins, const Devices& devices)

@@ -28,6 +28,10 @@ struct MultiPrepared {
     const std::shared_ptr<const Prepared>& first() const { return parts.front().prepared; }
     // Null if the device takes no part.
     const std::shared_ptr<const Prepared>* of(const std::shared_ptr<Device>& device) const;
+    // Buffers for a refit of its structure, in a pose of its scene: all that the pose does not move is shared. Empty if the
+    // pose moves vertices that the structure holds in the world's space.
+    std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>> moved_buffers(
+        const Pose& pose, const std::shared_ptr<const AccelData>& refitted, Progress& progress) const;
 };
 
 // Has the functions of Preparer, for one device or several. Used from one thread.

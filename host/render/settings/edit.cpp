@@ -12,6 +12,8 @@
 namespace clarity {
 namespace {
 
+constexpr float kMostShift = 1e15f, kLeastScale = 1e-6f;
+
 std::vector<std::string> split(const std::string& text, char at) {
     std::vector<std::string> parts(1);
     for (const char c : text)
@@ -78,6 +80,7 @@ void read_light(EditedView& edited, const std::string& key, const std::string& v
         lights.push_back(light);
     else
         lights[at] = light;
+    edited.lights_on[at] = true;
 }
 
 // The parts of a material that an edit may set, by name. `most` is the largest value allowed.
@@ -126,7 +129,38 @@ void read_material(const Scene& scene, EditedView& edited, const std::string& ke
     std::copy(n, n + part->count, part_of(edited.view.materials[at], *part));
 }
 
-void read_hidden(const Scene& scene, EditedView& edited, const std::string& value) {
+void read_shift(const Scene& scene, InstanceEdits& edits, const std::string& key, const std::string& value) {
+    const std::vector<std::string> path = split(key, '.');
+    rt_u32 at = 0;
+    if (path.size() != 3 || !read_number(path[1], at) ||
+        (path[2] != "translate" && path[2] != "rotate" && path[2] != "scale" && path[2] != "hidden"))
+        throw Error(Exit::usage,
+                    key + ": expected instance.N.PART with N from 0 and PART one of translate, rotate, scale, hidden");
+    if (at >= scene.instances.size())
+        throw Error(Exit::usage, key + ": the scene has " + std::to_string(scene.instances.size()) +
+                                     " instances, counted from 0; there is no " + std::to_string(at));
+    if (path[2] == "hidden") {
+        if (value != "0" && value != "1") refuse_value(key, value, "0 or 1");
+        return edits.hide(at, value == "1");
+    }
+    InstanceShift shift = edits.shift_of(at);
+    const bool scales = path[2] == "scale";
+    std::array<float, 3> n{};
+    if (scales && value.find(',') == std::string::npos) {
+        read_floats(key, value, n.data(), 1, "x,y,z or one number");
+        n[1] = n[2] = n[0];
+    } else {
+        read_floats(key, value, n.data(), 3, scales ? "x,y,z or one number" : "x,y,z");
+    }
+    for (const float x : n) {
+        if (!(std::fabs(x) <= kMostShift)) refuse_value(key, value, "numbers of at most 1e15");
+        if (scales && !(std::fabs(x) >= kLeastScale)) refuse_value(key, value, "factors other than 0");
+    }
+    (scales ? shift.scale : path[2] == "rotate" ? shift.degrees : shift.translate) = n;
+    edits.set_shift(at, shift);
+}
+
+void read_hidden(const Scene& scene, InstanceEdits& edits, const std::string& value) {
     std::vector<rt_u32> hidden;
     for (const std::string& range : split(value, ',')) {
         if (value.empty()) break;
@@ -142,7 +176,7 @@ void read_hidden(const Scene& scene, EditedView& edited, const std::string& valu
     }
     std::sort(hidden.begin(), hidden.end());
     hidden.erase(std::unique(hidden.begin(), hidden.end()), hidden.end());
-    edited.hidden = std::move(hidden);
+    edits.hidden = std::move(hidden);
 }
 
 std::string hidden_text(const std::vector<rt_u32>& hidden) {
@@ -166,11 +200,30 @@ std::string light_text(const rt_light& light) {
            numbers_text(light.color, 3);
 }
 
+// The words that turn `from` into `to`.
+void add_instance_words(const InstanceEdits& from, const InstanceEdits& to, std::vector<Word>& words) {
+    std::vector<rt_u32> moved;
+    for (const InstanceEdits* edits : {&from, &to})
+        for (const InstanceEdits::Moved& m : edits->moved) moved.push_back(m.instance);
+    std::sort(moved.begin(), moved.end());
+    moved.erase(std::unique(moved.begin(), moved.end()), moved.end());
+    for (const rt_u32 i : moved) {
+        const InstanceShift was = from.shift_of(i), is = to.shift_of(i);
+        const auto add = [&](const char* part, const std::array<float, 3>& a, const std::array<float, 3>& b) {
+            if (a != b) words.push_back({"instance." + std::to_string(i) + "." + part, numbers_text(b.data(), 3)});
+        };
+        add("translate", was.translate, is.translate);
+        add("rotate", was.degrees, is.degrees);
+        add("scale", was.scale, is.scale);
+    }
+    if (from.hidden != to.hidden) words.push_back({"hide", hidden_text(to.hidden)});
+}
+
 }  // namespace
 
 bool is_edit(const std::string& key) {
     return key == "camera" || key == "camera_path" || key == "background" || key == "ambient" || key == "hide" ||
-           begins(key, "light.") || begins(key, "material.");
+           begins(key, "light.") || begins(key, "material.") || begins(key, "instance.");
 }
 
 void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, const std::string& value) {
@@ -191,38 +244,43 @@ void apply_edit(const Scene& scene, EditedView& edited, const std::string& key, 
             if (n[k] < 0) refuse_value(key, value, "a colour: it is negative");
         std::copy(n, n + 3, (key == "ambient" ? view.ambient : view.background).begin());
     } else if (key == "hide") {
-        read_hidden(scene, edited, value);
+        read_hidden(scene, edited.instances, value);
+    } else if (begins(key, "instance.")) {
+        read_shift(scene, edited.instances, key, value);
     } else if (begins(key, "light.")) {
         read_light(edited, key, value);
     } else if (begins(key, "material.")) {
         read_material(scene, edited, key, value);
     } else {
         throw Error(Exit::usage, "no edit `" + key +
-                                     "`; there are camera, camera_path, background, ambient, light.N, material.N.PART, hide");
+                                     "`; there are camera, camera_path, background, ambient, light.N, material.N.PART, hide, "
+                                     "instance.N.PART");
     }
 }
 
-std::vector<Word> edits_between(const Scene& scene, const View& base, const EditedView& edited) {
+std::vector<Word> edits_between(const Scene& scene, const EditedView& from, const EditedView& edited) {
     std::vector<Word> words;
-    const View& view = edited.view;
+    const View &view = edited.view, &base = from.view;
     if (!edited.camera_path.empty()) words.push_back({"camera_path", path_text(edited.camera_path)});
     if (!edited.follows_path) words.push_back({"camera", camera_text(view.camera)});
     if (view.background != base.background) words.push_back({"background", numbers_text(view.background.data(), 3)});
     if (view.ambient != base.ambient) words.push_back({"ambient", numbers_text(view.ambient.data(), 3)});
     for (size_t i = 0; i < view.lights.size(); ++i) {
+        const bool was_off = i < from.lights_on.size() && !from.lights_on[i],
+                   off = i < edited.lights_on.size() && !edited.lights_on[i];
         const bool known = i < base.lights.size() && std::memcmp(&view.lights[i], &base.lights[i], sizeof(rt_light)) == 0;
-        if (!known) words.push_back({"light." + std::to_string(i), light_text(view.lights[i])});
-        if (i < edited.lights_on.size() && !edited.lights_on[i]) words.push_back({"light." + std::to_string(i), "off"});
+        if (!known || (was_off && !off)) words.push_back({"light." + std::to_string(i), light_text(view.lights[i])});
+        if (off && !(known && was_off)) words.push_back({"light." + std::to_string(i), "off"});
     }
     for (size_t i = view.lights.size(); i < base.lights.size(); ++i) words.push_back({"light." + std::to_string(i), "off"});
     for (size_t i = 0; i < view.materials.size() && i < scene.materials.size(); ++i) {
-        rt_material was = scene.materials[i].values, is = view.materials[i];
+        rt_material was = i < base.materials.size() ? base.materials[i] : scene.materials[i].values, is = view.materials[i];
         for (const MaterialPart& part : kMaterialParts)
             if (!std::equal(part_of(is, part), part_of(is, part) + part.count, part_of(was, part)))
                 words.push_back(
                     {"material." + std::to_string(i) + "." + part.name, numbers_text(part_of(is, part), part.count)});
     }
-    if (!edited.hidden.empty()) words.push_back({"hide", hidden_text(edited.hidden)});
+    add_instance_words(from.instances, edited.instances, words);
     return words;
 }
 
@@ -234,11 +292,42 @@ View visible_view(const EditedView& edited) {
     return view;
 }
 
-Scene without_instances(const Scene& scene, const std::vector<rt_u32>& hidden) {
-    Scene copy = scene;
-    for (const rt_u32 i : hidden)
-        if (i < copy.instances.size()) copy.instances[i].visible = false;
-    return copy;
+void apply_scene_edits(const Scene& scene, EditedView& edited) {
+    for (const SceneEdit& edit : scene.edits) {
+        try {
+            apply_edit(scene, edited, edit.key, edit.value);
+        } catch (const Error& e) {
+            throw Error(Exit::import_failed, edit.where + ": " + e.what());
+        }
+    }
+}
+
+Scene with_scene_edits(Scene scene) {
+    if (scene.edits.empty()) return scene;
+    EditedView edited;
+    for (const Light& light : scene.lights) edited.view.lights.push_back(light.values);
+    apply_scene_edits(scene, edited);
+    Scene result = with_edits(scene, edited.instances);
+    result.edits.clear();
+    for (size_t i = 0; i < edited.view.materials.size(); ++i) result.materials[i].values = edited.view.materials[i];
+    for (size_t i = 0; i < edited.view.lights.size(); ++i) {
+        if (i == result.lights.size()) result.lights.emplace_back();
+        result.lights[i].values = edited.view.lights[i];
+        const bool off = i < edited.lights_on.size() && !edited.lights_on[i];
+        for (float& c : result.lights[i].values.color) c = off ? 0 : c;
+    }
+    return result;
+}
+
+InstanceEdits instance_edits(const Scene& scene, const std::vector<Word>& edits) {
+    EditedView all;
+    for (const Light& light : scene.lights) all.view.lights.push_back(light.values);
+    apply_scene_edits(scene, all);
+    for (const Word& word : edits) {
+        if (word.key == "hide") read_hidden(scene, all.instances, word.value);
+        if (begins(word.key, "instance.")) read_shift(scene, all.instances, word.key, word.value);
+    }
+    return all.instances;
 }
 
 }  // namespace clarity

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "rt_plugin.h"
+#include "scene/shared_array.hpp"
 
 namespace clarity {
 
@@ -77,19 +78,19 @@ struct Motion {
     std::vector<Clip> clips;  // of each rig in the order of its file
     std::vector<rt_layer> layers;
     std::vector<Channel> channels;  // ordered by clip, layer, what they move, target and component
-    std::vector<double> key_times, key_values, key_handles;
-    std::vector<uint8_t> key_spans;  // one for each key
+    SharedArray<double> key_times, key_values, key_handles;
+    SharedArray<uint8_t> key_spans;  // one for each key
     std::vector<Skin> skins;         // of each mesh one at most
     std::vector<Bone> bones;
-    std::vector<rt_weight> weights;
-    std::vector<float> shares;
+    SharedArray<rt_weight> weights;
+    SharedArray<float> shares;
     std::vector<Morph> morphs;
     std::vector<MorphTarget> morph_targets;
-    std::vector<rt_u32> morph_vertices;  // within the mesh
-    std::vector<float> morph_positions, morph_normals;
+    SharedArray<rt_u32> morph_vertices;  // within the mesh
+    SharedArray<float> morph_positions, morph_normals;
     std::vector<VertexFrames> frames;  // of each mesh one at most
-    std::vector<double> frame_times;
-    std::vector<float> frame_positions;
+    SharedArray<double> frame_times;
+    SharedArray<float> frame_positions;
     std::vector<FileSequence> sequences;
     std::vector<rt_u32> sequence_numbers;
 

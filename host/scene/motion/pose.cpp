@@ -8,6 +8,7 @@
 #include "base/error.hpp"
 #include "scene/camera.hpp"
 #include "scene/flatten.hpp"
+#include "scene/instance_edit.hpp"
 #include "scene/motion/clip_values.hpp"
 #include "scene/motion/deform.hpp"
 #include "scene/motion/file_sequence.hpp"
@@ -36,10 +37,12 @@ std::vector<PosedInstance> pose_instances(const Scene& scene, const std::vector<
         if (instance.node != RT_NONE) {
             const PlacedNode& node = nodes[instance.node];
             posed.mesh = instance.moving_mesh;
-            posed.visible = node.visible;
+            posed.visible = node.visible && !instance.hidden;
             const bool skinned = root_of_skinned.count(posed.mesh) != 0;
             const Matrix root = instance.root == RT_NONE ? kIdentityMatrix : nodes[instance.root].world;
             posed.world_from_object = to_affine(skinned ? root : node.world * to_matrix(instance.node_from_object));
+            if (instance.shift != InstanceShift())
+                posed.world_from_object = shifted(instance.shift, instance.pivot, posed.world_from_object);
         }
         instances.push_back(posed);
     }
@@ -151,7 +154,7 @@ Scene posed(Scene scene, const Pose& pose) {
         instance.world_from_object = pose.instances[i].world_from_object;
         instance.visible = pose.instances[i].visible;
         instance.node = instance.root = RT_NONE;
-        instance.apart = moving[i];
+        instance.apart = instance.apart || moving[i];
     }
     result.cameras = pose.cameras;
     result.lights = pose.lights;
@@ -159,8 +162,8 @@ Scene posed(Scene scene, const Pose& pose) {
     for (Light& light : result.lights) light.node = RT_NONE;
     for (const PosedMesh& mesh : pose.meshes) {
         const auto first = 3 * static_cast<std::ptrdiff_t>(result.meshes[mesh.mesh].first_vertex);
-        std::copy(mesh.positions.begin(), mesh.positions.end(), result.positions.begin() + first);
-        std::copy(mesh.normals.begin(), mesh.normals.end(), result.normals.begin() + (mesh.normals.empty() ? 0 : first));
+        std::copy(mesh.positions.begin(), mesh.positions.end(), result.positions.own().begin() + first);
+        if (!mesh.normals.empty()) std::copy(mesh.normals.begin(), mesh.normals.end(), result.normals.own().begin() + first);
     }
     bake_flattened_instances(result);
     return result;

@@ -50,7 +50,7 @@ using FrameVertices = std::function<std::vector<float>(const std::string& file)>
 Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const FrameVertices& read = {});
 
 // The scene in a pose. Its arrays keep their order; meshes may follow where a transform flattens an instance. The result has no
-// motion, but moving_instances() are marked to be kept apart.
+// motion, but moving_instances() are marked to be kept apart, as are those that were before.
 Scene posed(Scene scene, const Pose& pose);
 
 }  // namespace clarity

@@ -9,7 +9,7 @@ namespace clarity {
 namespace {
 
 template <class T>
-bool all_finite(const std::vector<T>& values) {
+bool all_finite(const SharedArray<T>& values) {
     return std::all_of(values.begin(), values.end(), [](T x) { return std::isfinite(x); });
 }
 template <class Range>

@@ -66,6 +66,12 @@ struct Animation {
     size_t key_count() const { return numbers.size() / numbers_per_key(); }
 };
 
+// A change of what this file and the files that it loads hold: "instance.3.translate", "1,0,0".
+struct Edit {
+    std::string key, value;
+    Position position;
+};
+
 // A shape that a plugin makes.
 struct Shape {
     struct Values {
@@ -96,6 +102,7 @@ struct Document {
     std::vector<Load> loads;
     std::vector<Item> items;  // all geometry in the order of the file; this order numbers the primitives
     std::vector<Animation> animations;
+    std::vector<Edit> edits;
     Vec3 background{}, ambient{};
     Position background_position, ambient_position;  // line 0: the file does not set it
     uint32_t statement_count = 0;

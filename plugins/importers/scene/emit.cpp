@@ -30,6 +30,7 @@ class Emitter {
     bool motion() { return motion_.emit(); }
     bool materials();
     bool lights_and_cameras();
+    bool edits();
     // Emits one item, or a run of consecutive triangles as one mesh. Moves `at` behind them.
     bool item(size_t& at);
     Position position() const { return position_; }
@@ -107,6 +108,18 @@ bool Emitter::lights_and_cameras() {
         }
         const rt_u32 id = sink_.camera(sink_.ctx, &desc);
         if (id == RT_NONE || !motion_.emit_fov(camera, id)) return false;
+    }
+    return true;
+}
+
+bool Emitter::edits() {
+    for (const Edit& edit : document_.edits) {
+        position_ = edit.position;
+        if (!RT_HAS(&sink_, rt_scene_sink, edit)) {
+            sink_.warn(sink_.ctx, (where() + ": this host cannot make edits").c_str());
+            return true;
+        }
+        if (sink_.edit(sink_.ctx, edit.key.c_str(), edit.value.c_str(), where().c_str()) != RT_OK) return false;
     }
     return true;
 }
@@ -214,6 +227,7 @@ int32_t emit(const Document& document, std::string_view file, const rt_host& hos
         }
         ok = emitter.item(at);
     }
+    ok = ok && emitter.edits();
     if (ok) return RT_OK;
     if (!names_place) {  // otherwise the error does already
         const std::string where = located(file, {emitter.position(), "the import stopped at this statement"});

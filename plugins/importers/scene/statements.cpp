@@ -1,6 +1,7 @@
 #include "statements.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -336,13 +337,118 @@ void read_animate(Statement& s, Document& document, Diagnostics&) {
     document.animations.push_back(std::move(animation));
 }
 
+std::string text_of(const float* numbers, size_t count) {
+    std::string text;
+    for (size_t i = 0; i < count; ++i) {
+        char digits[32];
+        const auto end = std::to_chars(digits, digits + sizeof digits, numbers[i]).ptr;
+        text += (i == 0 ? "" : ",") + std::string(digits, end);
+    }
+    return text;
+}
+std::string text_of(const Vec3& v) {
+    return text_of(v.data(), 3);
+}
+
+void read_instance_edits(Statement& s, const std::string& prefix, Document& document) {
+    enum { kTranslate, kRotate, kScale, kHidden };
+    s.expect_keys({{"translate"}, {"rotate"}, {"scale"}, {"hidden"}});
+    const auto add = [&](const char* part, const std::string& value) {
+        document.edits.push_back({prefix + part, value, s.position()});
+    };
+    while (!s.done()) {
+        switch (s.key()) {
+            case kTranslate:
+                add("translate", text_of(s.vector("`translate` (x y z)")));
+                break;
+            case kRotate:
+                add("rotate", text_of(s.vector("`rotate` (degrees about x, y, z)")));
+                break;
+            case kScale:
+                add("scale", text_of(s.scale("`scale` (one factor, or x y z)")));
+                break;
+            case kHidden:
+                add("hidden", s.choice("value of `hidden`", {"0", "1"}) == 1 ? "1" : "0");
+                break;
+        }
+    }
+}
+
+void read_material_edits(Statement& s, const std::string& prefix, Document& document) {
+    enum { kColor, kEmission, kSpecular, kReflect, kRefract, kIor, kShininess };
+    s.expect_keys({{"color"}, {"emission"}, {"specular"}, {"reflect"}, {"refract"}, {"ior"}, {"shininess"}});
+    const auto add = [&](const char* part, const std::string& value) {
+        document.edits.push_back({prefix + part, value, s.position()});
+    };
+    const auto number = [&](const char* part, const char* what, float least, float most) {
+        const float value = s.number_between(what, least, most);
+        add(part, text_of(&value, 1));
+    };
+    constexpr float kMost = 1e6f;
+    while (!s.done()) {
+        switch (s.key()) {
+            case kColor:
+                add("color", text_of(s.color("`color` (r g b)", kMost)));
+                break;
+            case kEmission:
+                add("emission", text_of(s.color("`emission` (r g b)", kMost)));
+                break;
+            case kSpecular:
+                add("specular", text_of(s.color("`specular` (r g b)", kMost)));
+                break;
+            case kReflect:
+                number("reflect", "`reflect`", 0, 1);
+                break;
+            case kRefract:
+                number("refract", "`refract`", 0, 1);
+                break;
+            case kIor:
+                number("ior", "`ior`", 1e-3f, 100);
+                break;
+            case kShininess:
+                number("shininess", "`shininess`", 0, kMost);
+                break;
+        }
+    }
+}
+
+void read_light_edit(Statement& s, const std::string& key, Document& document) {
+    const size_t kind = s.choice("`off` or kind of light", {"off", "point", "directional"});
+    if (kind == 0) {
+        s.expect_end();
+        document.edits.push_back({key, "off", s.position()});
+        return;
+    }
+    enum { kColor, kWhere };
+    s.expect_keys({{"color"}, {kind == 1 ? "position" : "direction"}});
+    Vec3 color{1, 1, 1}, where = kind == 1 ? Vec3{0, 10, 0} : Vec3{0, -1, 0};
+    while (!s.done()) {
+        if (s.key() == kColor)
+            color = s.color("`color` (r g b)", kNoLimit);
+        else
+            where = kind == 1 ? s.vector("`position` (x y z)") : s.direction("`direction` (x y z, in which the light travels)");
+    }
+    document.edits.push_back(
+        {key, (kind == 1 ? "point," : "directional,") + text_of(where) + "," + text_of(color), s.position()});
+}
+
+void read_edit(Statement& s, Document& document, Diagnostics&) {
+    const size_t of = s.choice("object to edit", {"instance", "material", "light"});
+    const float number = s.number_between("its number, counted from 0", 0, 1e9f);
+    if (number != std::floor(number)) s.fail_at_last("expected a whole number, counted from 0");
+    const std::string count = std::to_string(static_cast<uint32_t>(number));
+    if (of == 0) return read_instance_edits(s, "instance." + count + ".", document);
+    if (of == 1) return read_material_edits(s, "material." + count + ".", document);
+    read_light_edit(s, "light." + count, document);
+}
+
 }  // namespace
 
 const std::vector<StatementRow>& statements() {
     static const std::vector<StatementRow> table = {
         {"camera", read_camera},     {"light", read_light},   {"background", read_background}, {"ambient", read_ambient},
         {"material", read_material}, {"sphere", read_sphere}, {"plane", read_plane},           {"polygon", read_polygon},
-        {"triangle", read_triangle}, {"load", read_load},     {"animate", read_animate},
+        {"triangle", read_triangle}, {"load", read_load},     {"animate", read_animate},       {"edit", read_edit},
     };
     return table;
 }

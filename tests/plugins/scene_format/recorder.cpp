@@ -119,6 +119,10 @@ void add_motion_calls(rt_scene_sink& sink) {
         recording_of(ctx).clips.push_back(*clip);
         return static_cast<rt_u32>(recording_of(ctx).clips.size());
     };
+    sink.edit = [](void* ctx, const char* key, const char* value, const char* where) -> int32_t {
+        recording_of(ctx).edits.push_back(std::string(key) + "=" + value + (where ? "" : " nowhere"));
+        return RT_OK;
+    };
     sink.channel = [](void* ctx, const rt_channel_desc* c) -> int32_t {
         const size_t values = c->key_count * (c->component == RT_ALL_COMPONENTS ? 4 : 1);
         recording_of(ctx).channels.push_back(

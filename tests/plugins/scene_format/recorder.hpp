@@ -63,6 +63,7 @@ struct Recording {
     std::vector<RecordedLoad> loads;
     std::vector<rt_node_desc> nodes;  // their name pointers are not valid any more
     std::vector<rt_clip_desc> clips;  // likewise
+    std::vector<std::string> edits;   // "instance.3.scale=1,1,2"
     std::vector<RecordedChannel> channels;
     std::vector<std::string> order;  // "sphere", "mesh", "load", ... in the order of the calls
     bool has_background = false, has_ambient = false;

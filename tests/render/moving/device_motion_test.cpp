@@ -139,8 +139,8 @@ TEST_P(DeviceMotionTest, CostsTellHowMuchATreeHasSuffered) {
 TEST_P(DeviceMotionTest, SaysWhenABuildIsNeeded) {
     Progress progress;
     Pose pose = pose_of(*rings_apart());
-    pose.instances[3].visible = false;
-    EXPECT_NE(motion()->move(pose).why.find("`placed 3` is hidden"), std::string::npos);
+    pose.instances[3].world_from_object[0] = 0;
+    EXPECT_NE(motion()->move(pose).why.find("`placed 3` is scaled to nothing"), std::string::npos);
     const auto flat = build(rings(), *plugin_);
     const auto prepared = prepare_queries(device(), rings(), flat, {}, progress);
     DeviceMotion world(Workbench::get().shared_device(), rings(), flat, prepared->on_device, GetParam());

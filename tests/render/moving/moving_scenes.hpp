@@ -19,7 +19,7 @@ inline rt_u32 add_mesh(Scene& scene, const TriangleMesh& mesh) {
     range.first_triangle = scene.triangle_count();
     range.vertex_count = static_cast<rt_u32>(mesh.positions.size() / 3);
     range.triangle_count = range.polygon_count = static_cast<rt_u32>(mesh.triangles.size() / 3);
-    scene.positions.insert(scene.positions.end(), mesh.positions.begin(), mesh.positions.end());
+    scene.positions.append(mesh.positions.begin(), mesh.positions.end());
     for (const rt_u32 v : mesh.triangles) scene.triangles.push_back(range.first_vertex + v);
     scene.triangle_materials.resize(scene.triangles.size() / 3, 0);
     scene.meshes.push_back(range);

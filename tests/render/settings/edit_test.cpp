@@ -49,11 +49,12 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
     for (const Material& material : scene.materials) view.materials.push_back(material.values);
     view.materials[1].ior = 1.33f;
     view.materials[1].color[2] = 0.123456789f;
-    edited.hidden = {0, 2};
+    edited.instances.hidden = {0, 2};
+    edited.instances.set_shift(1, {{1, 2, 0.1f}, {0, 90, 0}, {2, 2, 0.3f}});
     // The float in radians is restored, whatever angle it was made from.
     for (const float fov : {0.7853982f, 0.1f, 1.234567f, 3.0f, 0.9999999f}) {
         view.camera.fov_y_rad = fov;
-        const EditedView again = replay(scene, edits_between(scene, first_view(scene).view, edited));
+        const EditedView again = replay(scene, edits_between(scene, first_view(scene), edited));
         EXPECT_EQ(again.view.camera.eye, view.camera.eye);
         EXPECT_EQ(again.view.camera.target, view.camera.target);
         EXPECT_EQ(again.view.camera.up, view.camera.up);
@@ -62,7 +63,7 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
         EXPECT_EQ(again.view.ambient, view.ambient);
         EXPECT_TRUE(same_lights(again.view.lights, view.lights));
         EXPECT_TRUE(same_lights(visible_view(again).lights, visible_view(edited).lights));
-        EXPECT_EQ(again.hidden, edited.hidden);
+        EXPECT_TRUE(again.instances == edited.instances);
         ASSERT_EQ(again.view.materials.size(), view.materials.size());
         EXPECT_EQ(std::memcmp(again.view.materials.data(), view.materials.data(), view.materials.size() * sizeof(rt_material)),
                   0);
@@ -72,7 +73,7 @@ TEST(Edit, EveryChangeIsRestoredBitByBit) {
 TEST(Edit, UnchangedValuesAreNotWritten) {
     const Scene scene = two_boxes();
     const EditedView edited = first_view(scene);
-    const std::vector<Word> words = edits_between(scene, edited.view, edited);
+    const std::vector<Word> words = edits_between(scene, edited, edited);
     ASSERT_EQ(words.size(), 1u);
     EXPECT_EQ(words[0].key, "camera");
 }
@@ -82,7 +83,7 @@ TEST(Edit, RemovedLightsAreOff) {
     EditedView edited = first_view(scene);
     ASSERT_EQ(edited.view.lights.size(), 2u);
     edited.view.lights.pop_back();
-    const EditedView again = replay(scene, edits_between(scene, first_view(scene).view, edited));
+    const EditedView again = replay(scene, edits_between(scene, first_view(scene), edited));
     EXPECT_TRUE(same_lights(visible_view(again).lights, edited.view.lights));
 }
 
@@ -90,7 +91,7 @@ TEST(Edit, HidingInstancesKeepsTheNumbersOfTheOthers) {
     const Scene scene = two_boxes();
     Progress progress;
     const BuildScene all = make_build_scene(scene, progress);
-    const BuildScene some = make_build_scene(without_instances(scene, {1}), progress);
+    const BuildScene some = make_build_scene(with_edits(scene, {{}, {1}}), progress);
     ASSERT_EQ(all.instances.size(), 3u);
     ASSERT_EQ(some.instances.size(), 2u);
     EXPECT_EQ(some.instances[1].first_prim, all.instances[2].first_prim);
@@ -99,7 +100,7 @@ TEST(Edit, HidingInstancesKeepsTheNumbersOfTheOthers) {
 
 TEST(Edit, HidingEverythingLeavesTheSky) {
     const Scene scene = two_boxes();
-    const auto nothing = shared_scene(without_instances(scene, {0, 1, 2}));
+    const auto nothing = shared_scene(with_edits(scene, {{}, {0, 1, 2}}));
     const FloatImage t =
         Workbench::get().values(nothing, make_settings({{"aov", "t"}, {"size", "16x12"}}), first_view(scene).view);
     for (const float value : t.pixels) EXPECT_TRUE(std::isinf(value));
