@@ -52,6 +52,20 @@ TEST_F(BlurredFrames, LookTheSameInAnyOrder) {
     EXPECT_NE(second, scratch_.read("a_3.pfm"));
 }
 
+// What the user hides or moves out of the picture is so in every sample.
+TEST_F(BlurredFrames, EditsHoldForAllSamples) {
+    const std::vector<std::string> plain = {"--time", "0.5", "--spp", "4"},
+                                   blurred = {"--time", "0.5", "--spp", "4", "--shutter", "1", "--fps", "2"};
+    const auto with = [&](std::vector<std::string> words, const std::string& edit) {
+        words.insert(words.end(), {"--set", edit});
+        return render(words);
+    };
+    const std::string nothing = with(plain, "hide=0");
+    EXPECT_NE(nothing, render(plain));
+    EXPECT_EQ(nothing, with(blurred, "hide=0"));
+    EXPECT_EQ(nothing, with(blurred, "instance.0.translate=0,100,0"));
+}
+
 // A scene that does not move has times where its camera does.
 TEST_F(BlurredFrames, ACameraFollowsItsPath) {
     scene_ = scratch_.write("still.scene", "camera main eye 0 1 6\nlight point position 3 6 4\nplane\nsphere center 0 1 0\n");

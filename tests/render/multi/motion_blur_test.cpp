@@ -181,7 +181,7 @@ TEST_F(Blur, WhatDoesNotMoveIsNeitherBuiltNorUploaded) {
                                       "camera main eye 0 0 9 target 0 0 0 fov 40\n"
                                       "light point position 0 0 6 name lamp\n"
                                       "polygon vertices -6 -3 -2  6 -3 -2  6 3 -2  -6 3 -2\n"
-                                      "load box.obj\n"
+                                      "load box.obj\nload box.obj translate 1 1 0\nload sail_00.obj\n"
                                       "animate main rotate 0 0 1 0 0  1 0 1 0 4\n"
                                       "animate lamp translate 0 -4 2 6  1 4 2 6\n"));
     Team team("cpu");
