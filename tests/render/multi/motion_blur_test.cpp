@@ -187,7 +187,7 @@ TEST_F(Blur, WhatDoesNotMoveIsNeitherBuiltNorUploaded) {
     Team team("cpu");
     const ScenePtr scene = scene_at(0.5);
     const auto prepared = team.preparer.prepare(scene, settings_, team.progress);
-    MotionBlur blur({rest_, {}, {}, {}, {}}, {0.5, 1, 4}, prepared);
+    MotionBlur blur({rest_, {}, {}, {}}, {0.5, 1, 4}, prepared);
     std::set<float> lamps, targets;
     for (unsigned i = 0; i < 4; ++i) {
         const MotionBlur::Sample& sample = blur.at(i, view_of(*scene), team.progress);
