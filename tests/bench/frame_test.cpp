@@ -28,7 +28,7 @@ Scene ball_and_ring(bool smooth) {
     for (size_t v = torus(2, 0.7, 48, 24).positions.size(); v < scene.positions.size(); v += 3)
         for (size_t k = 0; k < 3; ++k) {
             const float from_center = scene.positions[v + k] - (k == 1 ? 0.9f : 0);
-            scene.normals[v + k] = v % 21 == 0 ? -from_center : from_center;
+            scene.normals.own()[v + k] = v % 21 == 0 ? -from_center : from_center;
         }
     return scene;
 }

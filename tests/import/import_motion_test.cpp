@@ -63,7 +63,7 @@ TEST_P(MotionSink, numbered_files_are_a_clip) {
     SequenceReader reader(plugins(), options_, progress_);
     const auto x_at = [&](double number) {
         const Scene at = posed(scene, evaluate(scene, "", number / 24, std::ref(reader)));
-        return at.positions.at(0);
+        return at.positions[0];
     };
     EXPECT_NEAR(x_at(2), 2, 1e-5);
     EXPECT_NEAR(x_at(3), 3, 1e-5);

@@ -28,7 +28,7 @@ TEST_P(Sink, triangles_arrive_as_they_are) {
     ASSERT_EQ(scene.materials.size(), 2u);
     EXPECT_EQ(scene.materials[1].values.color[0], 0.25f);
     EXPECT_EQ(scene.triangle_materials, (std::vector<rt_u32>{1, 1, 1}));
-    EXPECT_EQ(scene.positions.at(3 * 4), 3.f) << "x of the second triangle's second corner";
+    EXPECT_EQ(scene.positions[3 * 4], 3.f) << "x of the second triangle's second corner";
     EXPECT_TRUE(scene.warnings.empty());
     EXPECT_EQ(validate(scene), "");
 }

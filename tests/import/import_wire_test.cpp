@@ -208,7 +208,8 @@ TEST(Wire, a_large_mesh_is_handed_over_quickly) {
     Scene sent;
     sent.positions.assign(3 * size_t{vertices}, 0.25f);
     sent.triangles.resize(3 * size_t{triangles});
-    for (size_t i = 0; i < sent.triangles.size(); ++i) sent.triangles[i] = static_cast<rt_u32>(i * 7919 % vertices);
+    rt_u32 next = 0;
+    for (rt_u32& vertex : sent.triangles.own()) vertex = static_cast<rt_u32>(size_t{next++} * 7919 % vertices);
     sent.triangle_materials.assign(triangles, 0);
     sent.materials = {{"default", default_material()}};
     sent.meshes = {{"large", 0, vertices, 0, triangles, triangles}};

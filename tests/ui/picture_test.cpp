@@ -316,13 +316,13 @@ TEST(SelectionBox, IsAlignedWithTheInstance) {
     selection.instance = 0;
     const auto box = selection_box(scene, selection);
     ASSERT_TRUE(box);
-    EXPECT_NEAR(glm::length(vec((*box)[7]) - glm::vec3(8, 1, 3)), 0, 1e-5);
+    EXPECT_NEAR(glm::length(vec(box->corners()[7]) - glm::vec3(8, 1, 3)), 0, 1e-5);
     selection = {};
     selection.prim = 2;  // after two triangles
     const auto ball = selection_box(scene, selection);
     ASSERT_TRUE(ball);
-    EXPECT_EQ((*ball)[0][0], 3);
-    EXPECT_EQ((*ball)[7][2], 7);
+    EXPECT_EQ(ball->corners()[0][0], 3);
+    EXPECT_EQ(ball->corners()[7][2], 7);
     selection.instance = 77;
     selection.prim = -1;
     EXPECT_FALSE(selection_box(scene, selection));

@@ -116,12 +116,14 @@ TEST(CameraPath, IsAnEdit) {
     const View base = edited.view;
     apply_edit(*scene, edited, "camera_path", path_text(three_keys()));
     EXPECT_TRUE(edited.follows_path);
-    std::vector<Word> words = edits_between(*scene, base, edited);
+    EditedView from;
+    from.view = base;
+    std::vector<Word> words = edits_between(*scene, from, edited);
     ASSERT_EQ(words.size(), 1u);
     EXPECT_EQ(words[0].key, "camera_path");
     apply_edit(*scene, edited, "camera", "0,0,5,0,0,0,45,0,1,0");
     EXPECT_FALSE(edited.follows_path);
-    words = edits_between(*scene, base, edited);
+    words = edits_between(*scene, from, edited);
     ASSERT_EQ(words.size(), 2u);
     EXPECT_EQ(words[1].key, "camera");
     EXPECT_TRUE(is_edit("camera_path"));
