@@ -57,6 +57,7 @@ class KeyMaps : public WindowTest, public ::testing::WithParamInterface<std::str
     void check_common(const KeyBinding& binding);
     void check_sides(const KeyBinding& binding);
     void check_inspector(const KeyBinding& binding);
+    void check_saved_scene(const KeyBinding& binding);
     void check_saving(const KeyBinding& binding);
     void check_undo();
     void check_views(const KeyBinding& binding);
@@ -169,6 +170,20 @@ void KeyMaps::check_saving(const KeyBinding& binding) {
     fs::remove(path);
 }
 
+void KeyMaps::check_saved_scene(const KeyBinding& binding) {
+    const std::string original = source_path("scenes/primitives.scene");
+    const fs::path copy = fs::path(window->folder()) / "copy.scene";
+    fs::copy_file(original, copy);
+    ASSERT_EQ(window->command("open " + copy.string()), "");
+    window->settle();
+    const auto bytes = fs::file_size(copy);
+    press(binding);
+    window->settle();
+    EXPECT_GT(fs::file_size(copy), bytes) << "it has the camera of the window now";
+    ASSERT_EQ(window->command("open " + original), "");
+    window->settle();
+}
+
 void KeyMaps::check_undo() {
     const int depth = window->state()["depth"];
     ASSERT_NE(depth, 2);
@@ -273,6 +288,13 @@ void KeyMaps::check_common(const KeyBinding& binding) {
         EXPECT_TRUE(reaches("browser_open", false));
     } else if (key == "Ctrl+S") {
         check_saving(binding);
+    } else if (key == "Ctrl+E") {
+        check_saved_scene(binding);
+    } else if (key == "M") {
+        press(binding);
+        EXPECT_TRUE(reaches("move_handles", true));
+        press(binding);
+        EXPECT_TRUE(reaches("move_handles", false));
     } else if (key == "C" || key == "X") {
         check_sides(binding);
     } else if (key == "R") {

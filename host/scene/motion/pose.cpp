@@ -72,6 +72,28 @@ void pose_lights(const std::vector<PlacedNode>& nodes, std::vector<Light>& light
     }
 }
 
+// acts: for each clip, whether it counts.
+std::vector<bool> moving_instances(const Scene& scene, const std::vector<bool>& acts) {
+    const Motion& motion = scene.motion;
+    std::vector<bool> node_moves(motion.nodes.size()), mesh_deforms(scene.meshes.size());
+    for (const Channel& channel : motion.channels) {
+        const bool of_node = channel.moves == RT_MOVES_TRANSLATION || channel.moves == RT_MOVES_ROTATION ||
+                             channel.moves == RT_MOVES_SCALE || channel.moves == RT_MOVES_VISIBILITY;
+        if (of_node && acts[channel.clip] && channel.target < node_moves.size()) node_moves[channel.target] = true;
+    }
+    for (size_t i = 0; i < motion.nodes.size(); ++i)  // parents come first
+        if (const rt_u32 parent = motion.nodes[i].values.parent; parent != RT_NONE && node_moves[parent]) node_moves[i] = true;
+    for (const Skin& skin : motion.skins) mesh_deforms[skin.mesh] = true;
+    for (const Morph& morph : motion.morphs) mesh_deforms[morph.mesh] = true;
+    for (const VertexFrames& frames : motion.frames) mesh_deforms[frames.mesh] = true;
+    for (const FileSequence& sequence : motion.sequences)
+        for (rt_u32 m = 0; m < sequence.mesh_count; ++m) mesh_deforms[sequence.first_mesh + m] = true;
+    std::vector<bool> moving;
+    for (const Instance& instance : scene.instances)
+        moving.push_back(mesh_deforms[instance.mesh] || (instance.node != RT_NONE && node_moves[instance.node]));
+    return moving;
+}
+
 }  // namespace
 
 std::vector<ClipInfo> clips(const Scene& scene) {
@@ -124,24 +146,11 @@ Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const 
 }
 
 std::vector<bool> moving_instances(const Scene& scene) {
-    const Motion& motion = scene.motion;
-    std::vector<bool> node_moves(motion.nodes.size()), mesh_deforms(scene.meshes.size());
-    for (const Channel& channel : motion.channels) {
-        const bool of_node = channel.moves == RT_MOVES_TRANSLATION || channel.moves == RT_MOVES_ROTATION ||
-                             channel.moves == RT_MOVES_SCALE || channel.moves == RT_MOVES_VISIBILITY;
-        if (of_node && channel.target < node_moves.size()) node_moves[channel.target] = true;
-    }
-    for (size_t i = 0; i < motion.nodes.size(); ++i)  // parents come first
-        if (const rt_u32 parent = motion.nodes[i].values.parent; parent != RT_NONE && node_moves[parent]) node_moves[i] = true;
-    for (const Skin& skin : motion.skins) mesh_deforms[skin.mesh] = true;
-    for (const Morph& morph : motion.morphs) mesh_deforms[morph.mesh] = true;
-    for (const VertexFrames& frames : motion.frames) mesh_deforms[frames.mesh] = true;
-    for (const FileSequence& sequence : motion.sequences)
-        for (rt_u32 m = 0; m < sequence.mesh_count; ++m) mesh_deforms[sequence.first_mesh + m] = true;
-    std::vector<bool> moving;
-    for (const Instance& instance : scene.instances)
-        moving.push_back(mesh_deforms[instance.mesh] || (instance.node != RT_NONE && node_moves[instance.node]));
-    return moving;
+    return moving_instances(scene, std::vector<bool>(scene.motion.clips.size(), true));
+}
+
+std::vector<bool> moving_instances(const Scene& scene, const std::string& clip) {
+    return moving_instances(scene, scene.motion.clips.empty() ? std::vector<bool>() : acting_clips(scene.motion, clip));
 }
 
 Scene posed(Scene scene, const Pose& pose) {
