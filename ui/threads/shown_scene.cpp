@@ -67,12 +67,12 @@ bool ShownScene::edit(const InstanceEdits& edits, const std::vector<rt_u32>& apa
     return true;
 }
 
-// Whether scene() has the geometry of a pose. The scene at rest never has it if instances move, even where they stand as at
-// rest: they are not kept apart in it.
-bool ShownScene::shows(const Pose& pose) const {
+// Whether scene() has the geometry of a pose. The scene at rest never has it if the clip moves instances, even where they stand
+// as at rest: they are not kept apart in it.
+bool ShownScene::shows(const Pose& pose, const std::string& clip) const {
     if (!has_geometry_of(*scene_, pose)) return false;
     if (scene_ != rest_) return true;
-    const std::vector<bool> moving = moving_instances(*scene_);
+    const std::vector<bool> moving = moving_instances(*scene_, clip);
     for (size_t i = 0; i < moving.size(); ++i)
         if (moving[i] && !scene_->instances[i].apart) return false;
     return true;
@@ -88,7 +88,7 @@ void ShownScene::place(const PoseTime& time, bool edited) {
         lights_ = rest_->lights;
     } else {
         Pose pose = evaluate(*rest_, time.clip, *time.time_s, std::ref(sequences_));
-        if (edited || !shows(pose)) scene_ = std::make_shared<const Scene>(posed(*rest_, pose));
+        if (edited || !shows(pose, time.clip)) scene_ = std::make_shared<const Scene>(posed(*rest_, pose));
         cameras_ = std::move(pose.cameras);
         lights_ = std::move(pose.lights);
         geometry_ = std::move(pose);

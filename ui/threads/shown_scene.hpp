@@ -40,7 +40,7 @@ class ShownScene {
  private:
     bool edit(const InstanceEdits& edits, const std::vector<rt_u32>& apart);
     void place(const PoseTime& pose, bool edited);
-    bool shows(const Pose& pose) const;
+    bool shows(const Pose& pose, const std::string& clip) const;
 
     Progress unwatched_;  // of files of sequences
     import::SequenceReader sequences_;

@@ -123,13 +123,15 @@ Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const 
     return pose;
 }
 
-std::vector<bool> moving_instances(const Scene& scene) {
+namespace {
+
+std::vector<bool> moved_by_clips(const Scene& scene, const std::vector<bool>& acts) {
     const Motion& motion = scene.motion;
     std::vector<bool> node_moves(motion.nodes.size()), mesh_deforms(scene.meshes.size());
     for (const Channel& channel : motion.channels) {
         const bool of_node = channel.moves == RT_MOVES_TRANSLATION || channel.moves == RT_MOVES_ROTATION ||
                              channel.moves == RT_MOVES_SCALE || channel.moves == RT_MOVES_VISIBILITY;
-        if (of_node && channel.target < node_moves.size()) node_moves[channel.target] = true;
+        if (of_node && channel.target < node_moves.size() && acts[channel.clip]) node_moves[channel.target] = true;
     }
     for (size_t i = 0; i < motion.nodes.size(); ++i)  // parents come first
         if (const rt_u32 parent = motion.nodes[i].values.parent; parent != RT_NONE && node_moves[parent]) node_moves[i] = true;
@@ -142,6 +144,17 @@ std::vector<bool> moving_instances(const Scene& scene) {
     for (const Instance& instance : scene.instances)
         moving.push_back(mesh_deforms[instance.mesh] || (instance.node != RT_NONE && node_moves[instance.node]));
     return moving;
+}
+
+}  // namespace
+
+std::vector<bool> moving_instances(const Scene& scene) {
+    return moved_by_clips(scene, std::vector<bool>(scene.motion.clips.size(), true));
+}
+
+std::vector<bool> moving_instances(const Scene& scene, const std::string& clip) {
+    const bool any = !clip.empty() || !scene.motion.clips.empty();
+    return moved_by_clips(scene, any ? acting_clips(scene.motion, clip) : std::vector<bool>());
 }
 
 Scene posed(Scene scene, const Pose& pose) {

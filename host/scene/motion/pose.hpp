@@ -39,6 +39,8 @@ std::vector<ClipInfo> clips(const Scene& scene);
 
 // For each instance: whether a clip moves or shows it, or its mesh deforms.
 std::vector<bool> moving_instances(const Scene& scene);
+// The same for the clips that play together under a name; see evaluate().
+std::vector<bool> moving_instances(const Scene& scene, const std::string& clip);
 
 // Reads the vertices of one file of a FileSequence: 3 numbers for each vertex of all its meshes, in their order. May throw
 // Error.
