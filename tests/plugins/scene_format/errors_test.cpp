@@ -11,7 +11,7 @@ struct Case {
 };
 
 #define STATEMENTS \
-    " (statements: camera, light, background, ambient, material, sphere, plane, polygon, triangle, load, animate)"
+    " (statements: camera, light, background, ambient, material, sphere, plane, polygon, triangle, load, animate, edit)"
 
 const Case kCases[] = {
     {"sphere radious 2", "1:8: unknown key `radious`; did you mean `radius`? (keys of sphere: center, radius, material)"},
