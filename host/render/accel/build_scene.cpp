@@ -252,10 +252,15 @@ struct Placement {
     uint64_t world_prims = 0, refs = 0;
 };
 
+// Triangles of a still mesh that is kept apart, too, in a scene that moves. A refit of the world then reads one box instead of
+// all of them: one object that moves beside millions of still triangles costs what the object costs.
+constexpr rt_u32 kLargeMesh = 1u << 14;
+
 Placement place(const Scene& scene) {
     Placement out;
     std::vector<rt_u32> uses(scene.meshes.size(), 0);
     for (const Instance& instance : scene.instances) ++uses[instance.mesh];
+    const bool moves = std::any_of(scene.instances.begin(), scene.instances.end(), [](const Instance& i) { return i.apart; });
     out.inverse.resize(scene.instances.size());
     out.built.resize(scene.instances.size());
     out.flat.resize(scene.instances.size());
@@ -268,7 +273,8 @@ Placement place(const Scene& scene) {
         const bool singular = !invert(instance.world_from_object, out.inverse[i]);
         out.built[i] = instance.visible || (instance.apart && !singular && count > 0);
         if (!out.built[i]) continue;
-        const bool together = uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !instance.apart;
+        const bool alone = instance.apart || (moves && count >= kLargeMesh);
+        const bool together = uses[instance.mesh] == 1 && !mirrors(instance.world_from_object) && !alone;
         out.flat[i] = together || singular || count == 0;
         if (out.flat[i]) {
             out.world_prims += count;

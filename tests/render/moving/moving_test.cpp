@@ -189,6 +189,22 @@ TEST(MovingAccel, AMeshThatIsKeptApartMovesAlone) {
     EXPECT_EQ(deformed.groups[0].primitives, rings()->meshes[1].triangle_count);
 }
 
+TEST(MovingAccel, AnObjectBesideALargeStillMeshMovesAlone) {
+    Progress progress;
+    const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh8");
+    Scene large = scene_of(torus(2, 0.7, 128, 64));
+    ASSERT_GE(large.triangle_count(), 1u << 14);
+    place(large, add_mesh(large, uv_sphere(1, 24, 16)), moved_to(4, 1, 0));
+    EXPECT_TRUE(make_build_scene(large, progress).instances.empty()) << "nothing moves: all is one tree";
+    large.instances[1].apart = true;
+    const ScenePtr scene = shared_scene(std::move(large));
+    MovingAccel moving(scene, build(scene, plugin));
+    Pose pose = pose_of(*scene);
+    moving.move(pose, progress);
+    pose.instances[1].world_from_object = moved_to(5, 1, 0);
+    EXPECT_EQ(moving.move(pose, progress).refitted, 2u) << "the boxes of both";
+}
+
 TEST(MovingAccel, TreesOfAllParametersGiveTheBytesOfTheBuild) {
     Progress progress;
     const PluginRegistry& plugins = Workbench::get().plugins();
