@@ -18,44 +18,29 @@
 #else
 #define RT_LOCAL_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
 
-/* Returns the sums of `value`, component by component, over the work-items before this one; *total: over all. shared: 2 * RT_GROUP
- * elements. All work-items of the group call it together (Hillis, Steele 1986, "Data Parallel Algorithms"). */
-RT_INLINE uint4 rt_group_scan4(local uint4 *shared, uint4 value, uint4 *total)
-{
-    const uint item = RT_ITEM;
-    local uint4 *from = shared, *to = shared + RT_GROUP;
-    from[item] = value;
-    RT_LOCAL_BARRIER();
-    for (uint step = 1u; step < RT_GROUP; step *= 2u) {
-        to[item] = item >= step ? from[item] + from[item - step] : from[item];
-        RT_LOCAL_BARRIER();
-        local uint4 *const other = from;
-        from = to;
-        to = other;
+/* Defines a scan for one type: returns the sums of `value` over the work-items before this one; *total: over all. Vectors are summed
+ * component by component. shared: 2 * RT_GROUP elements. All work-items of the group call it together (Hillis, Steele 1986, "Data
+ * Parallel Algorithms"). The last barrier is there because the memory may be used again. */
+#define RT_DEFINE_GROUP_SCAN(name, type)                                              \
+    RT_INLINE type name(local type *shared, type value, type *total)                  \
+    {                                                                                 \
+        const uint item = RT_ITEM;                                                    \
+        local type *from = shared, *to = shared + RT_GROUP;                           \
+        from[item] = value;                                                           \
+        RT_LOCAL_BARRIER();                                                           \
+        for (uint step = 1u; step < RT_GROUP; step *= 2u) {                           \
+            to[item] = item >= step ? from[item] + from[item - step] : from[item];    \
+            RT_LOCAL_BARRIER();                                                       \
+            local type *const other = from;                                           \
+            from = to;                                                                \
+            to = other;                                                               \
+        }                                                                             \
+        const type all = from[RT_GROUP - 1u], upto = from[item];                      \
+        RT_LOCAL_BARRIER();                                                           \
+        *total = all;                                                                 \
+        return upto - value;                                                          \
     }
-    const uint4 all = from[RT_GROUP - 1u], upto = from[item];
-    RT_LOCAL_BARRIER(); /* the memory may be used again */
-    *total = all;
-    return upto - value;
-}
-/* The same for one number. */
-RT_INLINE uint rt_group_scan(local uint *shared, uint value, uint *total)
-{
-    const uint item = RT_ITEM;
-    local uint *from = shared, *to = shared + RT_GROUP;
-    from[item] = value;
-    RT_LOCAL_BARRIER();
-    for (uint step = 1u; step < RT_GROUP; step *= 2u) {
-        to[item] = item >= step ? from[item] + from[item - step] : from[item];
-        RT_LOCAL_BARRIER();
-        local uint *const other = from;
-        from = to;
-        to = other;
-    }
-    const uint all = from[RT_GROUP - 1u], upto = from[item];
-    RT_LOCAL_BARRIER();
-    *total = all;
-    return upto - value;
-}
+RT_DEFINE_GROUP_SCAN(rt_group_scan, uint)
+RT_DEFINE_GROUP_SCAN(rt_group_scan4, uint4)
 #endif
 #endif

@@ -37,26 +37,13 @@ void walk(float* p, const Bounds& box, double phase) {
     p[2] = static_cast<float>(mz + s * y + c * z);
 }
 
-Pose at_rest(const Scene& scene) {
-    Pose pose;
-    for (const Instance& instance : scene.instances)
-        pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
-    pose.cameras = scene.cameras;
-    pose.lights = scene.lights;
-    return pose;
-}
-
 template <class Move>
 Pose each_vertex(const Scene& scene, const Move& move) {
-    Pose pose = at_rest(scene);
+    Pose pose = pose_at_rest(scene);
     for (rt_u32 m = 0; m < scene.meshes.size(); ++m) {
-        const Mesh& mesh = scene.meshes[m];
-        const auto begin = scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex);
-        PosedMesh posed{m, {begin, begin + 3 * std::ptrdiff_t(mesh.vertex_count)}, {}};
-        Bounds box;
-        for (size_t v = 0; v < posed.positions.size(); v += 3) box.add(&posed.positions[v]);
-        for (rt_u32 v = 0; v < mesh.vertex_count; ++v) move(&posed.positions[3 * size_t(v)], box, v);
-        pose.meshes.push_back(std::move(posed));
+        MeshToMove mesh = mesh_to_move(scene, m);
+        for (rt_u32 v = 0; v < scene.meshes[m].vertex_count; ++v) move(&mesh.posed.positions[3 * size_t(v)], mesh.box, v);
+        pose.meshes.push_back(std::move(mesh.posed));
     }
     return pose;
 }
@@ -115,7 +102,7 @@ Scene crowd(const Scene& scene) {
 }
 
 Pose crowded(const Scene& scene, unsigned frame) {
-    Pose pose = at_rest(scene);
+    Pose pose = pose_at_rest(scene);
     const Mesh& mesh = scene.meshes[scene.instances.front().mesh];
     Bounds box;
     for (rt_u32 v = 0; v < mesh.vertex_count; ++v) box.add(&scene.positions[3 * size_t(mesh.first_vertex + v)]);

@@ -33,24 +33,34 @@ const std::vector<std::string>& motion_names() {
     return names;
 }
 
-Pose moved_pose(const Scene& scene, const std::string& motion, double phase) {
-    const Mover move = motion == "wave" ? wave : twist;
+Pose pose_at_rest(const Scene& scene) {
     Pose pose;
     for (const Instance& instance : scene.instances)
         pose.instances.push_back({instance.mesh, instance.world_from_object, instance.visible});
     pose.cameras = scene.cameras;
     pose.lights = scene.lights;
+    return pose;
+}
+
+MeshToMove mesh_to_move(const Scene& scene, rt_u32 mesh) {
+    const Mesh& range = scene.meshes[mesh];
+    const auto begin = scene.positions.begin() + 3 * std::ptrdiff_t(range.first_vertex);
+    MeshToMove made{{mesh, {begin, begin + 3 * std::ptrdiff_t(range.vertex_count)}, {}}, {}};
+    for (size_t v = 0; v < made.posed.positions.size(); v += 3) made.box.add(&made.posed.positions[v]);
+    return made;
+}
+
+Pose moved_pose(const Scene& scene, const std::string& motion, double phase) {
+    const Mover move = motion == "wave" ? wave : twist;
+    Pose pose = pose_at_rest(scene);
     for (rt_u32 m = 0; m < scene.meshes.size(); ++m) {
-        const Mesh& mesh = scene.meshes[m];
-        const auto begin = scene.positions.begin() + 3 * std::ptrdiff_t(mesh.first_vertex);
-        PosedMesh posed{m, {begin, begin + 3 * std::ptrdiff_t(mesh.vertex_count)}, {}};
-        Bounds box;
-        for (size_t v = 0; v < posed.positions.size(); v += 3) box.add(&posed.positions[v]);
-        parallel_for((mesh.vertex_count + kVerticesPerTask - 1) / kVerticesPerTask, [&](uint32_t task) {
-            const rt_u32 end = std::min(mesh.vertex_count, (task + 1) * kVerticesPerTask);
-            for (rt_u32 v = task * kVerticesPerTask; v < end; ++v) move(&posed.positions[3 * size_t(v)], box, phase);
+        const rt_u32 count = scene.meshes[m].vertex_count;
+        MeshToMove mesh = mesh_to_move(scene, m);
+        parallel_for((count + kVerticesPerTask - 1) / kVerticesPerTask, [&](uint32_t task) {
+            const rt_u32 end = std::min(count, (task + 1) * kVerticesPerTask);
+            for (rt_u32 v = task * kVerticesPerTask; v < end; ++v) move(&mesh.posed.positions[3 * size_t(v)], mesh.box, phase);
         });
-        pose.meshes.push_back(std::move(posed));
+        pose.meshes.push_back(std::move(mesh.posed));
     }
     return pose;
 }

@@ -32,7 +32,10 @@ cl::Program BuildKernels::compile(const std::string& text, const std::string& wh
     std::string headers;
     for (const std::string name : {"build/groups.h", "build/blocks.h"})
         headers += "#line 1 \"cl/" + name + "\"\n" + kernel_text(name);
-    return build_program(*device_, headers + text, options + (more_options.empty() ? "" : " " + more_options), what).program;
+    if (!more_options.empty()) options += " " + more_options;
+    cl::Program& program = programs_[options + "\n" + headers + text];
+    if (!program()) program = build_program(*device_, headers + text, options, what).program;
+    return program;
 }
 
 cl::Program BuildKernels::compile_file(const std::string& name, const std::string& more_options) const {

@@ -1,6 +1,7 @@
 // build_kernels.hpp -- the kernels with which structures are built on a device: cl/build, compiled once.
 #pragma once
 #include <CL/opencl.hpp>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -27,7 +28,8 @@ class BuildKernels {
     unsigned sort_tile() const { return serial_ ? 8192 : 2048; }
     unsigned scan_tile() const { return 4096; }
 
-    // Compiles `text` behind groups.h and blocks.h, and with the options of all kernels of builds. what: for error messages.
+    // Compiles `text` behind groups.h and blocks.h, and with the options of all kernels of builds; the second time it returns
+    // the same program. what: for error messages.
     cl::Program compile(const std::string& text, const std::string& what, const std::string& more_options = "") const;
     // The program of one file of cl/build: "scan.cl".
     cl::Program compile_file(const std::string& name, const std::string& more_options = "") const;
@@ -40,6 +42,7 @@ class BuildKernels {
  private:
     const std::shared_ptr<Device> device_;
     const bool serial_;
+    mutable std::map<std::string, cl::Program> programs_;  // by options and text
 };
 
 }  // namespace clarity

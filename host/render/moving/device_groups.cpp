@@ -10,6 +10,7 @@
 #include "render/device_build/device_blocks.hpp"
 
 namespace clarity {
+
 DeviceGroups::DeviceGroups(const BuildKernels& kernels, std::shared_ptr<const AccelData> built,
                            std::shared_ptr<const DeviceScene> on_device, const DevicePose& pose)
     : kernels_(kernels),

@@ -7,6 +7,7 @@
 
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
+#include "render/moving/accel_copy.hpp"
 
 namespace clarity {
 namespace {
@@ -260,25 +261,13 @@ void DeviceMotion::raise_defines(const std::map<std::string, rt_u32>& defines) {
     };
     auto raised = std::make_shared<Raised>();
     raised->from = accel_;
-    AccelData& data = raised->data;
-    data.plugin = accel_->plugin;
-    data.layout = accel_->layout;
-    data.params = accel_->params;
-    const auto borrowed = [](const AlignedBytes& memory) {
+    raised->data = copy_of(*accel_, [](const AlignedBytes& memory) {
         return AlignedBytes::borrow(const_cast<void*>(memory.data()), memory.bytes());
-    };
-    for (const AccelData::Slot& slot : accel_->slots) data.slots.push_back({borrowed(slot.memory), slot.count});
-    data.leaves = borrowed(accel_->leaves);
-    data.leaf_count = accel_->leaf_count;
-    data.roots = accel_->roots;
-    data.defines = accel_->defines;
-    for (const auto& [name, value] : defines) data.defines[name] = std::max(data.defines[name], value);
-    data.stats = accel_->stats;
-    data.instances = accel_->instances;
-    data.scene = accel_->scene;
-    data.build_ms = accel_->build_ms;
-    data.pack_ms = accel_->pack_ms;
-    data.bytes = accel_->bytes;
+    });
+    for (const auto& [name, value] : defines) {
+        rt_u32& known = raised->data.defines[name];
+        known = std::max(known, value);
+    }
     accel_ = std::shared_ptr<const AccelData>(raised, &raised->data);
 }
 

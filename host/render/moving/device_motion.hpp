@@ -57,7 +57,7 @@ class DeviceMotion {
     // It changes with the first build only.
     const std::shared_ptr<const AccelData>& accel() const { return accel_; }
 
-    // Where the vertices of the Scene are on the device, 3 floats each, in the space of their groups: for those who compute
+    // Where the vertices of the Scene are on the device, 3 floats each, in the space of their groups: for code that computes
     // them there. Null before the first move.
     const cl::Buffer& vertices() const { return pose_.positions; }
     // Says that commands in the device's queue write the vertices of a mesh.

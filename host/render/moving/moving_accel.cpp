@@ -11,6 +11,7 @@
 #include "base/scoped_fp_mode.hpp"
 #include "plugin/extensions.hpp"
 #include "plugin/host_services.hpp"
+#include "render/moving/accel_copy.hpp"
 
 namespace clarity {
 namespace {
@@ -33,25 +34,6 @@ AlignedBytes copy_of(const AlignedBytes& from) {
         const size_t at = i * kPiece;
         std::memcpy(out + at, in + at, std::min(kPiece, from.bytes() - at));
     });
-    return copy;
-}
-
-std::shared_ptr<AccelData> copy_of(const AccelData& from) {
-    auto copy = std::make_shared<AccelData>();
-    copy->plugin = from.plugin;
-    copy->layout = from.layout;
-    copy->params = from.params;
-    for (const AccelData::Slot& slot : from.slots) copy->slots.push_back({copy_of(slot.memory), slot.count});
-    copy->leaves = copy_of(from.leaves);
-    copy->leaf_count = from.leaf_count;
-    copy->roots = from.roots;
-    copy->defines = from.defines;
-    copy->stats = from.stats;
-    copy->instances = from.instances;
-    copy->scene = from.scene;
-    copy->build_ms = from.build_ms;
-    copy->pack_ms = from.pack_ms;
-    copy->bytes = from.bytes;
     return copy;
 }
 
@@ -212,7 +194,8 @@ MovingAccel::Buffer& MovingAccel::spare() {
     }
     if (buffers_.size() == kKeptStructures) buffers_.erase(buffers_.begin());
     auto buffer = std::make_unique<Buffer>();
-    buffer->accel = copy_of(*built_);
+    buffer->accel =
+        std::make_shared<AccelData>(clarity::copy_of(*built_, [](const AlignedBytes& memory) { return copy_of(memory); }));
     buffer->version.assign(built_->scene.groups.size(), 0);
     buffers_.push_back(std::move(buffer));
     return *buffers_.back();

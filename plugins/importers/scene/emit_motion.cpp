@@ -52,6 +52,15 @@ auto find(const Things& things, const std::string& name) {
     return at == things.end() ? nullptr : &*at;
 }
 
+// Delivers a channel with these keys.
+bool deliver(const rt_scene_sink& sink, rt_channel_desc channel, const Keys& keys) {
+    channel.struct_bytes = sizeof channel;
+    channel.key_count = keys.times.size();
+    channel.times_s = keys.times.data();
+    channel.values = keys.values.data();
+    return sink.channel(sink.ctx, &channel) == RT_OK;
+}
+
 }  // namespace
 
 rt_u32 MotionEmitter::node_of(const Name& name) const {
@@ -80,23 +89,15 @@ rt_u32 MotionEmitter::add_node(const std::string& name) const {
 }
 
 bool MotionEmitter::add_channels(const Animation& animation, rt_u32 node, rt_u32 clip) const {
-    const auto add = [&](rt_u32 moves, rt_u32 component, const Keys& keys) {
-        rt_channel_desc channel{};
-        channel.struct_bytes = sizeof channel;
-        channel.clip = clip;
-        channel.moves = moves;
-        channel.target = node;
-        channel.component = component;
-        channel.key_count = keys.times.size();
-        channel.times_s = keys.times.data();
-        channel.values = keys.values.data();
-        return sink_.channel(sink_.ctx, &channel) == RT_OK;
-    };
-    if (animation.motion == Animation::Motion::rotate)
-        return add(RT_MOVES_ROTATION, RT_ALL_COMPONENTS, rotation_keys(animation));
-    const rt_u32 moves = animation.motion == Animation::Motion::scale ? RT_MOVES_SCALE : RT_MOVES_TRANSLATION;
-    for (rt_u32 component = 0; component < 3; ++component)
-        if (!add(moves, component, component_keys(animation, component))) return false;
+    rt_channel_desc channel{};
+    channel.clip = clip;
+    channel.target = node;
+    channel.moves = RT_MOVES_ROTATION;
+    channel.component = RT_ALL_COMPONENTS;
+    if (animation.motion == Animation::Motion::rotate) return deliver(sink_, channel, rotation_keys(animation));
+    channel.moves = animation.motion == Animation::Motion::scale ? RT_MOVES_SCALE : RT_MOVES_TRANSLATION;
+    for (channel.component = 0; channel.component < 3; ++channel.component)
+        if (!deliver(sink_, channel, component_keys(animation, channel.component))) return false;
     return true;
 }
 
@@ -111,14 +112,10 @@ bool MotionEmitter::emit_fov(const Camera& camera, rt_u32 id) const {
             keys.values.push_back(double{animation.numbers[2 * k + 1]} * rad_per_deg);
         }
         rt_channel_desc channel{};
-        channel.struct_bytes = sizeof channel;
         channel.clip = clip_;
         channel.moves = RT_MOVES_FOV;
         channel.target = id;
-        channel.key_count = keys.times.size();
-        channel.times_s = keys.times.data();
-        channel.values = keys.values.data();
-        if (sink_.channel(sink_.ctx, &channel) != RT_OK) return false;
+        if (!deliver(sink_, channel, keys)) return false;
     }
     return true;
 }

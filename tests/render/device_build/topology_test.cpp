@@ -266,7 +266,7 @@ TEST_P(DeviceTopology, APlanThatCannotBeMadeSaysWhy) {
     }
 }
 
-// Not a test: prints how long a rebuild takes, for those who work on it. Run with --gtest_also_run_disabled_tests
+// Not a test: prints how long a rebuild takes, to be read while one works on it. Run with --gtest_also_run_disabled_tests
 // --gtest_filter='*Times*'.
 TEST_P(DeviceTopology, DISABLED_Times) {
     const rt_plugin *lbvh = plugins_.accel("lbvh"), *bvh4 = plugins_.accel("bvh4");
