@@ -15,8 +15,10 @@
 
 #if RT_GROUP == 1
 #define RT_LOCAL_BARRIER()
+#define RT_GLOBAL_BARRIER()
 #else
 #define RT_LOCAL_BARRIER() barrier(CLK_LOCAL_MEM_FENCE)
+#define RT_GLOBAL_BARRIER() barrier(CLK_GLOBAL_MEM_FENCE)
 
 /* Defines a scan for one type: returns the sums of `value` over the work-items before this one; *total: over all. Vectors are summed
  * component by component. shared: 2 * RT_GROUP elements. All work-items of the group call it together (Hillis, Steele 1986, "Data

@@ -1,7 +1,7 @@
 // rt_device.hpp -- rt_device.h for C++: the steps of a plan.
 #pragma once
 #include <cstring>
-#include <initializer_list>
+#include <vector>
 
 #include "rt_device.h"
 
@@ -16,8 +16,8 @@ class DeviceSteps {
         ok_ = ok_ && made != RT_NONE;
         return made;
     }
-    void launch(const char* kernel, uint64_t groups, std::initializer_list<rt_device_arg> args) {
-        step(plan_->launch, kernel, static_cast<rt_u32>(groups), args.begin(), static_cast<rt_u32>(args.size()));
+    void launch(const char* kernel, uint64_t groups, const std::vector<rt_device_arg>& args) {
+        step(plan_->launch, kernel, static_cast<rt_u32>(groups), args.data(), static_cast<rt_u32>(args.size()));
     }
     void fill(rt_u32 buffer, uint64_t words, rt_u32 value) { step(plan_->fill, buffer, words, value); }
     void sort(rt_u32 keys, rt_u32 values, uint64_t count, rt_u32 bits) { step(plan_->sort, keys, values, count, bits); }

@@ -1,100 +1,269 @@
 /* bvh4_build.cl -- merges the nodes of a binary tree on the device to nodes of up to four children, and refits such nodes.
  *
  * A node takes in the children of its largest child until it has four (Wald, Benthin, Boulos 2008). That goes from the root down,
- * and no work-group may wait for another. So it goes in three passes: one group descends to subtrees of at most 2^18 primitives,
- * then groups from there to subtrees of at most 2^9, then groups from there to the leaves. Within a group, level follows level. A
- * level of a pass holds subtrees that do not overlap, so it fits into local memory whatever the tree is. */
+ * and no work-group may wait for another. So it goes in passes: groups descend from few large subtrees to many smaller ones, level
+ * by level, each pass to subtrees 512 times smaller (device_build.cpp), and in the end each work-item has small subtrees to itself.
+ * Within a pass a level holds subtrees that do not overlap, so it fits into local memory whatever the tree is. The nodes of a round
+ * are taken together from one counter: their order differs from run to run, the tree does not. */
 #include "cl/rt_shared.h"
 #include "bvh4_types.h"
 
-typedef struct bvh4_binary {
-    float lo[3];
-    uint left;
-    float hi[3];
-    uint right;
-} bvh4_binary;
-
 #define BVH4_SINGLE 0x80000000u /* a child of the binary tree that is one primitive: RT_TOPOLOGY_LEAF | its place in order */
 #define BVH4_NONE 0xFFFFFFFFu
-#define BVH4_LEVEL 1024u /* nodes of a level, at most */
+#define BVH4_LEVEL 1024u  /* nodes of a level, at most */
+#define BVH4_PENDING 24u  /* nodes that a work-item has to make, at most: a subtree has no more than 2 of them for 3 primitives */
 
-/* Lists: [0] their length, then from [2] on pairs: binary node, first position in leaf order. */
-RT_BUILD_KERNEL bvh4_begin(uint count, global uint *roots, global uint *middles, global uint *lows, global uint2 *children,
-                           global uint *wide)
+/* A node that is to be made: the binary node, its first position in leaf order, the number of the wide node, its primitives. Lists of
+ * them: [0].x is their length, and they begin at [1]. */
+typedef uint4 bvh4_task;
+
+/* The tree that is merged, and the one that is made. */
+typedef struct bvh4_trees {
+    const global float *prims, *nodes;  /* rt_prim and rt_topology_node: 8 words each, alike but for the last of each four */
+    const global uint *counts, *order;
+    uint max_leaf, first_node, first_leaf;
+    global float *to;
+    global uint2 *ranges;
+    global uint *leaves, *used; /* *used: nodes that are taken */
+} bvh4_trees;
+#define BVH4_TREES                                                                                                             \
+    const global float *prims, const global float *nodes, const global uint *counts, const global uint *order, uint max_leaf, \
+        uint first_node, uint first_leaf, global float *to, global uint2 *ranges, global uint *leaves, global uint *used
+#define BVH4_TAKE_TREES                                                                                              \
+    const bvh4_trees trees = {prims,      nodes, counts, order,  max_leaf, first_node,                               \
+                              first_leaf, to,    ranges, leaves, used}
+
+/* A child of a wide node. lo.w, hi.w: the children of a binary node. */
+typedef struct bvh4_child {
+    float4 lo, hi;
+    uint code, size;
+} bvh4_child;
+
+RT_INLINE bvh4_child bvh4_load(const bvh4_trees *t, uint code)
 {
-    if (RT_ITEM != 0u) return;
-    roots[0] = count > 1u ? 1u : 0u;
-    roots[2] = roots[3] = 0u;
-    middles[0] = 0u;
-    lows[0] = 0u;
-    if (count < 2u) { /* no binary node: the root is written here */
-        for (uint c = 0u; c < 4u; ++c) children[c] = (uint2)(BVH4_NONE, 0u);
-        if (count == 1u) children[0] = (uint2)(BVH4_SINGLE, 0u);
-        wide[0] = 1u;
+    bvh4_child child;
+    child.code = code;
+    const global float *from;
+    if (code >= BVH4_SINGLE) {
+        child.size = 1u;
+        from = t->prims + 8ul * t->order[code & ~BVH4_SINGLE];
+    } else {
+        child.size = t->counts[code];
+        from = t->nodes + 8ul * code;
+    }
+    child.lo = vload4(0, from);
+    child.hi = vload4(1, from);
+    return child;
+}
+RT_INLINE float bvh4_area(const bvh4_child *child)
+{
+    const float4 size = child->hi - child->lo;
+    return size.x * size.y + size.y * size.z + size.z * size.x;
+}
+
+/* The children of a wide node, in leaf order. Returns how many there are. Indices are constants after unrolling, so that children stay
+ * in registers. */
+RT_INLINE uint bvh4_merge(const bvh4_trees *t, uint binary, bvh4_child child[4])
+{
+    const global float *const node = t->nodes + 8ul * binary;
+    child[0] = bvh4_load(t, as_uint(node[3]));
+    child[1] = bvh4_load(t, as_uint(node[7]));
+    child[2] = child[3] = child[1];
+#pragma unroll
+    for (uint number = 2u; number < 4u; ++number) {
+        uint best = 4u;
+        float largest = -1.0f;
+        bvh4_child opened = child[0];
+#pragma unroll
+        for (uint c = 0u; c < 4u; ++c) {
+            const float area = bvh4_area(&child[c]);
+            if (c >= number || child[c].size <= t->max_leaf || !(best == 4u || area > largest)) continue;
+            best = c;
+            largest = area;
+            opened = child[c];
+        }
+        if (best == 4u) return number;
+#pragma unroll
+        for (uint c = 3u; c > 0u; --c)
+            if (c > best + 1u) child[c] = child[c - 1u];
+        const bvh4_child left = bvh4_load(t, as_uint(opened.lo.w)), right = bvh4_load(t, as_uint(opened.hi.w));
+#pragma unroll
+        for (uint c = 0u; c < 4u; ++c) {
+            if (c == best) child[c] = left;
+            if (c == best + 1u) child[c] = right;
+        }
+    }
+    return 4u;
+}
+
+/* Writes the leaf order of a subtree of at most BVH4_LEAF_MAX primitives. */
+RT_INLINE void bvh4_leaf(const bvh4_trees *t, uint child, global uint *leaves)
+{
+    uint stack[BVH4_LEAF_MAX + 1u], top = 0u;
+    stack[top++] = child;
+    while (top > 0u) {
+        const uint at = stack[--top];
+        if (at >= BVH4_SINGLE) {
+            *leaves++ = t->order[at & ~BVH4_SINGLE];
+        } else {
+            stack[top++] = as_uint(t->nodes[8ul * at + 7u]);
+            stack[top++] = as_uint(t->nodes[8ul * at + 3u]);
+        }
     }
 }
 
-RT_INLINE float bvh4_area(const global bvh4_binary *node)
+/* Writes a wide node. Its inner children have the numbers from `below` on. */
+RT_INLINE void bvh4_write(const bvh4_trees *t, bvh4_task task, const bvh4_child child[4], uint number, uint below)
 {
-    const float x = node->hi[0] - node->lo[0], y = node->hi[1] - node->lo[1], z = node->hi[2] - node->lo[2];
-    return x * y + y * z + z * x;
+    uint code[4], first = task.y;
+    float middle_x = 0.0f, middle_y = 0.0f;
+#pragma unroll
+    for (uint c = 0u; c < 4u; ++c) {
+        code[c] = BVH4_EMPTY;
+        if (c >= number) continue;
+        if (child[c].size > t->max_leaf) {
+            const uint node = t->first_node + below++;
+            code[c] = BVH4_NODE_REF(node);
+        } else {
+            code[c] = BVH4_MAKE_LEAF(t->first_leaf + first, child[c].size);
+            bvh4_leaf(t, child[c].code, t->leaves + first);
+        }
+        first += child[c].size;
+        middle_x += (0.5f * child[c].lo.x + 0.5f * child[c].hi.x) / (float)number;
+        middle_y += (0.5f * child[c].lo.y + 0.5f * child[c].hi.y) / (float)number;
+    }
+    /* Slots as node_slots.cpp assigns them: bit 0 means the high side in x, bit 1 the high side in y. */
+    uint slot_of[4] = {4u, 4u, 4u, 4u}, taken = 0u;
+#pragma unroll
+    for (uint turn = 0u; turn < 4u; ++turn) {
+        uint chosen = 4u, slot = 4u;
+        float best = 0.0f;
+#pragma unroll
+        for (uint c = 0u; c < 4u; ++c) {
+            const float x = 0.5f * child[c].lo.x + 0.5f * child[c].hi.x - middle_x;
+            const float y = 0.5f * child[c].lo.y + 0.5f * child[c].hi.y - middle_y;
+#pragma unroll
+            for (uint s = 0u; s < 4u; ++s) {
+                const float fit = (s & 1u ? x : -x) + (s & 2u ? y : -y);
+                if (c >= number || slot_of[c] < 4u || taken >> s & 1u || !(chosen == 4u || fit > best)) continue;
+                best = fit;
+                chosen = c;
+                slot = s;
+            }
+        }
+        taken |= 1u << slot; /* bit 4 if there was no child left */
+#pragma unroll
+        for (uint c = 0u; c < 4u; ++c)
+            if (c == chosen) slot_of[c] = slot;
+    }
+    const uint index = t->first_node + task.z, turn = index & 7u;
+    t->ranges[index] = (uint2)(task.y, task.w);
+    float row[8][4];
+#pragma unroll
+    for (uint s = 0u; s < 4u; ++s) {
+        float4 lo = (float4)(INFINITY), hi = (float4)(-INFINITY);
+        uint ref = BVH4_EMPTY;
+#pragma unroll
+        for (uint c = 0u; c < 4u; ++c)
+            if (slot_of[c] == s) lo = child[c].lo, hi = child[c].hi, ref = code[c];
+        row[0][s] = lo.x, row[1][s] = lo.y, row[2][s] = lo.z;
+        row[3][s] = hi.x, row[4][s] = hi.y, row[5][s] = hi.z;
+        row[6][s] = as_float(ref), row[7][s] = 0.0f;
+    }
+    global float *const node = t->to + 32ul * index; /* its rows are permuted: bvh4_types.h */
+#pragma unroll
+    for (uint k = 0u; k < 8u; ++k) vstore4((float4)(row[k][0], row[k][1], row[k][2], row[k][3]), k ^ turn, node);
 }
-/* Whether a child is opened further: it has more primitives than a leaf holds. */
-RT_INLINE bool bvh4_opens(const global uint *counts, uint child, uint max_leaf)
-{
-    return child < BVH4_SINGLE && counts[child] > max_leaf;
-}
-RT_INLINE uint bvh4_size(const global uint *counts, uint child) { return child < BVH4_SINGLE ? counts[child] : 1u; }
 
-/* Descends from each subtree of the list `from` to those of at most `least` primitives, which it adds to the list `to`. The last
- * pass has `least` == max_leaf, and adds none. children: four for each binary node; wide: 1 for those that become wide nodes. */
-RT_BUILD_KERNEL bvh4_open(const global bvh4_binary *nodes, const global uint *counts, uint max_leaf, uint least,
-                          const global uint *from, global uint *to, global uint2 *children, global uint *wide)
+/* What the work-items of a group share while they make nodes in rounds. Two sets of counts: one is cleared while the other is in
+ * use. */
+typedef struct bvh4_round {
+    uint nodes[2], subtrees[2], busy[2], first_node, first_subtree;
+} bvh4_round;
+
+/* Says that no node is made and no list is long, and writes the root of a tree of less than two primitives, which has no binary
+ * node. */
+RT_BUILD_KERNEL bvh4_begin(BVH4_TREES, uint count, uint elements, uint each, global uint4 *lists, uint list_count, uint list_places)
 {
-    local uint2 level[2][BVH4_LEVEL];
+    const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, elements);
+    for (uint e = begin + RT_ITEM; e < end; e += RT_GROUP) ranges[first_node + e] = (uint2)(0u, 0u);
+    if (RT_GROUP_NUMBER != 0u) return;
+    RT_GLOBAL_BARRIER();
+    if (RT_ITEM != 0u) return;
+    lists[0] = (uint4)(count > 1u ? 1u : 0u, 0u, 0u, 0u);
+    lists[1] = (uint4)(0u, 0u, 0u, count);
+    for (uint l = 0u; l < list_count; ++l) lists[2u + l * list_places] = (uint4)(0u);
+    *used = 1u;
+    if (count > 1u) return;
+    BVH4_TAKE_TREES;
+    bvh4_child child[4];
+    for (uint c = 0u; c < 4u; ++c) {
+        child[c].lo = child[c].hi = (float4)(0.0f);
+        child[c].code = child[c].size = 0u;
+    }
+    if (count == 1u) child[0] = bvh4_load(&trees, BVH4_SINGLE);
+    bvh4_write(&trees, (bvh4_task)(0u, 0u, 0u, count), child, count, 0u);
+}
+
+/* Descends from each subtree of the list `from` to those of at most `least` primitives, which it adds to the list `to_list`. */
+RT_BUILD_KERNEL bvh4_open(BVH4_TREES, uint least, global uint4 *lists, uint from, uint to_list)
+{
+    local bvh4_task level[2][BVH4_LEVEL];
     local uint size[2];
-    const uint subtrees = from[0];
+    local bvh4_round round;
+    BVH4_TAKE_TREES;
+    global uint4 *const found = lists + to_list;
+    const uint subtrees = lists[from].x;
+    if (RT_ITEM == 0u) round.nodes[0] = round.subtrees[0] = 0u;
+    uint set = 0u;
     for (uint s = RT_GROUP_NUMBER; s < subtrees; s += (uint)get_num_groups(0)) {
         if (RT_ITEM == 0u) {
-            level[0][0] = vload2(1u + s, from);
+            level[0][0] = lists[from + 1u + s];
             size[0] = 1u;
             size[1] = 0u;
         }
         RT_LOCAL_BARRIER();
         uint side = 0u;
         for (uint now = size[0]; now > 0u; now = size[side]) {
-            for (uint i = RT_ITEM; i < now; i += RT_GROUP) {
-                const uint2 at = level[side][i];
-                uint child[4] = {nodes[at.x].left, nodes[at.x].right, BVH4_NONE, BVH4_NONE};
-                uint number = 2u;
-                for (; number < 4u; ++number) {
-                    uint best = 4u;
-                    float largest = -1.0f;
-                    for (uint c = 0u; c < number; ++c)
-                        if (bvh4_opens(counts, child[c], max_leaf)) {
-                            const float area = bvh4_area(nodes + child[c]);
-                            if (best == 4u || area > largest) best = c, largest = area;
-                        }
-                    if (best == 4u) break;
-                    const uint opened = child[best];
-                    for (uint c = number; c > best + 1u; --c) child[c] = child[c - 1u]; /* children stay in leaf order */
-                    child[best] = nodes[opened].left;
-                    child[best + 1u] = nodes[opened].right;
-                }
-                uint first = at.y;
-                for (uint c = 0u; c < 4u; ++c) {
-                    children[4u * at.x + c] = (uint2)(child[c], first);
-                    if (c >= number) continue;
-                    const uint below = bvh4_size(counts, child[c]);
-                    if (bvh4_opens(counts, child[c], max_leaf)) {
-                        if (below > least)
-                            level[1u - side][atomic_inc(&size[1u - side])] = (uint2)(child[c], first);
-                        else
-                            vstore2((uint2)(child[c], first), 1u + atomic_inc(&to[0]), to);
+            for (uint begin = 0u; begin < now; begin += RT_GROUP) {
+                const bool there = begin + RT_ITEM < now;
+                bvh4_child child[4];
+                bvh4_task task = (bvh4_task)(0u);
+                uint number = 0u, inner = 0u, small = 0u;
+                if (there) {
+                    task = level[side][begin + RT_ITEM];
+                    number = bvh4_merge(&trees, task.x, child);
+                    for (uint c = 0u; c < number; ++c) {
+                        if (child[c].size <= max_leaf) continue;
+                        ++inner;
+                        if (child[c].size <= least) ++small;
                     }
-                    first += below;
                 }
-                wide[at.x] = 1u;
+                uint node = inner ? atomic_add(&round.nodes[set], inner) : 0u;
+                uint subtree = small ? atomic_add(&round.subtrees[set], small) : 0u;
+                RT_LOCAL_BARRIER();
+                if (RT_ITEM == 0u) {
+                    round.first_node = round.nodes[set] ? atomic_add(used, round.nodes[set]) : 0u;
+                    round.first_subtree = round.subtrees[set] ? atomic_add((global uint *)found, round.subtrees[set]) : 0u;
+                    round.nodes[1u - set] = round.subtrees[1u - set] = 0u;
+                }
+                RT_LOCAL_BARRIER();
+                set = 1u - set;
+                if (!there) continue;
+                node += round.first_node;
+                subtree += round.first_subtree;
+                bvh4_write(&trees, task, child, number, node);
+                uint first = task.y;
+                for (uint c = 0u; c < number; ++c) {
+                    const bvh4_task below = (bvh4_task)(child[c].code, first, node, child[c].size);
+                    first += child[c].size;
+                    if (child[c].size <= max_leaf) continue;
+                    ++node;
+                    if (child[c].size > least)
+                        level[1u - side][atomic_inc(&size[1u - side])] = below;
+                    else
+                        found[1u + subtree++] = below;
+                }
             }
             RT_LOCAL_BARRIER();
             if (RT_ITEM == 0u) size[side] = 0u;
@@ -105,82 +274,49 @@ RT_BUILD_KERNEL bvh4_open(const global bvh4_binary *nodes, const global uint *co
     }
 }
 
-/* Writes the leaf order of a subtree of at most BVH4_LEAF_MAX primitives. */
-RT_INLINE void bvh4_leaf(const global bvh4_binary *nodes, const global uint *order, uint child, global uint *leaves)
+/* Makes the subtrees of a list, each by one work-item: of at most 32 primitives. */
+RT_BUILD_KERNEL bvh4_close(BVH4_TREES, global uint4 *lists, uint from)
 {
-    uint stack[BVH4_LEAF_MAX + 1u], top = 0u;
-    stack[top++] = child;
-    while (top > 0u) {
-        const uint at = stack[--top];
-        if (at >= BVH4_SINGLE) {
-            *leaves++ = order[at & ~BVH4_SINGLE];
-        } else {
-            stack[top++] = nodes[at].right;
-            stack[top++] = nodes[at].left;
-        }
-    }
-}
-
-/* Writes the wide nodes, each at its number: at[b] is the sum of `wide` before binary node b. They begin at element first_node;
- * there are `elements` elements for them, and those that are left over become no nodes. */
-RT_BUILD_KERNEL bvh4_write(const global rt_build_box *prims, const global bvh4_binary *nodes, const global uint *counts,
-                           const global uint *order, uint count, uint binaries, uint elements, uint each, uint max_leaf,
-                           const global uint2 *children, const global uint *at, uint first_node, uint first_leaf,
-                           global float *to, global uint2 *ranges, global uint *leaves)
-{
-    const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, max(binaries, elements)), used = at[binaries];
-    for (uint b = begin + RT_ITEM; b < end; b += RT_GROUP) {
-        if (b >= used && b < elements) ranges[first_node + b] = (uint2)(0u, 0u);
-        if (b >= binaries || at[b] == at[b + 1u]) continue;
-        float box[4][6], place[4][2], middle[2] = {0.0f, 0.0f};
-        uint code[4], number = 0u;
-        for (; number < 4u; ++number) {
-            const uint2 child = children[4u * b + number];
-            if (child.x == BVH4_NONE) break;
-            for (uint a = 0u; a < 3u; ++a) {
-                const bool single = child.x >= BVH4_SINGLE;
-                const uint prim = single ? order[child.x & ~BVH4_SINGLE] : 0u;
-                box[number][a] = single ? prims[prim].lo[a] : nodes[child.x].lo[a];
-                box[number][3u + a] = single ? prims[prim].hi[a] : nodes[child.x].hi[a];
+    local bvh4_round round;
+    BVH4_TAKE_TREES;
+    const uint subtrees = lists[from].x;
+    if (RT_ITEM == 0u) round.nodes[0] = round.busy[0] = 0u;
+    RT_LOCAL_BARRIER();
+    uint set = 0u;
+    for (uint begin = RT_GROUP_NUMBER * RT_GROUP; begin < subtrees; begin += (uint)get_num_groups(0) * RT_GROUP) {
+        bvh4_task pending[BVH4_PENDING];
+        uint top = 0u;
+        if (begin + RT_ITEM < subtrees) pending[top++] = lists[from + 1u + begin + RT_ITEM];
+        for (bool busy = true; busy;) {
+            bvh4_child child[4];
+            bvh4_task task = (bvh4_task)(0u);
+            uint number = 0u, inner = 0u;
+            if (top > 0u) {
+                task = pending[--top];
+                number = bvh4_merge(&trees, task.x, child);
+#pragma unroll
+                for (uint c = 0u; c < 4u; ++c) inner += c < number && child[c].size > max_leaf ? 1u : 0u;
             }
-            for (uint a = 0u; a < 2u; ++a) place[number][a] = 0.5f * box[number][a] + 0.5f * box[number][3u + a];
-            if (bvh4_opens(counts, child.x, max_leaf)) {
-                code[number] = BVH4_NODE_REF(first_node + at[child.x]);
-            } else {
-                code[number] = BVH4_MAKE_LEAF(first_leaf + child.y, bvh4_size(counts, child.x));
-                bvh4_leaf(nodes, order, child.x, leaves + child.y);
+            uint node = inner ? atomic_add(&round.nodes[set], inner) : 0u;
+            if (top + inner > 0u) round.busy[set] = 1u; /* all write the same */
+            RT_LOCAL_BARRIER();
+            busy = round.busy[set] != 0u;
+            if (RT_ITEM == 0u) {
+                round.first_node = round.nodes[set] ? atomic_add(used, round.nodes[set]) : 0u;
+                round.nodes[1u - set] = round.busy[1u - set] = 0u;
             }
-        }
-        for (uint c = 0u; c < number; ++c)
-            for (uint a = 0u; a < 2u; ++a) middle[a] += place[c][a] / (float)number;
-        /* Slots as node_slots.cpp assigns them: bit 0 means the high side in x, bit 1 the high side in y. */
-        uint child_of[4] = {4u, 4u, 4u, 4u}, placed = 0u;
-        for (uint left = number; left > 0u; --left) {
-            uint child = 4u, slot = 4u;
-            float best = 0.0f;
-            for (uint c = 0u; c < number; ++c)
-                for (uint s = 0u; s < 4u; ++s) {
-                    if (placed >> c & 1u || child_of[s] < 4u) continue;
-                    const float x = place[c][0] - middle[0], y = place[c][1] - middle[1];
-                    const float fit = (s & 1u ? x : -x) + (s & 2u ? y : -y);
-                    if (child < 4u && !(fit > best)) continue;
-                    best = fit;
-                    child = c;
-                    slot = s;
-                }
-            child_of[slot] = child;
-            placed |= 1u << child;
-        }
-        const uint index = first_node + at[b];
-        ranges[index] = number > 0u ? (uint2)(children[4u * b].y, count > 1u ? counts[b] : count) : (uint2)(0u, 0u);
-        global float *const node = to + 32u * (ulong)index; /* its rows are permuted: bvh4_types.h */
-        global uint *const codes = (global uint *)node;
-        for (uint s = 0u; s < 4u; ++s) {
-            const uint c = child_of[s];
-            for (uint k = 0u; k < 6u; ++k)
-                node[4u * (k ^ (index & 7u)) + s] = c < 4u ? box[c][k] : k < 3u ? INFINITY : -INFINITY;
-            codes[4u * (6u ^ (index & 7u)) + s] = c < 4u ? code[c] : BVH4_EMPTY;
-            codes[4u * (7u ^ (index & 7u)) + s] = 0u;
+            RT_LOCAL_BARRIER();
+            set = 1u - set;
+            if (number == 0u) continue;
+            node += round.first_node;
+            bvh4_write(&trees, task, child, number, node);
+            uint first = task.y;
+#pragma unroll
+            for (uint c = 0u; c < 4u; ++c) {
+                if (c >= number) continue;
+                if (child[c].size > max_leaf) pending[top++] = (bvh4_task)(child[c].code, first, node++, child[c].size);
+                first += child[c].size;
+            }
         }
     }
 }

@@ -1,6 +1,8 @@
 #include "device_build.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <vector>
 
 #include "clarity_bvh/parameters.hpp"
 #include "clarity_bvh/refit/refit.hpp"
@@ -16,9 +18,9 @@ namespace {
 using rt::number;
 using rt::of;
 
-// The most primitives of a subtree in which the second and the third pass begin. A level of a pass then has fewer than 1024
-// nodes (BVH4_LEVEL): trees have less than 2^28 primitives.
-constexpr uint64_t kMiddle = 1u << 18, kLow = 1u << 9;
+// The most primitives of the subtrees to which the passes descend. A level of a pass has fewer than 1024 nodes then
+// (BVH4_LEVEL): trees have less than 2^28 primitives. Each of the smallest is made by one work-item (BVH4_PENDING).
+constexpr uint64_t kSubtrees[] = {1u << 23, 1u << 14, 1u << 5};
 constexpr uint64_t kGroupsPerUnit = 16;  // work-groups of a pass over many subtrees
 
 }  // namespace
@@ -31,32 +33,39 @@ uint64_t device_elements(rt_u32, uint64_t count, const double*) {
 
 int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_input* input,
                     const rt_device_topology* topology, const rt_device_tree* tree, const rt_device_output* out) {
-    const uint64_t n = input->count, each = rt::elements_each(plan), binaries = std::max<uint64_t>(n, 2) - 1;
-    const uint64_t list = 4 * n + 32, many = plan->units * kGroupsPerUnit;  // disjoint subtrees of two primitives or more
+    const uint64_t n = input->count, each = rt::elements_each(plan), elements = tree->element_count[0];
     const uint32_t max_leaf = clarity::bvh::wide_rules(input->params).max_leaf;
+    // Lists of subtrees, which do not overlap: the first has the root alone, the others a subtree for two primitives at most.
+    const uint64_t places = n / 2 + 1, passes = std::size(kSubtrees);
     rt::DeviceSteps steps(plan);
-    const rt_u32 roots = steps.buffer(list), middles = steps.buffer(n > kMiddle ? list : 32), lows = steps.buffer(list);
-    const rt_u32 children = steps.buffer(32 * binaries), wide = steps.buffer(4 * (binaries + 1));
-    const auto pass = [&](rt_u32 from, rt_u32 to, uint64_t groups, uint64_t least) {
-        steps.launch("bvh4_open", groups,
-                     {of(topology->nodes), of(topology->counts), number(max_leaf), number(least), of(from), of(to),
-                      of(children), of(wide)});
+    const rt_u32 lists = steps.buffer(16 * (2 + passes * places)), used = steps.buffer(4);
+    const auto launch = [&](const char* kernel, uint64_t groups, std::initializer_list<rt_device_arg> more) {
+        std::vector<rt_device_arg> args = {of(input->prims),
+                                           of(topology->nodes),
+                                           of(topology->counts),
+                                           of(topology->order),
+                                           number(max_leaf),
+                                           number(tree->first_element[0]),
+                                           number(tree->first_leaf),
+                                           of(tree->slots[0]),
+                                           of(tree->ranges),
+                                           of(out->leaves),
+                                           of(used)};
+        args.insert(args.end(), more);
+        steps.launch(kernel, groups, args);
     };
-    steps.fill(wide, binaries + 1, 0);
-    steps.launch("bvh4_begin", 1, {number(n), of(roots), of(middles), of(lows), of(children), of(wide)});
-    if (n > kMiddle) {
-        pass(roots, middles, 1, kMiddle);
-        pass(middles, lows, many, kLow);
-    } else if (n > kLow) {
-        pass(roots, lows, 1, kLow);
+    launch("bvh4_begin", (elements + each - 1) / each,
+           {number(n), number(elements), number(each), of(lists), number(passes), number(places)});
+    uint64_t from = 0, groups = 1;
+    for (size_t pass = 0; pass < passes; ++pass) {
+        if (n <= kSubtrees[pass]) continue;
+        const uint64_t to = 2 + pass * places;
+        launch("bvh4_open", groups, {number(kSubtrees[pass]), of(lists), number(from), number(to)});
+        from = to;
+        groups = plan->units * kGroupsPerUnit;
     }
-    if (n > 1) pass(n > kLow ? lows : roots, middles, n > kLow ? many : 1, max_leaf);
-    steps.scan(wide, binaries + 1);
-    const uint64_t elements = tree->element_count[0];
-    steps.launch("bvh4_write", (std::max(binaries, elements) + each - 1) / each,
-                 {of(input->prims), of(topology->nodes), of(topology->counts), of(topology->order), number(n), number(binaries),
-                  number(elements), number(each), number(max_leaf), of(children), of(wide), number(tree->first_element[0]),
-                  number(tree->first_leaf), of(tree->slots[0]), of(tree->ranges), of(out->leaves)});
+    const uint64_t needed = places / plan->group_items + 1;
+    if (n > 1) launch("bvh4_close", std::min(groups == 1 ? 1 : needed, plan->units * kGroupsPerUnit), {of(lists), number(from)});
     out->root(out->ctx, static_cast<rt_u32>(tree->first_element[0]));
     out->define(out->ctx, "BVH4_STACK", clarity::bvh::stack_places(3 * topology->depth));
     return steps.result();
