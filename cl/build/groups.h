@@ -4,7 +4,7 @@
  * group's work in a loop, which is the faster way there, and no barrier is needed.
  *
  * OpenCL 1.2 promises neither order nor progress between work-groups. So no group waits for another, and nothing that one group
- * writes is read by another of the same launch. */
+ * writes is read by another of the same launch, unless RT_DEVICE_FENCE is there. */
 #ifndef RT_GROUPS_H
 #define RT_GROUPS_H
 
@@ -44,5 +44,43 @@
     }
 RT_DEFINE_GROUP_SCAN(rt_group_scan, uint)
 RT_DEFINE_GROUP_SCAN(rt_group_scan4, uint4)
+#endif
+
+/* On NVIDIA's devices (RT_WARPS) 32 neighbouring work-items of a group, a warp, talk to each other by instructions of PTX. All
+ * work-items of the warp call each of these together. */
+#define RT_WARP 32u
+#ifdef RT_WARPS
+/* The bits of the work-items of the warp that have the same value. */
+RT_INLINE uint rt_match(uint value)
+{
+    uint bits;
+    __asm__ volatile("match.any.sync.b32 %0, %1, 0xffffffff;" : "=r"(bits) : "r"(value) : "memory");
+    return bits;
+}
+/* The bits of those for which `is` is true. */
+RT_INLINE uint rt_ballot(bool is)
+{
+    uint bits;
+    __asm__ volatile("{ .reg .pred p; setp.ne.u32 p, %1, 0; vote.sync.ballot.b32 %0, p, 0xffffffff; }"
+                     : "=r"(bits)
+                     : "r"((uint)is)
+                     : "memory");
+    return bits;
+}
+/* The value that work-item `lane` of the warp has. */
+RT_INLINE uint rt_shuffle(uint value, uint lane)
+{
+    uint of_lane;
+    __asm__ volatile("shfl.sync.idx.b32 %0, %1, %2, 0x1f, 0xffffffff;" : "=r"(of_lane) : "r"(value), "r"(lane) : "memory");
+    return of_lane;
+}
+RT_INLINE float rt_shuffle_float(float value, uint lane) { return as_float(rt_shuffle(as_uint(value), lane)); }
+#define RT_WARP_BARRIER() __asm__ volatile("bar.warp.sync 0xffffffff;" ::: "memory")
+/* What this work-item has written is seen by those that see, after a fence of their own, what it writes next; on the whole device
+ * (NVIDIA, PTX ISA, "Memory Consistency Model"). So the last of several work-groups to arrive may go on with what the others have
+ * written. None may wait for another. */
+#define RT_DEVICE_FENCE() __asm__ volatile("fence.acq_rel.gpu;" ::: "memory")
+#else
+#define RT_WARP_BARRIER() RT_LOCAL_BARRIER()
 #endif
 #endif

@@ -25,6 +25,11 @@ RT_INLINE void rt_add_box(rt_build_bounds *b, const global rt_build_box *box)
     }
 }
 
+RT_INLINE void rt_add_bounds(rt_build_bounds *b, const global rt_build_bounds *more)
+{
+    for (uint k = 0u; k < 12u; ++k) b->at[k] = k < 6u ? min(b->at[k], more->at[k]) : max(b->at[k], more->at[k]);
+}
+
 #if RT_GROUP == 1
 #define RT_SHARED_BOUNDS
 #define RT_ALL_BOUNDS(b)
@@ -64,8 +69,7 @@ RT_BUILD_KERNEL reduce_parts(const global rt_build_bounds *parts, uint count, gl
 {
     RT_SHARED_BOUNDS
     rt_build_bounds b = rt_no_bounds();
-    for (uint i = RT_ITEM; i < count; i += RT_GROUP)
-        for (uint k = 0u; k < 12u; ++k) b.at[k] = k < 6u ? min(b.at[k], parts[i].at[k]) : max(b.at[k], parts[i].at[k]);
+    for (uint i = RT_ITEM; i < count; i += RT_GROUP) rt_add_bounds(&b, parts + i);
     RT_ALL_BOUNDS(&b);
     if (RT_ITEM == 0u) *result = b;
 }

@@ -2,7 +2,10 @@
  * tile, scan the counts (scan.cl), then move each pair to its place (Satish, Harris, Garland 2009, "Designing Efficient Sorting
  * Algorithms for Manycore GPUs"). RT_KEY is uint or ulong, RT_SORT_TILE the number of pairs in a tile.
  *
- * counts[digit * tiles + tile]: so the scan over all of them gives the place of a tile's first pair with that digit. */
+ * counts[digit * tiles + tile]: so the scan over all of them gives the place of a tile's first pair with that digit.
+ *
+ * With few tiles, launches cost more than the work. Then the counts of pass p are counts[(p * tiles + tile) * RT_DIGITS + digit]:
+ * sort_move adds those of all tiles itself, and counts the digits of the next pass while it moves pairs. */
 #define RT_DIGITS 256u
 #define RT_DIGIT(key) ((uint)((key) >> shift) & mask)
 
@@ -35,8 +38,8 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
 
 #else
 
-/* A team is 32 neighbouring work-items: a warp on NVIDIA's devices. */
-#define RT_TEAM 32u
+/* A team is 32 neighbouring work-items. */
+#define RT_TEAM RT_WARP
 #define RT_TEAMS (RT_GROUP / RT_TEAM)
 #define RT_SORT_ROUNDS (RT_SORT_TILE / RT_GROUP)
 #define RT_NO_DIGIT 0xFFFFFFFFu
@@ -53,30 +56,33 @@ RT_BUILD_KERNEL sort_count(const global RT_KEY *keys, uint count, uint shift, ui
     for (uint d = item; d <= mask; d += RT_GROUP) counts[d * tiles + tile] = found[d];
 }
 
-#ifdef RT_MATCH_PTX
-/* The bits of the work-items of this team that have the same digit. */
-RT_INLINE uint rt_match(uint digit)
+/* The same for few tiles. Clears the counts of the passes after the first. */
+RT_BUILD_KERNEL sort_count_few(const global RT_KEY *keys, uint count, uint shift, uint mask, global uint *counts, uint passes)
 {
-    uint bits;
-    __asm__ volatile("match.any.sync.b32 %0, %1, 0xffffffff;" : "=r"(bits) : "r"(digit) : "memory");
-    return bits;
+    local uint found[RT_DIGITS];
+    const uint tile = RT_GROUP_NUMBER, tiles = (uint)get_num_groups(0), item = RT_ITEM;
+    const uint begin = tile * RT_SORT_TILE, end = min(begin + RT_SORT_TILE, count);
+    found[item] = 0u;
+    RT_LOCAL_BARRIER();
+    for (uint i = begin + item; i < end; i += RT_GROUP) atomic_inc(&found[RT_DIGIT(keys[i])]);
+    RT_LOCAL_BARRIER();
+    for (uint p = 0u; p < passes; ++p) counts[(p * tiles + tile) * RT_DIGITS + item] = p == 0u ? found[item] : 0u;
 }
-#define RT_TEAM_BARRIER() __asm__ volatile("bar.warp.sync 0xffffffff;" ::: "memory")
-#else
-#define RT_TEAM_BARRIER() RT_LOCAL_BARRIER()
-#endif
 
-/* Pairs are ranked in rounds. In each round a team takes 32 neighbouring pairs. A pair's rank is the number of pairs with its
+/* few: there are few tiles, and this is pass `pass`; next_mask is 0 in the last one.
+ *
+ * Pairs are ranked in rounds. In each round a team takes 32 neighbouring pairs. A pair's rank is the number of pairs with its
  * digit that the team had in earlier rounds, plus those of lower work-items in this round. Then the tile is put in order in local
  * memory, so that neighbours are written to neighbouring places. */
 RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, uint count, uint shift, uint mask,
-                          const global uint *places, global RT_KEY *to_keys, global uint *to_values)
+                          global uint *places, global RT_KEY *to_keys, global uint *to_values, uint few, uint pass,
+                          uint next_shift, uint next_mask)
 {
     local uint of_team[RT_TEAMS * RT_DIGITS]; /* pairs of a digit so far; later, where the team's pairs of it begin in the tile */
     local uint shared[2u * RT_GROUP], to_place[RT_DIGITS];
     local RT_KEY sorted_keys[RT_SORT_TILE];
     local uint sorted_values[RT_SORT_TILE];
-#ifndef RT_MATCH_PTX
+#ifndef RT_WARPS
     local uint same[RT_TEAMS * RT_DIGITS];
 #endif
     const uint tile = RT_GROUP_NUMBER, tiles = (uint)get_num_groups(0), item = RT_ITEM;
@@ -84,7 +90,7 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
     const uint team = item / RT_TEAM, lane = item % RT_TEAM, lower = (1u << lane) - 1u;
     for (uint i = item; i < RT_TEAMS * RT_DIGITS; i += RT_GROUP) {
         of_team[i] = 0u;
-#ifndef RT_MATCH_PTX
+#ifndef RT_WARPS
         same[i] = 0u;
 #endif
     }
@@ -100,7 +106,7 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
     for (uint r = 0u; r < RT_SORT_ROUNDS; ++r) {
         const bool there = (team * RT_SORT_ROUNDS + r) * RT_TEAM + lane < in_tile;
         const uint digit = there ? RT_DIGIT(key[r]) : RT_NO_DIGIT, entry = team * RT_DIGITS + (there ? digit : 0u);
-#ifdef RT_MATCH_PTX
+#ifdef RT_WARPS
         const uint bits = rt_match(digit);
 #else
         if (there) atomic_or(&same[entry], 1u << lane);
@@ -108,14 +114,14 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
         const uint bits = there ? same[entry] : 0u;
 #endif
         rank[r] = of_team[entry] + popcount(bits & lower);
-        RT_TEAM_BARRIER();
+        RT_WARP_BARRIER();
         if (there && (bits & lower) == 0u) {
             of_team[entry] += popcount(bits);
-#ifndef RT_MATCH_PTX
+#ifndef RT_WARPS
             same[entry] = 0u;
 #endif
         }
-        RT_TEAM_BARRIER();
+        RT_WARP_BARRIER();
     }
     RT_LOCAL_BARRIER();
 
@@ -123,7 +129,20 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
     uint in_digit = 0u, ignored;
     for (uint t = 0u; t < RT_TEAMS; ++t) in_digit += of_team[t * RT_DIGITS + item];
     uint next = rt_group_scan(shared, in_digit, &ignored);
-    to_place[item] = item <= mask ? places[item * tiles + tile] - next : 0u;
+    uint place = 0u;
+    if (few) {
+        places += pass * tiles * RT_DIGITS;
+        uint before = 0u, all = 0u;
+        for (uint t = 0u; t < tiles; ++t) {
+            const uint in_other = places[t * RT_DIGITS + item];
+            before += t < tile ? in_other : 0u;
+            all += in_other;
+        }
+        place = rt_group_scan(shared, all, &ignored) + before;
+    } else if (item <= mask) {
+        place = places[item * tiles + tile];
+    }
+    to_place[item] = place - next;
     for (uint t = 0u; t < RT_TEAMS; ++t) {
         const uint more = of_team[t * RT_DIGITS + item];
         of_team[t * RT_DIGITS + item] = next;
@@ -143,6 +162,8 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
         const uint at = to_place[RT_DIGIT(k)] + i;
         to_keys[at] = k;
         to_values[at] = sorted_values[i];
+        if (few && next_mask)
+            atomic_inc(&places[(tiles + at / RT_SORT_TILE) * RT_DIGITS + ((uint)(k >> next_shift) & next_mask)]);
     }
 }
 #endif

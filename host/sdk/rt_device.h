@@ -10,8 +10,8 @@
  * same build on the host, for devices that cannot run it.
  *
  * Kernels are OpenCL C 1.2 behind cl/build/groups.h (RT_BUILD_KERNEL, RT_GROUP work-items a group, RT_ITEM, RT_GROUP_NUMBER) and
- * cl/build/blocks.h. No group may wait for another, and nothing that a group writes is read by another group of the same launch; the
- * steps of a plan run one after the other. RT_GROUP is 1 on a CPU, so each kernel must be right for any power of two up to 256.
+ * cl/build/blocks.h. No group may wait for another, and nothing that a group writes is read by another group of the same launch,
+ * unless there are warps (RT_WARPS) and both use RT_DEVICE_FENCE; the steps of a plan run one after the other. RT_GROUP is 1 on a CPU, so each kernel must be right for any power of two up to 256.
  *
  * Structs grow as those of rt_plugin.h do. */
 #ifndef RT_DEVICE_H
@@ -36,7 +36,7 @@ typedef struct rt_device_plan {
     rt_u32 struct_bytes;
     rt_u32 group_items; /* RT_GROUP */
     rt_u32 units;       /* compute units of the device */
-    rt_u32 pad;
+    rt_u32 has_warps;   /* 1: kernels have RT_WARPS */
     void *ctx;
     /* Memory of the plan, of unknown content; it keeps its content from step to step. RT_NONE: failed. */
     rt_u32 (*buffer)(void *ctx, uint64_t bytes);
@@ -54,6 +54,9 @@ typedef struct rt_device_plan {
     /* A step: the blocks (rt_block) of `count` boxes (rt_prim). order: a buffer of uint, which box stands at each place; RT_NONE: as
      * they are. Returns their buffer; RT_NONE: failed. */
     rt_u32 (*blocks)(void *ctx, rt_u32 boxes, rt_u32 order, uint64_t count);
+    /* A step: keys[i] (ulong) becomes the Morton code of the centre of box i (rt_prim), with axis_bits (1 to 21) bits for each axis,
+     * x before y before z from the highest bit on; values[i] (uint) becomes i. Cells are cubes, and hold all centres. */
+    int32_t (*codes)(void *ctx, rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 values);
 } rt_device_plan;
 
 typedef struct rt_device_input {

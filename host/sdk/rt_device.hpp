@@ -28,6 +28,9 @@ class DeviceSteps {
         ok_ = ok_ && made != RT_NONE;
         return made;
     }
+    void codes(rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 values) {
+        step(plan_->codes, boxes, count, axis_bits, keys, values);
+    }
     int32_t result() const { return ok_ ? RT_OK : RT_FAILED; }
 
  private:

@@ -12,8 +12,8 @@ namespace {
 // CL_DEVICE_COMPUTE_CAPABILITY_MAJOR_NV of the extension cl_nv_device_attribute_query.
 constexpr cl_device_info kComputeCapability = 0x4000;
 
-// NVIDIA's instruction `match` finds equal digits in a warp. It came with compute capability 7.
-bool has_match(const DeviceInfo& info) {
+// NVIDIA's instructions for warps, as groups.h uses them, came with compute capability 7.
+bool has_warps(const DeviceInfo& info) {
     cl_uint major = 0;
     return info.nvidia && clGetDeviceInfo(info.cl_device(), kComputeCapability, sizeof major, &major, nullptr) == CL_SUCCESS &&
            major >= 7;
@@ -22,13 +22,15 @@ bool has_match(const DeviceInfo& info) {
 }  // namespace
 
 BuildKernels::BuildKernels(std::shared_ptr<Device> device, BuildForm form)
-    : device_(std::move(device)), serial_(form == BuildForm::serial || (form == BuildForm::automatic && device_->info().cpu)) {}
+    : device_(std::move(device)),
+      serial_(form == BuildForm::serial || (form == BuildForm::automatic && device_->info().cpu)),
+      warps_(!serial_ && has_warps(device_->info())) {}
 
 cl::Program BuildKernels::compile(const std::string& text, const std::string& what, const std::string& more_options) const {
     std::string options = "-cl-std=CL1.2 -DRT_GROUP=" + std::to_string(group()) +
                           " -DRT_SORT_TILE=" + std::to_string(sort_tile()) + "u -DRT_SCAN_TILE=" + std::to_string(scan_tile()) +
                           "u";
-    if (!serial_ && has_match(device_->info())) options += " -DRT_MATCH_PTX";
+    if (warps_) options += " -DRT_WARPS";
     std::string headers;
     for (const std::string name : {"build/groups.h", "build/blocks.h"})
         headers += "#line 1 \"cl/" + name + "\"\n" + kernel_text(name);

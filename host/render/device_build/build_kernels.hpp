@@ -25,6 +25,8 @@ class BuildKernels {
     Device& device() const { return *device_; }
     bool serial() const { return serial_; }
     unsigned group() const { return serial_ ? 1 : 256; }  // work-items of a work-group: RT_GROUP
+    // Whether work-items of a warp talk to each other: RT_WARPS of groups.h.
+    bool warps() const { return warps_; }
     unsigned sort_tile() const { return serial_ ? 8192 : 2048; }
     unsigned scan_tile() const { return 4096; }
 
@@ -41,7 +43,7 @@ class BuildKernels {
 
  private:
     const std::shared_ptr<Device> device_;
-    const bool serial_;
+    const bool serial_, warps_;
     mutable std::map<std::string, cl::Program> programs_;  // by options and text
 };
 

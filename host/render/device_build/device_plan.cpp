@@ -5,7 +5,7 @@
 #include "device/kernel_files.hpp"
 #include "plugin/host_services.hpp"
 #include "render/device_build/device_blocks.hpp"
-#include "render/device_build/device_reduce.hpp"
+#include "render/device_build/device_curve.hpp"
 #include "render/device_build/device_sort.hpp"
 
 namespace clarity {
@@ -102,6 +102,16 @@ struct DevicePlan::Calls {
             plan.steps_.push_back([reducer, reduced, count, to] { reducer->run(reduced, 0, count, to); });
         });
     }
+    static int32_t codes(void* ctx, rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 values) {
+        return guarded(ctx, [&](DevicePlan& plan) {
+            const cl::Buffer from = known(plan, boxes), to_keys = known(plan, keys), to_values = known(plan, values);
+            if (axis_bits < 1 || axis_bits > 21)
+                throw Error(Exit::failed, "it asked for codes of " + std::to_string(axis_bits) + " bits an axis: 1 to 21 fit");
+            const auto curve = std::make_shared<DeviceCurve>(plan.kernels_);
+            plan.bytes_ += curve->bytes();
+            plan.steps_.push_back([=] { curve->run(from, count, axis_bits, to_keys, to_values); });
+        });
+    }
     static rt_u32 blocks(void* ctx, rt_u32 boxes, rt_u32 order, uint64_t count) {
         rt_u32 number = RT_NONE;
         guarded(ctx, [&](DevicePlan& plan) {
@@ -136,6 +146,7 @@ void DevicePlan::plan(const rt_plugin& plugin, const rt_device_build& build,
     table.struct_bytes = sizeof table;
     table.group_items = kernels_.group();
     table.units = kernels_.device().info().compute_units;
+    table.has_warps = kernels_.warps();
     table.ctx = this;
     table.buffer = Calls::buffer;
     table.launch = Calls::launch;
@@ -144,6 +155,7 @@ void DevicePlan::plan(const rt_plugin& plugin, const rt_device_build& build,
     table.scan = Calls::scan;
     table.bounds = Calls::bounds;
     table.blocks = Calls::blocks;
+    table.codes = Calls::codes;
     why_.clear();
     Progress progress;
     HostServices services(name, progress);

@@ -17,13 +17,22 @@ class DeviceReduce {
     // Writes the bounds of boxes[first] to boxes[first + count - 1] (rt_prim) to `result`, a DeviceBounds. Only enqueues.
     void run(const cl::Buffer& boxes, uint64_t first, uint64_t count, const cl::Buffer& result);
 
+    // The same, but `parts()` receives the bounds of parts of the boxes. Returns how many: at most kFewParts.
+    uint64_t run_parts(const cl::Buffer& boxes, uint64_t first, uint64_t count);
+    static constexpr uint64_t kFewParts = 256;
+    const cl::Buffer& parts() const { return parts_; }
+
     uint64_t bytes() const { return bytes_; }
 
  private:
+    uint64_t reduce(const cl::Buffer& boxes, uint64_t first, uint64_t count, const cl::Buffer& parts);
+    void join(uint64_t parts, const cl::Buffer& result);
+    uint64_t groups_for(uint64_t count) const;
+
     const BuildKernels& kernels_;
     const uint64_t most_groups_;
-    cl::Kernel boxes_, parts_;
-    cl::Buffer bounds_;
+    cl::Kernel reduce_boxes_, reduce_parts_;
+    cl::Buffer all_parts_, parts_;
     uint64_t bytes_ = 0;
 };
 

@@ -8,6 +8,8 @@ namespace clarity {
 namespace {
 
 constexpr unsigned kDigitBits = 8;  // of a pass, at most: RT_DIGITS of sort.cl
+constexpr unsigned kPasses = 64 / kDigitBits;
+constexpr uint64_t kFewTiles = 128;  // a pass over no more of them is one launch
 
 }  // namespace
 
@@ -19,7 +21,9 @@ DeviceSort::DeviceSort(const BuildKernels& kernels, uint64_t most, SortKeys keys
     const cl::Program program = kernels.compile_file("sort.cl", key_bytes_ == 4 ? "-DRT_KEY=uint" : "-DRT_KEY=ulong");
     count_ = cl::Kernel(program, "sort_count");
     move_ = cl::Kernel(program, "sort_move");
-    const uint64_t counts = 4 * tiles_for(most) << kDigitBits;
+    if (!kernels.serial()) count_few_ = cl::Kernel(program, "sort_count_few");
+    const uint64_t tables = std::max(tiles_for(most), kPasses * std::min(tiles_for(most), kFewTiles));
+    const uint64_t counts = 4 * tables << kDigitBits;
     keys_ = kernels.buffer(key_bytes_ * most);
     values_ = kernels.buffer(4 * most);
     counts_ = kernels.buffer(counts);
@@ -39,35 +43,52 @@ void DeviceSort::run(const cl::Buffer& keys, const cl::Buffer& values, uint64_t 
     // An even number of passes, so that the result is in the caller's buffers.
     const unsigned passes = (bits + 2 * kDigitBits - 1) / (2 * kDigitBits) * 2;
     const cl::Buffer theirs[2] = {keys, values}, ours[2] = {keys_, values_};
+    const auto digit = [&](unsigned p) {
+        const unsigned shift = bits * p / passes;
+        return p < passes ? Digit{shift, (cl_uint{1} << (bits * (p + 1) / passes - shift)) - 1} : Digit{0, 0};
+    };
+    const uint64_t tiles = tiles_for(count);
+    const bool few = !kernels_.serial() && tiles <= kFewTiles;
     for (unsigned p = 0; p < passes; ++p) {
-        const unsigned shift = bits * p / passes, end = bits * (p + 1) / passes;
-        if (p % 2 == 0)
-            pass(theirs, ours, count, shift, end - shift);
-        else
-            pass(ours, theirs, count, shift, end - shift);
+        const cl::Buffer(&from)[2] = p % 2 == 0 ? theirs : ours;
+        if (!few) {
+            start(count_, from[0], count, digit(p), tiles);
+            scan_.run(counts_, tiles * (digit(p).mask + 1));
+        } else if (p == 0) {
+            count_few_.setArg(5, cl_uint{passes});
+            start(count_few_, from[0], count, digit(p), tiles);
+        }
+        move(from, p % 2 == 0 ? ours : theirs, count, digit(p), few, p, digit(p + 1));
     }
 }
 
-void DeviceSort::pass(const cl::Buffer (&from)[2], const cl::Buffer (&to)[2], uint64_t count, unsigned shift, unsigned bits) {
-    const uint64_t tiles = tiles_for(count);
-    const auto pairs = static_cast<cl_uint>(count);
-    const cl_uint mask = (1u << bits) - 1;
-    count_.setArg(0, from[0]);
-    count_.setArg(1, pairs);
-    count_.setArg(2, cl_uint{shift});
-    count_.setArg(3, mask);
-    count_.setArg(4, counts_);
-    kernels_.launch(count_, tiles);
-    scan_.run(counts_, tiles << bits);
+// Counts the digits of all tiles.
+void DeviceSort::start(cl::Kernel& kernel, const cl::Buffer& keys, uint64_t count, Digit digit, uint64_t tiles) {
+    kernel.setArg(0, keys);
+    kernel.setArg(1, static_cast<cl_uint>(count));
+    kernel.setArg(2, digit.shift);
+    kernel.setArg(3, digit.mask);
+    kernel.setArg(4, counts_);
+    kernels_.launch(kernel, tiles);
+}
+
+void DeviceSort::move(const cl::Buffer (&from)[2], const cl::Buffer (&to)[2], uint64_t count, Digit digit, bool few,
+                      unsigned pass, Digit next) {
     move_.setArg(0, from[0]);
     move_.setArg(1, from[1]);
-    move_.setArg(2, pairs);
-    move_.setArg(3, cl_uint{shift});
-    move_.setArg(4, mask);
+    move_.setArg(2, static_cast<cl_uint>(count));
+    move_.setArg(3, digit.shift);
+    move_.setArg(4, digit.mask);
     move_.setArg(5, counts_);
     move_.setArg(6, to[0]);
     move_.setArg(7, to[1]);
-    kernels_.launch(move_, tiles);
+    if (!kernels_.serial()) {
+        move_.setArg(8, cl_uint{few});
+        move_.setArg(9, cl_uint{pass});
+        move_.setArg(10, next.shift);
+        move_.setArg(11, next.mask);
+    }
+    kernels_.launch(move_, tiles_for(count));
 }
 
 }  // namespace clarity

@@ -19,13 +19,18 @@ class DeviceSort {
     uint64_t bytes() const { return bytes_; }
 
  private:
-    void pass(const cl::Buffer (&from)[2], const cl::Buffer (&to)[2], uint64_t count, unsigned shift, unsigned bits);
+    struct Digit {
+        cl_uint shift, mask;
+    };
+    void start(cl::Kernel& kernel, const cl::Buffer& keys, uint64_t count, Digit digit, uint64_t tiles);
+    void move(const cl::Buffer (&from)[2], const cl::Buffer (&to)[2], uint64_t count, Digit digit, bool few, unsigned pass,
+              Digit next);
     uint64_t tiles_for(uint64_t count) const;
 
     const BuildKernels& kernels_;
     const uint64_t most_;
     const unsigned key_bytes_;
-    cl::Kernel count_, move_;
+    cl::Kernel count_, count_few_, move_;
     cl::Buffer keys_, values_, counts_;
     DeviceScan scan_;
     uint64_t bytes_ = 0;

@@ -1,74 +1,25 @@
 #include "host_build.hpp"
 
 #include <algorithm>
-#include <cfloat>
-#include <cmath>
 #include <vector>
 
-#include "curve.hpp"
+#include "clarity_bvh/build/morton_order.hpp"
 #include "rt_plugin.hpp"
 
 namespace lbvh {
 namespace {
 
-struct Key {
-    uint64_t code;
-    uint32_t number;  // of the primitive in its group
-    bool operator<(const Key& other) const { return code != other.code ? code < other.code : number < other.number; }
-};
-
-constexpr uint32_t kChunk = 1u << 14;  // primitives that one thread takes at once
-
-template <class Body>  // do_one(i)
-void each(const rt_host* host, uint32_t count, Body&& do_one) {
-    rt::parallel_for(host, (count + kChunk - 1) / kChunk, [&](rt_u32 c) {
-        for (uint32_t i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) do_one(i);
-    });
-}
-
-// Puts two zeros between the bits of a cell number.
-uint64_t spread(uint64_t x) {
-    x = (x | x << 32) & 0x001F00000000FFFFull;
-    x = (x | x << 16) & 0x001F0000FF0000FFull;
-    x = (x | x << 8) & 0x100F00F00F00F00Full;
-    x = (x | x << 4) & 0x10C30C30C30C30C3ull;
-    return (x | x << 2) & 0x1249249249249249ull;
-}
-
-std::vector<Key> sorted_keys(const rt_host* host, const rt_prim* prims, uint32_t count) {
-    const auto centre = [&](uint32_t i, int a) { return 0.5f * prims[i].lo[a] + 0.5f * prims[i].hi[a]; };
-    float least[3] = {INFINITY, INFINITY, INFINITY}, extent = 0;
-    for (int a = 0; a < 3; ++a) {
-        float most = -INFINITY;
-        for (uint32_t i = 0; i < count; ++i) {
-            least[a] = std::min(least[a], centre(i, a));
-            most = std::max(most, centre(i, a));
-        }
-        extent = std::max(extent, most - least[a]);
-    }
-    const auto cells = static_cast<float>(1u << axis_bits(count));
-    const float scale = extent > 0 ? std::min(cells / extent, FLT_MAX) : 0;
-    std::vector<Key> keys(count);
-    each(host, count, [&](uint32_t i) {
-        uint64_t code = 0;
-        for (int a = 0; a < 3; ++a) {
-            const float cell = std::min(std::max((centre(i, a) - least[a]) * scale, 0.0f), cells - 1);
-            code |= spread(static_cast<uint64_t>(cell)) << (2 - a);
-        }
-        keys[i] = {code, i};
-    });
-    std::sort(keys.begin(), keys.end());
-    return keys;
-}
+using clarity::bvh::CurveKey;
+using clarity::bvh::order_along_curve;
 
 // The last place of the left child of the places first .. last: where the highest bit changes that they do not share.
-uint32_t middle_of(const std::vector<Key>& keys, uint32_t first, uint32_t last) {
+uint32_t middle_of(const std::vector<CurveKey>& keys, uint32_t first, uint32_t last) {
     const uint64_t differ = keys[first].code ^ keys[last].code;
     uint64_t bit = uint64_t{1} << 63;
     if (differ != 0) {
         while (!(differ & bit)) bit /= 2;
         return static_cast<uint32_t>(std::partition_point(keys.begin() + first, keys.begin() + last + 1,
-                                                          [&](const Key& key) { return !(key.code & bit); }) -
+                                                          [&](const CurveKey& key) { return !(key.code & bit); }) -
                                      keys.begin()) -
                1;
     }
@@ -84,7 +35,7 @@ void join(const rt_topology_node& from, rt_topology_node& to) {
 }
 
 // Writes the 2 * count - 1 nodes of a group from nodes[base] on. first_ref: where its refs begin.
-void write_tree(const rt_prim* prims, const std::vector<Key>& keys, rt_topology_node* nodes, rt_u32 base, rt_u32 first_ref,
+void write_tree(const rt_prim* prims, const std::vector<CurveKey>& keys, rt_topology_node* nodes, rt_u32 base, rt_u32 first_ref,
                 rt_u32* refs) {
     struct Range {
         uint32_t node, first, last;
@@ -143,7 +94,7 @@ int32_t topology(const rt_host* host, const rt_build_input* input, const rt_topo
         }
         if (!host->progress(host->ctx, float(first_ref) / float(primitives))) return RT_CANCELLED;
         const rt_prim* const prims = input->prims + group.first;
-        write_tree(prims, sorted_keys(host, prims, group.count), all, base, first_ref, refs);
+        write_tree(prims, order_along_curve(host, prims, group.count), all, base, first_ref, refs);
         rt::root(out, g, base);
         base += 2 * group.count - 1;
         first_ref += group.count;

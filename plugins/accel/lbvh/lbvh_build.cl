@@ -4,8 +4,6 @@
  * Karras finds the boxes from the leaves up, where the second of two children to arrive goes on. That needs one work-group to see what
  * another has written during the same launch, which OpenCL 1.2 does not promise. Here they come from the host's blocks of neighbouring
  * primitives: cl/build/blocks.h. */
-#pragma OPENCL FP_CONTRACT OFF /* the same codes as lbvh.cpp's */
-
 typedef struct lbvh_node {
     float lo[3];
     uint left;
@@ -13,37 +11,6 @@ typedef struct lbvh_node {
     uint right;
 } lbvh_node;
 #define LBVH_LEAF 0x80000000u
-
-/* Puts two zeros between the lowest 21 bits. */
-RT_INLINE ulong lbvh_spread(ulong x)
-{
-    x = (x | x << 32) & 0x001F00000000FFFFul;
-    x = (x | x << 16) & 0x001F0000FF0000FFul;
-    x = (x | x << 8) & 0x100F00F00F00F00Ful;
-    x = (x | x << 4) & 0x10C30C30C30C30C3ul;
-    return (x | x << 2) & 0x1249249249249249ul;
-}
-
-/* bounds: 12 numbers of the reduction. Cells are cubes, so that a split halves the longest side. */
-RT_BUILD_KERNEL lbvh_codes(const global rt_build_box *prims, uint count, uint each, uint axis_bits, const global float *bounds,
-                           global ulong *keys, global uint *values)
-{
-    float extent = 0.0f;
-    for (uint a = 0u; a < 3u; ++a) extent = max(extent, bounds[9u + a] - bounds[3u + a]);
-    const float cells = (float)(1u << axis_bits);
-    const float scale = extent > 0.0f ? min(cells / extent, FLT_MAX) : 0.0f;
-    const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, count);
-    for (uint i = begin + RT_ITEM; i < end; i += RT_GROUP) {
-        ulong code = 0ul;
-        for (uint a = 0u; a < 3u; ++a) {
-            const float centre = 0.5f * prims[i].lo[a] + 0.5f * prims[i].hi[a];
-            const float cell = min(max((centre - bounds[3u + a]) * scale, 0.0f), cells - 1.0f);
-            code |= lbvh_spread((ulong)cell) << (2u - a);
-        }
-        keys[i] = code;
-        values[i] = i;
-    }
-}
 
 /* The number of leading bits that the keys of i and j have in common; equal keys are told apart by i and j. */
 RT_INLINE int lbvh_common(const global ulong *keys, uint count, ulong key, uint i, int j)

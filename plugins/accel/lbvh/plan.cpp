@@ -1,15 +1,16 @@
 #include "plan.hpp"
 
-#include "curve.hpp"
+#include "clarity_bvh/build/morton_order.hpp"
 #include "rt_device.hpp"
 
 namespace lbvh {
 namespace {
 
+using namespace clarity::bvh;
 using rt::number;
 using rt::of;
 
-constexpr uint64_t kNodeBytes = 32, kBoundsBytes = 48;
+constexpr uint64_t kNodeBytes = 32;
 
 }  // namespace
 
@@ -18,10 +19,8 @@ int32_t plan(const rt_host*, const rt_device_plan* plan, const rt_device_input* 
     rt::DeviceSteps steps(plan);
     const rt_u32 order = steps.buffer(4 * n), nodes = steps.buffer(kNodeBytes * n), counts = steps.buffer(4 * n);
     if (n > 0) {
-        const rt_u32 bounds = steps.buffer(kBoundsBytes), keys = steps.buffer(8 * n);
-        steps.bounds(input->prims, n, bounds);
-        steps.launch("lbvh_codes", (n + each - 1) / each,
-                     {of(input->prims), number(n), number(each), number(axis_bits(n)), of(bounds), of(keys), of(order)});
+        const rt_u32 keys = steps.buffer(8 * n);
+        steps.codes(input->prims, n, axis_bits(n), keys, order);
         steps.sort(keys, order, n, code_bits(n));
         if (n > 1) {
             const rt_u32 blocks = steps.blocks(input->prims, order, n);

@@ -15,8 +15,8 @@ using namespace clarity;
 
 namespace {
 
-constexpr uint64_t kMost = 70001;
-const uint64_t kCounts[] = {0, 1, 2, 31, 255, 256, 257, 2047, 2048, 2049, 4096, 4097, 16384, 16385, kMost};
+constexpr uint64_t kMost = 262145;  // more than 128 tiles of a sort
+const uint64_t kCounts[] = {0, 1, 2, 31, 255, 256, 257, 2047, 2048, 2049, 4096, 4097, 16384, 16385, 70001, kMost};
 
 class DeviceBuild : public ::testing::TestWithParam<BuildForm> {
  protected:

@@ -1,0 +1,33 @@
+#include "render/device_build/device_curve.hpp"
+
+#include "device/kernel_files.hpp"
+
+namespace clarity {
+namespace {
+
+constexpr uint64_t kSerialBoxes = 4096;  // that a work-group of one work-item takes
+
+}  // namespace
+
+DeviceCurve::DeviceCurve(const BuildKernels& kernels) : kernels_(kernels), reduce_(kernels) {
+    const cl::Program program = kernels.compile(
+        kernel_text("build/reduce.cl") + "#line 1 \"cl/build/curve.cl\"\n" + kernel_text("build/curve.cl"), "build/curve.cl");
+    codes_ = cl::Kernel(program, "curve_codes");
+}
+
+void DeviceCurve::run(const cl::Buffer& boxes, uint64_t count, unsigned axis_bits, const cl::Buffer& keys,
+                      const cl::Buffer& values) {
+    if (count == 0) return;
+    const uint64_t parts = reduce_.run_parts(boxes, 0, count), each = kernels_.serial() ? kSerialBoxes : kernels_.group();
+    codes_.setArg(0, boxes);
+    codes_.setArg(1, static_cast<cl_uint>(count));
+    codes_.setArg(2, static_cast<cl_uint>(each));
+    codes_.setArg(3, cl_uint{axis_bits});
+    codes_.setArg(4, reduce_.parts());
+    codes_.setArg(5, static_cast<cl_uint>(parts));
+    codes_.setArg(6, keys);
+    codes_.setArg(7, values);
+    kernels_.launch(codes_, (count + each - 1) / each);
+}
+
+}  // namespace clarity

@@ -1,0 +1,40 @@
+// morton_order.hpp -- the order of primitives along a Morton curve that the steps `codes` and `sort` of rt_device.h give on a
+// device; and the same order on the host, for builders that build the same tree on both.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "rt_plugin.h"
+
+namespace clarity::bvh {
+
+// Bits of a code for each axis. A sort takes an even number of passes of 8 bits: 30 bits need four, 48 bits six.
+constexpr uint64_t kMostWithShortCodes = uint64_t{1} << 18;
+constexpr uint32_t axis_bits(uint64_t count) {
+    return count <= kMostWithShortCodes ? 10 : 16;
+}
+constexpr uint32_t code_bits(uint64_t count) {
+    return 3 * axis_bits(count);
+}
+
+// The bits of n: floor(log2(n)) + 1.
+constexpr uint32_t bit_count(uint64_t n) {
+    uint32_t bits = 0;
+    for (; n > 0; n /= 2) ++bits;
+    return bits;
+}
+// A radix tree over the codes has so many inner nodes on the way from its root to a leaf, at most: each splits by a bit of its
+// own, of the code or of the place.
+constexpr uint32_t depth_bound(uint64_t count) {
+    return code_bits(count) + bit_count(count);
+}
+
+struct CurveKey {
+    uint64_t code;
+    uint32_t number;  // of the primitive in its group
+    bool operator<(const CurveKey& other) const { return code != other.code ? code < other.code : number < other.number; }
+};
+// The primitives of a group along the curve. On all cores, but for the sort.
+std::vector<CurveKey> order_along_curve(const rt_host* host, const rt_prim* prims, uint32_t count);
+
+}  // namespace clarity::bvh
