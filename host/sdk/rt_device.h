@@ -66,15 +66,14 @@ typedef struct rt_device_input {
     const double *params; /* the plugin's own */
 } rt_device_input;
 
-/* A binary tree over one group on the device. A tree of n primitives has n - 1 inner nodes, the first of which is the root. A child is
- * the index of an inner node, or RT_TOPOLOGY_LEAF | a place in `order`. With one primitive or none there are no nodes. */
+/* A binary tree over one group on the device. A tree of n primitives has n - 1 inner nodes. A child is the index of an inner node, or RT_TOPOLOGY_LEAF | a place in `order`. With one primitive or none there are no nodes. */
 typedef struct rt_device_topology {
     rt_u32 struct_bytes;
     rt_u32 nodes;  /* buffer of rt_topology_node: the box of all that is below, left and right child */
     rt_u32 counts; /* buffer of uint, for each inner node: primitives below it */
     rt_u32 order;  /* buffer of uint: the number of the primitive at each place, 0 .. count - 1 */
     rt_u32 depth;  /* inner nodes on the way from the root to a leaf, at most, whatever the boxes are */
-    rt_u32 pad;
+    rt_u32 root;   /* buffer of a uint: the inner node that is the root; RT_NONE: the first one */
 } rt_device_topology;
 
 /* The tree of one group in the layout's slots, which hold the trees of all groups. */

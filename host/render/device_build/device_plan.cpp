@@ -169,6 +169,7 @@ rt_device_topology DevicePlan::plan_topology(const rt_plugin& plugin, const rt_d
                                              const rt_device_input& input) {
     rt_device_topology result{};
     result.struct_bytes = sizeof result;
+    result.root = RT_NONE;
     plan(plugin, build,
          [&](const rt_host* host, const rt_device_plan* table) { return build.topology(host, table, &input, &result); });
     return result;

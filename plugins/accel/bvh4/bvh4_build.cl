@@ -183,7 +183,8 @@ typedef struct bvh4_round {
 
 /* Says that no node is made and no list is long, and writes the root of a tree of less than two primitives, which has no binary
  * node. */
-RT_BUILD_KERNEL bvh4_begin(BVH4_TREES, uint count, uint elements, uint each, global uint4 *lists, uint list_count, uint list_places)
+RT_BUILD_KERNEL bvh4_begin(BVH4_TREES, uint count, uint elements, uint each, const global uint *root, uint has_root, global uint4 *lists,
+                           uint list_count, uint list_places)
 {
     const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, elements);
     for (uint e = begin + RT_ITEM; e < end; e += RT_GROUP) ranges[first_node + e] = (uint2)(0u, 0u);
@@ -191,7 +192,7 @@ RT_BUILD_KERNEL bvh4_begin(BVH4_TREES, uint count, uint elements, uint each, glo
     RT_GLOBAL_BARRIER();
     if (RT_ITEM != 0u) return;
     lists[0] = (uint4)(count > 1u ? 1u : 0u, 0u, 0u, 0u);
-    lists[1] = (uint4)(0u, 0u, 0u, count);
+    lists[1] = (uint4)(has_root && count > 1u ? root[0] : 0u, 0u, 0u, count);
     for (uint l = 0u; l < list_count; ++l) lists[2u + l * list_places] = (uint4)(0u);
     *used = 1u;
     if (count > 1u) return;

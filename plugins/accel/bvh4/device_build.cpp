@@ -36,6 +36,7 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
     const uint64_t n = input->count, each = rt::elements_each(plan), elements = tree->element_count[0];
     const uint32_t max_leaf = clarity::bvh::wide_rules(input->params).max_leaf;
     // Lists of subtrees, which do not overlap: the first has the root alone, the others a subtree for two primitives at most.
+    const bool has_root = topology->root != RT_NONE;
     const uint64_t places = n / 2 + 1, passes = std::size(kSubtrees);
     rt::DeviceSteps steps(plan);
     const rt_u32 lists = steps.buffer(16 * (2 + passes * places)), used = steps.buffer(4);
@@ -55,7 +56,8 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
         steps.launch(kernel, groups, args);
     };
     launch("bvh4_begin", (elements + each - 1) / each,
-           {number(n), number(elements), number(each), of(lists), number(passes), number(places)});
+           {number(n), number(elements), number(each), of(has_root ? topology->root : used), number(has_root), of(lists),
+            number(passes), number(places)});
     uint64_t from = 0, groups = 1;
     for (size_t pass = 0; pass < passes; ++pass) {
         if (n <= kSubtrees[pass]) continue;
@@ -65,7 +67,8 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
         groups = plan->units * kGroupsPerUnit;
     }
     const uint64_t needed = places / plan->group_items + 1;
-    if (n > 1) launch("bvh4_close", std::min(groups == 1 ? 1 : needed, plan->units * kGroupsPerUnit), {of(lists), number(from)});
+    if (n > 1)
+        launch("bvh4_close", std::min(groups == 1 ? 1 : needed, plan->units * kGroupsPerUnit), {of(lists), number(from)});
     out->root(out->ctx, static_cast<rt_u32>(tree->first_element[0]));
     out->define(out->ctx, "BVH4_STACK", clarity::bvh::stack_places(3 * topology->depth));
     return steps.result();

@@ -56,7 +56,7 @@ HostTree build_on_host(const rt_plugin& plugin, const std::vector<rt_prim>& prim
     return tree;
 }
 
-enum class Cloud { spread, clustered, one_point, line };
+enum class Cloud { spread, clustered, one_point, line, nested };  // nested: each box holds the one before
 
 std::vector<rt_prim> cloud(Cloud kind, size_t count, unsigned seed) {
     std::mt19937 random(seed);
@@ -72,6 +72,7 @@ std::vector<rt_prim> cloud(Cloud kind, size_t count, unsigned seed) {
             if (kind == Cloud::line && a > 0) at = -3;
             prims[i].lo[a] = at;
             prims[i].hi[a] = at + (kind == Cloud::one_point ? 0 : size(random));
+            if (kind == Cloud::nested) prims[i].hi[a] = -(prims[i].lo[a] = -std::pow(1.01f, float(i % 3000)));
         }
     }
     return prims;
@@ -91,31 +92,32 @@ class DeviceTopology : public ::testing::TestWithParam<BuildForm> {
     }
     BuildKernels kernels_{device(), GetParam()};
     const PluginRegistry plugins_ = PluginRegistry::discover();
-    void lbvh_is_the_tree_of_the_host(std::initializer_list<size_t> counts);
-    void bvh4_packs_it_whole(std::initializer_list<size_t> counts);
+    void tree_is_that_of_the_host(const char* id, std::initializer_list<size_t> counts);
+    void bvh4_packs_it_whole(const char* id, std::initializer_list<size_t> counts);
 };
 
-void DeviceTopology::lbvh_is_the_tree_of_the_host(std::initializer_list<size_t> counts) {
-    const rt_plugin* lbvh = plugins_.accel("lbvh");
-    ASSERT_TRUE(lbvh);
-    const rt_device_build build = device_build_of(*lbvh);
+void DeviceTopology::tree_is_that_of_the_host(const char* id, std::initializer_list<size_t> counts) {
+    const rt_plugin* builder = plugins_.accel(id);
+    ASSERT_TRUE(builder);
+    const rt_device_build build = device_build_of(*builder);
     ASSERT_TRUE(build.topology);
     for (const size_t count : counts) {
         // One plan for all poses, as in a scene that moves.
         DevicePlan plan(kernels_);
         const cl::Buffer boxes = kernels_.buffer(count * sizeof(rt_prim));
         const rt_device_input input{sizeof input, plan.add(boxes), count, nullptr};
-        const rt_device_topology tree = plan.plan_topology(*lbvh, build, input);
-        for (const Cloud kind : {Cloud::spread, Cloud::clustered, Cloud::one_point, Cloud::line}) {
+        const rt_device_topology tree = plan.plan_topology(*builder, build, input);
+        for (const Cloud kind : {Cloud::spread, Cloud::clustered, Cloud::one_point, Cloud::line, Cloud::nested}) {
             SCOPED_TRACE(std::to_string(count) + " primitives, cloud " + std::to_string(int(kind)));
             const std::vector<rt_prim> prims = cloud(kind, count, 5);
             if (count) device()->queue().enqueueWriteBuffer(boxes, CL_TRUE, 0, count * sizeof(rt_prim), prims.data());
             plan.run();
-            const HostTree expected = build_on_host(*lbvh, prims);
+            const HostTree expected = build_on_host(*builder, prims);
             const auto nodes = download<rt_topology_node>(plan.buffer(tree.nodes), count > 1 ? count - 1 : 0);
             const auto order = download<rt_u32>(plan.buffer(tree.order), count);
             const auto counts = download<rt_u32>(plan.buffer(tree.counts), nodes.size());
-            ASSERT_EQ(expected.roots[0], count ? 0 : RT_NONE);
+            const rt_u32 root = nodes.empty() || tree.root == RT_NONE ? 0 : download<rt_u32>(plan.buffer(tree.root), 1)[0];
+            ASSERT_EQ(expected.roots[0], count ? root : RT_NONE);
             for (size_t p = 0; p < count; ++p) ASSERT_EQ(prims[order[p]].ref, expected.refs[p]) << p;
             const auto leaves = static_cast<rt_u32>(nodes.size());
             for (rt_u32 i = 0; i < nodes.size(); ++i) {
@@ -134,7 +136,7 @@ void DeviceTopology::lbvh_is_the_tree_of_the_host(std::initializer_list<size_t> 
             }
             // The bound of the depth holds.
             std::vector<rt_u32> depth(nodes.size(), 0), open;
-            if (!nodes.empty()) open.push_back(0), depth[0] = 1;
+            if (!nodes.empty()) open.push_back(root), depth[root] = 1;
             while (!open.empty()) {
                 const rt_u32 at = open.back();
                 open.pop_back();
@@ -203,10 +205,10 @@ struct WideTree {
     }
 };
 
-void DeviceTopology::bvh4_packs_it_whole(std::initializer_list<size_t> counts) {
-    const rt_plugin *lbvh = plugins_.accel("lbvh"), *bvh4 = plugins_.accel("bvh4");
-    ASSERT_TRUE(lbvh && bvh4);
-    const rt_device_build build = device_build_of(*lbvh), layout = device_build_of(*bvh4);
+void DeviceTopology::bvh4_packs_it_whole(const char* id, std::initializer_list<size_t> counts) {
+    const rt_plugin *builder = plugins_.accel(id), *bvh4 = plugins_.accel("bvh4");
+    ASSERT_TRUE(builder && bvh4);
+    const rt_device_build build = device_build_of(*builder), layout = device_build_of(*bvh4);
     ASSERT_TRUE(build.topology && layout.pack);
     const ParameterValues params = default_parameters(*bvh4);
     for (const size_t count : counts) {
@@ -216,7 +218,7 @@ void DeviceTopology::bvh4_packs_it_whole(std::initializer_list<size_t> counts) {
         const cl::Buffer slot = kernels_.buffer(128 * elements);
         const rt_u32 prims = plan.add(boxes), slots = plan.add(slot), leaves = plan.add(order);
         const TreePlace place(slots, plan.add(kernels_.buffer(8 * elements)), count, elements);
-        const rt_device_topology tree = plan.plan_topology(*lbvh, build, {sizeof(rt_device_input), prims, count, nullptr});
+        const rt_device_topology tree = plan.plan_topology(*builder, build, {sizeof(rt_device_input), prims, count, nullptr});
         const PlannedLayout planned =
             plan.plan_layout(*bvh4, layout, {sizeof(rt_device_input), prims, count, params.data()}, tree, place.tree, leaves);
         for (const Cloud kind : {Cloud::spread, Cloud::clustered, Cloud::one_point, Cloud::line}) {
@@ -240,16 +242,22 @@ void DeviceTopology::bvh4_packs_it_whole(std::initializer_list<size_t> counts) {
 }
 
 TEST_P(DeviceTopology, LbvhIsTheTreeOfTheHost) {
-    lbvh_is_the_tree_of_the_host({0, 1, 2, 3, 255, 256, 257, 513, 3000});
+    tree_is_that_of_the_host("lbvh", {0, 1, 2, 3, 255, 256, 257, 513, 3000});
 }
 TEST_P(DeviceTopology, LbvhIsTheTreeOfTheHostForMany) {
-    lbvh_is_the_tree_of_the_host({70000, 300000});
+    tree_is_that_of_the_host("lbvh", {70000, 300000});
+}
+TEST_P(DeviceTopology, PlocIsTheTreeOfTheHost) {
+    tree_is_that_of_the_host("ploc", {0, 1, 2, 3, 16, 17, 31, 32, 33, 64, 255, 257, 513, 3000});
+}
+TEST_P(DeviceTopology, PlocIsTheTreeOfTheHostForMany) {
+    tree_is_that_of_the_host("ploc", {4096, 4097, 70000, 300000});
 }
 TEST_P(DeviceTopology, Bvh4PacksItWhole) {
-    bvh4_packs_it_whole({0, 1, 2, 4, 5, 17, 512, 513, 3000});
+    for (const char* id : {"lbvh", "ploc"}) bvh4_packs_it_whole(id, {0, 1, 2, 4, 5, 17, 32, 33, 512, 513, 3000});
 }
 TEST_P(DeviceTopology, Bvh4PacksItWholeForMany) {
-    bvh4_packs_it_whole({300000});  // all three passes
+    bvh4_packs_it_whole("ploc", {300000});  // two passes from large subtrees to small ones
 }
 
 TEST_P(DeviceTopology, APlanThatCannotBeMadeSaysWhy) {
@@ -269,40 +277,44 @@ TEST_P(DeviceTopology, APlanThatCannotBeMadeSaysWhy) {
 // Not a test: prints how long a rebuild takes, to be read while one works on it. Run with --gtest_also_run_disabled_tests
 // --gtest_filter='*Times*'.
 TEST_P(DeviceTopology, DISABLED_Times) {
-    const rt_plugin *lbvh = plugins_.accel("lbvh"), *bvh4 = plugins_.accel("bvh4");
-    ASSERT_TRUE(lbvh && bvh4);
-    const rt_device_build build = device_build_of(*lbvh), layout = device_build_of(*bvh4);
+    const rt_plugin* const bvh4 = plugins_.accel("bvh4");
+    ASSERT_TRUE(bvh4);
+    const rt_device_build layout = device_build_of(*bvh4);
     const ParameterValues params = default_parameters(*bvh4);
-    for (const size_t count : {10000u, 100000u, 1000000u, 10000000u}) {
-        std::vector<rt_prim> scene = cloud(Cloud::spread, count, 3);
-        DevicePlan plan(kernels_);
-        const cl::Buffer boxes = kernels_.buffer(count * sizeof(rt_prim)), order = kernels_.buffer(4 * count);
-        const uint64_t elements = layout.elements(0, count, params.data());
-        const cl::Buffer slot = kernels_.buffer(128 * elements);
-        cl::CommandQueue& queue = device()->queue();
-        queue.enqueueWriteBuffer(boxes, CL_TRUE, 0, count * sizeof(rt_prim), scene.data());
-        const rt_u32 prims = plan.add(boxes), slots = plan.add(slot), leaves = plan.add(order);
-        const TreePlace place(slots, plan.add(kernels_.buffer(8 * elements)), count, elements);
-        const rt_device_topology tree = plan.plan_topology(*lbvh, build, {sizeof(rt_device_input), prims, count, nullptr});
-        const size_t of_tree = plan.steps();
-        plan.plan_layout(*bvh4, layout, {sizeof(rt_device_input), prims, count, params.data()}, tree, place.tree, leaves);
-        std::vector<double> by_events, wall;
-        for (int run = 0; run < 12; ++run) {
-            cl::Event first, last;
-            const auto start = std::chrono::steady_clock::now();
-            queue.enqueueMarkerWithWaitList(nullptr, &first);
-            plan.run();
-            queue.enqueueMarkerWithWaitList(nullptr, &last);
-            queue.finish();
-            wall.push_back(ms_since(start));
-            by_events.push_back(1e-6 * double(last.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
-                                              first.getProfilingInfo<CL_PROFILING_COMMAND_END>()));
+    for (const size_t count : {10000u, 100000u, 1000000u, 10000000u})
+        for (const char* id : {"lbvh", "ploc"}) {
+            const rt_plugin& builder = *plugins_.accel(id);
+            const rt_device_build build = device_build_of(builder);
+            std::vector<rt_prim> scene = cloud(Cloud::spread, count, 3);
+            DevicePlan plan(kernels_);
+            const cl::Buffer boxes = kernels_.buffer(count * sizeof(rt_prim)), order = kernels_.buffer(4 * count);
+            const uint64_t elements = layout.elements(0, count, params.data());
+            const cl::Buffer slot = kernels_.buffer(128 * elements);
+            cl::CommandQueue& queue = device()->queue();
+            queue.enqueueWriteBuffer(boxes, CL_TRUE, 0, count * sizeof(rt_prim), scene.data());
+            const rt_u32 prims = plan.add(boxes), slots = plan.add(slot), leaves = plan.add(order);
+            const TreePlace place(slots, plan.add(kernels_.buffer(8 * elements)), count, elements);
+            const rt_device_topology tree =
+                plan.plan_topology(builder, build, {sizeof(rt_device_input), prims, count, nullptr});
+            const size_t of_tree = plan.steps();
+            plan.plan_layout(*bvh4, layout, {sizeof(rt_device_input), prims, count, params.data()}, tree, place.tree, leaves);
+            std::vector<double> by_events, wall;
+            for (int run = 0; run < 12; ++run) {
+                cl::Event first, last;
+                const auto start = std::chrono::steady_clock::now();
+                queue.enqueueMarkerWithWaitList(nullptr, &first);
+                plan.run();
+                queue.enqueueMarkerWithWaitList(nullptr, &last);
+                queue.finish();
+                wall.push_back(ms_since(start));
+                by_events.push_back(1e-6 * double(last.getProfilingInfo<CL_PROFILING_COMMAND_END>() -
+                                                  first.getProfilingInfo<CL_PROFILING_COMMAND_END>()));
+            }
+            std::sort(by_events.begin(), by_events.end());
+            std::sort(wall.begin(), wall.end());
+            std::printf("%s, %zu primitives: %.3f ms by events, %.3f ms wall (medians of 12), %zu + %zu steps, %.1f MB\n", id,
+                        count, by_events[6], wall[6], of_tree, plan.steps() - of_tree, 1e-6 * double(plan.bytes()));
         }
-        std::sort(by_events.begin(), by_events.end());
-        std::sort(wall.begin(), wall.end());
-        std::printf("%zu primitives: %.3f ms by events, %.3f ms wall (medians of 12), %zu + %zu steps, %.1f MB\n", count,
-                    by_events[6], wall[6], of_tree, plan.steps() - of_tree, 1e-6 * double(plan.bytes()));
-    }
 }
 
 INSTANTIATE_TEST_SUITE_P(, DeviceTopology, ::testing::Values(BuildForm::groups, BuildForm::serial),

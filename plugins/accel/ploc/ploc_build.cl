@@ -1,0 +1,251 @@
+/* ploc_build.cl -- a binary tree by clustering along a Morton curve: ploc_merge.h explains it.
+ *
+ * On devices with warps, each primitive's work-item climbs the radix tree, and the second of two siblings to arrive goes on (Apetrei
+ * 2014, "Fast and Simple Agglomerative LBVH Construction"); where ranges are joined, the whole warp merges their clusters. Elsewhere
+ * no group may read what another has written, so each work-item takes a part of the curve, and one joins what is left. */
+#include "cl/rt_shared.h"
+#pragma OPENCL FP_CONTRACT OFF /* the same tree as the host's */
+
+#define PLOC_INLINE RT_INLINE
+#define PLOC_HIGHEST_BIT(x) (63u - (uint)clz(x))
+typedef ulong rt_u64;
+
+typedef struct ploc_tree {
+    const global float *prims; /* rt_prim: 8 words each */
+    const global uint *order;
+    const global ulong *codes;
+    global float *nodes; /* rt_topology_node: 8 words each */
+    global uint *counts;
+    global uint4 *places;
+} ploc_tree;
+#define PLOC_TREE                                                                                                              \
+    const global float *prims, const global uint *order, const global ulong *codes, global float *nodes, global uint *counts, \
+        global uint4 *places
+#define PLOC_TAKE_TREE const ploc_tree tree = {prims, order, codes, nodes, counts, places}
+
+#include "ploc_merge.h"
+
+RT_INLINE ploc_cluster ploc_load(const ploc_tree *t, ploc_place place)
+{
+    const global float *const box = place.code >= PLOC_SINGLE ? t->prims + 8ul * t->order[place.code & ~PLOC_SINGLE]
+                                                              : t->nodes + 8ul * place.code;
+    const float4 lo = vload4(0, box), hi = vload4(1, box);
+    ploc_cluster cluster;
+    cluster.lo[0] = lo.x, cluster.lo[1] = lo.y, cluster.lo[2] = lo.z;
+    cluster.hi[0] = hi.x, cluster.hi[1] = hi.y, cluster.hi[2] = hi.z;
+    cluster.place = place;
+    return cluster;
+}
+RT_INLINE void ploc_write(const ploc_tree *t, uint node, const ploc_cluster *box, uint left, uint right)
+{
+    vstore4((float4)(box->lo[0], box->lo[1], box->lo[2], as_float(left)), 0, t->nodes + 8ul * node);
+    vstore4((float4)(box->hi[0], box->hi[1], box->hi[2], as_float(right)), 1, t->nodes + 8ul * node);
+    t->counts[node] = box->place.count;
+}
+RT_INLINE ploc_place ploc_place_at(const ploc_tree *t, uint at)
+{
+    const uint4 words = t->places[at];
+    const ploc_place place = {words.x, words.y, words.z, words.w};
+    return place;
+}
+RT_INLINE void ploc_keep(const ploc_tree *t, uint at, ploc_place place)
+{
+    t->places[at] = (uint4)(place.code, place.name, place.height, place.count);
+}
+RT_INLINE ulong ploc_code(const ploc_tree *t, uint at) { return t->codes[at]; }
+
+/* result: the number of the root, and the height of the tree. */
+RT_INLINE void ploc_finish(global uint *result, ploc_place root)
+{
+    result[0] = root.code;
+    result[1] = root.height;
+}
+
+#ifdef RT_WARPS
+
+/* siblings, of_radix_tree: for each place but the last, the far end of the sibling that has arrived there; PLOC_NONE: none has. */
+RT_BUILD_KERNEL ploc_begin(uint count, global uint *siblings, global uint *of_radix_tree, global uint *result)
+{
+    const uint i = (uint)get_global_id(0);
+    if (i < count) siblings[i] = of_radix_tree[i] = PLOC_NONE;
+    if (i == 0u) result[0] = result[1] = 0u;
+}
+
+/* Says that the range *start .. *last is there. If its sibling is there too, returns true; then the range holds both, and the second
+ * begins at *split. */
+RT_INLINE bool ploc_arrive(const ploc_tree *t, uint count, global uint *siblings, uint *start, uint *last, uint *split)
+{
+    const bool is_right = *last == count - 1u || (*start > 0u && ploc_rank(t, *start - 1u) < ploc_rank(t, *last));
+    if (is_right) {
+        const uint other = atomic_xchg(&siblings[*start - 1u], *last);
+        *split = *start;
+        *start = other;
+        return other != PLOC_NONE;
+    }
+    const uint other = atomic_xchg(&siblings[*last], *start);
+    *split = *last + 1u;
+    *last = other;
+    return other != PLOC_NONE;
+}
+
+RT_INLINE ploc_place ploc_shuffle_place(ploc_place place, uint lane)
+{
+    ploc_place of_lane;
+    of_lane.code = rt_shuffle(place.code, lane);
+    of_lane.name = rt_shuffle(place.name, lane);
+    of_lane.height = rt_shuffle(place.height, lane);
+    of_lane.count = rt_shuffle(place.count, lane);
+    return of_lane;
+}
+RT_INLINE ploc_cluster ploc_shuffle_box(ploc_cluster cluster, uint lane)
+{
+    ploc_cluster of_lane = cluster;
+#pragma unroll
+    for (uint k = 0u; k < 3u; ++k) {
+        of_lane.lo[k] = rt_shuffle_float(cluster.lo[k], lane);
+        of_lane.hi[k] = rt_shuffle_float(cluster.hi[k], lane);
+    }
+    return of_lane;
+}
+
+/* The clusters of a warp while they are put together. */
+typedef struct ploc_row {
+    float4 lo, hi;
+    uint4 place;
+} ploc_row;
+
+/* ploc_join() by a warp: a lane has a cluster. */
+RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, uint start, uint split, uint end, bool whole, global uint *result)
+{
+    const uint lane = RT_ITEM % RT_WARP, lower = (1u << lane) - 1u, k = lane % PLOC_KEPT;
+    const uint from = lane < PLOC_KEPT ? start : split, size = lane < PLOC_KEPT ? split - start : end - split;
+    const ploc_place none = {PLOC_NONE, 0u, 0u, 0u};
+    ploc_place place = none;
+    if (k < size) place = size <= PLOC_KEPT ? ploc_single(from + k) : ploc_place_at(t, from + k);
+    const uint there = rt_ballot(place.code != PLOC_NONE), on_left = popcount(there & 0xFFFFu);
+    place = ploc_shuffle_place(place, lane < on_left ? lane : (PLOC_KEPT + lane - on_left) % RT_WARP);
+    uint n = popcount(there);
+    ploc_cluster cluster = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, none};
+    if (lane < n) cluster = ploc_load(t, place);
+    for (const uint until = whole ? 1u : PLOC_KEPT; n > until;) {
+        float least = INFINITY;
+        uint chosen = lane;
+#pragma unroll
+        for (uint r = 1u; r <= PLOC_RADIUS; ++r) {
+            const ploc_cluster other = ploc_shuffle_box(cluster, (lane + r) % RT_WARP);
+            const float after = ploc_area(&cluster, &other), before = rt_shuffle_float(after, (lane - r) % RT_WARP);
+            if (lane + r < n && (after < least || (after == least && lane + r < chosen))) least = after, chosen = lane + r;
+            if (lane >= r && lane < n && (before < least || (before == least && lane - r < chosen)))
+                least = before, chosen = lane - r;
+        }
+        const bool is_pair = lane < n && rt_shuffle(chosen, chosen) == lane;
+        ploc_cluster other = ploc_shuffle_box(cluster, chosen);
+        other.place = ploc_shuffle_place(cluster.place, chosen);
+        if (is_pair && lane < chosen) cluster = ploc_pair(t, &cluster, &other);
+        const bool stays = lane < n && !(is_pair && lane > chosen);
+        const uint staying = rt_ballot(stays);
+        if (stays) {
+            local ploc_row *const row = rows + popcount(staying & lower);
+            row->lo = (float4)(cluster.lo[0], cluster.lo[1], cluster.lo[2], 0.0f);
+            row->hi = (float4)(cluster.hi[0], cluster.hi[1], cluster.hi[2], 0.0f);
+            row->place = (uint4)(cluster.place.code, cluster.place.name, cluster.place.height, cluster.place.count);
+        }
+        RT_WARP_BARRIER();
+        n = popcount(staying);
+        if (lane < n) {
+            const float4 lo = rows[lane].lo, hi = rows[lane].hi;
+            const uint4 words = rows[lane].place;
+            cluster.lo[0] = lo.x, cluster.lo[1] = lo.y, cluster.lo[2] = lo.z;
+            cluster.hi[0] = hi.x, cluster.hi[1] = hi.y, cluster.hi[2] = hi.z;
+            cluster.place.code = words.x, cluster.place.name = words.y;
+            cluster.place.height = words.z, cluster.place.count = words.w;
+        }
+        RT_WARP_BARRIER();
+    }
+    if (whole && lane == 0u) ploc_finish(result, cluster.place);
+    if (!whole && lane < PLOC_KEPT) ploc_keep(t, start + lane, lane < n ? cluster.place : none);
+}
+
+/* Builds the tree. */
+RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, global uint *siblings, global uint *result)
+{
+    local ploc_row rows[RT_GROUP];
+    PLOC_TAKE_TREE;
+    uint start = (uint)get_global_id(0), last = start, split = 0u;
+    bool climbs = start < count;
+    while (rt_ballot(climbs) != 0u) {
+        if (climbs) climbs = ploc_arrive(&tree, count, siblings, &start, &last, &split);
+        const bool whole = climbs && last - start == count - 1u;
+        uint joins = rt_ballot(climbs && (last - start >= PLOC_KEPT || whole));
+        if (joins == 0u) continue;
+        RT_DEVICE_FENCE();
+        while (joins != 0u) {
+            const uint lane = 31u - clz(joins);
+            joins ^= 1u << lane;
+            const uint first = rt_shuffle(start, lane), end = rt_shuffle(last, lane) + 1u;
+            ploc_join_together(&tree, rows + RT_ITEM / RT_WARP * RT_WARP, first, rt_shuffle(split, lane), end, end - first == count, result);
+        }
+        if (whole) climbs = false;
+        RT_DEVICE_FENCE();
+        RT_WARP_BARRIER();
+    }
+}
+
+/* Builds the radix tree instead, if the tree is higher than `limit`. */
+RT_BUILD_KERNEL ploc_limit(PLOC_TREE, uint count, global uint *siblings, global uint *result, uint limit)
+{
+    if (result[1] <= limit) return;
+    PLOC_TAKE_TREE;
+    uint start = (uint)get_global_id(0), last = start, split = 0u;
+    if (start >= count) return;
+    while (ploc_arrive(&tree, count, siblings, &start, &last, &split)) {
+        RT_DEVICE_FENCE();
+        const bool whole = last - start == count - 1u;
+        ploc_place root;
+        ploc_join(&tree, start, split, last + 1u, whole, true, &root);
+        if (whole) {
+            result[0] = root.code; /* the height stays: other groups read it */
+            return;
+        }
+        RT_DEVICE_FENCE();
+    }
+}
+
+#else
+
+/* Each work-item builds what it can of its part of the curve. pending: PLOC_OPEN starts of ranges for each part, before them their
+ * number. */
+RT_BUILD_KERNEL ploc_parts(PLOC_TREE, uint count, uint each, global uint *pending, global uint *result)
+{
+    const uint part = (uint)get_global_id(0), begin = part * each;
+    if (begin >= count) return;
+    PLOC_TAKE_TREE;
+    uint starts[PLOC_OPEN + 1u], open = 0u;
+    ploc_place root = ploc_single(0u);
+    for (uint i = begin; i < min(begin + each, count); ++i) open = ploc_add(&tree, count, i, i + 1u, false, starts, open, &root);
+    global uint *const kept = pending + part * (PLOC_OPEN + 1u);
+    kept[0] = open;
+    for (uint i = 0u; i < open; ++i) kept[1u + i] = starts[i];
+    if (each >= count) ploc_finish(result, root);
+}
+
+/* One work-item joins what is left, and builds the radix tree instead if the tree is higher than `limit`. */
+RT_BUILD_KERNEL ploc_join_parts(PLOC_TREE, uint count, uint each, global uint *pending, global uint *result, uint limit)
+{
+    if (get_global_id(0) != 0u) return;
+    PLOC_TAKE_TREE;
+    uint starts[PLOC_OPEN + 1u], open = 0u;
+    ploc_place root = ploc_single(0u);
+    for (uint begin = 0u, part = 0u; begin < count && each < count; begin += each, ++part) {
+        const global uint *const kept = pending + part * (PLOC_OPEN + 1u);
+        const uint ranges = kept[0], end = min(begin + each, count);
+        for (uint r = 0u; r < ranges; ++r)
+            open = ploc_add(&tree, count, kept[1u + r], r + 1u < ranges ? kept[2u + r] : end, false, starts, open, &root);
+    }
+    if (each < count) ploc_finish(result, root);
+    if (result[1] <= limit) return;
+    open = 0u;
+    for (uint i = 0u; i < count; ++i) open = ploc_add(&tree, count, i, i + 1u, true, starts, open, &root);
+    ploc_finish(result, root);
+}
+#endif
