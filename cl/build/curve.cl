@@ -17,8 +17,12 @@ RT_BUILD_KERNEL curve_codes(const global rt_build_box *boxes, uint count, uint e
 {
     RT_SHARED_BOUNDS
     rt_build_bounds bounds = rt_no_bounds();
-    for (uint i = RT_ITEM; i < part_count; i += RT_GROUP) rt_add_bounds(&bounds, parts + i);
-    RT_ALL_BOUNDS(&bounds);
+    if (part_count == 1u) {
+        bounds = parts[0];
+    } else {
+        for (uint i = RT_ITEM; i < part_count; i += RT_GROUP) rt_add_bounds(&bounds, parts + i);
+        RT_ALL_BOUNDS(&bounds);
+    }
     float extent = 0.0f;
     for (uint a = 0u; a < 3u; ++a) extent = max(extent, bounds.at[9u + a] - bounds.at[3u + a]);
     const float cells = (float)(1u << axis_bits);

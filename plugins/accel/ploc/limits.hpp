@@ -14,9 +14,9 @@ constexpr uint64_t parts_of(uint64_t count) {
 }
 constexpr uint64_t kPendingWords = 161;  // PLOC_OPEN + 1
 
-// A tree that is higher becomes the radix tree, which is not. Trees of scenes were 25 to 45 nodes high.
+// A tree that is higher becomes the radix tree, which is not. Trees of scenes were 15 to 75 nodes high.
 constexpr uint32_t height_limit(uint64_t count) {
-    return std::max(64u, clarity::bvh::depth_bound(count));
+    return std::max(128u, clarity::bvh::depth_bound(count));
 }
 
 }  // namespace ploc

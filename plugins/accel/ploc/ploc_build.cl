@@ -138,7 +138,8 @@ RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, uint
             if (lane >= r && lane < n && (before < least || (before == least && lane - r < chosen)))
                 least = before, chosen = lane - r;
         }
-        const bool is_pair = lane < n && rt_shuffle(chosen, chosen) == lane;
+        const uint their_choice = rt_shuffle(chosen, chosen);
+        const bool is_pair = lane < n && their_choice == lane;
         ploc_cluster other = ploc_shuffle_box(cluster, chosen);
         other.place = ploc_shuffle_place(cluster.place, chosen);
         if (is_pair && lane < chosen) cluster = ploc_pair(t, &cluster, &other);
@@ -166,17 +167,52 @@ RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, uint
     if (!whole && lane < PLOC_KEPT) ploc_keep(t, start + lane, lane < n ? cluster.place : none);
 }
 
+/* The largest range of the radix tree that holds place i, has no more than PLOC_KEPT primitives, and begins at i. Returns its last place,
+ * or PLOC_NONE if a larger one begins before i. ranks[k]: that of place i - PLOC_KEPT + k. */
+RT_INLINE uint ploc_small_range(const local uint *ranks, uint count, uint i)
+{
+    uint start = i, last = i;
+    while (last - start < PLOC_KEPT - 1u) {
+        const uint before = start > 0u ? ranks[start - 1u + PLOC_KEPT - i] : PLOC_NONE;
+        const uint after = last + 1u < count ? ranks[last + PLOC_KEPT - i] : PLOC_NONE;
+        if (before == after) break; /* both are PLOC_NONE: it has all places */
+        uint first = start, end = last;
+        if (before < after) {
+            for (--first; first > 0u && end - first < PLOC_KEPT && ranks[first - 1u + PLOC_KEPT - i] < before;) --first;
+        } else {
+            for (++end; end + 1u < count && end - first < PLOC_KEPT && ranks[end + PLOC_KEPT - i] < after;) ++end;
+        }
+        if (end - first >= PLOC_KEPT) break;
+        start = first;
+        last = end;
+    }
+    return start == i ? last : PLOC_NONE;
+}
+
 /* Builds the tree. */
 RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, global uint *siblings, global uint *result)
 {
     local ploc_row rows[RT_GROUP];
+    local uint ranks[RT_GROUP + 2u * PLOC_KEPT];
     PLOC_TAKE_TREE;
-    uint start = (uint)get_global_id(0), last = start, split = 0u;
-    bool climbs = start < count;
+    uint start = (uint)get_global_id(0), split = 0u;
+    for (uint k = RT_ITEM; k < RT_GROUP + 2u * PLOC_KEPT; k += RT_GROUP) {
+        const uint place = start - RT_ITEM + k - PLOC_KEPT; /* wraps round before the first */
+        ranks[k] = place < count - 1u ? ploc_rank(&tree, place) : PLOC_NONE;
+    }
+    RT_LOCAL_BARRIER();
+    /* Ranges that keep all their primitives need no sibling to be found, so the climb begins at the largest of them. */
+    uint last = start < count ? ploc_small_range(ranks + RT_ITEM, count, start) : PLOC_NONE;
+    bool climbs = last != PLOC_NONE;
+    const bool alone = climbs && last - start == count - 1u;
+    if (rt_ballot(alone) != 0u) { /* no range is larger: the first lane has them all, and its split is any */
+        ploc_join_together(&tree, rows, 0u, 1u, count, true, result);
+        climbs = false;
+    }
     while (rt_ballot(climbs) != 0u) {
         if (climbs) climbs = ploc_arrive(&tree, count, siblings, &start, &last, &split);
         const bool whole = climbs && last - start == count - 1u;
-        uint joins = rt_ballot(climbs && (last - start >= PLOC_KEPT || whole));
+        uint joins = rt_ballot(climbs);
         if (joins == 0u) continue;
         RT_DEVICE_FENCE();
         while (joins != 0u) {
