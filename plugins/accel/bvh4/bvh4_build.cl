@@ -11,11 +11,13 @@
 #define BVH4_SINGLE 0x80000000u /* a child of the binary tree that is one primitive: RT_TOPOLOGY_LEAF | its place in order */
 #define BVH4_NONE 0xFFFFFFFFu
 #define BVH4_LEVEL 1024u  /* nodes of a level, at most */
-#define BVH4_PENDING 24u  /* nodes that a work-item has to make, at most: a subtree has no more than 2 of them for 3 primitives */
+#define BVH4_PENDING 16u  /* nodes that a work-item has to make, at most: a subtree has no more than 2 of them for 3 primitives */
 
-/* A node that is to be made: the binary node, its first position in leaf order, the number of the wide node, its primitives. Lists of
+/* A node that is to be made: the two children of the binary node, its first position in leaf order, the number of the wide node. Lists of
  * them: [0].x is their length, and they begin at [1]. */
 typedef uint4 bvh4_task;
+/* A leaf of two primitives and more whose positions are to be written: binary node, first position. Lists: likewise. */
+typedef uint2 bvh4_leaf;
 
 /* The tree that is merged, and the one that is made. */
 typedef struct bvh4_trees {
@@ -25,13 +27,15 @@ typedef struct bvh4_trees {
     global float *to;
     global uint2 *ranges;
     global uint *leaves, *used; /* *used: nodes that are taken */
+    global bvh4_leaf *open_leaves;
 } bvh4_trees;
 #define BVH4_TREES                                                                                                             \
     const global float *prims, const global float *nodes, const global uint *counts, const global uint *order, uint max_leaf, \
-        uint first_node, uint first_leaf, global float *to, global uint2 *ranges, global uint *leaves, global uint *used
-#define BVH4_TAKE_TREES                                                                                              \
-    const bvh4_trees trees = {prims,      nodes, counts, order,  max_leaf, first_node,                               \
-                              first_leaf, to,    ranges, leaves, used}
+        uint first_node, uint first_leaf, global float *to, global uint2 *ranges, global uint *leaves, global uint *used,     \
+        global bvh4_leaf *open_leaves
+#define BVH4_TAKE_TREES                                                                            \
+    const bvh4_trees trees = {prims, nodes,  counts, order, max_leaf,   first_node, first_leaf, \
+                              to,    ranges, leaves, used,  open_leaves}
 
 /* A child of a wide node. lo.w, hi.w: the children of a binary node. */
 typedef struct bvh4_child {
@@ -63,11 +67,10 @@ RT_INLINE float bvh4_area(const bvh4_child *child)
 
 /* The children of a wide node, in leaf order. Returns how many there are. Indices are constants after unrolling, so that children stay
  * in registers. */
-RT_INLINE uint bvh4_merge(const bvh4_trees *t, uint binary, bvh4_child child[4])
+RT_INLINE uint bvh4_merge(const bvh4_trees *t, bvh4_task task, bvh4_child child[4])
 {
-    const global float *const node = t->nodes + 8ul * binary;
-    child[0] = bvh4_load(t, as_uint(node[3]));
-    child[1] = bvh4_load(t, as_uint(node[7]));
+    child[0] = bvh4_load(t, task.x);
+    child[1] = bvh4_load(t, task.y);
     child[2] = child[3] = child[1];
 #pragma unroll
     for (uint number = 2u; number < 4u; ++number) {
@@ -96,26 +99,11 @@ RT_INLINE uint bvh4_merge(const bvh4_trees *t, uint binary, bvh4_child child[4])
     return 4u;
 }
 
-/* Writes the leaf order of a subtree of at most BVH4_LEAF_MAX primitives. */
-RT_INLINE void bvh4_leaf(const bvh4_trees *t, uint child, global uint *leaves)
+/* Writes a wide node. Its inner children have the numbers from `below` on, and its leaves of two primitives and more become those from
+ * `open` on of the list. */
+RT_INLINE void bvh4_write(const bvh4_trees *t, bvh4_task task, const bvh4_child child[4], uint number, uint below, uint open)
 {
-    uint stack[BVH4_LEAF_MAX + 1u], top = 0u;
-    stack[top++] = child;
-    while (top > 0u) {
-        const uint at = stack[--top];
-        if (at >= BVH4_SINGLE) {
-            *leaves++ = t->order[at & ~BVH4_SINGLE];
-        } else {
-            stack[top++] = as_uint(t->nodes[8ul * at + 7u]);
-            stack[top++] = as_uint(t->nodes[8ul * at + 3u]);
-        }
-    }
-}
-
-/* Writes a wide node. Its inner children have the numbers from `below` on. */
-RT_INLINE void bvh4_write(const bvh4_trees *t, bvh4_task task, const bvh4_child child[4], uint number, uint below)
-{
-    uint code[4], first = task.y;
+    uint code[4], first = task.z;
     float middle_x = 0.0f, middle_y = 0.0f;
 #pragma unroll
     for (uint c = 0u; c < 4u; ++c) {
@@ -126,7 +114,10 @@ RT_INLINE void bvh4_write(const bvh4_trees *t, bvh4_task task, const bvh4_child 
             code[c] = BVH4_NODE_REF(node);
         } else {
             code[c] = BVH4_MAKE_LEAF(t->first_leaf + first, child[c].size);
-            bvh4_leaf(t, child[c].code, t->leaves + first);
+            if (child[c].size == 1u)
+                t->leaves[first] = t->order[child[c].code & ~BVH4_SINGLE];
+            else
+                t->open_leaves[1u + open++] = (bvh4_leaf)(child[c].code, first);
         }
         first += child[c].size;
         middle_x += (0.5f * child[c].lo.x + 0.5f * child[c].hi.x) / (float)number;
@@ -156,8 +147,8 @@ RT_INLINE void bvh4_write(const bvh4_trees *t, bvh4_task task, const bvh4_child 
         for (uint c = 0u; c < 4u; ++c)
             if (c == chosen) slot_of[c] = slot;
     }
-    const uint index = t->first_node + task.z, turn = index & 7u;
-    t->ranges[index] = (uint2)(task.y, task.w);
+    const uint index = t->first_node + task.w, turn = index & 7u;
+    t->ranges[index] = (uint2)(task.z, first - task.z);
     float row[8][4];
 #pragma unroll
     for (uint s = 0u; s < 4u; ++s) {
@@ -178,8 +169,25 @@ RT_INLINE void bvh4_write(const bvh4_trees *t, bvh4_task task, const bvh4_child 
 /* What the work-items of a group share while they make nodes in rounds. Two sets of counts: one is cleared while the other is in
  * use. */
 typedef struct bvh4_round {
-    uint nodes[2], subtrees[2], busy[2], first_node, first_subtree;
+    uint nodes[2], leaves[2], subtrees[2], busy[2], first_node, first_leaf, first_subtree;
 } bvh4_round;
+
+/* How many inner children and leaves of two primitives and more a node has. */
+RT_INLINE uint2 bvh4_count(const bvh4_trees *t, const bvh4_child child[4], uint number)
+{
+    uint2 found = (uint2)(0u);
+#pragma unroll
+    for (uint c = 0u; c < 4u; ++c) {
+        if (c < number && child[c].size > t->max_leaf) ++found.x;
+        if (c < number && child[c].size <= t->max_leaf && child[c].size > 1u) ++found.y;
+    }
+    return found;
+}
+/* The task of an inner child. */
+RT_INLINE bvh4_task bvh4_below(const bvh4_child *child, uint first, uint node)
+{
+    return (bvh4_task)(as_uint(child->lo.w), as_uint(child->hi.w), first, node);
+}
 
 /* Says that no node is made and no list is long, and writes the root of a tree of less than two primitives, which has no binary
  * node. */
@@ -192,7 +200,9 @@ RT_BUILD_KERNEL bvh4_begin(BVH4_TREES, uint count, uint elements, uint each, con
     RT_GLOBAL_BARRIER();
     if (RT_ITEM != 0u) return;
     lists[0] = (uint4)(count > 1u ? 1u : 0u, 0u, 0u, 0u);
-    lists[1] = (uint4)(has_root && count > 1u ? root[0] : 0u, 0u, 0u, count);
+    const ulong at = has_root && count > 1u ? root[0] : 0u;
+    if (count > 1u) lists[1] = (bvh4_task)(as_uint(nodes[8ul * at + 3u]), as_uint(nodes[8ul * at + 7u]), 0u, 0u);
+    open_leaves[0] = (bvh4_leaf)(0u);
     for (uint l = 0u; l < list_count; ++l) lists[2u + l * list_places] = (uint4)(0u);
     *used = 1u;
     if (count > 1u) return;
@@ -203,7 +213,7 @@ RT_BUILD_KERNEL bvh4_begin(BVH4_TREES, uint count, uint elements, uint each, con
         child[c].code = child[c].size = 0u;
     }
     if (count == 1u) child[0] = bvh4_load(&trees, BVH4_SINGLE);
-    bvh4_write(&trees, (bvh4_task)(0u, 0u, 0u, count), child, count, 0u);
+    bvh4_write(&trees, (bvh4_task)(0u), child, count, 0u, 0u);
 }
 
 /* Descends from each subtree of the list `from` to those of at most `least` primitives, which it adds to the list `to_list`. */
@@ -215,7 +225,7 @@ RT_BUILD_KERNEL bvh4_open(BVH4_TREES, uint least, global uint4 *lists, uint from
     BVH4_TAKE_TREES;
     global uint4 *const found = lists + to_list;
     const uint subtrees = lists[from].x;
-    if (RT_ITEM == 0u) round.nodes[0] = round.subtrees[0] = 0u;
+    if (RT_ITEM == 0u) round.nodes[0] = round.leaves[0] = round.subtrees[0] = 0u;
     uint set = 0u;
     for (uint s = RT_GROUP_NUMBER; s < subtrees; s += (uint)get_num_groups(0)) {
         if (RT_ITEM == 0u) {
@@ -230,40 +240,42 @@ RT_BUILD_KERNEL bvh4_open(BVH4_TREES, uint least, global uint4 *lists, uint from
                 const bool there = begin + RT_ITEM < now;
                 bvh4_child child[4];
                 bvh4_task task = (bvh4_task)(0u);
-                uint number = 0u, inner = 0u, small = 0u;
+                uint number = 0u, small = 0u;
+                uint2 made = (uint2)(0u);
                 if (there) {
                     task = level[side][begin + RT_ITEM];
-                    number = bvh4_merge(&trees, task.x, child);
-                    for (uint c = 0u; c < number; ++c) {
-                        if (child[c].size <= max_leaf) continue;
-                        ++inner;
-                        if (child[c].size <= least) ++small;
-                    }
+                    number = bvh4_merge(&trees, task, child);
+                    made = bvh4_count(&trees, child, number);
+#pragma unroll
+                    for (uint c = 0u; c < 4u; ++c) small += c < number && child[c].size > max_leaf && child[c].size <= least ? 1u : 0u;
                 }
-                uint node = inner ? atomic_add(&round.nodes[set], inner) : 0u;
+                uint node = made.x ? atomic_add(&round.nodes[set], made.x) : 0u;
+                const uint leaf = made.y ? atomic_add(&round.leaves[set], made.y) : 0u;
                 uint subtree = small ? atomic_add(&round.subtrees[set], small) : 0u;
                 RT_LOCAL_BARRIER();
                 if (RT_ITEM == 0u) {
                     round.first_node = round.nodes[set] ? atomic_add(used, round.nodes[set]) : 0u;
+                    round.first_leaf = round.leaves[set] ? atomic_add((global uint *)open_leaves, round.leaves[set]) : 0u;
                     round.first_subtree = round.subtrees[set] ? atomic_add((global uint *)found, round.subtrees[set]) : 0u;
-                    round.nodes[1u - set] = round.subtrees[1u - set] = 0u;
+                    round.nodes[1u - set] = round.leaves[1u - set] = round.subtrees[1u - set] = 0u;
                 }
                 RT_LOCAL_BARRIER();
                 set = 1u - set;
                 if (!there) continue;
                 node += round.first_node;
                 subtree += round.first_subtree;
-                bvh4_write(&trees, task, child, number, node);
-                uint first = task.y;
-                for (uint c = 0u; c < number; ++c) {
-                    const bvh4_task below = (bvh4_task)(child[c].code, first, node, child[c].size);
+                bvh4_write(&trees, task, child, number, node, round.first_leaf + leaf);
+                uint first = task.z;
+#pragma unroll
+                for (uint c = 0u; c < 4u; ++c) {
+                    if (c < number && child[c].size > max_leaf) {
+                        const bvh4_task below = bvh4_below(&child[c], first, node++);
+                        if (child[c].size > least)
+                            level[1u - side][atomic_inc(&size[1u - side])] = below;
+                        else
+                            found[1u + subtree++] = below;
+                    }
                     first += child[c].size;
-                    if (child[c].size <= max_leaf) continue;
-                    ++node;
-                    if (child[c].size > least)
-                        level[1u - side][atomic_inc(&size[1u - side])] = below;
-                    else
-                        found[1u + subtree++] = below;
                 }
             }
             RT_LOCAL_BARRIER();
@@ -275,13 +287,13 @@ RT_BUILD_KERNEL bvh4_open(BVH4_TREES, uint least, global uint4 *lists, uint from
     }
 }
 
-/* Makes the subtrees of a list, each by one work-item: of at most 32 primitives. */
+/* Makes the subtrees of a list, each by one work-item: of at most 16 primitives. */
 RT_BUILD_KERNEL bvh4_close(BVH4_TREES, global uint4 *lists, uint from)
 {
     local bvh4_round round;
     BVH4_TAKE_TREES;
     const uint subtrees = lists[from].x;
-    if (RT_ITEM == 0u) round.nodes[0] = round.busy[0] = 0u;
+    if (RT_ITEM == 0u) round.nodes[0] = round.leaves[0] = round.busy[0] = 0u;
     RT_LOCAL_BARRIER();
     uint set = 0u;
     for (uint begin = RT_GROUP_NUMBER * RT_GROUP; begin < subtrees; begin += (uint)get_num_groups(0) * RT_GROUP) {
@@ -291,32 +303,53 @@ RT_BUILD_KERNEL bvh4_close(BVH4_TREES, global uint4 *lists, uint from)
         for (bool busy = true; busy;) {
             bvh4_child child[4];
             bvh4_task task = (bvh4_task)(0u);
-            uint number = 0u, inner = 0u;
+            uint number = 0u;
+            uint2 made = (uint2)(0u);
             if (top > 0u) {
                 task = pending[--top];
-                number = bvh4_merge(&trees, task.x, child);
-#pragma unroll
-                for (uint c = 0u; c < 4u; ++c) inner += c < number && child[c].size > max_leaf ? 1u : 0u;
+                number = bvh4_merge(&trees, task, child);
+                made = bvh4_count(&trees, child, number);
             }
-            uint node = inner ? atomic_add(&round.nodes[set], inner) : 0u;
-            if (top + inner > 0u) round.busy[set] = 1u; /* all write the same */
+            uint node = made.x ? atomic_add(&round.nodes[set], made.x) : 0u;
+            const uint leaf = made.y ? atomic_add(&round.leaves[set], made.y) : 0u;
+            if (top + made.x > 0u) round.busy[set] = 1u; /* all write the same */
             RT_LOCAL_BARRIER();
             busy = round.busy[set] != 0u;
             if (RT_ITEM == 0u) {
                 round.first_node = round.nodes[set] ? atomic_add(used, round.nodes[set]) : 0u;
-                round.nodes[1u - set] = round.busy[1u - set] = 0u;
+                round.first_leaf = round.leaves[set] ? atomic_add((global uint *)open_leaves, round.leaves[set]) : 0u;
+                round.nodes[1u - set] = round.leaves[1u - set] = round.busy[1u - set] = 0u;
             }
             RT_LOCAL_BARRIER();
             set = 1u - set;
             if (number == 0u) continue;
             node += round.first_node;
-            bvh4_write(&trees, task, child, number, node);
-            uint first = task.y;
+            bvh4_write(&trees, task, child, number, node, round.first_leaf + leaf);
+            uint first = task.z;
 #pragma unroll
             for (uint c = 0u; c < 4u; ++c) {
-                if (c >= number) continue;
-                if (child[c].size > max_leaf) pending[top++] = (bvh4_task)(child[c].code, first, node++, child[c].size);
+                if (c < number && child[c].size > max_leaf) pending[top++] = bvh4_below(&child[c], first, node++);
                 first += child[c].size;
+            }
+        }
+    }
+}
+
+/* Writes the leaf order of the leaves of two primitives and more: of at most BVH4_LEAF_MAX. */
+RT_BUILD_KERNEL bvh4_write_leaves(const global float *nodes, const global uint *order, const global bvh4_leaf *open_leaves,
+                                  global uint *leaves)
+{
+    const uint count = open_leaves[0].x;
+    for (uint i = RT_GROUP_NUMBER * RT_GROUP + RT_ITEM; i < count; i += (uint)get_num_groups(0) * RT_GROUP) {
+        uint stack[BVH4_LEAF_MAX + 1u], top = 0u, at = open_leaves[1u + i].y;
+        stack[top++] = open_leaves[1u + i].x;
+        while (top > 0u) {
+            const uint code = stack[--top];
+            if (code >= BVH4_SINGLE) {
+                leaves[at++] = order[code & ~BVH4_SINGLE];
+            } else {
+                stack[top++] = as_uint(nodes[8ul * code + 7u]);
+                stack[top++] = as_uint(nodes[8ul * code + 3u]);
             }
         }
     }

@@ -20,8 +20,8 @@ using rt::of;
 
 // The most primitives of the subtrees to which the passes descend. A level of a pass has fewer than 1024 nodes then
 // (BVH4_LEVEL): trees have less than 2^28 primitives. Each of the smallest is made by one work-item (BVH4_PENDING).
-constexpr uint64_t kSubtrees[] = {1u << 23, 1u << 14, 1u << 5};
-constexpr uint64_t kGroupsPerUnit = 16;  // work-groups of a pass over many subtrees
+constexpr uint64_t kSubtrees[] = {1u << 22, 1u << 13, 1u << 4};
+constexpr uint64_t kGroupsPerUnit = 16;  // work-groups of a pass over many subtrees or leaves
 
 }  // namespace
 
@@ -39,7 +39,8 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
     const bool has_root = topology->root != RT_NONE;
     const uint64_t places = n / 2 + 1, passes = std::size(kSubtrees);
     rt::DeviceSteps steps(plan);
-    const rt_u32 lists = steps.buffer(16 * (2 + passes * places)), used = steps.buffer(4);
+    const rt_u32 lists = steps.buffer(16 * (2 + passes * places)), used = steps.buffer(4),
+                 open_leaves = steps.buffer(8 * places);
     const auto launch = [&](const char* kernel, uint64_t groups, std::initializer_list<rt_device_arg> more) {
         std::vector<rt_device_arg> args = {of(input->prims),
                                            of(topology->nodes),
@@ -51,7 +52,8 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
                                            of(tree->slots[0]),
                                            of(tree->ranges),
                                            of(out->leaves),
-                                           of(used)};
+                                           of(used),
+                                           of(open_leaves)};
         args.insert(args.end(), more);
         steps.launch(kernel, groups, args);
     };
@@ -67,8 +69,11 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
         groups = plan->units * kGroupsPerUnit;
     }
     const uint64_t needed = places / plan->group_items + 1;
-    if (n > 1)
-        launch("bvh4_close", std::min(groups == 1 ? 1 : needed, plan->units * kGroupsPerUnit), {of(lists), number(from)});
+    if (n > 1) {
+        const uint64_t most = std::min(needed, plan->units * kGroupsPerUnit);
+        launch("bvh4_close", groups == 1 ? 1 : most, {of(lists), number(from)});
+        steps.launch("bvh4_write_leaves", most, {of(topology->nodes), of(topology->order), of(open_leaves), of(out->leaves)});
+    }
     out->root(out->ctx, static_cast<rt_u32>(tree->first_element[0]));
     out->define(out->ctx, "BVH4_STACK", clarity::bvh::stack_places(3 * topology->depth));
     return steps.result();
