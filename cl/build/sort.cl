@@ -79,7 +79,7 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
                           uint next_shift, uint next_mask)
 {
     local uint of_team[RT_TEAMS * RT_DIGITS]; /* pairs of a digit so far; later, where the team's pairs of it begin in the tile */
-    local uint shared[2u * RT_GROUP], to_place[RT_DIGITS];
+    local uint shared[2u * RT_GROUP], to_place[RT_DIGITS], of_tiles[2][4u * RT_GROUP];
     local RT_KEY sorted_keys[RT_SORT_TILE];
     local uint sorted_values[RT_SORT_TILE];
 #ifndef RT_WARPS
@@ -130,15 +130,23 @@ RT_BUILD_KERNEL sort_move(const global RT_KEY *keys, const global uint *values, 
     for (uint t = 0u; t < RT_TEAMS; ++t) in_digit += of_team[t * RT_DIGITS + item];
     uint next = rt_group_scan(shared, in_digit, &ignored);
     uint place = 0u;
-    if (few) {
+    if (few) { /* each quarter of the group adds a quarter of the tiles, four digits a work-item */
         places += pass * tiles * RT_DIGITS;
-        uint before = 0u, all = 0u;
-        for (uint t = 0u; t < tiles; ++t) {
-            const uint in_other = places[t * RT_DIGITS + item];
-            before += t < tile ? in_other : 0u;
+        uint4 before = (uint4)(0u), all = (uint4)(0u);
+        for (uint t = item / 64u; t < tiles; t += RT_GROUP / 64u) {
+            const uint4 in_other = vload4(t * (RT_DIGITS / 4u) + item % 64u, places);
+            before += t < tile ? in_other : (uint4)(0u);
             all += in_other;
         }
-        place = rt_group_scan(shared, all, &ignored) + before;
+        vstore4(before, item, of_tiles[0]);
+        vstore4(all, item, of_tiles[1]);
+        RT_LOCAL_BARRIER();
+        uint every = 0u;
+        for (uint quarter = 0u; quarter < RT_GROUP / 64u; ++quarter) {
+            place += of_tiles[0][quarter * RT_DIGITS + item];
+            every += of_tiles[1][quarter * RT_DIGITS + item];
+        }
+        place += rt_group_scan(shared, every, &ignored);
     } else if (item <= mask) {
         place = places[item * tiles + tile];
     }

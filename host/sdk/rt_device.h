@@ -54,9 +54,10 @@ typedef struct rt_device_plan {
     /* A step: the blocks (rt_block) of `count` boxes (rt_prim). order: a buffer of uint, which box stands at each place; RT_NONE: as
      * they are. Returns their buffer; RT_NONE: failed. */
     rt_u32 (*blocks)(void *ctx, rt_u32 boxes, rt_u32 order, uint64_t count);
-    /* A step: keys[i] (ulong) becomes the Morton code of the centre of box i (rt_prim), with axis_bits (1 to 21) bits for each axis,
-     * x before y before z from the highest bit on; values[i] (uint) becomes i. Cells are cubes, and hold all centres. */
-    int32_t (*codes)(void *ctx, rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 values);
+    /* A step: puts `count` boxes (rt_prim) in the order of their centres along a Morton curve, with axis_bits (1 to 21) bits for each
+     * axis, x before y before z from the highest bit on. keys (ulong): the codes, ascending; order (uint): the number of the box at
+     * each place; boxes with equal codes keep their order. Cells are cubes, and hold all centres. */
+    int32_t (*curve)(void *ctx, rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 order);
 } rt_device_plan;
 
 typedef struct rt_device_input {

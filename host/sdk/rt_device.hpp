@@ -28,8 +28,8 @@ class DeviceSteps {
         ok_ = ok_ && made != RT_NONE;
         return made;
     }
-    void codes(rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 values) {
-        step(plan_->codes, boxes, count, axis_bits, keys, values);
+    void curve(rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 order) {
+        step(plan_->curve, boxes, count, axis_bits, keys, order);
     }
     int32_t result() const { return ok_ ? RT_OK : RT_FAILED; }
 

@@ -27,9 +27,8 @@ BuildKernels::BuildKernels(std::shared_ptr<Device> device, BuildForm form)
       warps_(!serial_ && has_warps(device_->info())) {}
 
 cl::Program BuildKernels::compile(const std::string& text, const std::string& what, const std::string& more_options) const {
-    std::string options = "-cl-std=CL1.2 -DRT_GROUP=" + std::to_string(group()) +
-                          " -DRT_SORT_TILE=" + std::to_string(sort_tile()) + "u -DRT_SCAN_TILE=" + std::to_string(scan_tile()) +
-                          "u";
+    std::string options =
+        "-cl-std=CL1.2 -DRT_GROUP=" + std::to_string(group()) + " -DRT_SCAN_TILE=" + std::to_string(scan_tile()) + "u";
     if (warps_) options += " -DRT_WARPS";
     std::string headers;
     for (const std::string name : {"build/groups.h", "build/blocks.h"})

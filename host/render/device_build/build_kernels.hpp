@@ -27,7 +27,6 @@ class BuildKernels {
     unsigned group() const { return serial_ ? 1 : 256; }  // work-items of a work-group: RT_GROUP
     // Whether work-items of a warp talk to each other: RT_WARPS of groups.h.
     bool warps() const { return warps_; }
-    unsigned sort_tile() const { return serial_ ? 8192 : 2048; }
     unsigned scan_tile() const { return 4096; }
 
     // Compiles `text` behind groups.h and blocks.h, and with the options of all kernels of builds; the second time it returns

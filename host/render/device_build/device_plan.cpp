@@ -102,14 +102,15 @@ struct DevicePlan::Calls {
             plan.steps_.push_back([reducer, reduced, count, to] { reducer->run(reduced, 0, count, to); });
         });
     }
-    static int32_t codes(void* ctx, rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 values) {
+    static int32_t curve(void* ctx, rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 order) {
         return guarded(ctx, [&](DevicePlan& plan) {
-            const cl::Buffer from = known(plan, boxes), to_keys = known(plan, keys), to_values = known(plan, values);
+            const cl::Buffer from = known(plan, boxes), to_keys = known(plan, keys), to_order = known(plan, order);
             if (axis_bits < 1 || axis_bits > 21)
-                throw Error(Exit::failed, "it asked for codes of " + std::to_string(axis_bits) + " bits an axis: 1 to 21 fit");
-            const auto curve = std::make_shared<DeviceCurve>(plan.kernels_);
+                throw Error(Exit::failed,
+                            "it asked for a curve of " + std::to_string(axis_bits) + " bits an axis: 1 to 21 fit");
+            const auto curve = std::make_shared<DeviceCurve>(plan.kernels_, count, axis_bits);
             plan.bytes_ += curve->bytes();
-            plan.steps_.push_back([=] { curve->run(from, count, axis_bits, to_keys, to_values); });
+            plan.steps_.push_back([=] { curve->run(from, count, to_keys, to_order); });
         });
     }
     static rt_u32 blocks(void* ctx, rt_u32 boxes, rt_u32 order, uint64_t count) {
@@ -155,7 +156,7 @@ void DevicePlan::plan(const rt_plugin& plugin, const rt_device_build& build,
     table.scan = Calls::scan;
     table.bounds = Calls::bounds;
     table.blocks = Calls::blocks;
-    table.codes = Calls::codes;
+    table.curve = Calls::curve;
     why_.clear();
     Progress progress;
     HostServices services(name, progress);

@@ -16,6 +16,13 @@ class DeviceSort {
     // ignored. Pairs with equal bits keep their order. Only enqueues. bits: 1 to 32 or 64.
     void run(const cl::Buffer& keys, const cl::Buffer& values, uint64_t count, unsigned bits);
 
+    struct Pairs {
+        cl::Buffer keys, values;
+    };
+    // The same with one pass less, if that is enough: the pairs are to be in input(), and the result is in `sorted`.
+    void run_into(const Pairs& sorted, uint64_t count, unsigned bits);
+    const Pairs& input(const Pairs& sorted, unsigned bits) const;
+
     uint64_t bytes() const { return bytes_; }
 
  private:
@@ -23,15 +30,18 @@ class DeviceSort {
         cl_uint shift, mask;
     };
     void start(cl::Kernel& kernel, const cl::Buffer& keys, uint64_t count, Digit digit, uint64_t tiles);
-    void move(const cl::Buffer (&from)[2], const cl::Buffer (&to)[2], uint64_t count, Digit digit, bool few, unsigned pass,
-              Digit next);
+    void sort(const Pairs& from, const Pairs& other, uint64_t count, unsigned bits, unsigned passes);
+    void move(const Pairs& from, const Pairs& to, uint64_t count, Digit digit, unsigned pass, Digit next);
     uint64_t tiles_for(uint64_t count) const;
+    unsigned tile() const;
 
     const BuildKernels& kernels_;
     const uint64_t most_;
     const unsigned key_bytes_;
+    const bool few_;  // tiles
     cl::Kernel count_, count_few_, move_;
-    cl::Buffer keys_, values_, counts_;
+    Pairs own_;
+    cl::Buffer counts_;
     DeviceScan scan_;
     uint64_t bytes_ = 0;
 };

@@ -20,8 +20,7 @@ int32_t plan(const rt_host*, const rt_device_plan* plan, const rt_device_input* 
     const rt_u32 order = steps.buffer(4 * n), nodes = steps.buffer(kNodeBytes * n), counts = steps.buffer(4 * n);
     if (n > 0) {
         const rt_u32 keys = steps.buffer(8 * n);
-        steps.codes(input->prims, n, axis_bits(n), keys, order);
-        steps.sort(keys, order, n, code_bits(n));
+        steps.curve(input->prims, n, axis_bits(n), keys, order);
         if (n > 1) {
             const rt_u32 blocks = steps.blocks(input->prims, order, n);
             steps.launch("lbvh_nodes", (n - 1 + each - 1) / each,

@@ -22,8 +22,7 @@ int32_t plan(const rt_host*, const rt_device_plan* plan, const rt_device_input* 
     const rt_u32 root = steps.buffer(8);
     if (n > 0) {
         const rt_u32 keys = steps.buffer(8 * n);
-        steps.codes(input->prims, n, axis_bits(n), keys, order);
-        steps.sort(keys, order, n, code_bits(n));
+        steps.curve(input->prims, n, axis_bits(n), keys, order);
         const rt_u32 places = steps.buffer(kPlaceBytes * n);
         const auto launch = [&](const char* kernel, uint64_t work_groups, const std::vector<rt_device_arg>& more) {
             std::vector<rt_device_arg> args = {of(input->prims), of(order),  of(keys), of(nodes),

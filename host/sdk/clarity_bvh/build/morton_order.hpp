@@ -1,4 +1,4 @@
-// morton_order.hpp -- the order of primitives along a Morton curve that the steps `codes` and `sort` of rt_device.h give on a
+// morton_order.hpp -- the order of primitives along a Morton curve that the step `curve` of rt_device.h gives on a
 // device; and the same order on the host, for builders that build the same tree on both.
 #pragma once
 #include <cstdint>
@@ -8,10 +8,10 @@
 
 namespace clarity::bvh {
 
-// Bits of a code for each axis. A sort takes an even number of passes of 8 bits: 30 bits need four, 48 bits six.
-constexpr uint64_t kMostWithShortCodes = uint64_t{1} << 18;
+// Bits of a code for each axis. A sort takes a pass for 8 bits: 24 bits need three, 48 bits six.
+constexpr uint64_t kMostWithShortCodes = uint64_t{1} << 17;
 constexpr uint32_t axis_bits(uint64_t count) {
-    return count <= kMostWithShortCodes ? 10 : 16;
+    return count <= kMostWithShortCodes ? 8 : 16;
 }
 constexpr uint32_t code_bits(uint64_t count) {
     return 3 * axis_bits(count);
