@@ -1,6 +1,7 @@
 /* move.cl -- the primitives of a scene that moves: leaves and boxes of one group follow the vertices and transforms.
  *
- * A triangle moves about 150 B through memory: 12 of vertex numbers, its vertices, its leaf both ways, its box. */
+ * A triangle moves about 200 B through memory: 12 of vertex numbers, its vertices, its leaf both ways, its box, its share of larger
+ * boxes. Neighbouring work-items of a GPU read and write neighbouring rows of 16 B, through local memory. */
 #pragma OPENCL EXTENSION cl_khr_fp64 : enable
 #pragma OPENCL FP_CONTRACT OFF /* the same boxes as the host's build_scene.cpp */
 
@@ -51,17 +52,29 @@ RT_INLINE rt_block rt_placed_box(rt_block box, const global rt_placement *placed
     return rt_widened(box);
 }
 
-/* The box of a leaf: of an instance and of a shape, what is in it. A leaf is three rows of four numbers; the fourth is no coordinate. */
-RT_INLINE rt_block rt_leaf_box(const global float *leaf, uint ref, const global rt_polygon *polygons,
-                               const global float *polygon_corners)
+/* A leaf: rt_packed_prim as three rows of four numbers, of which the fourth is no coordinate. */
+typedef struct rt_leaf {
+    float4 a, b, c;
+} rt_leaf;
+#define RT_LEAF_REF(leaf) as_uint((leaf).a.w)
+RT_INLINE rt_leaf rt_load_leaf(const global float *from)
 {
-    const uint kind = RT_REF_KIND(ref);
-    const float4 a = vload4(0, leaf), b = vload4(1, leaf);
+    rt_leaf leaf;
+    leaf.a = vload4(0, from);
+    leaf.b = vload4(1, from);
+    leaf.c = vload4(2, from);
+    return leaf;
+}
+
+/* The box of a leaf: of an instance and of a shape, what is in it. */
+RT_INLINE rt_block rt_leaf_box(rt_leaf leaf, const global rt_polygon *polygons, const global float *polygon_corners)
+{
+    const uint ref = RT_LEAF_REF(leaf), kind = RT_REF_KIND(ref);
+    const float4 a = leaf.a, b = leaf.b;
     rt_block box;
     if (kind == RT_REF_TRIANGLE) {
-        const float4 c = vload4(2, leaf);
-        box.lo = min(min(a, b), c);
-        box.hi = max(max(a, b), c);
+        box.lo = min(min(a, b), leaf.c);
+        box.hi = max(max(a, b), leaf.c);
     } else if (kind == RT_REF_SPHERE) {
         box.lo = a - b.x;
         box.hi = a + b.x;
@@ -85,9 +98,42 @@ RT_INLINE rt_block rt_leaf_box(const global float *leaf, uint ref, const global 
     return box;
 }
 
-/* Writes the leaves first .. first + count - 1, and the nine smallest sizes of their blocks. Triangles move if `moves`: corners[ref]
- * are the numbers of their vertices. Instances follow their placement and the box of their group. Positions are in the group's space.
- * all[at], bounds: of the whole group, if it has no more than RT_BLOCK_TILE primitives. */
+/* What moves: triangles if `moves`, to the vertices that corners[ref] names, in the group's space; instances, which follow their
+ * placement and the box of their group. */
+typedef struct rt_pose {
+    const global uint *corners;
+    const global float *positions;
+    const global rt_placement *placements;
+    const global uint *group_of_instance;
+    const global rt_block *group_boxes;
+    const global uint *roots;
+    global rt_instance *instances;
+} rt_pose;
+
+RT_INLINE rt_leaf rt_move_leaf(rt_leaf leaf, const rt_pose *pose, uint moves)
+{
+    const uint ref = RT_LEAF_REF(leaf), index = RT_REF_INDEX(ref), kind = RT_REF_KIND(ref);
+    if (kind == RT_REF_TRIANGLE && moves) {
+        const uint3 corner = vload3(index, pose->corners);
+        leaf.a.xyz = vload3(corner.x, pose->positions);
+        leaf.b.xyz = vload3(corner.y, pose->positions);
+        leaf.c.xyz = vload3(corner.z, pose->positions);
+    } else if (kind == RT_REF_INSTANCE) {
+        const uint group = pose->group_of_instance[index];
+        const global rt_placement *const placement = pose->placements + index;
+        const rt_block placed = rt_placed_box(pose->group_boxes[group], placement);
+        global rt_instance *const instance = pose->instances + index;
+        instance->root = pose->roots[group];
+        for (uint k = 0u; k < 12u; ++k) instance->object_from_world[k] = placement->object_from_world[k];
+        instance->hidden = placement->hidden;
+        leaf.a.xyz = placed.lo.xyz;
+        leaf.b.xyz = placed.hi.xyz;
+    }
+    return leaf;
+}
+
+/* Writes the leaves first .. first + count - 1, and the nine smallest sizes of their blocks. all[at], bounds: of the whole group, if it
+ * has no more than RT_BLOCK_TILE primitives. */
 RT_BUILD_KERNEL move_leaves(global float *leaves, uint first, uint count, uint moves, const global uint *corners,
                             const global float *positions, const global rt_placement *placements,
                             const global uint *group_of_instance, const global rt_block *group_boxes, const global uint *roots,
@@ -96,33 +142,41 @@ RT_BUILD_KERNEL move_leaves(global float *leaves, uint first, uint count, uint m
                             global float *bounds)
 {
     local rt_block shared[RT_BLOCK_TILE];
+    const rt_pose pose = {corners, positions, placements, group_of_instance, group_boxes, roots, instances};
     const uint begin = RT_GROUP_NUMBER * RT_BLOCK_TILE;
-    for (uint l = RT_ITEM; l < RT_BLOCK_TILE; l += RT_GROUP) {
-        rt_block box = rt_no_block();
-        if (begin + l < count) {
-            global float *const leaf = leaves + 12ul * (first + begin + l);
-            const uint ref = as_uint(leaf[3]), index = RT_REF_INDEX(ref), kind = RT_REF_KIND(ref);
-            if (kind == RT_REF_TRIANGLE && moves) {
-                const uint3 corner = vload3(index, corners);
-                vstore3(vload3(corner.x, positions), 0, leaf);
-                vstore3(vload3(corner.y, positions), 0, leaf + 4);
-                vstore3(vload3(corner.z, positions), 0, leaf + 8);
-            } else if (kind == RT_REF_INSTANCE) {
-                const uint group = group_of_instance[index];
-                const rt_block placed = rt_placed_box(group_boxes[group], placements + index);
-                instances[index].root = roots[group];
-                for (uint k = 0u; k < 12u; ++k)
-                    instances[index].object_from_world[k] = placements[index].object_from_world[k];
-                instances[index].hidden = placements[index].hidden;
-                vstore3(placed.lo.xyz, 0, leaf);
-                vstore3(placed.hi.xyz, 0, leaf + 4);
-            }
-            box = rt_leaf_box(leaf, ref, polygons, polygon_corners);
-            made[begin + l] = box;
-        }
-        shared[l] = box;
+#if RT_GROUP == 1
+    for (uint l = 0u; l < RT_BLOCK_TILE; ++l) {
+        shared[l] = rt_no_block();
+        if (begin + l >= count) continue;
+        global float *const to = leaves + 12ul * (first + begin + l);
+        const rt_leaf leaf = rt_move_leaf(rt_load_leaf(to), &pose, moves);
+        vstore4(leaf.a, 0, to);
+        vstore4(leaf.b, 1, to);
+        vstore4(leaf.c, 2, to);
+        made[begin + l] = shared[l] = rt_leaf_box(leaf, polygons, polygon_corners);
     }
+#else /* RT_GROUP is RT_BLOCK_TILE */
+    local float4 rows[3u * RT_BLOCK_TILE];
+    global float *const tile = leaves + 12ul * (first + begin);
+    const uint in_tile = min(RT_BLOCK_TILE, count - begin);
+    for (uint r = RT_ITEM; r < 3u * in_tile; r += RT_GROUP) rows[r] = vload4(r, tile);
     RT_LOCAL_BARRIER();
+    rt_block box = rt_no_block();
+    if (RT_ITEM < in_tile) {
+        local float4 *const row = rows + 3u * RT_ITEM;
+        rt_leaf leaf = {row[0], row[1], row[2]};
+        leaf = rt_move_leaf(leaf, &pose, moves);
+        row[0] = leaf.a;
+        row[1] = leaf.b;
+        row[2] = leaf.c;
+        box = rt_leaf_box(leaf, polygons, polygon_corners);
+    }
+    shared[RT_ITEM] = box;
+    RT_LOCAL_BARRIER();
+    for (uint r = RT_ITEM; r < 3u * in_tile; r += RT_GROUP) vstore4(rows[r], r, tile);
+    for (uint r = RT_ITEM; r < 2u * in_tile; r += RT_GROUP)
+        vstore4(((const local float4 *)shared)[r], 2ul * begin + r, (global float *)made);
+#endif
     rt_make_blocks(shared, begin, count, made, all + at, bounds);
 }
 
@@ -132,10 +186,9 @@ RT_BUILD_KERNEL leaf_boxes(const global float *leaves, uint first, uint count, u
 {
     const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, count);
     for (uint i = begin + RT_ITEM; i < end; i += RT_GROUP) {
-        const global float *const leaf = leaves + 12ul * (first + i);
-        const uint ref = as_uint(leaf[3]);
-        rt_block box = rt_leaf_box(leaf, ref, polygons, polygon_corners);
-        box.lo.w = as_float(ref);
+        const rt_leaf leaf = rt_load_leaf(leaves + 12ul * (first + i));
+        rt_block box = rt_leaf_box(leaf, polygons, polygon_corners);
+        box.lo.w = leaf.a.w; /* ref */
         box.hi.w = as_float(0u);
         vstore4(box.lo, 0, (global float *)(boxes + i));
         vstore4(box.hi, 1, (global float *)(boxes + i));

@@ -355,42 +355,53 @@ RT_BUILD_KERNEL bvh4_write_leaves(const global float *nodes, const global uint *
     }
 }
 
+/* Writes the box of a child of a node, from those of the primitives below it. Returns the child's share of the expected cost of a ray. */
+RT_INLINE float bvh4_fit(global float *node, uint turn, uint slot, const global uint2 *ranges, const global rt_block *blocks, uint count,
+                         uint first_leaf, float node_cost, float primitive_cost)
+{
+    const uint code = as_uint(node[4u * (6u ^ turn) + slot]);
+    if (code == BVH4_EMPTY) return 0.0f; /* its box is that of nothing */
+    const bool leaf = code >= BVH4_LEAF;
+    const uint2 below =
+        leaf ? (uint2)(BVH4_LEAF_FIRST(code) - first_leaf, BVH4_LEAF_COUNT(code)) : ranges[BVH4_INDEX(code)];
+    const rt_block box = rt_box_of_range(blocks, count, below.x, below.x + below.y);
+    node[4u * (0u ^ turn) + slot] = box.lo.x;
+    node[4u * (1u ^ turn) + slot] = box.lo.y;
+    node[4u * (2u ^ turn) + slot] = box.lo.z;
+    node[4u * (3u ^ turn) + slot] = box.hi.x;
+    node[4u * (4u ^ turn) + slot] = box.hi.y;
+    node[4u * (5u ^ turn) + slot] = box.hi.z;
+    return rt_block_area(box) * (leaf ? primitive_cost * (float)below.y : node_cost);
+}
+
 /* Fits the nodes first_node .. first_node + elements - 1 to the boxes of the primitives below them, which come from `blocks`. count:
- * of primitives. costs: see rt_device_build::refit. */
+ * of primitives. costs: see rt_device_build::refit. On a GPU four neighbouring work-items share a node: each fits one child. */
 RT_BUILD_KERNEL bvh4_refit(global float *nodes, const global uint2 *ranges, const global rt_block *blocks, uint count,
                            uint first_node, uint elements, uint each, uint first_leaf, uint root, float node_cost,
                            float primitive_cost, global float *costs)
 {
     const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, elements);
-    for (uint e = begin + RT_ITEM; e < end; e += RT_GROUP) {
-        const uint index = first_node + e;
-        if (ranges[index].y == 0u) {
-            costs[e] = 0.0f;
-            continue;
+#if RT_GROUP == 1
+    const uint at_once = 1u, mine = 0u, first_slot = 0u, slots = 4u;
+    float cost[4];
+#else
+    local float of_group[RT_GROUP];
+    const uint at_once = RT_GROUP / 4u, mine = RT_ITEM / 4u, first_slot = RT_ITEM % 4u, slots = 1u;
+    local float *const cost = of_group + 4u * mine;
+#endif
+    for (uint next = begin; next < end; next += at_once) {
+        const uint e = next + mine, index = first_node + e;
+        const uint2 all = e < end ? ranges[index] : (uint2)(0u);
+        for (uint s = first_slot; s < first_slot + slots; ++s)
+            cost[s] = all.y == 0u ? 0.0f
+                                  : bvh4_fit(nodes + 32ul * index, index & 7u, s, ranges, blocks, count, first_leaf, node_cost,
+                                             primitive_cost);
+        RT_LOCAL_BARRIER();
+        if (e < end && first_slot == 0u) {
+            float sum = cost[0] + cost[1] + cost[2] + cost[3];
+            if (index == root) sum += node_cost * rt_block_area(rt_box_of_range(blocks, count, all.x, all.x + all.y));
+            costs[e] = sum;
         }
-        global float *const node = nodes + 32u * (ulong)index;
-        const uint4 codes = vload4(6u ^ (index & 7u), (const global uint *)node);
-        const uint code[4] = {codes.x, codes.y, codes.z, codes.w};
-        float cost = 0.0f;
-        rt_block child[4], whole = rt_no_block();
-        for (uint s = 0u; s < 4u; ++s) {
-            uint2 below = (uint2)(0u, 0u);
-            const bool leaf = code[s] >= BVH4_LEAF;
-            if (!leaf)
-                below = ranges[BVH4_INDEX(code[s])];
-            else if (code[s] != BVH4_EMPTY)
-                below = (uint2)(BVH4_LEAF_FIRST(code[s]) - first_leaf, BVH4_LEAF_COUNT(code[s]));
-            child[s] = rt_box_of_range(blocks, count, below.x, below.x + below.y);
-            if (below.y > 0u) cost += rt_block_area(child[s]) * (leaf ? primitive_cost * (float)below.y : node_cost);
-            whole = rt_join_blocks(whole, child[s]);
-        }
-        costs[e] = cost + (index == root ? node_cost * rt_block_area(whole) : 0.0f);
-        const uint turn = index & 7u;
-        vstore4((float4)(child[0].lo.x, child[1].lo.x, child[2].lo.x, child[3].lo.x), 0u ^ turn, node);
-        vstore4((float4)(child[0].lo.y, child[1].lo.y, child[2].lo.y, child[3].lo.y), 1u ^ turn, node);
-        vstore4((float4)(child[0].lo.z, child[1].lo.z, child[2].lo.z, child[3].lo.z), 2u ^ turn, node);
-        vstore4((float4)(child[0].hi.x, child[1].hi.x, child[2].hi.x, child[3].hi.x), 3u ^ turn, node);
-        vstore4((float4)(child[0].hi.y, child[1].hi.y, child[2].hi.y, child[3].hi.y), 4u ^ turn, node);
-        vstore4((float4)(child[0].hi.z, child[1].hi.z, child[2].hi.z, child[3].hi.z), 5u ^ turn, node);
+        RT_LOCAL_BARRIER();
     }
 }
