@@ -38,7 +38,8 @@ typedef struct rt_device_plan {
     rt_u32 units;       /* compute units of the device */
     rt_u32 has_warps;   /* 1: kernels have RT_WARPS */
     void *ctx;
-    /* Memory of the plan, of unknown content; it keeps its content from step to step. RT_NONE: failed. */
+    /* Memory of the plan. It is filled with zeros once; then it keeps its content from step to step, and from run to run. RT_NONE:
+     * failed. */
     rt_u32 (*buffer)(void *ctx, uint64_t bytes);
     /* A step: `groups` work-groups of a kernel of this plugin. */
     int32_t (*launch)(void *ctx, const char *kernel, rt_u32 groups, const rt_device_arg *args, rt_u32 arg_count);

@@ -42,7 +42,9 @@ struct DevicePlan::Calls {
     static rt_u32 buffer(void* ctx, uint64_t bytes) {
         rt_u32 number = RT_NONE;
         guarded(ctx, [&](DevicePlan& plan) {
-            number = plan.add(plan.kernels_.buffer(bytes));
+            const cl::Buffer made = plan.kernels_.buffer(bytes);
+            plan.kernels_.device().queue().enqueueFillBuffer(made, cl_uchar{0}, 0, made.getInfo<CL_MEM_SIZE>());
+            number = plan.add(made);
             plan.bytes_ += bytes;
         });
         return number;

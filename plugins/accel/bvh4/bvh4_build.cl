@@ -172,6 +172,13 @@ typedef struct bvh4_round {
     uint nodes[2], leaves[2], subtrees[2], busy[2], first_node, first_leaf, first_subtree;
 } bvh4_round;
 
+/* Takes the places of a round from a counter: *first receives the first one. `team`: which 32 work-items do it, so that several calls
+ * wait for memory at the same time. */
+RT_INLINE void bvh4_reserve(const local uint *number, global uint *counter, local uint *first, uint team)
+{
+    if (RT_ITEM == team * RT_WARP % RT_GROUP) *first = *number ? atomic_add(counter, *number) : 0u;
+}
+
 /* How many inner children and leaves of two primitives and more a node has. */
 RT_INLINE uint2 bvh4_count(const bvh4_trees *t, const bvh4_child child[4], uint number)
 {
@@ -253,12 +260,10 @@ RT_BUILD_KERNEL bvh4_open(BVH4_TREES, uint least, global uint4 *lists, uint from
                 const uint leaf = made.y ? atomic_add(&round.leaves[set], made.y) : 0u;
                 uint subtree = small ? atomic_add(&round.subtrees[set], small) : 0u;
                 RT_LOCAL_BARRIER();
-                if (RT_ITEM == 0u) {
-                    round.first_node = round.nodes[set] ? atomic_add(used, round.nodes[set]) : 0u;
-                    round.first_leaf = round.leaves[set] ? atomic_add((global uint *)open_leaves, round.leaves[set]) : 0u;
-                    round.first_subtree = round.subtrees[set] ? atomic_add((global uint *)found, round.subtrees[set]) : 0u;
-                    round.nodes[1u - set] = round.leaves[1u - set] = round.subtrees[1u - set] = 0u;
-                }
+                bvh4_reserve(&round.nodes[set], used, &round.first_node, 0u);
+                bvh4_reserve(&round.leaves[set], (global uint *)open_leaves, &round.first_leaf, 1u);
+                bvh4_reserve(&round.subtrees[set], (global uint *)found, &round.first_subtree, 2u);
+                if (RT_ITEM == 0u) round.nodes[1u - set] = round.leaves[1u - set] = round.subtrees[1u - set] = 0u;
                 RT_LOCAL_BARRIER();
                 set = 1u - set;
                 if (!there) continue;
@@ -315,11 +320,9 @@ RT_BUILD_KERNEL bvh4_close(BVH4_TREES, global uint4 *lists, uint from)
             if (top + made.x > 0u) round.busy[set] = 1u; /* all write the same */
             RT_LOCAL_BARRIER();
             busy = round.busy[set] != 0u;
-            if (RT_ITEM == 0u) {
-                round.first_node = round.nodes[set] ? atomic_add(used, round.nodes[set]) : 0u;
-                round.first_leaf = round.leaves[set] ? atomic_add((global uint *)open_leaves, round.leaves[set]) : 0u;
-                round.nodes[1u - set] = round.leaves[1u - set] = round.busy[1u - set] = 0u;
-            }
+            bvh4_reserve(&round.nodes[set], used, &round.first_node, 0u);
+            bvh4_reserve(&round.leaves[set], (global uint *)open_leaves, &round.first_leaf, 1u);
+            if (RT_ITEM == 0u) round.nodes[1u - set] = round.leaves[1u - set] = round.busy[1u - set] = 0u;
             RT_LOCAL_BARRIER();
             set = 1u - set;
             if (number == 0u) continue;

@@ -33,7 +33,6 @@ int32_t plan(const rt_host*, const rt_device_plan* plan, const rt_device_input* 
         const uint32_t limit = height_limit(n);
         if (plan->has_warps) {
             const rt_u32 siblings = steps.buffer(4 * n), of_radix_tree = steps.buffer(4 * n);
-            steps.launch("ploc_begin", groups, {number(n), of(siblings), of(of_radix_tree), of(root)});
             if (n > 1) {
                 launch("ploc_climb", groups, {of(siblings), of(root)});
                 launch("ploc_limit", groups, {of(of_radix_tree), of(root), number(limit)});

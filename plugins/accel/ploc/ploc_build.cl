@@ -63,29 +63,22 @@ RT_INLINE void ploc_finish(global uint *result, ploc_place root)
 
 #ifdef RT_WARPS
 
-/* siblings, of_radix_tree: for each place but the last, the far end of the sibling that has arrived there; PLOC_NONE: none has. */
-RT_BUILD_KERNEL ploc_begin(uint count, global uint *siblings, global uint *of_radix_tree, global uint *result)
-{
-    const uint i = (uint)get_global_id(0);
-    if (i < count) siblings[i] = of_radix_tree[i] = PLOC_NONE;
-    if (i == 0u) result[0] = result[1] = 0u;
-}
-
 /* Says that the range *start .. *last is there. If its sibling is there too, returns true; then the range holds both, and the second
- * begins at *split. */
+ * begins at *split. siblings: for each place but the last, 1 + the far end of the sibling that has arrived there; 0: none has. The
+ * second to arrive leaves it at 0, for the next build. */
 RT_INLINE bool ploc_arrive(const ploc_tree *t, uint count, global uint *siblings, uint *start, uint *last, uint *split)
 {
     const bool is_right = *last == count - 1u || (*start > 0u && ploc_rank(t, *start - 1u) < ploc_rank(t, *last));
-    if (is_right) {
-        const uint other = atomic_xchg(&siblings[*start - 1u], *last);
-        *split = *start;
-        *start = other;
-        return other != PLOC_NONE;
-    }
-    const uint other = atomic_xchg(&siblings[*last], *start);
-    *split = *last + 1u;
-    *last = other;
-    return other != PLOC_NONE;
+    global uint *const meeting = siblings + (is_right ? *start - 1u : *last);
+    const uint other = atomic_xchg(meeting, 1u + (is_right ? *last : *start));
+    if (other == 0u) return false;
+    *meeting = 0u;
+    *split = is_right ? *start : *last + 1u;
+    if (is_right)
+        *start = other - 1u;
+    else
+        *last = other - 1u;
+    return true;
 }
 
 RT_INLINE ploc_place ploc_shuffle_place(ploc_place place, uint lane)
