@@ -80,6 +80,8 @@ RT_INLINE float rt_shuffle_float(float value, uint lane) { return as_float(rt_sh
  * (NVIDIA, PTX ISA, "Memory Consistency Model"). So the last of several work-groups to arrive may go on with what the others have
  * written. None may wait for another. */
 #define RT_DEVICE_FENCE() __asm__ volatile("fence.acq_rel.gpu;" ::: "memory")
+/* The same for work-items of one group. */
+#define RT_GROUP_FENCE() __asm__ volatile("fence.acq_rel.cta;" ::: "memory")
 #else
 #define RT_WARP_BARRIER() RT_LOCAL_BARRIER()
 #endif

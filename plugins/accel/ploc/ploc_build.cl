@@ -107,19 +107,43 @@ typedef struct ploc_row {
     uint4 place;
 } ploc_row;
 
-/* ploc_join() by a warp: a lane has a cluster. */
-RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, uint start, uint split, uint end, bool whole, global uint *result)
+RT_INLINE void ploc_put(local ploc_row *row, const ploc_cluster *cluster)
+{
+    row->lo = (float4)(cluster->lo[0], cluster->lo[1], cluster->lo[2], 0.0f);
+    row->hi = (float4)(cluster->hi[0], cluster->hi[1], cluster->hi[2], 0.0f);
+    row->place = (uint4)(cluster->place.code, cluster->place.name, cluster->place.height, cluster->place.count);
+}
+RT_INLINE ploc_cluster ploc_get(const local ploc_row *row)
+{
+    const float4 lo = row->lo, hi = row->hi;
+    const uint4 words = row->place;
+    const ploc_cluster cluster = {{lo.x, lo.y, lo.z}, {hi.x, hi.y, hi.z}, {words.x, words.y, words.z, words.w}};
+    return cluster;
+}
+
+/* ploc_join() by a warp: a lane has a cluster. rows: room for the warp. kept: for the group's places from first_kept on, the clusters
+ * of its ranges, if the whole range is among them (in_group). */
+RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, local ploc_row *kept, uint first_kept, bool in_group, uint start,
+                                  uint split, uint end, bool whole, global uint *result)
 {
     const uint lane = RT_ITEM % RT_WARP, lower = (1u << lane) - 1u, k = lane % PLOC_KEPT;
     const uint from = lane < PLOC_KEPT ? start : split, size = lane < PLOC_KEPT ? split - start : end - split;
     const ploc_place none = {PLOC_NONE, 0u, 0u, 0u};
-    ploc_place place = none;
-    if (k < size) place = size <= PLOC_KEPT ? ploc_single(from + k) : ploc_place_at(t, from + k);
-    const uint there = rt_ballot(place.code != PLOC_NONE), on_left = popcount(there & 0xFFFFu);
-    place = ploc_shuffle_place(place, lane < on_left ? lane : (PLOC_KEPT + lane - on_left) % RT_WARP);
-    uint n = popcount(there);
     ploc_cluster cluster = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, none};
-    if (lane < n) cluster = ploc_load(t, place);
+    if (k < size) {
+        if (size > PLOC_KEPT && in_group) {
+            cluster = ploc_get(kept + from + k - first_kept);
+        } else {
+            cluster.place = size <= PLOC_KEPT ? ploc_single(from + k) : ploc_place_at(t, from + k);
+            if (cluster.place.code != PLOC_NONE) cluster = ploc_load(t, cluster.place);
+        }
+    }
+    const uint there = rt_ballot(cluster.place.code != PLOC_NONE), on_left = popcount(there & 0xFFFFu);
+    const uint source = lane < on_left ? lane : (PLOC_KEPT + lane - on_left) % RT_WARP;
+    const ploc_place place = ploc_shuffle_place(cluster.place, source);
+    cluster = ploc_shuffle_box(cluster, source);
+    cluster.place = place;
+    uint n = popcount(there);
     for (const uint until = whole ? 1u : PLOC_KEPT; n > until;) {
         float least = INFINITY;
         uint chosen = lane;
@@ -138,26 +162,17 @@ RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, uint
         if (is_pair && lane < chosen) cluster = ploc_pair(t, &cluster, &other);
         const bool stays = lane < n && !(is_pair && lane > chosen);
         const uint staying = rt_ballot(stays);
-        if (stays) {
-            local ploc_row *const row = rows + popcount(staying & lower);
-            row->lo = (float4)(cluster.lo[0], cluster.lo[1], cluster.lo[2], 0.0f);
-            row->hi = (float4)(cluster.hi[0], cluster.hi[1], cluster.hi[2], 0.0f);
-            row->place = (uint4)(cluster.place.code, cluster.place.name, cluster.place.height, cluster.place.count);
-        }
+        if (stays) ploc_put(rows + popcount(staying & lower), &cluster);
         RT_WARP_BARRIER();
         n = popcount(staying);
-        if (lane < n) {
-            const float4 lo = rows[lane].lo, hi = rows[lane].hi;
-            const uint4 words = rows[lane].place;
-            cluster.lo[0] = lo.x, cluster.lo[1] = lo.y, cluster.lo[2] = lo.z;
-            cluster.hi[0] = hi.x, cluster.hi[1] = hi.y, cluster.hi[2] = hi.z;
-            cluster.place.code = words.x, cluster.place.name = words.y;
-            cluster.place.height = words.z, cluster.place.count = words.w;
-        }
+        if (lane < n) cluster = ploc_get(rows + lane);
         RT_WARP_BARRIER();
     }
     if (whole && lane == 0u) ploc_finish(result, cluster.place);
-    if (!whole && lane < PLOC_KEPT) ploc_keep(t, start + lane, lane < n ? cluster.place : none);
+    if (whole || lane >= PLOC_KEPT) return;
+    if (lane >= n) cluster.place = none;
+    ploc_keep(t, start + lane, cluster.place);
+    if (in_group) ploc_put(kept + start + lane - first_kept, &cluster);
 }
 
 /* The largest range of the radix tree that holds place i, has no more than PLOC_KEPT primitives, and begins at i. Returns its last place,
@@ -182,39 +197,94 @@ RT_INLINE uint ploc_small_range(const local uint *ranks, uint count, uint i)
     return start == i ? last : PLOC_NONE;
 }
 
-/* Builds the tree. */
+/* The largest of several neighbours of RT_GROUP + 1 ranks: upto[i] of ranks 0 .. i, after[i] of ranks i + 1 .. RT_GROUP. */
+RT_INLINE void ploc_scan_ranks(const local uint *ranks, local uint *upto, local uint *after)
+{
+    uint a = ranks[RT_ITEM], b = ranks[RT_ITEM + 1u];
+    upto[RT_ITEM] = a;
+    after[RT_ITEM] = b;
+    RT_LOCAL_BARRIER();
+    for (uint step = 1u; step < RT_GROUP; step *= 2u) {
+        if (RT_ITEM >= step) a = max(a, upto[RT_ITEM - step]);
+        if (RT_ITEM + step < RT_GROUP) b = max(b, after[RT_ITEM + step]);
+        RT_LOCAL_BARRIER();
+        upto[RT_ITEM] = a;
+        after[RT_ITEM] = b;
+        RT_LOCAL_BARRIER();
+    }
+}
+
+/* Builds the tree. Ranges whose parent lies within the places of a group meet in local memory, where no memory of the device has to be
+ * waited for; then come those that meet other groups. */
 RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, global uint *siblings, global uint *result)
 {
-    local ploc_row rows[RT_GROUP];
-    local uint ranks[RT_GROUP + 2u * PLOC_KEPT];
+    local ploc_row rows[RT_GROUP], kept[RT_GROUP];
+    local uint ranks[RT_GROUP + 2u * PLOC_KEPT], upto[RT_GROUP], after[RT_GROUP], met[RT_GROUP];
     PLOC_TAKE_TREE;
     uint start = (uint)get_global_id(0), split = 0u;
+    const uint window = start - RT_ITEM;
     for (uint k = RT_ITEM; k < RT_GROUP + 2u * PLOC_KEPT; k += RT_GROUP) {
-        const uint place = start - RT_ITEM + k - PLOC_KEPT; /* wraps round before the first */
+        const uint place = window + k - PLOC_KEPT; /* wraps round before the first */
         ranks[k] = place < count - 1u ? ploc_rank(&tree, place) : PLOC_NONE;
     }
+    met[RT_ITEM] = 0u;
     RT_LOCAL_BARRIER();
+    ploc_scan_ranks(ranks + PLOC_KEPT - 1u, upto, after);
+    local ploc_row *const of_warp = rows + RT_ITEM / RT_WARP * RT_WARP;
+
     /* Ranges that keep all their primitives need no sibling to be found, so the climb begins at the largest of them. */
     uint last = start < count ? ploc_small_range(ranks + RT_ITEM, count, start) : PLOC_NONE;
     bool climbs = last != PLOC_NONE;
-    const bool alone = climbs && last - start == count - 1u;
-    if (rt_ballot(alone) != 0u) { /* no range is larger: the first lane has them all, and its split is any */
-        ploc_join_together(&tree, rows, 0u, 1u, count, true, result);
-        climbs = false;
+    if (rt_ballot(climbs && last - start == count - 1u) != 0u) { /* there is no larger one; any split will do */
+        ploc_join_together(&tree, of_warp, kept, window, true, 0u, 1u, count, true, result);
+        return;
     }
+    bool here = climbs && last < window + RT_GROUP;
+    while (rt_ballot(here) != 0u) {
+        bool joins = false;
+        if (here) {
+            const uint before = ranks[start - 1u - window + PLOC_KEPT], behind = ranks[last - window + PLOC_KEPT];
+            const bool is_right = before < behind;
+            const uint between = is_right ? start - 1u : last, rank = min(before, behind);
+            /* The parent lies here if a larger rank is on either side. */
+            here = (is_right ? start > window : last + 1u < window + RT_GROUP) && upto[between - window] > rank &&
+                   after[between - window + 1u] > rank;
+            if (here) {
+                const uint other = atomic_xchg(&met[between - window], 1u + (is_right ? last : start));
+                joins = other != 0u;
+                here = climbs = joins;
+                split = between + 1u;
+                if (joins && is_right) start = other - 1u;
+                if (joins && !is_right) last = other - 1u;
+            }
+        }
+        uint joining = rt_ballot(joins);
+        if (joining == 0u) continue;
+        RT_GROUP_FENCE();
+        while (joining != 0u) {
+            const uint lane = 31u - clz(joining);
+            joining ^= 1u << lane;
+            const uint first = rt_shuffle(start, lane), end = rt_shuffle(last, lane) + 1u;
+            ploc_join_together(&tree, of_warp, kept, window, true, first, rt_shuffle(split, lane), end, end - first == count, result);
+        }
+        if (joins && last - start == count - 1u) here = climbs = false;
+        RT_GROUP_FENCE();
+        RT_WARP_BARRIER();
+    }
+    RT_DEVICE_FENCE();
+    RT_WARP_BARRIER();
     while (rt_ballot(climbs) != 0u) {
         if (climbs) climbs = ploc_arrive(&tree, count, siblings, &start, &last, &split);
-        const bool whole = climbs && last - start == count - 1u;
-        uint joins = rt_ballot(climbs);
-        if (joins == 0u) continue;
+        uint joining = rt_ballot(climbs);
+        if (joining == 0u) continue;
         RT_DEVICE_FENCE();
-        while (joins != 0u) {
-            const uint lane = 31u - clz(joins);
-            joins ^= 1u << lane;
+        while (joining != 0u) {
+            const uint lane = 31u - clz(joining);
+            joining ^= 1u << lane;
             const uint first = rt_shuffle(start, lane), end = rt_shuffle(last, lane) + 1u;
-            ploc_join_together(&tree, rows + RT_ITEM / RT_WARP * RT_WARP, first, rt_shuffle(split, lane), end, end - first == count, result);
+            ploc_join_together(&tree, of_warp, kept, window, false, first, rt_shuffle(split, lane), end, end - first == count, result);
         }
-        if (whole) climbs = false;
+        if (climbs && last - start == count - 1u) climbs = false;
         RT_DEVICE_FENCE();
         RT_WARP_BARRIER();
     }
