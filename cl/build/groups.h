@@ -54,7 +54,7 @@ RT_DEFINE_GROUP_SCAN(rt_group_scan4, uint4)
 RT_INLINE uint rt_match(uint value)
 {
     uint bits;
-    __asm__ volatile("match.any.sync.b32 %0, %1, 0xffffffff;" : "=r"(bits) : "r"(value) : "memory");
+    __asm__ volatile("match.any.sync.b32 %0, %1, 0xffffffff;" : "=r"(bits) : "r"(value));
     return bits;
 }
 /* The bits of those for which `is` is true. */
@@ -63,15 +63,14 @@ RT_INLINE uint rt_ballot(bool is)
     uint bits;
     __asm__ volatile("{ .reg .pred p; setp.ne.u32 p, %1, 0; vote.sync.ballot.b32 %0, p, 0xffffffff; }"
                      : "=r"(bits)
-                     : "r"((uint)is)
-                     : "memory");
+                     : "r"((uint)is));
     return bits;
 }
 /* The value that work-item `lane` of the warp has. */
 RT_INLINE uint rt_shuffle(uint value, uint lane)
 {
     uint of_lane;
-    __asm__ volatile("shfl.sync.idx.b32 %0, %1, %2, 0x1f, 0xffffffff;" : "=r"(of_lane) : "r"(value), "r"(lane) : "memory");
+    __asm__ volatile("shfl.sync.idx.b32 %0, %1, %2, 0x1f, 0xffffffff;" : "=r"(of_lane) : "r"(value), "r"(lane));
     return of_lane;
 }
 RT_INLINE float rt_shuffle_float(float value, uint lane) { return as_float(rt_shuffle(as_uint(value), lane)); }

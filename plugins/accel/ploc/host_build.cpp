@@ -32,22 +32,16 @@ struct ploc_tree {
 static_assert(PLOC_OPEN + 1 == kPendingWords, "both are the ranges of a part");
 
 inline ploc_cluster ploc_load(const ploc_tree* t, ploc_place place) {
-    ploc_cluster cluster;
-    if (place.code & PLOC_SINGLE) {
-        const rt_prim& prim = t->prims[t->keys[place.code & ~PLOC_SINGLE].number];
-        std::copy_n(prim.lo, 3, cluster.lo);
-        std::copy_n(prim.hi, 3, cluster.hi);
-    } else {
-        std::copy_n(t->nodes[place.code].lo, 3, cluster.lo);
-        std::copy_n(t->nodes[place.code].hi, 3, cluster.hi);
-    }
-    cluster.place = place;
-    return cluster;
+    const auto cluster = [&](const auto& box) {
+        return ploc_cluster{box.lo[0], box.lo[1], box.lo[2], box.hi[0], box.hi[1], box.hi[2], place};
+    };
+    return place.code & PLOC_SINGLE ? cluster(t->prims[t->keys[place.code & ~PLOC_SINGLE].number])
+                                    : cluster(t->nodes[place.code]);
 }
 inline void ploc_write(const ploc_tree* t, rt_u32 node, const ploc_cluster* box, rt_u32 left, rt_u32 right) {
     rt_topology_node& to = t->nodes[node];
-    std::copy_n(box->lo, 3, to.lo);
-    std::copy_n(box->hi, 3, to.hi);
+    to.lo[0] = box->lo_x, to.lo[1] = box->lo_y, to.lo[2] = box->lo_z;
+    to.hi[0] = box->hi_x, to.hi[1] = box->hi_y, to.hi[2] = box->hi_z;
     to.left = left;
     to.right = right;
 }

@@ -12,6 +12,7 @@ using rt::number;
 using rt::of;
 
 constexpr uint64_t kNodeBytes = 32, kPlaceBytes = 16;
+constexpr uint64_t kGroupsPerUnit = 8;  // that join ranges of several groups
 
 }  // namespace
 
@@ -32,10 +33,12 @@ int32_t plan(const rt_host*, const rt_device_plan* plan, const rt_device_input* 
         };
         const uint32_t limit = height_limit(n);
         if (plan->has_warps) {
-            const rt_u32 siblings = steps.buffer(4 * n), of_radix_tree = steps.buffer(4 * n);
+            const rt_u32 waiting = steps.buffer(8 * (n + 1)), siblings = steps.buffer(4 * n),
+                         of_radix_tree = steps.buffer(4 * n);
             if (n > 1) {
-                launch("ploc_climb", groups, {of(siblings), of(root)});
-                launch("ploc_limit", groups, {of(of_radix_tree), of(root), number(limit)});
+                launch("ploc_windows", groups, {of(waiting), of(root)});
+                launch("ploc_climb", plan->units * kGroupsPerUnit, {of(waiting), of(siblings), of(root)});
+                launch("ploc_limit", groups, {of(waiting), of(of_radix_tree), of(root), number(limit)});
             }
         } else {
             const uint64_t parts = parts_of(n);

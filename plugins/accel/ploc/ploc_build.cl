@@ -31,15 +31,15 @@ RT_INLINE ploc_cluster ploc_load(const ploc_tree *t, ploc_place place)
                                                               : t->nodes + 8ul * place.code;
     const float4 lo = vload4(0, box), hi = vload4(1, box);
     ploc_cluster cluster;
-    cluster.lo[0] = lo.x, cluster.lo[1] = lo.y, cluster.lo[2] = lo.z;
-    cluster.hi[0] = hi.x, cluster.hi[1] = hi.y, cluster.hi[2] = hi.z;
+    cluster.lo_x = lo.x, cluster.lo_y = lo.y, cluster.lo_z = lo.z;
+    cluster.hi_x = hi.x, cluster.hi_y = hi.y, cluster.hi_z = hi.z;
     cluster.place = place;
     return cluster;
 }
 RT_INLINE void ploc_write(const ploc_tree *t, uint node, const ploc_cluster *box, uint left, uint right)
 {
-    vstore4((float4)(box->lo[0], box->lo[1], box->lo[2], as_float(left)), 0, t->nodes + 8ul * node);
-    vstore4((float4)(box->hi[0], box->hi[1], box->hi[2], as_float(right)), 1, t->nodes + 8ul * node);
+    vstore4((float4)(box->lo_x, box->lo_y, box->lo_z, as_float(left)), 0, t->nodes + 8ul * node);
+    vstore4((float4)(box->hi_x, box->hi_y, box->hi_z, as_float(right)), 1, t->nodes + 8ul * node);
     t->counts[node] = box->place.count;
 }
 RT_INLINE ploc_place ploc_place_at(const ploc_tree *t, uint at)
@@ -93,11 +93,9 @@ RT_INLINE ploc_place ploc_shuffle_place(ploc_place place, uint lane)
 RT_INLINE ploc_cluster ploc_shuffle_box(ploc_cluster cluster, uint lane)
 {
     ploc_cluster of_lane = cluster;
-#pragma unroll
-    for (uint k = 0u; k < 3u; ++k) {
-        of_lane.lo[k] = rt_shuffle_float(cluster.lo[k], lane);
-        of_lane.hi[k] = rt_shuffle_float(cluster.hi[k], lane);
-    }
+    of_lane.lo_x = rt_shuffle_float(cluster.lo_x, lane), of_lane.hi_x = rt_shuffle_float(cluster.hi_x, lane);
+    of_lane.lo_y = rt_shuffle_float(cluster.lo_y, lane), of_lane.hi_y = rt_shuffle_float(cluster.hi_y, lane);
+    of_lane.lo_z = rt_shuffle_float(cluster.lo_z, lane), of_lane.hi_z = rt_shuffle_float(cluster.hi_z, lane);
     return of_lane;
 }
 
@@ -109,15 +107,15 @@ typedef struct ploc_row {
 
 RT_INLINE void ploc_put(local ploc_row *row, const ploc_cluster *cluster)
 {
-    row->lo = (float4)(cluster->lo[0], cluster->lo[1], cluster->lo[2], 0.0f);
-    row->hi = (float4)(cluster->hi[0], cluster->hi[1], cluster->hi[2], 0.0f);
+    row->lo = (float4)(cluster->lo_x, cluster->lo_y, cluster->lo_z, 0.0f);
+    row->hi = (float4)(cluster->hi_x, cluster->hi_y, cluster->hi_z, 0.0f);
     row->place = (uint4)(cluster->place.code, cluster->place.name, cluster->place.height, cluster->place.count);
 }
 RT_INLINE ploc_cluster ploc_get(const local ploc_row *row)
 {
     const float4 lo = row->lo, hi = row->hi;
     const uint4 words = row->place;
-    const ploc_cluster cluster = {{lo.x, lo.y, lo.z}, {hi.x, hi.y, hi.z}, {words.x, words.y, words.z, words.w}};
+    const ploc_cluster cluster = {lo.x, lo.y, lo.z, hi.x, hi.y, hi.z, {words.x, words.y, words.z, words.w}};
     return cluster;
 }
 
@@ -129,7 +127,7 @@ RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, loca
     const uint lane = RT_ITEM % RT_WARP, lower = (1u << lane) - 1u, k = lane % PLOC_KEPT;
     const uint from = lane < PLOC_KEPT ? start : split, size = lane < PLOC_KEPT ? split - start : end - split;
     const ploc_place none = {PLOC_NONE, 0u, 0u, 0u};
-    ploc_cluster cluster = {{0.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 0.0f}, none};
+    ploc_cluster cluster = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, none};
     if (k < size) {
         if (size > PLOC_KEPT && in_group) {
             cluster = ploc_get(kept + from + k - first_kept);
@@ -214,12 +212,24 @@ RT_INLINE void ploc_scan_ranks(const local uint *ranks, local uint *upto, local 
     }
 }
 
-/* Builds the tree. Ranges whose parent lies within the places of a group meet in local memory, where no memory of the device has to be
- * waited for; then come those that meet other groups. */
-RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, global uint *siblings, global uint *result)
+/* A warp joins the ranges of those lanes for which `joins` is true. */
+RT_INLINE void ploc_join_all(const ploc_tree *t, local ploc_row *rows, local ploc_row *kept, uint first_kept, bool in_group, bool joins,
+                             uint start, uint split, uint last, uint count, global uint *result)
+{
+    for (uint joining = rt_ballot(joins); joining != 0u;) {
+        const uint lane = 31u - clz(joining);
+        joining ^= 1u << lane;
+        const uint first = rt_shuffle(start, lane), end = rt_shuffle(last, lane) + 1u;
+        ploc_join_together(t, rows, kept, first_kept, in_group, first, rt_shuffle(split, lane), end, end - first == count, result);
+    }
+}
+
+/* Builds the parts of the tree that lie within the places of a group: their ranges meet in local memory. waiting: those ranges whose
+ * parent does not; [0].x is their number. */
+RT_BUILD_KERNEL ploc_windows(PLOC_TREE, uint count, global uint2 *waiting, global uint *result)
 {
     local ploc_row rows[RT_GROUP], kept[RT_GROUP];
-    local uint ranks[RT_GROUP + 2u * PLOC_KEPT], upto[RT_GROUP], after[RT_GROUP], met[RT_GROUP];
+    local uint ranks[RT_GROUP + 2u * PLOC_KEPT], upto[RT_GROUP], after[RT_GROUP], met[RT_GROUP], number, first_waiting;
     PLOC_TAKE_TREE;
     uint start = (uint)get_global_id(0), split = 0u;
     const uint window = start - RT_ITEM;
@@ -228,6 +238,7 @@ RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, global uint *siblings, global 
         ranks[k] = place < count - 1u ? ploc_rank(&tree, place) : PLOC_NONE;
     }
     met[RT_ITEM] = 0u;
+    if (RT_ITEM == 0u) number = 0u;
     RT_LOCAL_BARRIER();
     ploc_scan_ranks(ranks + PLOC_KEPT - 1u, upto, after);
     local ploc_row *const of_warp = rows + RT_ITEM / RT_WARP * RT_WARP;
@@ -235,10 +246,9 @@ RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, global uint *siblings, global 
     /* Ranges that keep all their primitives need no sibling to be found, so the climb begins at the largest of them. */
     uint last = start < count ? ploc_small_range(ranks + RT_ITEM, count, start) : PLOC_NONE;
     bool climbs = last != PLOC_NONE;
-    if (rt_ballot(climbs && last - start == count - 1u) != 0u) { /* there is no larger one; any split will do */
-        ploc_join_together(&tree, of_warp, kept, window, true, 0u, 1u, count, true, result);
-        return;
-    }
+    const bool all = climbs && last - start == count - 1u; /* there is no larger one; any split will do */
+    ploc_join_all(&tree, of_warp, kept, window, true, all, start, start + 1u, last, count, result);
+    if (all) climbs = false;
     bool here = climbs && last < window + RT_GROUP;
     while (rt_ballot(here) != 0u) {
         bool joins = false;
@@ -258,41 +268,47 @@ RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, global uint *siblings, global 
                 if (joins && !is_right) last = other - 1u;
             }
         }
-        uint joining = rt_ballot(joins);
-        if (joining == 0u) continue;
+        if (rt_ballot(joins) == 0u) continue;
         RT_GROUP_FENCE();
-        while (joining != 0u) {
-            const uint lane = 31u - clz(joining);
-            joining ^= 1u << lane;
-            const uint first = rt_shuffle(start, lane), end = rt_shuffle(last, lane) + 1u;
-            ploc_join_together(&tree, of_warp, kept, window, true, first, rt_shuffle(split, lane), end, end - first == count, result);
-        }
+        ploc_join_all(&tree, of_warp, kept, window, true, joins, start, split, last, count, result);
         if (joins && last - start == count - 1u) here = climbs = false;
         RT_GROUP_FENCE();
         RT_WARP_BARRIER();
     }
-    RT_DEVICE_FENCE();
-    RT_WARP_BARRIER();
-    while (rt_ballot(climbs) != 0u) {
-        if (climbs) climbs = ploc_arrive(&tree, count, siblings, &start, &last, &split);
-        uint joining = rt_ballot(climbs);
-        if (joining == 0u) continue;
-        RT_DEVICE_FENCE();
-        while (joining != 0u) {
-            const uint lane = 31u - clz(joining);
-            joining ^= 1u << lane;
-            const uint first = rt_shuffle(start, lane), end = rt_shuffle(last, lane) + 1u;
-            ploc_join_together(&tree, of_warp, kept, window, false, first, rt_shuffle(split, lane), end, end - first == count, result);
+    const uint mine = climbs ? atomic_inc(&number) : 0u;
+    RT_LOCAL_BARRIER();
+    if (RT_ITEM == 0u) first_waiting = number ? 1u + atomic_add((global uint *)waiting, number) : 0u;
+    RT_LOCAL_BARRIER();
+    if (climbs) waiting[first_waiting + mine] = (uint2)(start, last);
+}
+
+/* Builds the rest: from the ranges that wait to the root. */
+RT_BUILD_KERNEL ploc_climb(PLOC_TREE, uint count, const global uint2 *waiting, global uint *siblings, global uint *result)
+{
+    local ploc_row rows[RT_GROUP];
+    PLOC_TAKE_TREE;
+    const uint ranges = waiting[0].x, warps = (uint)get_global_size(0) / RT_WARP, warp = (uint)get_global_id(0) / RT_WARP;
+    /* Each warp takes a range before one takes two: the joins of a warp come one after the other. */
+    for (uint next = warp; next < ranges; next += warps * RT_WARP) {
+        const uint mine = next + RT_ITEM % RT_WARP * warps;
+        bool climbs = mine < ranges;
+        uint start = climbs ? waiting[1u + mine].x : 0u, last = climbs ? waiting[1u + mine].y : 0u, split = 0u;
+        while (rt_ballot(climbs) != 0u) {
+            if (climbs) climbs = ploc_arrive(&tree, count, siblings, &start, &last, &split);
+            if (rt_ballot(climbs) == 0u) break;
+            RT_DEVICE_FENCE();
+            ploc_join_all(&tree, rows + RT_ITEM / RT_WARP * RT_WARP, rows, 0u, false, climbs, start, split, last, count, result);
+            if (climbs && last - start == count - 1u) climbs = false;
+            RT_DEVICE_FENCE();
+            RT_WARP_BARRIER();
         }
-        if (climbs && last - start == count - 1u) climbs = false;
-        RT_DEVICE_FENCE();
-        RT_WARP_BARRIER();
     }
 }
 
 /* Builds the radix tree instead, if the tree is higher than `limit`. */
-RT_BUILD_KERNEL ploc_limit(PLOC_TREE, uint count, global uint *siblings, global uint *result, uint limit)
+RT_BUILD_KERNEL ploc_limit(PLOC_TREE, uint count, global uint2 *waiting, global uint *siblings, global uint *result, uint limit)
 {
+    if (get_global_id(0) == 0u) waiting[0].x = 0u; /* for the next build */
     if (result[1] <= limit) return;
     PLOC_TAKE_TREE;
     uint start = (uint)get_global_id(0), last = start, split = 0u;

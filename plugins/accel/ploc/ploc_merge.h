@@ -27,7 +27,7 @@ typedef struct ploc_place {
     rt_u32 count;  /* primitives */
 } ploc_place;
 typedef struct ploc_cluster {
-    rt_f32 lo[3], hi[3];
+    rt_f32 lo_x, lo_y, lo_z, hi_x, hi_y, hi_z; /* no arrays: these stay in registers */
     ploc_place place;
 } ploc_cluster;
 
@@ -46,16 +46,17 @@ PLOC_INLINE ploc_place ploc_single(rt_u32 at)
     return place;
 }
 
+PLOC_INLINE rt_f32 ploc_least(rt_f32 a, rt_f32 b) { return a < b ? a : b; }
+PLOC_INLINE rt_f32 ploc_most(rt_f32 a, rt_f32 b) { return a > b ? a : b; }
+
 /* Half the surface of the box of two clusters. The largest float stands for what is larger, or no number: then there is always a pair
  * whose clusters have chosen each other. */
 PLOC_INLINE rt_f32 ploc_area(const ploc_cluster *a, const ploc_cluster *b)
 {
-    rt_f32 size[3];
-    for (rt_u32 k = 0u; k < 3u; ++k) {
-        const rt_f32 lo = a->lo[k] < b->lo[k] ? a->lo[k] : b->lo[k], hi = a->hi[k] > b->hi[k] ? a->hi[k] : b->hi[k];
-        size[k] = hi - lo;
-    }
-    const rt_f32 area = size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+    const rt_f32 x = ploc_most(a->hi_x, b->hi_x) - ploc_least(a->lo_x, b->lo_x);
+    const rt_f32 y = ploc_most(a->hi_y, b->hi_y) - ploc_least(a->lo_y, b->lo_y);
+    const rt_f32 z = ploc_most(a->hi_z, b->hi_z) - ploc_least(a->lo_z, b->lo_z);
+    const rt_f32 area = x * y + y * z + z * x;
     return area < FLT_MAX ? area : FLT_MAX;
 }
 
@@ -64,10 +65,9 @@ PLOC_INLINE rt_f32 ploc_area(const ploc_cluster *a, const ploc_cluster *b)
 PLOC_INLINE ploc_cluster ploc_pair(const ploc_tree *t, const ploc_cluster *a, const ploc_cluster *b)
 {
     ploc_cluster both;
-    for (rt_u32 k = 0u; k < 3u; ++k) {
-        both.lo[k] = a->lo[k] < b->lo[k] ? a->lo[k] : b->lo[k];
-        both.hi[k] = a->hi[k] > b->hi[k] ? a->hi[k] : b->hi[k];
-    }
+    both.lo_x = ploc_least(a->lo_x, b->lo_x), both.hi_x = ploc_most(a->hi_x, b->hi_x);
+    both.lo_y = ploc_least(a->lo_y, b->lo_y), both.hi_y = ploc_most(a->hi_y, b->hi_y);
+    both.lo_z = ploc_least(a->lo_z, b->lo_z), both.hi_z = ploc_most(a->hi_z, b->hi_z);
     both.place.code = b->place.name - 1u;
     both.place.name = a->place.name;
     both.place.height = (a->place.height > b->place.height ? a->place.height : b->place.height) + 1u;
