@@ -120,7 +120,7 @@ RT_INLINE ploc_cluster ploc_get(const local ploc_row *row)
 }
 
 /* ploc_join() by a warp: a lane has a cluster. rows: room for the warp. kept: for the group's places from first_kept on, the clusters
- * of its ranges, if the whole range is among them (in_group). */
+ * of its ranges, if the whole range is among them (in_group). A range that keeps its primitives has them there. */
 RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, local ploc_row *kept, uint first_kept, bool in_group, uint start,
                                   uint split, uint end, bool whole, global uint *result)
 {
@@ -129,7 +129,7 @@ RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, loca
     const ploc_place none = {PLOC_NONE, 0u, 0u, 0u};
     ploc_cluster cluster = {0.0f, 0.0f, 0.0f, 0.0f, 0.0f, 0.0f, none};
     if (k < size) {
-        if (size > PLOC_KEPT && in_group) {
+        if (in_group) {
             cluster = ploc_get(kept + from + k - first_kept);
         } else {
             cluster.place = size <= PLOC_KEPT ? ploc_single(from + k) : ploc_place_at(t, from + k);
@@ -177,22 +177,23 @@ RT_INLINE void ploc_join_together(const ploc_tree *t, local ploc_row *rows, loca
  * or PLOC_NONE if a larger one begins before i. ranks[k]: that of place i - PLOC_KEPT + k. */
 RT_INLINE uint ploc_small_range(const local uint *ranks, uint count, uint i)
 {
-    uint start = i, last = i;
-    while (last - start < PLOC_KEPT - 1u) {
-        const uint before = start > 0u ? ranks[start - 1u + PLOC_KEPT - i] : PLOC_NONE;
+    uint last = i;
+    while (last - i < PLOC_KEPT - 1u) {
+        const uint before = i > 0u ? ranks[PLOC_KEPT - 1u] : PLOC_NONE;
         const uint after = last + 1u < count ? ranks[last + PLOC_KEPT - i] : PLOC_NONE;
         if (before == after) break; /* both are PLOC_NONE: it has all places */
-        uint first = start, end = last;
+        uint end = last;
         if (before < after) {
-            for (--first; first > 0u && end - first < PLOC_KEPT && ranks[first - 1u + PLOC_KEPT - i] < before;) --first;
-        } else {
-            for (++end; end + 1u < count && end - first < PLOC_KEPT && ranks[end + PLOC_KEPT - i] < after;) ++end;
+            uint first = i - 1u;
+            while (first > 0u && end - first < PLOC_KEPT && ranks[first - 1u + PLOC_KEPT - i] < before) --first;
+            if (end - first < PLOC_KEPT) return PLOC_NONE;
+            break;
         }
-        if (end - first >= PLOC_KEPT) break;
-        start = first;
+        for (++end; end + 1u < count && end - i < PLOC_KEPT && ranks[end + PLOC_KEPT - i] < after;) ++end;
+        if (end - i >= PLOC_KEPT) break;
         last = end;
     }
-    return start == i ? last : PLOC_NONE;
+    return last;
 }
 
 /* The largest of several neighbours of RT_GROUP + 1 ranks: upto[i] of ranks 0 .. i, after[i] of ranks i + 1 .. RT_GROUP. */
@@ -236,6 +237,10 @@ RT_BUILD_KERNEL ploc_windows(PLOC_TREE, uint count, global uint2 *waiting, globa
     for (uint k = RT_ITEM; k < RT_GROUP + 2u * PLOC_KEPT; k += RT_GROUP) {
         const uint place = window + k - PLOC_KEPT; /* wraps round before the first */
         ranks[k] = place < count - 1u ? ploc_rank(&tree, place) : PLOC_NONE;
+    }
+    if (start < count) {
+        const ploc_cluster single = ploc_load(&tree, ploc_single(start));
+        ploc_put(kept + RT_ITEM, &single);
     }
     met[RT_ITEM] = 0u;
     if (RT_ITEM == 0u) number = 0u;

@@ -16,7 +16,7 @@
 #define PLOC_SINGLE 0x80000000u /* a primitive: RT_TOPOLOGY_LEAF | its place along the curve */
 #define PLOC_NONE 0xFFFFFFFFu
 #define PLOC_KEPT 16u    /* clusters of a range, at most */
-#define PLOC_RADIUS 8u   /* neighbours on either side among which a cluster looks for the nearest */
+#define PLOC_RADIUS 5u   /* neighbours on either side among which a cluster looks for the nearest */
 #define PLOC_OPEN 160u   /* ranges of a part of the curve that wait for their siblings: two for each bit of a code and a place */
 
 /* What is kept of a cluster between two joins. 16 B. */
