@@ -8,10 +8,11 @@
 
 namespace clarity::bvh {
 
-// Bits of a code for each axis. A sort takes a pass for 8 bits: 24 bits need three, 48 bits six.
+// Bits of a code for each axis. A sort takes a pass for 8 bits: 24 bits need three, 39 bits five. Trees over finer codes cost
+// no less.
 constexpr uint64_t kMostWithShortCodes = uint64_t{1} << 17;
 constexpr uint32_t axis_bits(uint64_t count) {
-    return count <= kMostWithShortCodes ? 8 : 16;
+    return count <= kMostWithShortCodes ? 8 : 13;
 }
 constexpr uint32_t code_bits(uint64_t count) {
     return 3 * axis_bits(count);
