@@ -11,6 +11,7 @@
 #include "bench/baselines/moving_baseline.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/case_state.hpp"
+#include "bench/cases/moving_frames.hpp"
 #include "bench/cases/ray_entries.hpp"
 #include "bench/run/bench.hpp"
 #include "bench/suites/motions.hpp"
@@ -49,7 +50,8 @@ class MotionCase {
         const Scene& scene = *fixture_.scene();
         for (const double phase : kPhases) {
             poses_.push_back(moved_pose(scene, case_.motion, phase));
-            if (case_.measure != "refit") moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
+            if (case_.measure != "refit" && case_.measure != "frame" && case_.measure != "object")
+                moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
         }
         for (const Variant& variant : case_.variants) {
             if (variant.on_device && !moves_on_device(variant)) continue;
@@ -87,7 +89,12 @@ class MotionCase {
             describe_host(row, std::thread::hardware_concurrency());
         else
             describe(row, fixture_.device(0));
-        if (variant.on_device)
+        if (case_.measure == "frame")
+            add_frames(settings, entry,
+                       variant.refitted ? MovingFrames::Motion::wave_refitted : MovingFrames::Motion::wave_built);
+        else if (case_.measure == "object")
+            add_frames(settings, entry, variant.refitted ? MovingFrames::Motion::object : MovingFrames::Motion::nothing);
+        else if (variant.on_device)
             add_device_refit(settings, entry);
         else if (case_.measure == "refit")
             add_refit(plugin, settings, entry);
@@ -144,7 +151,8 @@ class MotionCase {
 
     bool moves_on_device(const Variant& variant) const {
         const rt_plugin* plugin = plugins_.accel(variant.accel.substr(0, variant.accel.find(',')));
-        return !fixture_.device(0).cpu && plugin && device_build_of(plugins_.layout_of(*plugin)).refit;
+        return !fixture_.device(0).cpu && plugin && device_build_of(plugins_.layout_of(*plugin)).refit &&
+               (case_.measure != "frame" || variant.refitted || device_build_of(*plugin).topology);
     }
 
     // time_ms: from the start of the first kernel to the end of the last one, by the device's clock. Vertices are in place.
@@ -183,6 +191,15 @@ class MotionCase {
             return Sample{span_ms(moved.begin, moved.end, wall_ms), wall_ms};
         };
         entry.finish = [=](BenchRecord& row) { describe(row, *state->prepared->accel); };
+    }
+
+    // time_ms: of all kernels of a frame. wall_ms: from one frame to the next.
+    void add_frames(const Settings& settings, Entry& entry, MovingFrames::Motion motion) {
+        const auto frames = std::make_shared<MovingFrames>(plugins_, fixture_.opened(0), *fixture_.scene(), settings,
+                                                           fixture_.view(), motion, progress_);
+        describe(entry.row, frames->prepared());
+        entry.once = [=] { return frames->play(progress_); };
+        entry.finish = [=](BenchRecord& row) { row.kernels_ms = frames->parts(); };
     }
 
     void add_rebuild(const rt_plugin& plugin, const Settings& settings, Entry& entry) {

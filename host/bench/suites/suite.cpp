@@ -337,8 +337,11 @@ class Planner {
             if (!tests_everything(variant)) variants.push_back(variant);
         for (const size_t scene : scenes)
             for (const std::string& motion : motion_names())
-                for (const char* measure : {"refit", "rebuild", "primary", "diffuse"}) {
-                    BenchCase& c = add_case("moving", scene, motion + " " + measure, measure);
+                for (const char* measure : {"refit", "rebuild", "primary", "diffuse", "frame", "object"}) {
+                    const std::string what = measure;
+                    const bool frames = what == "frame" || what == "object";
+                    if (frames && motion != "wave") continue;  // the motion that devices compute
+                    BenchCase& c = add_case("moving", scene, what == "object" ? "one object" : motion + " " + measure, measure);
                     c.motion = motion;
                     const bool rays = c.measure != "refit" && c.measure != "rebuild";
                     for (Variant variant : variants) {
@@ -351,9 +354,10 @@ class Planner {
                             continue;
                         }
                         const std::string name = variant.label;
-                        variant.label = name + ", built";
+                        variant.on_device = frames;
+                        variant.label = name + (what == "object" ? ", still" : ", built");
                         c.variants.push_back(variant);
-                        variant.label = name + ", refitted";
+                        variant.label = name + (what == "object" ? ", one object moves" : ", refitted");
                         variant.refitted = true;
                         c.variants.push_back(variant);
                     }

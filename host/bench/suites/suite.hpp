@@ -33,7 +33,7 @@ struct Variant {
     std::string accel;                                          // ID[,key=value...]
     std::vector<std::pair<std::string, std::string>> settings;  // override those of the request
     bool cpu_only = false;                                      // needs several lanes, or too much private memory for a GPU
-    bool on_device = false;                                     // of a refit: by the device that traces, which is no CPU
+    bool on_device = false;                                     // refits and builds by the device that traces, which is no CPU
     bool refitted = false;    // of rays in a motion: the structure was refitted, not built, for the moved scene
     bool overlapped = false;  // of moving: copy each picture to the host while the next one is traced
 };

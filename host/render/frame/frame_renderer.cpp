@@ -80,6 +80,7 @@ struct FrameRenderer::Impl {
     // The program and scene of `kernel` and of the launcher's pace.
     std::shared_ptr<const TraceProgram> program;
     std::shared_ptr<const DeviceScene> bound;
+    bool bound_moves = false;  // Prepared::is_moved
     cl::Kernel kernel;
     bool debug = false;
     OverflowCounter overflows;  // used if counts_overflows()
@@ -107,11 +108,15 @@ struct FrameRenderer::Impl {
         const Prepared& prepared = picture.prepared;
         const auto new_width = static_cast<unsigned>(picture.settings.width),
                    new_height = static_cast<unsigned>(picture.settings.height);
-        if (program != prepared.program || bound != prepared.on_device || width != new_width || height != new_height)
+        // Frames of a scene that moves cost about the same: the pace is kept.
+        const bool moves_on = prepared.is_moved && bound_moves;
+        if (program != prepared.program || (bound != prepared.on_device && !moves_on) || width != new_width ||
+            height != new_height)
             launcher.forget();
         if (program != prepared.program) kernel = prepared.program->kernel();
         program = prepared.program;
         bound = prepared.on_device;
+        bound_moves = prepared.is_moved;
         debug = prepared.settings.debug;
         aov = &find_aov(prepared.settings.aov);
         width = new_width;

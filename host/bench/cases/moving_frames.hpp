@@ -1,0 +1,51 @@
+// moving_frames.hpp -- whole frames of a scene that moves on the device. Either all vertices move: a wave is computed there,
+// the structure is refitted or built there, and the picture is traced. Or one small object moves beside the scene.
+#pragma once
+#include <memory>
+
+#include "bench/run/measure.hpp"
+#include "render/frame/frame_renderer.hpp"
+#include "render/frame/preparer.hpp"
+#include "render/moving/device_motion.hpp"
+
+namespace clarity::bench {
+
+class MovingFrames {
+ public:
+    enum class Motion { wave_refitted, wave_built, object, nothing };
+
+    // Throws Error(usage) if the structure cannot follow, or cannot be built there.
+    MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device> device, const Scene& scene, const Settings& settings,
+                 const View& view, Motion motion, Progress& progress);
+
+    // Shows some frames one after the other. Times are the mean of a frame: kernels by the device's clock, and all by the
+    // host's. Nothing is sent to the device but the phase of the wave, or the place of the object, and nothing comes back but
+    // the end of the frame.
+    Sample play(Progress& progress);
+
+    // Milliseconds of a frame, medians over the calls of play(): "deform", "update", "trace".
+    Parts parts() const;
+    const Prepared& prepared() const { return *prepared_; }
+
+ private:
+    cl::Event deform(float phase);
+    Pose pose_of(float phase) const;
+    MovedOnDevice move(float phase);
+
+    const std::shared_ptr<Device> device_;
+    const Settings settings_;
+    const View view_;
+    const Motion kind_;
+    std::shared_ptr<const Scene> scene_;
+    std::shared_ptr<const Prepared> prepared_;
+    std::unique_ptr<DeviceMotion> motion_;
+    BuildKernels kernels_;
+    cl::Kernel wave_;
+    cl::Buffer rest_;
+    FrameRenderer frames_;
+    float size_ = 0;  // of the scene
+    unsigned next_ = 0;
+    std::vector<double> deform_ms_, update_ms_, trace_ms_;
+};
+
+}  // namespace clarity::bench
