@@ -9,12 +9,12 @@
 namespace clarity::bvh {
 namespace {
 
-constexpr uint32_t kChunk = 1u << 14;  // primitives that one thread takes at once
+constexpr uint32_t kKeysPerTask = 1u << 14;  // primitives that one thread takes at once
 
 template <class Body>  // do_one(i)
-void each(const rt_host* host, uint32_t count, Body&& do_one) {
-    rt::parallel_for(host, (count + kChunk - 1) / kChunk, [&](rt_u32 c) {
-        for (uint32_t i = c * kChunk; i < std::min(count, (c + 1) * kChunk); ++i) do_one(i);
+void each_key(const rt_host* host, uint32_t count, Body&& do_one) {
+    rt::parallel_for(host, (count + kKeysPerTask - 1) / kKeysPerTask, [&](rt_u32 c) {
+        for (uint32_t i = c * kKeysPerTask; i < std::min(count, (c + 1) * kKeysPerTask); ++i) do_one(i);
     });
 }
 
@@ -43,7 +43,7 @@ std::vector<CurveKey> order_along_curve(const rt_host* host, const rt_prim* prim
     const auto cells = static_cast<float>(1u << axis_bits(count));
     const float scale = extent > 0 ? std::min(cells / extent, FLT_MAX) : 0;
     std::vector<CurveKey> keys(count);
-    each(host, count, [&](uint32_t i) {
+    each_key(host, count, [&](uint32_t i) {
         uint64_t code = 0;
         for (int a = 0; a < 3; ++a) {
             const float cell = std::min(std::max((centre(i, a) - least[a]) * scale, 0.0f), cells - 1);
