@@ -38,7 +38,8 @@ Code disassemble(const std::string& library, const std::string& function) {
         ++code.instructions;
         code.wide += has(text, "zmm");
         code.calls += has(text, "\tcall");
-        code.lanes += has(text, "vpextr") || has(text, "vextractps") || has(text, "vpinsr") || has(text, "vinsertps");
+        // Not insertions: on some CPUs the compiler packs coordinates of one ray or of the camera by them.
+        code.lanes += has(text, "vpextr") || has(text, "vextractps");
         code.split_spills += has(text, "zmm") && has(text, "(%rsp") && (has(text, "vmovup") || has(text, "vmovdqu"));
     }
     return code;
