@@ -250,7 +250,10 @@ class RenderJob {
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
         // A picture with fewer samples than asked for would be taken for a whole one the next time.
         const bool keep = samples > 0 && (whole || !options_.skip_existing);
-        if (keep) write(frames, number);
+        if (keep) {
+            if (!whole) take_time_to_stop();
+            write(frames, number);
+        }
         if (!whole)
             log(LogLevel::warning,
                 "interrupted: " + (!keep ? (samples == 0 ? "no sample was complete" : "the picture was not complete") +

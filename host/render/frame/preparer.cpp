@@ -191,7 +191,7 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         progress.report(-1);
         const auto start = std::chrono::steady_clock::now();
         bool fresh = false;
-        const auto program = programs_->get(kernel_for(*next, kind_for(find_aov(next->settings.aov))), &fresh);
+        const auto program = programs_->get(kernel_for(*next, kind_for(find_aov(next->settings.aov))), &fresh, progress);
         next->program = program;
         if (fresh) warm_up(device_, *program, *next);
         next->compile_ms = fresh ? ms_since(start) : 0;
