@@ -88,12 +88,13 @@ class RenderJob {
     Exit round(Progress& progress) {
         if (!scene_.imported()) import(progress);
         const bool moving = scene_.follows_frames();
-        MultiFrameRenderer frames(devices_);
+        std::optional<MultiFrameRenderer> frames;  // made when its program has been compiled, which prepare() can cancel
         long rendered = 0;
         for (auto number = next(range_.first); number; number = next(long(*number) + range_.step), ++rendered) {
             if (moving || !scene_.placed()) scene_.place(moving ? number : std::nullopt);
             if (moving || rendered == 0) prepare(progress);
-            const bool whole = render(frames, *number, progress);
+            if (!frames) frames.emplace(devices_);
+            const bool whole = render(*frames, *number, progress);
             if (!whole) return Exit::interrupted;
         }
         if (rendered > 0) report();

@@ -29,6 +29,28 @@ std::optional<cl::Program> program_of(Device& device, const std::vector<char>& b
     }
 }
 
+// A request for one device. PoCL compiles kernels when they are first launched, so the worker launches them if it may.
+struct DeviceRequest {
+    DeviceRequest(const DeviceInfo& of, const CompileRequest& request)
+        : info(of),
+          launches(of.pocl && request.ends_on_zeros),
+          options(request.options + (launches ? " -cl-kernel-arg-info" : "")),
+          key(program_key(of, request.source, options)) {}
+    const DeviceInfo& info;
+    const bool launches;
+    const std::string options, key;
+};
+
+// Compiles a program that is not on disk, and keeps it there.
+CompileOutcome compile_first(const DeviceRequest& wanted, const CompileRequest& request, Progress& progress) {
+    const DeviceInfo& info = wanted.info;
+    // PoCL generates code once more for a binary, which takes as long as the compilation. Its own cache serves as well.
+    const CompileJob job{request.source, wanted.options, info.id(), info.name, info.driver, wanted.launches, !info.pocl};
+    CompileOutcome outcome = compile_in_worker(info, job, request.what, progress);
+    if (outcome.state == CompileOutcome::compiled) keep_program(wanted.key, outcome.binary);
+    return outcome;
+}
+
 }  // namespace
 
 bool compiles_in_worker() {
@@ -45,34 +67,38 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
         return built;
     };
     if (!compiles_in_worker()) return here(request.options);
-    const bool launches = info.pocl && request.ends_on_zeros;
-    const std::string options = request.options + (launches ? " -cl-kernel-arg-info" : "");
-    const std::string key = program_key(info, request.source, options);
+    const DeviceRequest wanted(info, request);
     BuildResult result;
-    std::optional<std::vector<char>> binary = find_program(key);
-    const bool known = binary.has_value();
-    if (!known) {
-        // PoCL generates code once more for a binary, which takes as long as the compilation. Its own cache serves as well.
-        const CompileJob job{request.source, options, info.id(), info.name, info.driver, launches, !info.pocl};
-        CompileOutcome outcome = compile_in_worker(info, job, request.what, progress);
-        if (outcome.state == CompileOutcome::no_device) {
-            log(LogLevel::debug, "compiling in this process: the worker cannot open the device: " + outcome.log);
-            return here(options);
-        }
+    std::optional<std::vector<char>> binary = find_program(wanted.key);
+    if (!binary) {
+        CompileOutcome outcome = compile_first(wanted, request, progress);
         if (outcome.state == CompileOutcome::failed) throw build_error(info, request.what, outcome.error, outcome.log);
-        keep_program(key, outcome.binary);
+        if (outcome.state == CompileOutcome::no_device)
+            log(LogLevel::debug, "compiling in this process: the worker cannot open the device: " + outcome.log);
         result.log = outcome.log;
         binary = std::move(outcome.binary);
     }
     if (!binary->empty()) {
-        if (auto program = program_of(device, *binary, options)) {
+        if (auto program = program_of(device, *binary, wanted.options)) {
             result.program = *program;
             result.ms = ms_since(start);
             return result;
         }
-        forget_program(key);
+        forget_program(wanted.key);
     }
-    return here(options);
+    return here(wanted.options);
+}
+
+void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress) {
+    if (!compiles_in_worker() || !keeps_programs()) return;
+    const DeviceRequest wanted(info, request);
+    try {
+        if (!find_program(wanted.key)) compile_first(wanted, request, progress);
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& e) {
+        log(LogLevel::debug, "compiling " + request.what + " ahead: " + e.what());
+    }
 }
 
 }  // namespace clarity

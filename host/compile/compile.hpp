@@ -29,6 +29,10 @@ bool compiles_in_worker();
 // Cancelled. For any thread.
 BuildResult compile_program(Device& device, const CompileRequest& request, Progress& progress);
 
+// Does what can be done without this process's context, so that compile_program() finds the program on disk. Use it on another
+// thread, for a program that is needed later. Throws Cancelled; all other failures are left to compile_program().
+void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress);
+
 // The main function of the worker: `clarity compile-worker`.
 int compile_worker_main(int argc, char** argv);
 

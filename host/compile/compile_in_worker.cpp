@@ -18,8 +18,11 @@ namespace {
 
 constexpr const char* kSimplerForms = "fewer lanes (--lanes 1) or another structure (--accel bvh2) are simpler to compile";
 
-// A compiler may take this much resident memory.
+// A compiler may take this much resident memory: CLARITY_COMPILE_MEMORY in MiB, or three quarters of the machine's.
 uint64_t most_compiler_bytes() {
+    const char* text = std::getenv("CLARITY_COMPILE_MEMORY");
+    if (const uint64_t mebibytes = text ? std::strtoull(text, nullptr, 10) : 0; mebibytes > 0 && mebibytes < (1u << 30))
+        return mebibytes << 20;
     return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) / 4 * 3;
 }
 

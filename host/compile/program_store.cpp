@@ -88,6 +88,10 @@ std::string program_key(const DeviceInfo& info, const std::string& source, const
     return name;
 }
 
+bool keeps_programs() {
+    return !store_folder().empty();
+}
+
 std::optional<std::vector<char>> find_program(const std::string& key) {
     const fs::path path = stored_file(key);
     std::string content;

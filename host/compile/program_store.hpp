@@ -19,6 +19,9 @@ inline constexpr uint64_t kStoreBytes = uint64_t{256} << 20;
 // Names a program of a device: its source, options, device, and versions of driver and platform.
 std::string program_key(const DeviceInfo& info, const std::string& source, const std::string& options);
 
+// Whether there is a folder for programs.
+bool keeps_programs();
+
 // Any thread may use these. A store that cannot be read or written is an empty one.
 // nullopt: the program is not known.
 std::optional<std::vector<char>> find_program(const std::string& key);
