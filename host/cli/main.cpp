@@ -1,6 +1,7 @@
 // clarity: parses the command line, runs one command, and turns its exceptions into a message and an exit code.
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -78,6 +79,11 @@ int main(int argc, char** argv) {
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
         clarity::log(clarity::LogLevel::error, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));
         return code ? code : static_cast<int>(clarity::Exit::failed);
+    }
+    // After a failure a launch may still be running. PoCL's threads would crash when its library is unloaded around them.
+    if (code != 0) {
+        std::fflush(nullptr);
+        std::_Exit(code);
     }
     return code;
 }

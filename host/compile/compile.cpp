@@ -86,7 +86,10 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
         }
         forget_program(wanted.key);
     }
-    return here(wanted.options);
+    set_aside(wanted.key);
+    BuildResult built = here(wanted.options);
+    put_back(wanted.key);
+    return built;
 }
 
 void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress) {

@@ -10,6 +10,7 @@
 #include "base/log.hpp"
 #include "base/memory_text.hpp"
 #include "base/printable.hpp"
+#include "device/pocl_cache.hpp"
 #include "worker/child.hpp"
 #include "worker/supervisor.hpp"
 
@@ -65,7 +66,9 @@ class CompileSupervisor : public worker::Supervisor {
         };
         switch (ending.kind) {
             case End::crashed:
-                fail("the OpenCL compiler crashed: " + ending.how);
+                fail("the OpenCL compiler crashed: " + ending.how +
+                     (info_.pocl ? "; if it always does, the cache " + pocl_cache() + " may be damaged: delete that folder"
+                                 : ""));
                 break;
             case End::exited:
                 fail("the OpenCL compiler ended its process: " + ending.how);

@@ -22,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr uint64_t kMostProgramBytes = uint64_t{64} << 20;
-constexpr const char* kSuffix = ".program";
+constexpr const char *kSuffix = ".program", *kAside = ".aside";
+constexpr uint64_t kLeastFileBytes = 4096;  // what even an empty file takes on a disk
 
 // The beginning of a file; its binary follows.
 struct StoredHead {
@@ -44,9 +45,9 @@ fs::path store_folder() {
     return cache.empty() ? fs::path() : cache / "programs";
 }
 
-fs::path stored_file(const std::string& key) {
+fs::path stored_file(const std::string& key, const char* suffix = kSuffix) {
     const fs::path folder = store_folder();
-    return folder.empty() ? fs::path() : folder / (key + kSuffix);
+    return folder.empty() ? fs::path() : folder / (key + suffix);
 }
 
 // Removes what was used least recently, so that three quarters of the room are in use.
@@ -62,8 +63,8 @@ void make_room(const fs::path& folder, uint64_t most_bytes) {
     for (fs::directory_iterator at(folder, error), end; !error && at != end; at.increment(error)) {
         std::error_code gone;  // another process may remove it meanwhile
         Stored file{at->path(), at->file_size(gone), at->last_write_time(gone)};
-        if (gone || file.path.extension() != kSuffix) continue;
-        sum += file.bytes;
+        if (gone || (file.path.extension() != kSuffix && file.path.extension() != kAside)) continue;
+        sum += file.bytes = std::max(file.bytes, kLeastFileBytes);
         files.push_back(std::move(file));
     }
     if (sum <= most_bytes) return;
@@ -133,6 +134,16 @@ void keep_program(const std::string& key, const std::vector<char>& binary, uint6
 void forget_program(const std::string& key) {
     std::error_code error;
     if (const fs::path path = stored_file(key); !path.empty()) fs::remove(path, error);
+}
+
+void set_aside(const std::string& key) {
+    std::error_code error;
+    if (keeps_programs()) fs::rename(stored_file(key), stored_file(key, kAside), error);
+}
+
+void put_back(const std::string& key) {
+    std::error_code error;
+    if (keeps_programs()) fs::rename(stored_file(key, kAside), stored_file(key), error);
 }
 
 }  // namespace clarity

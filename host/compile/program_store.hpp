@@ -27,5 +27,9 @@ bool keeps_programs();
 std::optional<std::vector<char>> find_program(const std::string& key);
 void keep_program(const std::string& key, const std::vector<char>& binary, uint64_t most_bytes = kStoreBytes);
 void forget_program(const std::string& key);
+// Between these two calls the program is not known. A process that dies while its driver loads a program, because the driver's
+// own cache is damaged, so leaves the next one to try it in a worker first.
+void set_aside(const std::string& key);
+void put_back(const std::string& key);
 
 }  // namespace clarity

@@ -59,6 +59,10 @@ bool is_own_folder(const fs::path& folder) {
 
 }  // namespace
 
+std::string pocl_cache() {
+    return pocl_folder().string();
+}
+
 std::string use_writable_pocl_cache() {
     const fs::path folder = pocl_folder();
     if (folder.empty()) return {};

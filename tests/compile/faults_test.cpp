@@ -183,6 +183,22 @@ TEST_F(Faults, ACacheOfPoclThatCannotBeWrittenIsNamedAndGoneRound) {
     EXPECT_TRUE(has_picture());
 }
 
+// PoCL aborts on a damaged cache. The first start finds that out the hard way; the second one tells.
+TEST_F(Faults, ADamagedCacheOfPoclIsNamed) {
+    RunOptions options;
+    options.environment["POCL_CACHE_DIR"] = scratch_.path("kcache");
+    const std::vector<std::string> simple = {"--depth", "1", "--aov", "t"};
+    ASSERT_EQ(render("", options, simple).exit_code, 0);
+    for (const auto& file : fs::recursive_directory_iterator(scratch_.path("kcache")))
+        if (file.path().filename() == "program.bc") fs::resize_file(file.path(), 100);
+    render("", options, simple);
+    const ProgramResult result = render("", options, simple);
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    expect_says(result, "the cache " + scratch_.path("kcache") + " may be damaged: delete that folder");
+    fs::remove_all(scratch_.path("kcache"));
+    EXPECT_EQ(render("", options, simple).exit_code, 0);
+}
+
 TEST_F(Faults, EveryFailureOfACallIsAMessage) {
     ASSERT_EQ(render("").exit_code, 0);
     fs::remove(scratch_.path("out/a.png"));

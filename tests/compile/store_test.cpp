@@ -57,15 +57,25 @@ TEST_F(ProgramStore, RefusesEveryDamage) {
 }
 
 TEST_F(ProgramStore, ForgetsWhatWasUsedLeastRecently) {
-    for (const char* key : {"a", "b", "c"}) keep_program(key, binary(1000, 'x'), 3500);
+    for (const char* key : {"a", "b", "c"}) keep_program(key, binary(5000, 'x'), 17500);
     const auto now = fs::file_time_type::clock::now();
     fs::last_write_time(file("a"), now - std::chrono::hours(1));
     fs::last_write_time(file("b"), now - std::chrono::hours(2));
     EXPECT_TRUE(find_program("b")) << "and is used now";
-    keep_program("d", binary(1000, 'x'), 3500);
+    keep_program("d", binary(5000, 'x'), 17500);
     EXPECT_FALSE(find_program("a"));
     EXPECT_TRUE(find_program("b"));
     EXPECT_TRUE(find_program("d"));
+}
+
+TEST_F(ProgramStore, DoesNotKnowWhatAProcessDiedOf) {
+    keep_program("a", {});
+    set_aside("a");
+    EXPECT_FALSE(find_program("a"));
+    put_back("a");
+    EXPECT_TRUE(find_program("a"));
+    put_back("a");
+    EXPECT_TRUE(find_program("a")) << "nothing was aside";
 }
 
 TEST_F(ProgramStore, MayBeOffOrUnwritable) {
