@@ -14,7 +14,8 @@ class Progress {
     // Progress within the stage, 0..1; negative: unknown. Returns false once the work is cancelled.
     virtual bool report(float) { return !cancelled(); }
     void cancel() { cancelled_ = true; }
-    bool cancelled() const { return cancelled_; }
+    // Also true for a part of the work once the whole is cancelled. Called from several threads, often.
+    virtual bool cancelled() const { return cancelled_; }
 
  private:
     std::atomic<bool> cancelled_{false};

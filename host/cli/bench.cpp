@@ -147,6 +147,7 @@ int run_bench_command(const PluginRegistry& plugins, const BenchCommand& command
         ProgressBar bar(command.quiet);
         const CancelOnSignal cancel(bar);
         report = run_bench(plugins, request, suite, options, bar);
+        take_time_to_stop();
         bar.clear();
     } else {
         report.notes = suite.notes;

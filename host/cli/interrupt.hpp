@@ -1,9 +1,12 @@
-// interrupt.hpp -- Ctrl-C cancels the work at its next safe point, so that finished parts can be written. A second Ctrl-C ends
-// the program at once.
+// interrupt.hpp -- Ctrl-C and SIGTERM cancel the work at its next safe point, so that finished parts can be written. If no such
+// point comes within kStopSeconds, because a driver is in the middle of a compilation or of a launch that cannot be stopped,
+// the program ends where it is. A second signal ends the program at once.
 #pragma once
 #include "base/progress.hpp"
 
 namespace clarity {
+
+inline constexpr double kStopSeconds = 0.8;
 
 // SIGINT and SIGTERM cancel `progress` during the lifetime of this object. Only one such object may exist at a time.
 class CancelOnSignal {
@@ -16,5 +19,9 @@ class CancelOnSignal {
 
 // True if such a signal has come since the program started.
 bool interrupted();
+
+// The safe point is reached: what follows ends by itself, such as the writing of a large picture, and may take its time. Call
+// it before finished parts are written. Without a signal it does nothing.
+void take_time_to_stop();
 
 }  // namespace clarity

@@ -1,6 +1,7 @@
 // clarity: parses the command line, runs one command, and turns its exceptions into a message and an exit code.
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <new>
@@ -10,6 +11,7 @@
 #include "check/check.hpp"
 #include "cli/command_line.hpp"
 #include "cli/interrupt.hpp"
+#include "compile/compile.hpp"
 #include "import/import.hpp"
 #include "render/accel/build_in_worker.hpp"
 
@@ -71,11 +73,17 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::strcmp(argv[1], "import-worker") == 0) return clarity::import::import_worker_main(argc, argv);
     if (argc > 1 && std::strcmp(argv[1], "check-worker") == 0) return clarity::check::check_worker_main(argc, argv);
     if (argc > 1 && std::strcmp(argv[1], "build-worker") == 0) return clarity::build_worker_main(argc, argv);
+    if (argc > 1 && std::strcmp(argv[1], "compile-worker") == 0) return clarity::compile_worker_main(argc, argv);
     const int code = clarity::run_and_report(argc, argv);
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {
         clarity::log(clarity::LogLevel::error, std::string("stdout cannot be written: ") + std::strerror(errno ? errno : EIO));
         return code ? code : static_cast<int>(clarity::Exit::failed);
+    }
+    // After a failure a launch may still be running. PoCL's threads would crash when its library is unloaded around them.
+    if (code != 0) {
+        std::fflush(nullptr);
+        std::_Exit(code);
     }
     return code;
 }

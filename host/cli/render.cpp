@@ -88,12 +88,13 @@ class RenderJob {
     Exit round(Progress& progress) {
         if (!scene_.imported()) import(progress);
         const bool moving = scene_.follows_frames();
-        MultiFrameRenderer frames(devices_);
+        std::optional<MultiFrameRenderer> frames;  // made when its program has been compiled, which prepare() can cancel
         long rendered = 0;
         for (auto number = next(range_.first); number; number = next(long(*number) + range_.step), ++rendered) {
             if (moving || !scene_.placed()) scene_.place(moving ? number : std::nullopt);
             if (moving || rendered == 0) prepare(progress);
-            const bool whole = render(frames, *number, progress);
+            if (!frames) frames.emplace(devices_);
+            const bool whole = render(*frames, *number, progress);
             if (!whole) return Exit::interrupted;
         }
         if (rendered > 0) report();
@@ -250,7 +251,10 @@ class RenderJob {
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
         // A picture with fewer samples than asked for would be taken for a whole one the next time.
         const bool keep = samples > 0 && (whole || !options_.skip_existing);
-        if (keep) write(frames, number);
+        if (keep) {
+            if (!whole) take_time_to_stop();
+            write(frames, number);
+        }
         if (!whole)
             log(LogLevel::warning,
                 "interrupted: " + (!keep ? (samples == 0 ? "no sample was complete" : "the picture was not complete") +

@@ -17,6 +17,8 @@ class PartOf : public Progress {
         if (!whole_.report(float(from_ + share_ * std::max(0.0f, fraction)))) cancel();
         return !cancelled();
     }
+    // A long sample asks between its launches, but reports only at its end.
+    bool cancelled() const override { return Progress::cancelled() || whole_.cancelled(); }
 
  private:
     Progress& whole_;
@@ -32,6 +34,7 @@ class UntilSaved : public Progress {
         if (!whole_.report(fraction) || (saved_ && saved_())) cancel();
         return !cancelled();
     }
+    bool cancelled() const override { return Progress::cancelled() || whole_.cancelled(); }
 
  private:
     Progress& whole_;

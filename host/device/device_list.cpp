@@ -10,10 +10,12 @@
 #include <functional>
 #include <mutex>
 #include <tuple>
+#include <utility>
 
 #include "device/device_list.hpp"
 
 #include "base/lower.hpp"
+#include "device/pocl_cache.hpp"
 
 namespace clarity {
 
@@ -129,7 +131,11 @@ void list_platform(const cl::Platform& platform, unsigned index, std::vector<Dev
 
 std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
     static std::once_flag once;
-    std::call_once(once, pin_pocl_threads);
+    static std::string cache_warning;  // once, and only if PoCL is there
+    std::call_once(once, [] {
+        pin_pocl_threads();
+        cache_warning = use_writable_pocl_cache();
+    });
     const auto warn = [&](const std::string& text) {
         if (warnings) warnings->push_back(text);
     };
@@ -145,6 +151,9 @@ std::vector<DeviceInfo> list_devices(std::vector<std::string>* warnings) {
     }
     if (platforms.empty()) warn(std::string("there is no OpenCL platform; ") + kInstallDriver);
     for (unsigned i = 0; i < platforms.size(); ++i) list_platform(platforms[i], i, found, warn);
+
+    if (!cache_warning.empty() && std::any_of(found.begin(), found.end(), [](const DeviceInfo& d) { return d.pocl; }))
+        warn(std::exchange(cache_warning, {}));
 
     // Some drivers do not know their clock (virtual machines), but still report compute units.
     const auto rank = [](const DeviceInfo& d) {

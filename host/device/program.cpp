@@ -77,6 +77,16 @@ CompilerLog read_compiler_log(const std::string& log) {
     return result;
 }
 
+Error build_error(const DeviceInfo& info, const std::string& what, int code, const std::string& raw) {
+    const CompilerLog log = read_compiler_log(raw.c_str());  // c_str(): some drivers include the final 0 in the length
+    const SourceLocation& first = log.first;
+    std::string message = first.file.empty() ? "" : place(first.file, first.line, first.column);
+    message += log.text.empty() ? "OpenCL error " + std::to_string(code) : first.message;
+    message += " (compiling " + what + " for " + info.name;
+    if (log.errors > 1) message += "; " + std::to_string(log.errors - 1) + (log.errors == 2 ? " more error" : " more errors");
+    return Error(Exit::kernel_build_failed, message + ")", log.text, first);
+}
+
 BuildResult build_program(Device& device, const std::string& source, const std::string& options, const std::string& what) {
     const auto start = std::chrono::steady_clock::now();
     BuildResult result;
@@ -93,14 +103,7 @@ BuildResult build_program(Device& device, const std::string& source, const std::
             } catch (const cl::Error&) {
             }
         }
-        const CompilerLog log = read_compiler_log(raw.c_str());  // c_str(): some drivers include the final 0 in the length
-        const SourceLocation& first = log.first;
-        std::string message = first.file.empty() ? "" : place(first.file, first.line, first.column);
-        message += log.text.empty() ? "OpenCL error " + std::to_string(e.err()) : first.message;
-        message += " (compiling " + what + " for " + device.info().name;
-        if (log.errors > 1)
-            message += "; " + std::to_string(log.errors - 1) + (log.errors == 2 ? " more error" : " more errors");
-        throw Error(Exit::kernel_build_failed, message + ")", log.text, first);
+        throw build_error(device.info(), what, e.err(), raw);
     }
     result.ms = ms_since(start);
     return result;

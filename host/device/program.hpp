@@ -21,6 +21,9 @@ struct BuildResult {
 // what: a description for the message, such as "tracer iterative with accel bvh2".
 BuildResult build_program(Device& device, const std::string& source, const std::string& options, const std::string& what);
 
+// The error that build_program() throws. code: OpenCL's; log: the compiler's.
+Error build_error(const DeviceInfo& info, const std::string& what, int code, const std::string& log);
+
 // A compiler's log in one form. Compilers derived from clang (PoCL, Intel, AMD, NVIDIA) write "cl/a.cl:3:9: error: text", PoCL
 // also "error: cl/a.cl:3:9: text". All lines get the first form, with paths in place of names. Lines that only count errors are
 // removed.

@@ -4,13 +4,14 @@
 
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <mutex>
 #include <set>
 
+#include "base/files/cache_folder.hpp"
 #include "base/files/read_file.hpp"
+#include "base/hash.hpp"
 #include "plugin/registry.hpp"
 
 namespace clarity {
@@ -20,14 +21,12 @@ namespace fs = std::filesystem;
 
 constexpr uint64_t kMaxLibraryBytes = uint64_t{1} << 30;
 
-// FNV-1a, 64 bits: tells libraries apart; it is no protection against somebody who wants two to be alike.
 std::string hash_of(const std::string& path) {
     std::string content;
     if (!try_read_file(path, kMaxLibraryBytes, content).empty()) return {};
-    uint64_t hash = 14695981039346656037ull;
-    for (const char c : content) hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ull;
     char text[32];
-    std::snprintf(text, sizeof text, "%016llx-%zx", static_cast<unsigned long long>(hash), content.size());
+    std::snprintf(text, sizeof text, "%016llx-%zx", static_cast<unsigned long long>(hash_bytes(content.data(), content.size())),
+                  content.size());
     return text;
 }
 
@@ -40,10 +39,8 @@ std::string stamp_of(const std::string& path) {
 }
 
 fs::path folder() {
-    const char* cache = std::getenv("XDG_CACHE_HOME");
-    const char* home = std::getenv("HOME");
-    if (cache && cache[0] == '/') return fs::path(cache) / "clarity" / "known_plugins";
-    return home && home[0] == '/' ? fs::path(home) / ".cache" / "clarity" / "known_plugins" : fs::path();
+    const fs::path cache = cache_folder();
+    return cache.empty() ? fs::path() : cache / "known_plugins";
 }
 
 std::mutex mutex;

@@ -151,6 +151,7 @@ void Supervisor::stop_on_cancel() {
 }
 
 void Supervisor::watch() {
+    watched();
     // Time in which this process itself did not run (suspended, stopped in a terminal) does not count against the worker.
     const auto now = std::chrono::steady_clock::now();
     const double passed_s = std::min(std::chrono::duration<double>(now - last_look_).count(), 0.5);

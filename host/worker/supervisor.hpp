@@ -48,6 +48,8 @@ class Supervisor {
     virtual std::string speaker() const = 0;          // who prints: "the importer obj"
     // Throws the error that tells the user. Must not return.
     virtual void ended(const Ending& ending) const = 0;
+    // Called about fifty times a second while the worker runs.
+    virtual void watched() {}
     // What the worker printed may be worth a louder line than debug.
     virtual void printed(const std::string& line);
 

@@ -40,6 +40,7 @@ Channel make_channel(bool terminal) {
     dup2(in, STDIN_FILENO);
     dup2(out, STDOUT_FILENO);
     dup2(err, STDERR_FILENO);
+    unsetenv("CLARITY_COMPILE");  // as users do, in a worker
     for (const auto& [name, value] : options.environment)
         value.empty() ? unsetenv(name.c_str()) : setenv(name.c_str(), value.c_str(), 1);
     std::vector<char*> argv;

@@ -8,7 +8,6 @@
 #include "base/elapsed.hpp"
 #include "device/cl_errors.hpp"
 #include "device/kernel_files.hpp"
-#include "device/program.hpp"
 #include "render/film/false_colors.hpp"
 
 namespace clarity {
@@ -47,9 +46,13 @@ ByteImage show_values(const std::function<FloatImage()>& read, const std::string
     return image;
 }
 
+CompileRequest film_program() {
+    return {"#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film", true};
+}
+
 FilmKernels::FilmKernels(std::shared_ptr<Device> device) : device_(device), memory_(device) {
-    const BuildResult built =
-        build_program(*device_, "#line 1 \"cl/film.cl\"\n" + kernel_text("film.cl"), "-cl-std=CL1.2", "film");
+    Progress never_cancelled;
+    const BuildResult built = compile_program(*device_, film_program(), never_cancelled);
     wrap_cl_errors(*device_, "preparing the film", [&] {
         program_ = built.program;
         map_tones_ = cl::Kernel(program_, "map_tones");

@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "compile/compile.hpp"
 #include "device/device.hpp"
 #include "device/kernel_time.hpp"
 #include "render/film/bands.hpp"
@@ -33,6 +34,9 @@ struct Tones {
 struct RayCounts {
     uint64_t shadow = 0, secondary = 0, dropped = 0, overflowed = 0;
 };
+
+// The program of these kernels, for compile_ahead().
+CompileRequest film_program();
 
 // Owns these kernels and their buffers on one device. Used from one thread; the functions below may throw cl::Error.
 class FilmKernels {

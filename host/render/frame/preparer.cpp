@@ -3,6 +3,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "render/accel/memory_plan.hpp"
+#include "render/film/film.hpp"
 #include "render/film/overflow_counter.hpp"
 #include "render/frame/device_scene.hpp"
 #include "render/frame/frame_constants.hpp"
@@ -14,6 +15,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <future>
+#include <utility>
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -187,13 +190,18 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
             next->upload_ms = ms_since(start);
         }
         if (progress.cancelled()) throw Cancelled();
+        // The film's program is needed with the first picture. It compiles beside that of the tracer, in a worker of its own.
+        std::future<void> film;
+        if (!std::exchange(film_compiled_, true))
+            film = std::async(std::launch::async, [&] { compile_ahead(info_, film_program(), progress); });
         progress.stage("compiling kernels");
         progress.report(-1);
         const auto start = std::chrono::steady_clock::now();
         bool fresh = false;
-        const auto program = programs_->get(kernel_for(*next, kind_for(find_aov(next->settings.aov))), &fresh);
+        const auto program = programs_->get(kernel_for(*next, kind_for(find_aov(next->settings.aov))), &fresh, progress);
         next->program = program;
         if (fresh) warm_up(device_, *program, *next);
+        if (film.valid()) film.get();
         next->compile_ms = fresh ? ms_since(start) : 0;
         next->compile_cached = !fresh;
     } catch (const cl::Error& e) {

@@ -1,7 +1,7 @@
 #include "render/kernels/program_cache.hpp"
 
+#include "compile/compile.hpp"
 #include "device/kernel_files.hpp"
-#include "device/program.hpp"
 
 namespace clarity {
 namespace {
@@ -13,9 +13,19 @@ std::string options_for(const DeviceInfo& info, const KernelSource& source) {
     return source.options + (source.limit_registers && info.nvidia && !info.pocl ? " -cl-nv-maxrregcount=128" : "");
 }
 
+// A picture of no size has no rays. Other kernels trace what they are given, and zeros are no structure.
+bool ends_on_zeros(const KernelRow& row) {
+    return row.kind == KernelKind::color || row.kind == KernelKind::generations || row.kind == KernelKind::aov;
+}
+
 }  // namespace
 
 std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool* fresh) {
+    Progress never_cancelled;
+    return get(source, fresh, never_cancelled);
+}
+
+std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool* fresh, Progress& progress) {
     if (fresh) *fresh = false;
     // After an edit of kernel files the old programs will not be asked for again. Each takes a megabyte on PoCL.
     if (const uint64_t revision = kernel_text_revision(); revision != text_revision_) {
@@ -29,7 +39,8 @@ std::shared_ptr<TraceProgram> ProgramCache::get(const KernelSource& source, bool
             return it->program;
         }
     ++compiled_;
-    const BuildResult built = build_program(*device_, source.text, options_for(device_->info(), source), source.what);
+    const BuildResult built = compile_program(
+        *device_, {source.text, options_for(device_->info(), source), source.what, ends_on_zeros(*source.row)}, progress);
     auto program = std::make_shared<TraceProgram>(*source.row, built.program);
     program->compile_ms = built.ms;
     entries_.push_front({key, program});

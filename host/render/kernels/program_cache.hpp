@@ -6,6 +6,7 @@
 #include <memory>
 #include <string>
 
+#include "base/progress.hpp"
 #include "device/device.hpp"
 #include "render/kernels/kernel_source.hpp"
 
@@ -28,8 +29,10 @@ class TraceProgram {
 class ProgramCache {
  public:
     explicit ProgramCache(std::shared_ptr<Device> device) : device_(std::move(device)) {}
-    // Compiles the program if it is not kept. *fresh: whether it was compiled now. Throws Error(kernel_build_failed).
+    // Compiles the program if it is not kept. *fresh: whether it was compiled now. Throws Error(kernel_build_failed), and
+    // Cancelled.
     std::shared_ptr<TraceProgram> get(const KernelSource& source, bool* fresh = nullptr);
+    std::shared_ptr<TraceProgram> get(const KernelSource& source, bool* fresh, Progress& progress);
     std::shared_ptr<Device> device() const { return device_; }
     unsigned compiled() const { return compiled_; }  // programs compiled so far
 

@@ -1,0 +1,39 @@
+// compile.hpp -- compiles kernels so that a compiler that hangs, crashes or takes all memory never harms this process.
+//
+// A program is compiled in a worker process first (host/worker). Then the host gets it: as a binary from the worker, or, where
+// the driver keeps a cache of its own and is slow to give binaries (PoCL), by compiling again, which then only reads that
+// cache. Programs that were compiled once are known on disk (program_store.hpp), and need no worker.
+#pragma once
+#include <string>
+
+#include "base/progress.hpp"
+#include "device/device.hpp"
+#include "device/program.hpp"
+
+namespace clarity {
+
+struct CompileRequest {
+    std::string source, options;
+    std::string what;  // for messages, such as "tracer iterative with accel bvh2"
+    // Every kernel of the program ends at once if all its buffers are zero. The worker then launches each, because PoCL
+    // compiles a kernel when it is first launched with a work-group size.
+    bool ends_on_zeros = false;
+};
+
+// Where programs are compiled: CLARITY_COMPILE is `worker` (or unset), or `here` for this process alone. Inside a worker, it is
+// always this process.
+bool compiles_in_worker();
+
+// Compiles a program for `device`. progress: cancels the compilation within 0.1 s.
+// Throws Error(kernel_build_failed) as build_program() does, also if the compiler crashes or needs too much memory, and
+// Cancelled. For any thread.
+BuildResult compile_program(Device& device, const CompileRequest& request, Progress& progress);
+
+// Does what can be done without this process's context, so that compile_program() finds the program on disk. Use it on another
+// thread, for a program that is needed later. Throws Cancelled; all other failures are left to compile_program().
+void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress);
+
+// The main function of the worker: `clarity compile-worker`.
+int compile_worker_main(int argc, char** argv);
+
+}  // namespace clarity

@@ -1,0 +1,220 @@
+// faults_test.cpp -- `clarity render` with a driver that misbehaves (faulty_icd.c): what the user reads, the exit code, how
+// long it takes, and that nothing is left behind.
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "cli/run_program.hpp"
+#include "support/scratch.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScene = "sphere center 0 0 0 radius 1\nlight point position 2 3 4\n";
+
+class Faults : public ::testing::Test {
+ protected:
+    void SetUp() override {
+        scratch_.write("vendors/faulty.icd", std::string(FAULTY_DRIVER) + "\n");
+        scratch_.write("a.scene", kScene);
+        fs::create_directories(scratch_.path("tmp"));
+        fs::create_directories(scratch_.path("out"));
+    }
+    // Every process of a run has this in its environment.
+    std::string mark() const { return "CLARITY_FAULT_MARK=" + scratch_.path("mark"); }
+    ProgramResult render(const std::string& fault, RunOptions options = {}, const std::vector<std::string>& more = {}) {
+        auto& env = options.environment;
+        env.insert({{"OCL_ICD_VENDORS", scratch_.path("vendors")},
+                    {"CLARITY_FAULT", fault},
+                    {"CLARITY_FAULT_MARK", scratch_.path("mark")},
+                    {"CLARITY_PROGRAM_CACHE", scratch_.path("programs")},
+                    {"CLARITY_COMPILE", ""},
+                    {"CLARITY_DEVICE", ""},
+                    {"TMPDIR", scratch_.path("tmp")}});
+        options.limit_s = 60;
+        std::vector<std::string> words = {
+            "render", scratch_.path("a.scene"), "-o", scratch_.path("out/a.png"), "--size", "32x32", "--lanes", "1", "--accel",
+            "linear"};
+        words.insert(words.end(), more.begin(), more.end());
+        const ProgramResult result = run_program(words, options);
+        expect_nothing_left();
+        return result;
+    }
+    bool has_picture() const { return fs::exists(scratch_.path("out/a.png")); }
+    // No process of the run, no temporary file, no half picture. A killed process may need a moment.
+    void expect_nothing_left() const {
+        for (int i = 0; i < 100 && !processes().empty(); ++i) usleep(10000);
+        EXPECT_EQ(processes(), "");
+        EXPECT_TRUE(fs::is_empty(scratch_.path("tmp"))) << fs::directory_iterator(scratch_.path("tmp"))->path();
+        for (const char* folder : {"out", "programs"}) {
+            std::error_code error;
+            for (const auto& file : fs::directory_iterator(scratch_.path(folder), error))
+                EXPECT_NE(file.path().extension(), ".tmp") << file.path();
+        }
+    }
+    std::string processes() const {
+        std::string all;
+        for (const auto& process : fs::directory_iterator("/proc")) {
+            std::ifstream file(process.path() / "environ", std::ios::binary);
+            const std::string text(std::istreambuf_iterator<char>(file), {});
+            if (text.find(mark()) != std::string::npos) all += process.path().filename().string() + " ";
+        }
+        return all;
+    }
+    static void expect_says(const ProgramResult& result, const std::string& text) {
+        EXPECT_NE(result.err.find(text), std::string::npos) << "expected: " << text << "\nread: " << result.err;
+    }
+    Scratch scratch_;
+};
+
+RunOptions signalled(int signal, double after_s) {
+    RunOptions options;
+    options.signal = signal;
+    options.signal_after_s = after_s;
+    return options;
+}
+
+TEST_F(Faults, NoneRendersAndTheSecondStartCompilesNothing) {
+    const ProgramResult first = render("other");
+    EXPECT_EQ(first.exit_code, 0) << first.err;
+    fs::remove(scratch_.path("out/a.png"));
+    const ProgramResult second = render("other,no-source");
+    EXPECT_EQ(second.exit_code, 0) << "both programs are loaded from their binaries: " << second.err;
+    EXPECT_TRUE(has_picture());
+}
+
+TEST_F(Faults, ASignalEndsABuildThatHangs) {
+    for (const int signal : {SIGINT, SIGTERM}) {
+        const ProgramResult result = render(signal == SIGINT ? "build-hangs" : "other,build-hangs", signalled(signal, 0.4));
+        EXPECT_EQ(result.exit_code, 130) << result.err;
+        EXPECT_LT(result.seconds, 0.4 + 1.0) << "the signal must end the program within a second";
+        expect_says(result, "interrupted");
+        EXPECT_FALSE(has_picture());
+    }
+}
+
+TEST_F(Faults, ASignalEndsABuildInThisProcess) {
+    RunOptions options = signalled(SIGTERM, 0.4);
+    options.environment["CLARITY_COMPILE"] = "here";
+    const ProgramResult result = render("build-hangs", options);
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_LT(result.seconds, 0.4 + 1.0);
+    expect_says(result, "the OpenCL driver did not stop");
+}
+
+TEST_F(Faults, ASignalEndsALaunchThatHangs) {
+    ASSERT_EQ(render("").exit_code, 0);
+    fs::remove(scratch_.path("out/a.png"));
+    const ProgramResult result = render("launch-hangs", signalled(SIGINT, 0.5));
+    EXPECT_EQ(result.exit_code, 130);
+    EXPECT_LT(result.seconds, 0.5 + 1.0);
+    EXPECT_FALSE(has_picture());
+}
+
+TEST_F(Faults, ALongBuildIsToldAndCanBeLeft) {
+    RunOptions options = signalled(SIGINT, 1.2);
+    options.environment["CLARITY_COMPILE_PATIENCE"] = "0.5";
+    const ProgramResult result = render("build-hangs", options);
+    EXPECT_EQ(result.exit_code, 130);
+    expect_says(result, "the OpenCL compiler has been at work for 1 s");
+    expect_says(result, "--lanes 1");
+}
+
+TEST_F(Faults, ACompilerThatCrashesIsAMessageWithItsLog) {
+    const ProgramResult result = render("build-crashes");
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    expect_says(result, "the OpenCL compiler crashed: aborted");
+    expect_says(result, "Instruction does not dominate all uses!");
+    EXPECT_FALSE(has_picture());
+}
+
+TEST_F(Faults, ACompilerThatEndsItsProcessIsAMessage) {
+    const ProgramResult result = render("build-exits");
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    expect_says(result, "the OpenCL compiler ended its process: exit code 3");
+}
+
+TEST_F(Faults, ACompilerThatRefusesWithoutALogIsAMessage) {
+    const ProgramResult result = render("build-refuses");
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    expect_says(result, "OpenCL error -11 (compiling tracer iterative with accel linear for");
+}
+
+TEST_F(Faults, ACompilerThatEatsMemoryIsStopped) {
+    RunOptions options;
+    options.environment["CLARITY_COMPILE_MEMORY"] = "300";
+    const ProgramResult result = render("build-eats", options);
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    expect_says(result, "needs more than 300 MiB of memory");
+}
+
+TEST_F(Faults, BinariesThatTheDriverRefusesAreCompiledAgain) {
+    const ProgramResult result = render("other,binary-flipped");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(has_picture());
+}
+
+TEST_F(Faults, AStoredProgramThatIsDamagedIsCompiledAgain) {
+    ASSERT_EQ(render("other").exit_code, 0);
+    for (const auto& file : fs::directory_iterator(scratch_.path("programs"))) {
+        std::fstream stored(file.path(), std::ios::binary | std::ios::in | std::ios::out);
+        stored.seekp(100);
+        stored.put('\x55');
+    }
+    fs::remove(scratch_.path("out/a.png"));
+    const ProgramResult result = render("other");
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_TRUE(has_picture());
+}
+
+TEST_F(Faults, ACacheOfPoclThatCannotBeWrittenIsNamedAndGoneRound) {
+    scratch_.write("file", "");  // no folder can be made below it, also not by root
+    RunOptions options;
+    options.environment["POCL_CACHE_DIR"] = scratch_.path("file/kcache");
+    options.environment["XDG_CACHE_HOME"] = scratch_.path("cache");
+    const ProgramResult result = render("", options);
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    expect_says(result, "PoCL's cache " + scratch_.path("file/kcache") + " cannot be written");
+    expect_says(result, scratch_.path("cache/clarity/pocl") + " is used instead");
+    EXPECT_TRUE(has_picture());
+}
+
+// PoCL aborts on a damaged cache. The first start finds that out the hard way; the second one tells.
+TEST_F(Faults, ADamagedCacheOfPoclIsNamed) {
+    RunOptions options;
+    options.environment["POCL_CACHE_DIR"] = scratch_.path("kcache");
+    const std::vector<std::string> simple = {"--depth", "1", "--aov", "t"};
+    ASSERT_EQ(render("", options, simple).exit_code, 0);
+    for (const auto& file : fs::recursive_directory_iterator(scratch_.path("kcache")))
+        if (file.path().filename() == "program.bc") fs::resize_file(file.path(), 100);
+    render("", options, simple);
+    const ProgramResult result = render("", options, simple);
+    EXPECT_EQ(result.exit_code, 5) << result.err;
+    expect_says(result, "the cache " + scratch_.path("kcache") + " may be damaged: delete that folder");
+    fs::remove_all(scratch_.path("kcache"));
+    EXPECT_EQ(render("", options, simple).exit_code, 0);
+}
+
+TEST_F(Faults, EveryFailureOfACallIsAMessage) {
+    ASSERT_EQ(render("").exit_code, 0);
+    fs::remove(scratch_.path("out/a.png"));
+    struct Case {
+        const char *fault, *says;
+    };
+    for (const Case& one : {Case{"enqueue=-5@1", "OpenCL error -5"}, Case{"enqueue=-4@2", "OpenCL error -4 (out of memory)"},
+                            Case{"enqueue=-6@2", "OpenCL error -6"}, Case{"enqueue=-36@2", "OpenCL error -36"},
+                            Case{"enqueue=-54@2", "OpenCL error -54"}, Case{"buffer=-4@1", "no room on"},
+                            Case{"buffer=-4@5", "no room on"}, Case{"buffer=-61@3", "OpenCL error -61"},
+                            Case{"read=-5@1", "OpenCL error -5"}, Case{"read=-36@1", "OpenCL error -36"}}) {
+        const ProgramResult result = render(one.fault);
+        EXPECT_EQ(result.exit_code, 1) << one.fault << ": " << result.err;
+        expect_says(result, one.says);
+        EXPECT_FALSE(has_picture()) << one.fault;
+    }
+}
+
+}  // namespace
