@@ -7,10 +7,10 @@
 #include "bench/cases/breakdown.hpp"
 #include "bench/cases/build_entry.hpp"
 #include "bench/cases/frame_entries.hpp"
-#include "bench/cases/motion.hpp"
 #include "bench/cases/pictures.hpp"
 #include "bench/cases/ray_entries.hpp"
-#include "bench/cases/strategies.hpp"
+#include "bench/motion/motion.hpp"
+#include "bench/motion/strategies.hpp"
 #include "bench/run/bench.hpp"
 #include "render/settings/accel_choice.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "base/error.hpp"
 #include "bench/baselines/speedup.hpp"
-#include "bench/suites/animations.hpp"
-#include "bench/suites/motions.hpp"
+#include "bench/motion/animations.hpp"
+#include "bench/motion/motions.hpp"
 #include "render/settings/accel_choice.hpp"
 
 namespace clarity::bench {

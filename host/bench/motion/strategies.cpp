@@ -1,4 +1,4 @@
-#include "bench/cases/strategies.hpp"
+#include "bench/motion/strategies.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,9 +7,9 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "bench/cases/entry.hpp"
+#include "bench/motion/animations.hpp"
 #include "bench/output/row.hpp"
 #include "bench/run/bench.hpp"
-#include "bench/suites/animations.hpp"
 #include "render/frame/preparer.hpp"
 #include "render/moving/pose_follower.hpp"
 

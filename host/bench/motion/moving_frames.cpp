@@ -1,4 +1,4 @@
-#include "bench/cases/moving_frames.hpp"
+#include "bench/motion/moving_frames.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -7,7 +7,7 @@
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/statistics.hpp"
-#include "bench/suites/motions.hpp"
+#include "bench/motion/motions.hpp"
 #include "device/cl_errors.hpp"
 
 namespace clarity::bench {

@@ -1,11 +1,11 @@
-#include "bench/suites/animations.hpp"
+#include "bench/motion/animations.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <random>
 
 #include "base/error.hpp"
-#include "bench/suites/motions.hpp"
+#include "bench/motion/motions.hpp"
 #include "scene/motion/pose_time.hpp"
 
 namespace clarity::bench {

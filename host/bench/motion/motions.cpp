@@ -1,4 +1,4 @@
-#include "bench/suites/motions.hpp"
+#include "bench/motion/motions.hpp"
 
 #include <algorithm>
 #include <cmath>

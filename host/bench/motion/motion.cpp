@@ -1,4 +1,4 @@
-#include "bench/cases/motion.hpp"
+#include "bench/motion/motion.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -11,10 +11,10 @@
 #include "bench/baselines/moving_baseline.hpp"
 #include "bench/baselines/speedup.hpp"
 #include "bench/cases/case_state.hpp"
-#include "bench/cases/moving_frames.hpp"
 #include "bench/cases/ray_entries.hpp"
+#include "bench/motion/motions.hpp"
+#include "bench/motion/moving_frames.hpp"
 #include "bench/run/bench.hpp"
-#include "bench/suites/motions.hpp"
 #include "device/cl_errors.hpp"
 #include "plugin/extensions.hpp"
 #include "render/frame/preparer.hpp"
