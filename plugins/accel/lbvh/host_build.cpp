@@ -10,7 +10,6 @@ namespace lbvh {
 namespace {
 
 using clarity::bvh::CurveKey;
-using clarity::bvh::order_along_curve;
 
 // The last place of the left child of the places first .. last: where the highest bit changes that they do not share.
 uint32_t middle_of(const std::vector<CurveKey>& keys, uint32_t first, uint32_t last) {
@@ -34,27 +33,18 @@ void join(const rt_topology_node& from, rt_topology_node& to) {
     }
 }
 
-// Writes the 2 * count - 1 nodes of a group from nodes[base] on. first_ref: where its refs begin.
-void write_tree(const rt_prim* prims, const std::vector<CurveKey>& keys, rt_topology_node* nodes, rt_u32 base, rt_u32 first_ref,
-                rt_u32* refs) {
+rt_u32 write_inner(const clarity::bvh::CurveGroup& group) {
     struct Range {
         uint32_t node, first, last;
     };
+    const std::vector<CurveKey>& keys = group.keys;
+    rt_topology_node* const nodes = group.nodes;
+    const rt_u32 base = group.base, leaves = group.leaves;
     const auto count = static_cast<uint32_t>(keys.size());
-    const uint32_t leaves = base + count - 1;
-    for (uint32_t i = 0; i < count; ++i) {
-        const rt_prim& prim = prims[keys[i].number];
-        refs[first_ref + i] = prim.ref;
-        rt_topology_node& leaf = nodes[leaves + i];
-        std::copy_n(prim.lo, 3, leaf.lo);
-        std::copy_n(prim.hi, 3, leaf.hi);
-        leaf.left = first_ref + i;
-        leaf.right = RT_TOPOLOGY_LEAF | 1u;
-    }
     std::vector<Range> open;
     std::vector<uint32_t> order;  // parents before children
     order.reserve(count);
-    if (count > 1) open.push_back({0, 0, count - 1});
+    open.push_back({0, 0, count - 1});
     while (!open.empty()) {
         const Range at = open.back();
         open.pop_back();
@@ -72,34 +62,13 @@ void write_tree(const rt_prim* prims, const std::vector<CurveKey>& keys, rt_topo
         std::copy_n(nodes[node.left].hi, 3, node.hi);
         join(nodes[node.right], node);
     }
+    return base;
 }
 
 }  // namespace
 
 int32_t topology(const rt_host* host, const rt_build_input* input, const rt_topology_output* out) {
-    uint64_t primitives = 0, nodes = 0;
-    for (rt_u32 g = 0; g < input->group_count; ++g) {
-        primitives += input->groups[g].count;
-        nodes += input->groups[g].count ? 2 * uint64_t{input->groups[g].count} - 1 : 0;
-    }
-    if (primitives > RT_REF_INDEX_MAX) return host->fail(host->ctx, "lbvh takes at most 268435455 primitives");
-    rt_topology_node* const all = rt::nodes(out, nodes);
-    rt_u32* const refs = rt::refs(out, primitives);
-    rt_u32 base = 0, first_ref = 0;
-    for (rt_u32 g = 0; g < input->group_count; ++g) {
-        const rt_group group = input->groups[g];
-        if (group.count == 0) {
-            rt::root(out, g, RT_NONE);
-            continue;
-        }
-        if (!host->progress(host->ctx, float(first_ref) / float(primitives))) return RT_CANCELLED;
-        const rt_prim* const prims = input->prims + group.first;
-        write_tree(prims, order_along_curve(host, prims, group.count), all, base, first_ref, refs);
-        rt::root(out, g, base);
-        base += 2 * group.count - 1;
-        first_ref += group.count;
-    }
-    return RT_OK;
+    return clarity::bvh::build_along_curve(host, input, out, "lbvh", write_inner);
 }
 
 }  // namespace lbvh

@@ -83,52 +83,26 @@ rt_u32 cluster_group(const rt_host* host, const ploc_tree& tree, rt_u32 count) {
     return root.code;
 }
 
+rt_u32 write_inner(const rt_host* host, const clarity::bvh::CurveGroup& group) {
+    const auto count = static_cast<rt_u32>(group.keys.size());
+    std::vector<ploc_place> places(count);
+    rt_topology_node* const nodes = group.nodes + group.base;
+    const rt_u32 root = cluster_group(host, {group.prims, group.keys.data(), nodes, places.data()}, count);
+    const auto child = [&](rt_u32 code) {
+        return code & PLOC_SINGLE ? group.leaves + (code & ~PLOC_SINGLE) : group.base + code;
+    };
+    for (rt_u32 i = 0; i + 1 < count; ++i) {
+        nodes[i].left = child(nodes[i].left);
+        nodes[i].right = child(nodes[i].right);
+    }
+    return group.base + root;
+}
+
 }  // namespace
 
 int32_t topology(const rt_host* host, const rt_build_input* input, const rt_topology_output* out) {
-    uint64_t primitives = 0, nodes = 0;
-    for (rt_u32 g = 0; g < input->group_count; ++g) {
-        primitives += input->groups[g].count;
-        nodes += input->groups[g].count ? 2 * uint64_t{input->groups[g].count} - 1 : 0;
-    }
-    if (primitives > RT_REF_INDEX_MAX) return host->fail(host->ctx, "ploc takes at most 268435455 primitives");
-    rt_topology_node* const all = rt::nodes(out, nodes);
-    rt_u32* const refs = rt::refs(out, primitives);
-    std::vector<ploc_place> places;
-    rt_u32 base = 0, first_ref = 0;
-    for (rt_u32 g = 0; g < input->group_count; ++g) {
-        const rt_group group = input->groups[g];
-        if (group.count == 0) {
-            rt::root(out, g, RT_NONE);
-            continue;
-        }
-        if (!host->progress(host->ctx, float(first_ref) / float(primitives))) return RT_CANCELLED;
-        const rt_prim* const prims = input->prims + group.first;
-        const std::vector<CurveKey> keys = clarity::bvh::order_along_curve(host, prims, group.count);
-        places.resize(group.count);
-        const rt_u32 leaves = base + group.count - 1;
-        const rt_u32 root =
-            group.count > 1 ? base + cluster_group(host, {prims, keys.data(), all + base, places.data()}, group.count) : leaves;
-        const auto child = [&](rt_u32 code) { return code & PLOC_SINGLE ? leaves + (code & ~PLOC_SINGLE) : base + code; };
-        for (rt_u32 i = 0; i + 1 < group.count; ++i) {
-            rt_topology_node& node = all[base + i];
-            node.left = child(node.left);
-            node.right = child(node.right);
-        }
-        for (rt_u32 i = 0; i < group.count; ++i) {
-            const rt_prim& prim = prims[keys[i].number];
-            refs[first_ref + i] = prim.ref;
-            rt_topology_node& leaf = all[leaves + i];
-            std::copy_n(prim.lo, 3, leaf.lo);
-            std::copy_n(prim.hi, 3, leaf.hi);
-            leaf.left = first_ref + i;
-            leaf.right = RT_TOPOLOGY_LEAF | 1u;
-        }
-        rt::root(out, g, root);
-        base += 2 * group.count - 1;
-        first_ref += group.count;
-    }
-    return RT_OK;
+    return clarity::bvh::build_along_curve(host, input, out, "ploc",
+                                           [&](const clarity::bvh::CurveGroup& group) { return write_inner(host, group); });
 }
 
 }  // namespace ploc

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
+#include <string>
 
 #include "rt_plugin.hpp"
 
@@ -53,6 +54,44 @@ std::vector<CurveKey> order_along_curve(const rt_host* host, const rt_prim* prim
     });
     std::sort(keys.begin(), keys.end());
     return keys;
+}
+
+int32_t build_along_curve(const rt_host* host, const rt_build_input* input, const rt_topology_output* out, const char* id,
+                          const std::function<rt_u32(const CurveGroup&)>& write_inner) {
+    uint64_t primitives = 0, node_count = 0;
+    for (rt_u32 g = 0; g < input->group_count; ++g) {
+        primitives += input->groups[g].count;
+        node_count += input->groups[g].count ? 2 * uint64_t{input->groups[g].count} - 1 : 0;
+    }
+    if (primitives > RT_REF_INDEX_MAX)
+        return host->fail(host->ctx, (id + std::string(" takes at most 268435455 primitives")).c_str());
+    rt_topology_node* const nodes = rt::nodes(out, node_count);
+    rt_u32* const refs = rt::refs(out, primitives);
+    rt_u32 base = 0, first_ref = 0;
+    for (rt_u32 g = 0; g < input->group_count; ++g) {
+        const rt_u32 count = input->groups[g].count;
+        if (count == 0) {
+            rt::root(out, g, RT_NONE);
+            continue;
+        }
+        if (!host->progress(host->ctx, float(first_ref) / float(primitives))) return RT_CANCELLED;
+        const rt_prim* const prims = input->prims + input->groups[g].first;
+        const std::vector<CurveKey> keys = order_along_curve(host, prims, count);
+        const rt_u32 leaves = base + count - 1;
+        for (rt_u32 i = 0; i < count; ++i) {
+            const rt_prim& prim = prims[keys[i].number];
+            refs[first_ref + i] = prim.ref;
+            rt_topology_node& leaf = nodes[leaves + i];
+            std::copy_n(prim.lo, 3, leaf.lo);
+            std::copy_n(prim.hi, 3, leaf.hi);
+            leaf.left = first_ref + i;
+            leaf.right = RT_TOPOLOGY_LEAF | 1u;
+        }
+        rt::root(out, g, count > 1 ? write_inner({prims, keys, nodes, base, leaves}) : leaves);
+        base += 2 * count - 1;
+        first_ref += count;
+    }
+    return RT_OK;
 }
 
 }  // namespace clarity::bvh

@@ -2,6 +2,7 @@
 // device; and the same order on the host, for builders that build the same tree on both.
 #pragma once
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "rt_plugin.h"
@@ -37,5 +38,18 @@ struct CurveKey {
 };
 // The primitives of a group along the curve. On all cores, but for the sort.
 std::vector<CurveKey> order_along_curve(const rt_host* host, const rt_prim* prims, uint32_t count);
+
+// A group of two primitives or more whose tree is to be built. Its 2n - 1 nodes begin at nodes[base]: first the inner ones,
+// then the leaves in the order of the curve, which are written.
+struct CurveGroup {
+    const rt_prim* prims;
+    const std::vector<CurveKey>& keys;
+    rt_topology_node* nodes;
+    rt_u32 base, leaves;  // leaves: index of the first leaf
+};
+// rt_accel::topology of a builder whose trees stand over this order. write_inner: writes the inner nodes of a group, whose
+// children are indices of `nodes`, and returns the root. id: of the plugin, for messages.
+int32_t build_along_curve(const rt_host* host, const rt_build_input* input, const rt_topology_output* out, const char* id,
+                          const std::function<rt_u32(const CurveGroup&)>& write_inner);
 
 }  // namespace clarity::bvh
