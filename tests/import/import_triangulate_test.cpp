@@ -167,19 +167,25 @@ TEST(Triangulate, far_from_the_origin_a_square_is_still_a_fan) {
     EXPECT_EQ(out, (std::vector<rt_u32>{0, 1, 2, 0, 2, 3}));
 }
 
+// A tenth in builds without optimization, which are about ten times as slow.
+#ifdef __OPTIMIZE__
+constexpr int kHuge = 100000;
+#else
+constexpr int kHuge = 10000;
+#endif
 TEST(Triangulate, huge_faces_take_seconds_at_most) {
     const auto start = std::chrono::steady_clock::now();
     Points comb, tangle;
     std::mt19937 random(7);
     std::uniform_real_distribution<double> anywhere(-1, 1);
-    for (int i = 0; i < 100000; ++i) {
+    for (int i = 0; i < kHuge; ++i) {
         comb.push_back({double(i), i % 2 != 0 ? 1. : 100.});
         tangle.push_back({anywhere(random), anywhere(random)});
     }
-    comb.push_back({100000, -5});
+    comb.push_back({double(kHuge), -5});
     comb.push_back({0, -5});
     expect_exact_cover(comb);
-    expect_exact_cover(circle(100000, 0.5));
+    expect_exact_cover(circle(kHuge, 0.5));
     Triangulator triangulator;
     EXPECT_EQ(triangles_of(tangle, triangulator).size(), 3 * (tangle.size() - 2));
     EXPECT_EQ(triangulator.given_up(), 1u) << "and it says so";

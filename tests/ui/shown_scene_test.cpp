@@ -88,6 +88,42 @@ TEST_F(ShownSceneTest, CamerasAndLightsAloneNeedNoNewScene) {
     EXPECT_EQ(shown_.lights()[0].values.position[0], 0);
 }
 
+// Devices make vertices themselves, so they are made here for those only that ask.
+TEST_F(ShownSceneTest, VerticesAreMadeWhenSomeoneNeedsThem) {
+    auto loaded = std::make_shared<ImportedScene>(*loaded_);
+    Scene scene = *loaded->scene;
+    Motion& m = scene.motion;
+    m.frames.push_back({0, 0, 0, 2, 0});
+    m.frame_times = {0, 1};
+    m.frame_positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 4, 1, 0, 4, 0, 1, 4};
+    ASSERT_EQ(validate(scene), "");
+    loaded->scene = std::make_shared<const Scene>(std::move(scene));
+    loaded_ = loaded;
+    show({0.5, "light"});
+    const auto light = shown_.scene();
+    EXPECT_NE(light, loaded_->scene);
+    EXPECT_TRUE(light->positions.shares(loaded_->scene->positions)) << "nothing was copied";
+    ASSERT_EQ(shown_.left_out().size(), 1u);
+    Ready ready;
+    ready.scene = light;
+    ready.rest = shown_.rest();
+    ready.left_out = shown_.left_out();
+    EXPECT_EQ(whole_scene(ready)->positions[2], 2) << "half the way to the second frame";
+    EXPECT_NE(left_out(ready, 0), nullptr);
+    shown_.add_vertices();
+    const auto whole = shown_.scene();
+    EXPECT_EQ(whole->positions[2], 2);
+    EXPECT_TRUE(shown_.left_out().empty());
+    show({0.5, "light"});
+    shown_.add_vertices();
+    EXPECT_EQ(shown_.scene(), whole) << "the same pose needs no other object";
+    show({0.75, "light"});
+    EXPECT_EQ(shown_.left_out().size(), 1u);
+    EXPECT_EQ(shown_.scene()->positions[2], 0);
+    show({});
+    EXPECT_EQ(shown_.scene(), loaded_->scene);
+}
+
 TEST_F(ShownSceneTest, HiddenInstancesStayHiddenInEveryPose) {
     show({0.5, "all"}, {1});
     EXPECT_FALSE(shown_.scene()->instances[1].visible);

@@ -21,12 +21,13 @@ std::array<std::array<float, 3>, 8> SelectionBox::corners() const {
     return corners_of(own, place);
 }
 
-std::optional<SelectionBox> selection_box(const Scene& scene, const Selection& selection) {
+std::optional<SelectionBox> selection_box(const Scene& scene, const Selection& selection, const PosedMesh* vertices) {
     Bounds bounds;
     if (selection.instance >= 0 && static_cast<size_t>(selection.instance) < scene.instances.size()) {
         const Instance& instance = scene.instances[static_cast<size_t>(selection.instance)];
         const Mesh& mesh = scene.meshes[instance.mesh];
-        for (rt_u32 v = 0; v < mesh.vertex_count; ++v) bounds.add(&scene.positions[size_t{3} * (mesh.first_vertex + v)]);
+        const float* const positions = vertices ? vertices->positions.data() : &scene.positions[size_t{3} * mesh.first_vertex];
+        for (size_t v = 0; v < mesh.vertex_count; ++v) bounds.add(positions + 3 * v);
         if (bounds.empty) return std::nullopt;
         return SelectionBox{bounds, instance.world_from_object};
     }

@@ -14,7 +14,8 @@ struct SelectionBox {
     std::array<std::array<float, 3>, 8> corners() const;  // in the order of Volumes
 };
 
-// nullopt: the selection has no bounds. Takes time linear in the mesh's vertices.
-std::optional<SelectionBox> selection_box(const Scene& scene, const Selection& selection);
+// nullopt: the selection has no bounds. vertices: those of the selected instance's mesh, where the scene does not have them.
+// Takes time linear in the mesh's vertices.
+std::optional<SelectionBox> selection_box(const Scene& scene, const Selection& selection, const PosedMesh* vertices = nullptr);
 
 }  // namespace clarity::ui

@@ -43,7 +43,7 @@ void Session::focus_on(const std::array<float, 3>& point, float nearer) {
 
 void Session::focus_on_instance(rt_u32 instance) {
     if (!ready_ || instance >= ready_->scene->instances.size()) return;
-    frame_bounds(desired.camera, instance_bounds(*ready_->scene, instance), picture_aspect());
+    frame_bounds(desired.camera, instance_bounds(*whole_scene(*ready_), instance), picture_aspect());
 }
 
 void Session::go_to(const Camera& camera, const PoseTime& pose) {
@@ -57,7 +57,7 @@ void Session::frame_selection() {
     if (!ready_) return;
     if (selection.instance >= 0) return focus_on_instance(static_cast<rt_u32>(selection.instance));
     const bool at_rest = ready_->scene == ready_->loaded->scene;
-    const Bounds bounds = at_rest ? ready_->loaded->bounds : ready_->scene->bounds();
+    const Bounds bounds = at_rest ? ready_->loaded->bounds : whole_scene(*ready_)->bounds();
     if (!bounds.empty) frame_bounds(desired.camera, bounds, picture_aspect());
 }
 

@@ -223,7 +223,6 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
     ready->request.apart = shown_.asked_apart();
     ready->request.pose = shown_.pose();
     ready->loaded = loaded_;
-    ready->scene = shown_.scene();
     ready->rest = shown_.rest();
     ready->cameras = shown_.cameras();
     ready->lights = shown_.lights();
@@ -237,6 +236,8 @@ void PrepareWorker::handle(const PrepareRequest& request, StageProgress& progres
         renew_devices();
         prepare_sides(request, *ready, whole, progress);
     }
+    ready->scene = shown_.scene();
+    ready->left_out = shown_.left_out();
     publish({Outcome::Kind::ready, ready, "", "", false, whole});
 }
 
@@ -269,14 +270,17 @@ ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings,
     const Pose& pose = shown_.geometry();
     const std::shared_ptr<const Scene>& scene = shown_.scene();
     if (settings.shutter > 0) follower.leave_devices();  // blurred pictures move the structure on the host
+    if (follower.needs_vertices()) shown_.add_vertices();
     MovedStructure moved = follower.refit(from, scene, pose, way_of(settings.poses), frame_ms, progress);
     if (moved.accel && moved.on_devices.empty() && side.built)
         moved.on_devices = side.built->moved_buffers(pose, moved.accel, progress);
+    if (!moved.accel) shown_.add_vertices();
     const auto prepared = side.preparer->prepare(scene, settings, progress, moved);
     if (!moved.accel) {
         const std::shared_ptr<const AccelData>& built = prepared->first()->accel;
-        follower.built(from, scene, pose, built,
-                       settings.shutter > 0 ? make_host_mover(scene, built) : side.preparer->mover(scene, *prepared));
+        follower.built(
+            from, scene, pose, built,
+            settings.shutter > 0 ? make_host_mover(scene, built) : side.preparer->mover(scene, shown_.rest(), *prepared));
         side.built = prepared;
     }
     ReadySide ready = lend(side.devices, prepared);

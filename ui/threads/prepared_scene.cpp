@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "render/frame/device_scene.hpp"
+#include "scene/motion/deform.hpp"
 
 namespace clarity::ui {
 
@@ -40,6 +41,23 @@ bool ReadySide::uses(const DeviceInfo& info) const {
     return std::any_of(devices.begin(), devices.end(), [&](const DeviceInfo& device) {
         return device.platform_index == info.platform_index && device.device_index == info.device_index;
     });
+}
+
+const Deformation* left_out(const Ready& ready, rt_u32 mesh) {
+    const auto found = std::find_if(ready.left_out.begin(), ready.left_out.end(),
+                                    [mesh](const Deformation& deformation) { return deformation.mesh == mesh; });
+    return found == ready.left_out.end() ? nullptr : &*found;
+}
+
+std::shared_ptr<const Scene> whole_scene(const Ready& ready) {
+    if (ready.left_out.empty()) return ready.scene;
+    auto scene = std::make_shared<Scene>(*ready.scene);
+    for (const Deformation& deformation : ready.left_out) {
+        const PosedMesh mesh = deformed(*ready.rest, deformation);
+        std::copy(mesh.positions.begin(), mesh.positions.end(),
+                  scene->positions.own().begin() + 3 * static_cast<std::ptrdiff_t>(scene->meshes[mesh.mesh].first_vertex));
+    }
+    return scene;
 }
 
 bool traces_alike(const Ready& a, const Ready& b) {

@@ -96,9 +96,11 @@ struct Ready {
     PrepareRequest request;
     std::shared_ptr<const ImportedScene> loaded;
     std::shared_ptr<const Scene> scene;  // what was imported, in its pose. Its own cameras and lights may be of another pose
-    std::shared_ptr<const Scene> rest;   // what was imported, with its instances moved and hidden by the user, at rest
-    std::vector<Camera> cameras;         // those of the scene, in its pose
-    std::vector<Light> lights;           // likewise
+    // The meshes whose vertices are at rest in `scene`, because devices make those of the pose; and what moves them.
+    std::vector<Deformation> left_out;
+    std::shared_ptr<const Scene> rest;  // what was imported, with its instances moved and hidden by the user, at rest
+    std::vector<Camera> cameras;        // those of the scene, in its pose
+    std::vector<Light> lights;          // likewise
     ReadySide main;
     std::optional<ReadySide> other;
     // What motion blur needs of a side with these devices and settings. Used by the thread that traces. May be empty.
@@ -106,6 +108,11 @@ struct Ready {
     // Whether its devices were closed. Its picture can still be shown, but not traced.
     bool withdrawn() const { return main.loan->withdrawn() || (other && other->loan->withdrawn()); }
 };
+
+// What moves the vertices of a mesh that `scene` has at rest; nullptr: it has them as they are.
+const Deformation* left_out(const Ready& ready, rt_u32 mesh);
+// The scene with all vertices of its pose.
+std::shared_ptr<const Scene> whole_scene(const Ready& ready);
 
 // Whether both run the same programs on the same imported scene, so that their frames take about as long.
 bool traces_alike(const Ready& a, const Ready& b);

@@ -12,8 +12,7 @@ bool same_numbers(const std::vector<float>& of_scene, rt_u32 first_vertex, const
            std::equal(of_pose.begin(), of_pose.end(), of_scene.begin() + static_cast<std::ptrdiff_t>(first));
 }
 
-}  // namespace
-
+// Whether a scene has the instances of a pose, and the vertices that the pose does not leave out.
 bool has_geometry_of(const Scene& scene, const Pose& pose) {
     for (size_t i = 0; i < scene.instances.size(); ++i) {
         const Instance& a = scene.instances[i];
@@ -25,6 +24,8 @@ bool has_geometry_of(const Scene& scene, const Pose& pose) {
         return same_numbers(scene.positions, first, mesh.positions) && same_numbers(scene.normals, first, mesh.normals);
     });
 }
+
+}  // namespace
 
 ShownScene::ShownScene(const PluginRegistry& plugins, const import::ImportOptions& options)
     : sequences_(plugins, options, unwatched_) {}
@@ -70,12 +71,25 @@ bool ShownScene::edit(const InstanceEdits& edits, const std::vector<rt_u32>& apa
 // Whether scene() has the geometry of a pose. The scene at rest never has it if the clip moves instances, even where they stand
 // as at rest: they are not kept apart in it.
 bool ShownScene::shows(const Pose& pose, const std::string& clip) const {
-    if (!has_geometry_of(*scene_, pose)) return false;
+    if (!(pose.deformations == geometry_.deformations) || !has_geometry_of(*scene_, pose)) return false;
     if (scene_ != rest_) return true;
     const std::vector<bool> moving = moving_instances(*scene_, clip);
     for (size_t i = 0; i < moving.size(); ++i)
         if (moving[i] && !scene_->instances[i].apart) return false;
     return true;
+}
+
+void ShownScene::add_vertices() {
+    if (left_out().empty()) return;
+    clarity::add_vertices(*rest_, geometry_);
+    scene_ = std::make_shared<const Scene>(posed(*rest_, geometry_));
+}
+
+std::vector<Deformation> ShownScene::left_out() const {
+    std::vector<Deformation> deformations;
+    for (const Deformation& deformation : geometry_.deformations)
+        if (clarity::left_out(geometry_, deformation.mesh)) deformations.push_back(deformation);
+    return deformations;
 }
 
 void ShownScene::place(const PoseTime& time, bool edited) {
@@ -87,10 +101,13 @@ void ShownScene::place(const PoseTime& time, bool edited) {
         cameras_ = rest_->cameras;
         lights_ = rest_->lights;
     } else {
-        Pose pose = evaluate(*rest_, time.clip, *time.time_s, std::ref(sequences_));
-        if (edited || !shows(pose, time.clip)) scene_ = std::make_shared<const Scene>(posed(*rest_, pose));
-        cameras_ = std::move(pose.cameras);
-        lights_ = std::move(pose.lights);
+        Pose pose = evaluate_without_vertices(*rest_, time.clip, *time.time_s, std::ref(sequences_));
+        cameras_ = pose.cameras;
+        lights_ = pose.lights;
+        if (edited || !shows(pose, time.clip))
+            scene_ = std::make_shared<const Scene>(posed(*rest_, pose));
+        else if (!pose.deformations.empty())
+            pose.meshes = std::move(geometry_.meshes);  // with vertices that were added
         geometry_ = std::move(pose);
     }
     pose_ = time;

@@ -30,8 +30,13 @@ class ShownScene {
     // has, this stays so until another scene is loaded, so that undo is a refit, too.
     bool follows() const { return pose_.time_s || !apart_.empty(); }
     PosedFrom from() const { return {loaded_->scene, pose_.clip, !pose_.time_s, apart_}; }
-    // The instances and deformed meshes of scene(); no cameras and lights. Empty unless follows().
+    // The pose of scene(); its cameras and lights may be of another one. Empty unless follows().
     const Pose& geometry() const { return geometry_; }
+    // Adds the vertices that geometry() leaves out at first, to it and to scene(), which becomes another object then: builds,
+    // and structures that move on the host, need them.
+    void add_vertices();
+    // What moves the meshes whose vertices are left out: scene() has them at rest.
+    std::vector<Deformation> left_out() const;
     const InstanceEdits& instances() const { return instances_; }
     const std::vector<rt_u32>& asked_apart() const { return asked_apart_; }
     const std::vector<Camera>& cameras() const { return cameras_; }
@@ -54,8 +59,5 @@ class ShownScene {
     std::vector<Camera> cameras_;
     std::vector<Light> lights_;
 };
-
-// Whether a scene has the instances and vertices of a pose, so that only cameras and lights may differ.
-bool has_geometry_of(const Scene& scene, const Pose& pose);
 
 }  // namespace clarity::ui

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "base/elapsed.hpp"
+#include "scene/motion/deform.hpp"
 #include "ui/overlay/ray_lines.hpp"
 #include "ui/session/camera_control.hpp"
 #include "ui/viewport/picture_captions.hpp"
@@ -26,6 +27,16 @@ bool same(const Camera& a, const Camera& b) {
 
 // While the camera moves, at most this many volumes are drawn (every n-th one), so that a frame of the window stays short.
 constexpr size_t kMovingVolumes = 4000;
+
+std::optional<SelectionBox> selected_box(const Ready& ready, const Selection& selection) {
+    const Scene& scene = *ready.scene;
+    const bool is_instance = selection.instance >= 0 && static_cast<size_t>(selection.instance) < scene.instances.size();
+    const Deformation* const made_elsewhere =
+        is_instance ? left_out(ready, scene.instances[static_cast<size_t>(selection.instance)].mesh) : nullptr;
+    if (!made_elsewhere) return selection_box(scene, selection);
+    const PosedMesh vertices = deformed(*ready.rest, *made_elsewhere);
+    return selection_box(scene, selection, &vertices);
+}
 
 // Draws the visible part of a texture that covers `area`. top_first: whether the texture's first row is the top one.
 void add_part(ImDrawList& list, unsigned texture, const Rect& area, const Rect& shown, bool top_first) {
@@ -128,11 +139,11 @@ void PicturePane::collect_marks(const Session& session, const UiState& state) {
                            selected_.selection.prim == selection.prim;
         const bool moved = !known && selected_.box && selection.instance >= 0 && selected_.scene &&
                            selected_.selection.instance == selection.instance &&
-                           selected_.scene->positions.shares(scene->positions);
+                           selected_.scene->positions.shares(scene->positions) && ready.left_out.empty();
         if (moved)
             selected_ = {scene, selection, SelectionBox{selected_.box->own, instance_of(*scene, selection).world_from_object}};
         else if (!known)
-            selected_ = {scene, selection, selection_box(*scene, selection)};
+            selected_ = {scene, selection, selected_box(ready, selection)};
         if (selected_.box) {
             marks.box(selected_.box->corners(), IM_COL32(0, 0, 0, 130), 3.4f * scale);
             marks.box(selected_.box->corners(), ImGui::GetColorU32(colors::kAccent), 1.6f * scale);

@@ -22,11 +22,14 @@ bool is_complete(const cl::Event& event) {
 }  // namespace
 
 DeviceMotion::DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene,
-                           std::shared_ptr<const AccelData> built, std::shared_ptr<const DeviceScene> on_device, BuildForm form)
+                           std::shared_ptr<const AccelData> built, std::shared_ptr<const DeviceScene> on_device,
+                           std::shared_ptr<const Scene> rest, BuildForm form)
     : device_(std::move(device)),
       scene_(std::move(scene)),
       built_(std::move(built)),
       on_device_(std::move(on_device)),
+      rest_(std::move(rest)),
+      can_deform_(rest_ && rest_->meshes.size() <= scene_->meshes.size() && DeviceDeformer::fits(*rest_, device_->info())),
       kernels_(device_, form),
       accel_(built_) {
     wrap_cl_errors(*device_, "preparing a scene that moves", [&] {
@@ -107,8 +110,11 @@ std::string DeviceMotion::place(const Pose& pose) {
                scene_->meshes[instances_[i].mesh].triangle_count > 0;
     };
     is_posed_.assign(scene_->meshes.size(), 0);
-    for (const PosedMesh& mesh : pose.meshes)
-        if (mesh.mesh < is_posed_.size()) is_posed_[mesh.mesh] = 1;
+    for (const rt_u32 m : deforming_meshes(pose))
+        if (m < is_posed_.size()) is_posed_[m] = 1;
+    for (const Deformation& d : pose.deformations)
+        if (moved_.why.empty() && !can_deform_ && left_out(pose, d.mesh))
+            moved_.why = "the vertices of mesh " + std::to_string(d.mesh) + " are missing";
     for (const rt_u32 i : moved_.numbers)
         if (in_world(i)) moved_.why = "instance " + std::to_string(i) + " is part of the world's tree";
     for (rt_u32 i = 0; i < instances_.size(); ++i)
@@ -144,8 +150,25 @@ std::string DeviceMotion::place(const Pose& pose) {
             const size_t at = 3 * size_t(scene_->meshes[m].first_vertex);
             set_vertices(m, &scene_->positions[at], normals_.empty() ? nullptr : &scene_->normals[at]);
         }
+    deform(pose);
     is_deformed_ = is_posed_;
     return {};
+}
+
+// Lets the device make the vertices that a pose leaves out, where what moves them has changed.
+void DeviceMotion::deform(const Pose& pose) {
+    std::vector<const Deformation*> changed;
+    for (const Deformation& d : pose.deformations) {
+        if (!left_out(pose, d.mesh) || built_->scene.group_of_mesh[d.mesh] == 0) continue;
+        const auto known = made_by_.find(d.mesh);
+        if (known != made_by_.end() && known->second == d) continue;
+        touch(d.mesh);
+        made_by_[d.mesh] = d;
+        changed.push_back(&d);
+    }
+    if (changed.empty()) return;
+    if (!deformer_) deformer_ = std::make_unique<DeviceDeformer>(kernels_, rest_);
+    deformer_->deform(changed, pose_.positions, pose_.normals);
 }
 
 // Takes over the vertices of a mesh, if they differ from those that are there.
@@ -154,8 +177,9 @@ void DeviceMotion::set_vertices(rt_u32 mesh, const float* positions, const float
     const Mesh& range = scene_->meshes[mesh];
     const size_t at = 3 * size_t(range.first_vertex), bytes = 12 * size_t(range.vertex_count);
     if (group == 0 || bytes == 0) return;
-    const bool moves = std::memcmp(&positions_[at], positions, bytes) != 0;
-    const bool turns = normals && !normals_.empty() && std::memcmp(&normals_[at], normals, bytes) != 0;
+    const bool made = made_by_.erase(mesh) > 0;  // by the device: other vertices are there
+    const bool moves = made || std::memcmp(&positions_[at], positions, bytes) != 0;
+    const bool turns = normals && !normals_.empty() && (made || std::memcmp(&normals_[at], normals, bytes) != 0);
     if (moves) {
         std::memcpy(&positions_[at], positions, bytes);
         send(pose_.positions, at * sizeof(float), bytes, &positions_[at]);
@@ -292,6 +316,7 @@ void DeviceMotion::touch(rt_u32 mesh) {
     if (group == 0) return;
     version_[group] = version_[0] = moves_ + 1;
     is_deformed_[mesh] = 1;
+    made_by_.erase(mesh);
     positions_[3 * size_t(scene_->meshes[mesh].first_vertex)] =
         NAN;  // no longer what is there: the next pose sends its vertices
 }

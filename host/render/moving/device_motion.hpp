@@ -1,23 +1,25 @@
 // device_motion.hpp -- a structure on a device that follows the poses of its scene there.
 //
-//   DeviceMotion motion(device, scene, structure, on_device);   // of a finished build
+//   DeviceMotion motion(device, scene, structure, on_device, rest);   // of a finished build
 //   if (motion.cannot().empty()) {
-//       const MovedOnDevice moved = motion.move(evaluate(scene, clip, time));
+//       const MovedOnDevice moved = motion.move(evaluate_without_vertices(rest, clip, time));
 //       if (moved.on_device) draw it; else build a new one, for the reason moved.why
 //   }
 //
-// As MovingAccel, but leaves, boxes and trees are written by the device that traces them: the host sends vertices and
-// transforms that have changed, and enqueues kernels. It waits for nothing. Commands of earlier frames in the device's queue
-// run before those of the move, and commands of later frames after them.
+// As MovingAccel, but vertices, leaves, boxes and trees are written by the device that traces them: the host sends transforms
+// that have changed, bones and shares of morph targets, and enqueues kernels. It waits for nothing. Commands of earlier frames
+// in the device's queue run before those of the move, and commands of later frames after them.
 //
 // Memory on the device: 24 B a vertex, 12 B and 40 B of scratch a triangle, and up to three copies of leaves and nodes.
 #pragma once
 #include <deque>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/aligned_bytes.hpp"
+#include "render/moving/device_deformer.hpp"
 #include "render/moving/device_structure.hpp"
 #include "render/moving/moved_instances.hpp"
 #include "scene/motion/pose.hpp"
@@ -41,18 +43,23 @@ class DeviceMotion {
     // What is done with the trees of groups that have changed; `build`: only if can_build().
     enum class Update { refit, build };
 
-    // built: the structure of `scene`, which may be in any pose itself. on_device: its buffers. Throws Error.
+    // built: the structure of `scene`, which may be in any pose itself. on_device: its buffers. rest: the scene at rest, with
+    // its motion; nullptr: vertices are not made on the device. Throws Error.
     DeviceMotion(std::shared_ptr<Device> device, std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
-                 std::shared_ptr<const DeviceScene> on_device, BuildForm form = BuildForm::automatic);
+                 std::shared_ptr<const DeviceScene> on_device, std::shared_ptr<const Scene> rest = nullptr,
+                 BuildForm form = BuildForm::automatic);
     ~DeviceMotion();
 
     // Why the structure can only be built anew: "accel linear does not offer a refit on the device"; empty: it can follow
     // poses.
     const std::string& cannot() const;
 
-    // Moves the structure to a pose of the same scene, as MovingAccel::move(). Throws Error(failed).
+    // Moves the structure to a pose of the same scene, as MovingAccel::move(). The device makes the vertices that the pose
+    // leaves out; others are sent. Throws Error(failed).
     MovedOnDevice move(const Pose& pose, Update update = Update::refit);
     bool can_build() const { return groups_->can_build(); }
+    // Whether poses may leave vertices out.
+    bool can_deform() const { return can_deform_; }
     // The structure as it was built, but with the defines that trees need which the device builds: what kernels are made for.
     // It changes with the first build only.
     const std::shared_ptr<const AccelData>& accel() const { return accel_; }
@@ -68,6 +75,7 @@ class DeviceMotion {
  private:
     void start();
     std::string place(const Pose& pose);
+    void deform(const Pose& pose);
     void set_vertices(rt_u32 mesh, const float* positions, const float* normals);
     void send(const cl::Buffer& to, size_t at, size_t bytes, const void* data);
     DeviceStructure& spare();
@@ -81,6 +89,8 @@ class DeviceMotion {
     const std::shared_ptr<const Scene> scene_;
     const std::shared_ptr<const AccelData> built_;
     const std::shared_ptr<const DeviceScene> on_device_;
+    const std::shared_ptr<const Scene> rest_;
+    const bool can_deform_;
     BuildKernels kernels_;
     std::shared_ptr<const AccelData> accel_;  // see accel()
     DevicePose pose_;
@@ -92,6 +102,8 @@ class DeviceMotion {
     MovedInstances moved_;
     UninitializedVector<float> positions_, normals_;  // what was sent last; the device may read it until sent_ is complete
     std::vector<uint8_t> is_posed_, is_deformed_;     // for each mesh: by the pose that is taken over, and by the last one
+    std::unique_ptr<DeviceDeformer> deformer_;        // nullptr: not needed yet
+    std::map<rt_u32, Deformation> made_by_;           // the meshes whose vertices the device has made
     std::vector<uint64_t> version_;                   // of each group: the number of the move that changed it last
     uint64_t moves_ = 0;
     std::vector<cl::Event> sent_;

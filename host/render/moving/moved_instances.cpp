@@ -43,10 +43,10 @@ void find_moved_instances(const Scene& scene, const BuildScene& build, const std
 }
 
 bool moves_flattened_mesh(const Pose& pose, const Scene& scene, const BuildScene& build) {
+    const std::vector<rt_u32> meshes = deforming_meshes(pose);
     return std::any_of(build.flattened.begin(), build.flattened.end(), [&](uint32_t i) {
-        const auto is_mesh = [&](const PosedMesh& mesh) { return mesh.mesh == scene.instances[i].mesh; };
         return pose.instances[i].world_from_object != scene.instances[i].world_from_object ||
-               std::any_of(pose.meshes.begin(), pose.meshes.end(), is_mesh);
+               std::binary_search(meshes.begin(), meshes.end(), scene.instances[i].mesh);
     });
 }
 

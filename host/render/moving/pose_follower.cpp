@@ -7,12 +7,6 @@ namespace {
 
 constexpr size_t kKeptCosts = 120;  // poses
 
-std::vector<rt_u32> deformed_by(const Pose& pose) {
-    std::vector<rt_u32> meshes;
-    for (const PosedMesh& mesh : pose.meshes) meshes.push_back(mesh.mesh);
-    return meshes;
-}
-
 std::string cost_text(double ratio) {
     char text[64];
     std::snprintf(text, sizeof text, "rays cost %.2f times what they cost after the last build", ratio);
@@ -32,7 +26,7 @@ std::string PoseFollower::why_not(const PosedFrom& from, const Pose& pose) const
     if (!mover_) return "the first pose";
     if (!(from == from_)) return "another scene or clip";
     if (!mover_->cannot().empty()) return mover_->cannot();
-    if (deformed_by(pose) != deformed_) return "other meshes deform";
+    if (deforming_meshes(pose) != deformed_) return "other meshes deform";
     return {};
 }
 
@@ -91,7 +85,7 @@ void PoseFollower::built(const PosedFrom& from, std::shared_ptr<const Scene> pos
     update_.primitives = 0;
     note_cost(1);
     from_ = from;
-    deformed_ = deformed_by(pose);
+    deformed_ = deforming_meshes(pose);
     posed_ = std::move(posed);
     now_ = {};
     now_.accel = std::move(accel);

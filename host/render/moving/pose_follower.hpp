@@ -59,6 +59,8 @@ class PoseFollower {
         if (mover_ && mover_->on_devices()) reset();
     }
 
+    // Whether refit() needs poses with all vertices. The others are made on devices.
+    bool needs_vertices() const { return !mover_ || !mover_->can_deform(); }
     const AccelData* structure() const { return now_.accel.get(); }  // the newest; nullptr: none
     const PoseUpdate& update() const { return update_; }
 

@@ -30,6 +30,9 @@ class DeviceMover : public PoseMover {
     const std::string& cannot() const override { return motions_.front().second->cannot(); }
     bool on_devices() const override { return true; }
     bool can_build() const override { return motions_.front().second->can_build(); }
+    bool can_deform() const override {
+        return std::all_of(motions_.begin(), motions_.end(), [](const auto& motion) { return motion.second->can_deform(); });
+    }
     MovedStructure move(const Pose& pose, bool build, Progress& progress) override {
         if (progress.cancelled()) throw Cancelled();
         std::vector<MovedOnDevice> parts;
@@ -65,11 +68,11 @@ std::unique_ptr<PoseMover> make_host_mover(std::shared_ptr<const Scene> scene, s
 }
 
 std::unique_ptr<PoseMover> make_device_mover(
-    std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
+    std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built, const std::shared_ptr<const Scene>& rest,
     const std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>>& on_devices, std::string* why) {
     std::vector<std::pair<std::shared_ptr<Device>, std::unique_ptr<DeviceMotion>>> motions;
     for (const auto& [device, on_device] : on_devices) {
-        motions.emplace_back(device, std::make_unique<DeviceMotion>(device, scene, built, on_device));
+        motions.emplace_back(device, std::make_unique<DeviceMotion>(device, scene, built, on_device, rest));
         *why = motions.back().second->cannot();
         if (!why->empty()) return nullptr;
     }

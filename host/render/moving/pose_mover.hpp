@@ -35,6 +35,8 @@ class PoseMover {
     virtual bool on_devices() const { return false; }
     // Whether move() can build trees, where they are traced; otherwise the caller builds.
     virtual bool can_build() const { return false; }
+    // Whether poses may leave out vertices that follow from a deformation.
+    virtual bool can_deform() const { return false; }
     // Returns the structure in a pose of its scene. build: trees of what has moved are built anew, instead of refitted. Throws
     // Error(failed) and Cancelled. One call at a time.
     virtual MovedStructure move(const Pose& pose, bool build, Progress& progress) = 0;
@@ -43,10 +45,10 @@ class PoseMover {
 // On the host: see MovingAccel.
 std::unique_ptr<PoseMover> make_host_mover(std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built);
 
-// On devices, each of which has the structure in its memory: see DeviceMotion. Returns after they are done. nullptr: they
-// cannot, for the reason in *why.
+// On devices, each of which has the structure in its memory: see DeviceMotion. Returns after they are done. rest: the scene at
+// rest. nullptr: they cannot, for the reason in *why.
 std::unique_ptr<PoseMover> make_device_mover(
-    std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built,
+    std::shared_ptr<const Scene> scene, std::shared_ptr<const AccelData> built, const std::shared_ptr<const Scene>& rest,
     const std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>>& on_devices, std::string* why);
 
 }  // namespace clarity

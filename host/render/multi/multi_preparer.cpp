@@ -114,14 +114,14 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
 }
 
 std::unique_ptr<PoseMover> MultiPreparer::mover(const std::shared_ptr<const Scene>& scene,
-                                                const MultiPrepared& prepared) const {
+                                                const std::shared_ptr<const Scene>& rest, const MultiPrepared& prepared) const {
     std::vector<std::pair<std::shared_ptr<Device>, std::shared_ptr<const DeviceScene>>> on_devices;
     for (const MultiPrepared::Part& part : prepared.parts)
         if (!part.device->info().cpu) on_devices.emplace_back(part.device, part.prepared->on_device);
     const std::shared_ptr<const AccelData>& built = prepared.first()->accel;
     if (on_devices.size() == prepared.parts.size()) {
         std::string why;
-        if (auto mover = make_device_mover(scene, built, on_devices, &why)) return mover;
+        if (auto mover = make_device_mover(scene, built, rest, on_devices, &why)) return mover;
         log(LogLevel::info, "the scene moves on the host: " + why);
     }
     return make_host_mover(scene, built);

@@ -43,8 +43,9 @@ class MultiPreparer {
     std::shared_ptr<const MultiPrepared> prepare(std::shared_ptr<const Scene> scene, const Settings& settings,
                                                  Progress& progress, const MovedStructure& built = {});
     // What moves the structure that was prepared to other poses: the devices that trace it, or the host if one of them is a CPU
-    // or cannot. scene: what was prepared.
-    std::unique_ptr<PoseMover> mover(const std::shared_ptr<const Scene>& scene, const MultiPrepared& prepared) const;
+    // or cannot. scene: what was prepared. rest: the same scene at rest.
+    std::unique_ptr<PoseMover> mover(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Scene>& rest,
+                                     const MultiPrepared& prepared) const;
     // As Preparer::asks_for().
     bool asks_for(const AccelData& accel, const Settings& settings) const;
     bool needs_reopen() const;

@@ -1,18 +1,8 @@
-// deform.hpp -- vertices of meshes that deform: vertex frames or the mesh at rest, then morphs, then the skin.
+// deform.hpp -- makes the vertices of meshes that deform, on the host.
 #pragma once
-#include <vector>
-
-#include "scene/motion/node_transform.hpp"
 #include "scene/motion/pose.hpp"
 
 namespace clarity {
-
-// What moves the deforming meshes of a scene at one time.
-struct Deformers {
-    std::vector<PlacedNode> nodes;      // one for each node of the scene
-    std::vector<double> morph_weights;  // one for each morph
-    double time_s = 0;                  // for vertex frames
-};
 
 // A mesh as the scene has it.
 PosedMesh at_rest(const Scene& scene, rt_u32 mesh);
@@ -20,7 +10,7 @@ PosedMesh at_rest(const Scene& scene, rt_u32 mesh);
 // none at rest keep none.
 void renew_normals(const Scene& scene, PosedMesh& mesh);
 
-// The meshes of a scene that have frames, morphs or a skin.
-std::vector<PosedMesh> deform(const Scene& scene, const Deformers& deformers);
+// The vertices of one mesh of a scene at rest.
+PosedMesh deformed(const Scene& scene, const Deformation& deformation);
 
 }  // namespace clarity

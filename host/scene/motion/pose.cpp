@@ -124,7 +124,36 @@ std::vector<ClipInfo> clips(const Scene& scene) {
     return infos;
 }
 
+const Deformation* left_out(const Pose& pose, rt_u32 mesh) {
+    const auto is_mesh = [mesh](const auto& of) { return of.mesh == mesh; };
+    if (std::any_of(pose.meshes.begin(), pose.meshes.end(), is_mesh)) return nullptr;
+    const auto found = std::find_if(pose.deformations.begin(), pose.deformations.end(), is_mesh);
+    return found == pose.deformations.end() ? nullptr : &*found;
+}
+
+std::vector<rt_u32> deforming_meshes(const Pose& pose) {
+    std::set<rt_u32> meshes;
+    for (const PosedMesh& mesh : pose.meshes) meshes.insert(mesh.mesh);
+    for (const Deformation& deformation : pose.deformations) meshes.insert(deformation.mesh);
+    return {meshes.begin(), meshes.end()};
+}
+
 Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const FrameVertices& read) {
+    Pose pose = evaluate_without_vertices(scene, clip, time_s, read);
+    add_vertices(scene, pose);
+    return pose;
+}
+
+void add_vertices(const Scene& scene, Pose& pose) {
+    const size_t there = pose.meshes.size();
+    for (const Deformation& deformation : pose.deformations) {
+        const auto is_mesh = [&](const PosedMesh& mesh) { return mesh.mesh == deformation.mesh; };
+        if (std::none_of(pose.meshes.begin(), pose.meshes.begin() + static_cast<std::ptrdiff_t>(there), is_mesh))
+            pose.meshes.push_back(deformed(scene, deformation));
+    }
+}
+
+Pose evaluate_without_vertices(const Scene& scene, const std::string& clip, double time_s, const FrameVertices& read) {
     const Motion& motion = scene.motion;
     Pose pose;
     pose.cameras = scene.cameras;
@@ -140,7 +169,7 @@ Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const 
     pose.instances = pose_instances(scene, deformers.nodes);
     pose_cameras(deformers.nodes, pose.cameras);
     pose_lights(deformers.nodes, pose.lights);
-    pose.meshes = deform(scene, deformers);
+    pose.deformations = deformations(scene, deformers);
     if (read) add_sequences(scene, time_s, read, pose.meshes);
     return pose;
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scene/motion/deformation.hpp"
 #include "scene/scene.hpp"
 
 namespace clarity {
@@ -24,8 +25,14 @@ struct Pose {
     std::vector<PosedInstance> instances;  // one for each of the scene
     std::vector<Camera> cameras;           // likewise
     std::vector<Light> lights;             // likewise
-    std::vector<PosedMesh> meshes;         // those that deform only
+    // Of meshes that deform only. Where `meshes` lacks one that has a deformation, its vertices were left out.
+    std::vector<PosedMesh> meshes;
+    std::vector<Deformation> deformations;
 };
+// The deformation of a mesh whose vertices were left out; nullptr: it has none, or its vertices are there.
+const Deformation* left_out(const Pose& pose, rt_u32 mesh);
+// The meshes that deform, ascending.
+std::vector<rt_u32> deforming_meshes(const Pose& pose);
 
 // A clip as users name it: all clips of one name, which play together.
 struct ClipInfo {
@@ -50,9 +57,14 @@ using FrameVertices = std::function<std::vector<float>(const std::string& file)>
 // clip. The result depends on the arguments, and the files of sequences, alone. Without `read`, sequences stay at rest. Throws
 // Error(usage) if the scene has no clip of this name, and Error(import_failed) if a file of a sequence has other meshes.
 Pose evaluate(const Scene& scene, const std::string& clip, double time_s, const FrameVertices& read = {});
+// The same, but vertices are left out that follow from a deformation; those of sequences are there.
+Pose evaluate_without_vertices(const Scene& scene, const std::string& clip, double time_s, const FrameVertices& read = {});
+// Computes the vertices that were left out of a pose. scene: at rest.
+void add_vertices(const Scene& scene, Pose& pose);
 
-// The scene in a pose. Its arrays keep their order; meshes may follow where a transform flattens an instance. The result has no
-// motion, but moving_instances() are marked to be kept apart, as are those that were before.
+// The scene in a pose. Its arrays keep their order; meshes may follow where a transform flattens an instance. Vertices that the
+// pose leaves out stay at rest. The result has no motion, but moving_instances() are marked to be kept apart, as are those that
+// were before.
 Scene posed(Scene scene, const Pose& pose);
 
 }  // namespace clarity

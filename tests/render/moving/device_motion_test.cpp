@@ -40,7 +40,7 @@ class DeviceMotionTest : public ::testing::TestWithParam<BuildForm> {
     static Device& device() { return const_cast<Device&>(Workbench::get().device()); }
     std::unique_ptr<DeviceMotion> motion() const {
         return std::make_unique<DeviceMotion>(Workbench::get().shared_device(), rings_apart(), built_, prepared_->on_device,
-                                              GetParam());
+                                              nullptr, GetParam());
     }
     static std::string download(const cl::Buffer& buffer, size_t bytes) {
         std::string text(bytes, 0);
@@ -143,13 +143,14 @@ TEST_P(DeviceMotionTest, SaysWhenABuildIsNeeded) {
     EXPECT_NE(motion()->move(pose).why.find("`placed 3` is scaled to nothing"), std::string::npos);
     const auto flat = build(rings(), *plugin_);
     const auto prepared = prepare_queries(device(), rings(), flat, {}, progress);
-    DeviceMotion world(Workbench::get().shared_device(), rings(), flat, prepared->on_device, GetParam());
+    DeviceMotion world(Workbench::get().shared_device(), rings(), flat, prepared->on_device, nullptr, GetParam());
     EXPECT_NE(world.move(waved(*rings(), 1)).why.find("part of the world"), std::string::npos);
     const auto linear = build(rings(), *Workbench::get().plugins().accel("linear"));
     const auto other = prepare_queries(device(), rings(), linear, {}, progress);
-    EXPECT_NE(
-        DeviceMotion(Workbench::get().shared_device(), rings(), linear, other->on_device, GetParam()).cannot().find("linear"),
-        std::string::npos);
+    EXPECT_NE(DeviceMotion(Workbench::get().shared_device(), rings(), linear, other->on_device, nullptr, GetParam())
+                  .cannot()
+                  .find("linear"),
+              std::string::npos);
 }
 
 INSTANTIATE_TEST_SUITE_P(, DeviceMotionTest, ::testing::Values(BuildForm::groups, BuildForm::serial),

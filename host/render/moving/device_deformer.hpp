@@ -1,0 +1,67 @@
+// device_deformer.hpp -- makes the vertices of meshes that deform on a device: what deformed() of scene/motion/deform.hpp makes
+// on the host, to the last bit.
+//
+// What no pose changes is sent once: vertex frames, morph targets, weights of bones. A pose is one small command: matrices of
+// bones, shares of targets, numbers of frames.
+//
+// Memory on the device: 24 B a vertex that deforms and 12 B for each of its frames, 28 B for each vertex of a morph target, 8 B
+// for each weight of a bone; of meshes with frames also 24 B a triangle.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "render/device_build/build_kernels.hpp"
+#include "scene/motion/pose.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// What moves one mesh, as kernels read it: rt_deformation of deform.cl, which explains it.
+struct DeviceDeformation {
+    uint64_t before, after;
+    double frame_share;
+    double unweighted[12];
+    uint32_t first, count, first_vertex, first_bone, has_frames, skin, acts, pad;
+};
+static_assert(sizeof(DeviceDeformation) == 19 * sizeof(double));
+
+struct DeformTable;
+
+// Used from one thread at a time. Throws cl::Error besides what is named.
+class DeviceDeformer {
+ public:
+    // rest: the scene at rest, with its motion. kernels: of a device with double precision; must outlive this object. Throws
+    // Error(kernel_build_failed), and Error(failed) if memory is missing.
+    DeviceDeformer(const BuildKernels& kernels, std::shared_ptr<const Scene> rest);
+    ~DeviceDeformer();
+    DeviceDeformer(const DeviceDeformer&) = delete;
+    DeviceDeformer& operator=(const DeviceDeformer&) = delete;
+
+    // Whether the memory of a device is enough: for a quarter of it, in pieces that it allows.
+    static bool fits(const Scene& rest, const DeviceInfo& device);
+
+    // Enqueues kernels that write the vertices of some meshes into those of the whole scene. normals: unused if the scene has
+    // none. Waits only for the commands of an earlier call that send numbers.
+    void deform(const std::vector<const Deformation*>& meshes, const cl::Buffer& positions, const cl::Buffer& normals);
+
+ private:
+    void make_kernels(const DeformTable& table);
+    void send_numbers(const std::vector<const Deformation*>& meshes);
+
+    const BuildKernels& kernels_;
+    const std::shared_ptr<const Scene> rest_;
+    std::vector<rt_u32> place_of_mesh_;       // of each mesh: which of records_; RT_NONE: it does not deform
+    std::vector<DeviceDeformation> records_;  // of the meshes that deform
+    size_t chunks_ = 0;                       // work-groups
+    cl::Kernel frames_, normals_, vertices_;  // of deform.cl; null where the scene has no frames
+    std::vector<cl::Buffer> buffers_;         // what they read; kernels do not own their arguments
+
+    // What a pose sends: records_, shares of targets, bones as matrices, bones as dual quaternions.
+    size_t first_share_ = 0, first_bone_ = 0, first_dual_ = 0;
+    std::vector<double> numbers_;  // the device may read it until sent_
+    cl::Buffer numbers_there_;
+    cl::Event sent_;
+};
+
+}  // namespace clarity
