@@ -53,10 +53,10 @@ CompileOutcome compile_first(const DeviceRequest& wanted, const CompileRequest& 
 
 }  // namespace
 
-bool compiles_in_worker(const DeviceInfo& info) {
-    const char* place = std::getenv("CLARITY_COMPILE");
+bool compiles_in_worker() {
     if (std::getenv(worker::kWorkerVariable)) return false;
-    return place && *place ? std::strcmp(place, "here") != 0 : info.cpu;
+    const char* place = std::getenv("CLARITY_COMPILE");
+    return !place || std::strcmp(place, "here") != 0;
 }
 
 BuildResult compile_program(Device& device, const CompileRequest& request, Progress& progress) {
@@ -67,7 +67,7 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
         built.ms = ms_since(start);
         return built;
     };
-    if (!compiles_in_worker(info)) return here(request.options);
+    if (!compiles_in_worker()) return here(request.options);
     const DeviceRequest wanted(info, request);
     BuildResult result;
     std::optional<std::vector<char>> binary = find_program(wanted.key);
@@ -94,7 +94,7 @@ BuildResult compile_program(Device& device, const CompileRequest& request, Progr
 }
 
 void compile_ahead(const DeviceInfo& info, const CompileRequest& request, Progress& progress) {
-    if (!compiles_in_worker(info) || !keeps_programs()) return;
+    if (!compiles_in_worker() || !keeps_programs()) return;
     const DeviceRequest wanted(info, request);
     try {
         if (!find_program(wanted.key)) compile_first(wanted, request, progress);

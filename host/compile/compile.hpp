@@ -20,10 +20,8 @@ struct CompileRequest {
     bool ends_on_zeros = false;
 };
 
-// Where programs for a device are compiled: CLARITY_COMPILE is `worker`, or `here` for this process alone. Unset: in a worker
-// for CPUs, and here for other devices, with whose drivers the worker has not been tried yet. Inside a worker it is always this
-// process.
-bool compiles_in_worker(const DeviceInfo& info);
+// Where programs are compiled: in a worker, or in this process if CLARITY_COMPILE is `here`, and always inside a worker.
+bool compiles_in_worker();
 
 // Compiles a program for `device`. progress: cancels the compilation within 0.1 s.
 // Throws Error(kernel_build_failed) as build_program() does, also if the compiler crashes or needs too much memory, and

@@ -49,9 +49,9 @@ class MotionCase {
     std::vector<BenchRecord> run() {
         const Scene& scene = *fixture_.scene();
         for (const double phase : kPhases) {
+            if (plays()) break;
             poses_.push_back(moved_pose(scene, case_.motion, phase));
-            if (case_.measure != "refit" && case_.measure != "frame" && case_.measure != "object")
-                moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
+            if (case_.measure != "refit") moved_.push_back(std::make_shared<const Scene>(posed(scene, poses_.back())));
         }
         for (const Variant& variant : case_.variants) {
             if (variant.on_device && !moves_on_device(variant)) continue;
@@ -71,6 +71,8 @@ class MotionCase {
     }
 
  private:
+    // Whether whole frames are shown one after the other, each of which makes its own pose.
+    bool plays() const { return case_.measure == "frame" || case_.measure == "object" || case_.measure == "clip"; }
     struct Mover {
         std::shared_ptr<const AccelData> built, now;
         std::unique_ptr<MovingAccel> accel;
@@ -94,6 +96,11 @@ class MotionCase {
                        variant.refitted ? MovingFrames::Motion::wave_refitted : MovingFrames::Motion::wave_built);
         else if (case_.measure == "object")
             add_frames(settings, entry, variant.refitted ? MovingFrames::Motion::object : MovingFrames::Motion::nothing);
+        else if (case_.measure == "clip")
+            add_frames(settings, entry,
+                       variant.sends_vertices ? MovingFrames::Motion::clip_sent
+                       : variant.refitted     ? MovingFrames::Motion::clip_refitted
+                                              : MovingFrames::Motion::clip_built);
         else if (variant.on_device)
             add_device_refit(settings, entry);
         else if (case_.measure == "refit")

@@ -53,28 +53,45 @@ Scene with_object(Scene scene) {
 MovingFrames::MovingFrames(const PluginRegistry& plugins, std::shared_ptr<Device> device, const Scene& scene,
                            const Settings& settings, const View& view, Motion motion, Progress& progress)
     : device_(std::move(device)), settings_(settings), view_(view), kind_(motion), kernels_(device_), frames_(device_) {
-    const bool object = kind_ == Motion::object || kind_ == Motion::nothing;
-    auto moving = std::make_shared<Scene>(object ? with_object(scene) : scene);
-    if (!object)
-        for (Instance& instance : moving->instances) instance.apart = true;
-    scene_ = moving;
+    if (plays_clip()) rest_scene_ = std::make_shared<const Scene>(scene);
+    scene_ = staged(scene);
+    const bool waves = kind_ == Motion::wave_refitted || kind_ == Motion::wave_built;
     size_ = static_cast<float>(scene.bounds().diagonal());
     Preparer preparer(plugins, device_);
     prepared_ = preparer.prepare(scene_, settings_, progress);
-    motion_ = std::make_unique<DeviceMotion>(device_, scene_, prepared_->accel, prepared_->on_device);
+    motion_ = std::make_unique<DeviceMotion>(device_, scene_, prepared_->accel, prepared_->on_device, rest_scene_);
     if (!motion_->cannot().empty()) throw Error(Exit::usage, motion_->cannot());
-    if (kind_ == Motion::wave_built && !motion_->can_build())
-        throw Error(Exit::usage, "accel " + settings_.accel + " is not built by devices");
-    const MovedOnDevice first =
-        motion_->move(object ? pose_of(0) : moved_pose(scene, "wave", 0.1),
-                      kind_ == Motion::wave_built ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
+    if (builds() && !motion_->can_build()) throw Error(Exit::usage, "accel " + settings_.accel + " is not built by devices");
+    const MovedOnDevice first = motion_->move(plays_clip() ? clip_pose(0)
+                                              : waves      ? moved_pose(scene, "wave", 0.1)
+                                                           : pose_of(0),
+                                              builds() ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
     if (!first.on_device) throw Error(Exit::usage, "the structure cannot follow: " + first.why);
     prepared_ = preparer.prepare(scene_, settings_, progress, motion_->accel(), {first.on_device, true});
-    if (object) return;
+    if (!waves) return;
     wave_ = cl::Kernel(kernels_.compile_file("wave.cl"), "wave_vertices");
     const size_t bytes = scene.positions.size() * sizeof(float);
     rest_ = kernels_.buffer(bytes);
     device_->queue().enqueueWriteBuffer(rest_, CL_TRUE, 0, bytes, scene.positions.data());
+}
+
+std::shared_ptr<const Scene> MovingFrames::staged(const Scene& scene) const {
+    if (plays_clip()) return std::make_shared<const Scene>(posed(scene, clip_pose(0)));
+    const bool object = kind_ == Motion::object || kind_ == Motion::nothing;
+    auto moving = std::make_shared<Scene>(object ? with_object(scene) : scene);
+    if (!object)
+        for (Instance& instance : moving->instances) instance.apart = true;
+    return moving;
+}
+
+// The first clip of the file, again and again.
+Pose MovingFrames::clip_pose(unsigned frame) const {
+    const std::vector<ClipInfo> all = clips(*rest_scene_);
+    if (all.empty()) throw Error(Exit::usage, "the scene has no clip");
+    const double length = all[0].end_s - all[0].begin_s, time = frame / (all[0].fps > 0 ? all[0].fps : 24);
+    const double time_s = all[0].begin_s + (length > 0 ? std::fmod(time, length) : 0);
+    return kind_ == Motion::clip_sent ? evaluate(*rest_scene_, all[0].name, time_s)
+                                      : evaluate_without_vertices(*rest_scene_, all[0].name, time_s);
 }
 
 // The object on a circle around its place.
@@ -90,7 +107,7 @@ Pose MovingFrames::pose_of(float phase) const {
 MovedOnDevice MovingFrames::move(float phase) {
     if (kind_ == Motion::object) return motion_->move(pose_of(phase));
     for (rt_u32 m = 0; m < scene_->meshes.size(); ++m) motion_->touch(m);
-    return motion_->update(kind_ == Motion::wave_built ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
+    return motion_->update(builds() ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
 }
 
 cl::Event MovingFrames::deform(float phase) {
@@ -107,21 +124,32 @@ cl::Event MovingFrames::deform(float phase) {
 
 Sample MovingFrames::play(Progress& progress) {
     return wrap_cl_errors(*device_, "playing a wave", [&] {
-        double deform_ms = 0, update_ms = 0, trace_ms = 0;
+        double pose_ms = 0, deform_ms = 0, update_ms = 0, trace_ms = 0;
         const auto begin = std::chrono::steady_clock::now();
         for (unsigned i = 0; i < kFrames; ++i, ++next_) {
             const float phase = float(next_ % kFramesOfAWave) / kFramesOfAWave;
             Prepared now = *prepared_;
             cl::Event deformed;
             MovedOnDevice moved;
-            if (kind_ == Motion::wave_refitted || kind_ == Motion::wave_built) deformed = deform(phase);
-            if (kind_ != Motion::nothing) now.on_device = (moved = move(phase)).on_device;
+            if (wave_()) deformed = deform(phase);
+            if (plays_clip()) {
+                const auto pose_begin = std::chrono::steady_clock::now();
+                const Pose pose = clip_pose(next_);
+                pose_ms += ms_since(pose_begin);
+                moved = motion_->move(pose, builds() ? DeviceMotion::Update::build : DeviceMotion::Update::refit);
+            } else if (kind_ != Motion::nothing) {
+                moved = move(phase);
+            }
+            if (kind_ != Motion::nothing && !moved.on_device)
+                throw Error(Exit::failed, "the structure cannot follow: " + moved.why);
+            if (moved.on_device) now.on_device = moved.on_device;
             trace_ms += frames_.trace(now, settings_, view_, 0, false, progress).device_ms;
             if (moved.on_device) update_ms += span_ms(moved.begin, moved.end, moved.ms);
             if (deformed()) deform_ms += event_ms(deformed);
         }
         Sample sample;
         sample.wall_ms = ms_since(begin) / kFrames;
+        pose_ms_.push_back(pose_ms / kFrames);
         deform_ms_.push_back(deform_ms / kFrames);
         update_ms_.push_back(update_ms / kFrames);
         trace_ms_.push_back(trace_ms / kFrames);
@@ -131,7 +159,9 @@ Sample MovingFrames::play(Progress& progress) {
 }
 
 Parts MovingFrames::parts() const {
-    return {{"deform", median(deform_ms_)}, {"update", median(update_ms_)}, {"trace", median(trace_ms_)}};
+    return {{plays_clip() ? "pose" : "deform", median(plays_clip() ? pose_ms_ : deform_ms_)},
+            {"update", median(update_ms_)},
+            {"trace", median(trace_ms_)}};
 }
 
 }  // namespace clarity::bench

@@ -34,6 +34,8 @@ std::string row_text(const BenchRecord& row) {
         std::snprintf(text, sizeof text, "%.2f ms, %.2f Mtris/s", row.time_ms.median, row.mtris_per_s);
     else if (row.measure == "moving")
         std::snprintf(text, sizeof text, "%.3f ms, %.1f fps", row.wall_ms.median, row.fps);
+    else if (row.rays() == 0)
+        std::snprintf(text, sizeof text, "%.3f ms, %.1f fps", row.time_ms.median, row.fps);
     else if (row.measure == "frame" || row.measure == "picture")
         std::snprintf(text, sizeof text, "%.3f ms, %.1f fps, %.1f Mrays/s", row.time_ms.median, row.fps, row.mrays_per_s);
     else

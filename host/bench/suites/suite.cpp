@@ -337,11 +337,15 @@ class Planner {
             if (!tests_everything(variant)) variants.push_back(variant);
         for (const size_t scene : scenes)
             for (const std::string& motion : motion_names())
-                for (const char* measure : {"refit", "rebuild", "primary", "diffuse", "frame", "object"}) {
+                for (const char* measure : {"refit", "rebuild", "primary", "diffuse", "frame", "object", "clip"}) {
                     const std::string what = measure;
-                    const bool frames = what == "frame" || what == "object";
+                    const bool frames = what == "frame" || what == "object" || what == "clip";
                     if (frames && motion != "wave") continue;  // the motion that devices compute
-                    BenchCase& c = add_case("moving", scene, what == "object" ? "one object" : motion + " " + measure, measure);
+                    if (what == "clip" && request_.files.empty()) continue;
+                    const std::string name = what == "object" ? "one object"
+                                             : what == "clip" ? "its own clip"
+                                                              : motion + " " + what;
+                    BenchCase& c = add_case("moving", scene, name, measure);
                     c.motion = motion;
                     const bool rays = c.measure != "refit" && c.measure != "rebuild";
                     for (Variant variant : variants) {
@@ -359,6 +363,10 @@ class Planner {
                         c.variants.push_back(variant);
                         variant.label = name + (what == "object" ? ", one object moves" : ", refitted");
                         variant.refitted = true;
+                        c.variants.push_back(variant);
+                        if (what != "clip") continue;
+                        variant.label += ", vertices sent";
+                        variant.sends_vertices = true;
                         c.variants.push_back(variant);
                     }
                     if (request_.baselines && c.measure == "refit") c.baseline_qualities = {"refit"};

@@ -34,8 +34,9 @@ struct Variant {
     std::vector<std::pair<std::string, std::string>> settings;  // override those of the request
     bool cpu_only = false;                                      // needs several lanes, or too much private memory for a GPU
     bool on_device = false;                                     // refits and builds by the device that traces, which is no CPU
-    bool refitted = false;    // of rays in a motion: the structure was refitted, not built, for the moved scene
-    bool overlapped = false;  // of moving: copy each picture to the host while the next one is traced
+    bool refitted = false;        // of rays in a motion: the structure was refitted, not built, for the moved scene
+    bool sends_vertices = false;  // of a clip: the host makes the vertices of each pose and sends them
+    bool overlapped = false;      // of moving: copy each picture to the host while the next one is traced
 };
 
 enum class Timing { timed, counted_only };
@@ -43,7 +44,7 @@ enum class Timing { timed, counted_only };
 struct BenchCase {
     std::string suite, name;
     std::string measure;  // frame | whitted | primary | shadow | reflection | diffuse | build | dropped | breakdown | picture |
-                          // moving | refit | rebuild | play
+                          // moving | refit | rebuild | object | clip | play
     size_t scene = 0;     // index into Suite::scenes
     std::vector<Variant> variants;
     std::vector<std::string> baseline_qualities;  // qualities of the baselines; without effect if they cannot trace the scene
