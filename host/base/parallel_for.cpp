@@ -3,9 +3,12 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <algorithm>
 #include <atomic>
 #include <exception>
 #include <mutex>
+#include <thread>
+#include <vector>
 
 namespace clarity {
 namespace {
@@ -31,6 +34,34 @@ class FirstException {
     std::exception_ptr exception_;
 };
 
+#ifdef __SANITIZE_THREAD__
+// ThreadSanitizer does not see how threads of TBB, which was not compiled for it, wait for each other, and would report every
+// loop. So loops have threads of their own there; inner loops run on the thread that comes to them.
+template <class Body>
+void each_index(uint32_t count, const Body& body) {
+    thread_local bool is_inside = false;
+    std::atomic<uint32_t> next{0};
+    const auto work = [&] {
+        is_inside = true;
+        for (uint32_t i; (i = next++) < count;) body(i);
+    };
+    std::vector<std::thread> threads;
+    const uint32_t others = std::min(std::max(std::thread::hardware_concurrency(), 4u), count) - 1;
+    for (uint32_t t = 0; !is_inside && t < others; ++t) threads.emplace_back(work);
+    const bool was_inside = is_inside;
+    work();
+    is_inside = was_inside;
+    for (std::thread& thread : threads) thread.join();
+}
+#else
+// Isolated: a thread that waits for this loop does not run iterations of an outer loop. A body may therefore hold a lock or use
+// thread-local scratch memory across its inner loop.
+template <class Body>
+void each_index(uint32_t count, const Body& body) {
+    tbb::this_task_arena::isolate([&] { tbb::parallel_for(uint32_t{0}, count, body); });
+}
+#endif
+
 }  // namespace
 
 void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body) {
@@ -45,9 +76,7 @@ void parallel_for(uint32_t count, const std::function<void(uint32_t)>& body) {
             first.keep(i);
         }
     };
-    // Isolated: a thread that waits for this loop does not run iterations of an outer loop. A body may therefore hold a lock or
-    // use thread-local scratch memory across its inner loop.
-    tbb::this_task_arena::isolate([&] { tbb::parallel_for(uint32_t{0}, count, guarded); });
+    each_index(count, guarded);
     first.rethrow();
 }
 

@@ -44,10 +44,16 @@ class ImportCase : public ::testing::Test {
 
 ::testing::AssertionResult contains(const std::string& text, const std::string& part);
 
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-inline constexpr bool kSanitizer = true;
+#ifdef __SANITIZE_ADDRESS__
+inline constexpr bool kAddressSanitizer = true;  // it reports crashes itself
 #else
-inline constexpr bool kSanitizer = false;
+inline constexpr bool kAddressSanitizer = false;
 #endif
+#ifdef __SANITIZE_THREAD__
+inline constexpr bool kThreadSanitizer = true;  // it takes several times as much memory
+#else
+inline constexpr bool kThreadSanitizer = false;
+#endif
+inline constexpr bool kSanitizer = kAddressSanitizer || kThreadSanitizer;
 
 }  // namespace clarity

@@ -32,14 +32,14 @@ class Worker : public ImportCase {
     void expect_death(const std::string& text, const std::string& how) {
         const std::string message = failure_of_text(text);
         EXPECT_TRUE(contains(message, path("case.cltest") + ": the importer cltest ")) << text;
-        EXPECT_TRUE(contains(message, kSanitizer ? "worker process" : how)) << text;
+        EXPECT_TRUE(contains(message, kAddressSanitizer ? "worker process" : how)) << text;
     }
 };
 
 TEST_F(Worker, crashes_are_told_apart) {
     expect_death("crash", "crashed (segmentation fault) while reading");
     expect_death("recurse", "crashed (segmentation fault: stack overflow)");
-    EXPECT_TRUE(contains(failure_of_text("abort"), kSanitizer ? "the importer cltest" : "crashed (aborted)"));
+    EXPECT_TRUE(contains(failure_of_text("abort"), kAddressSanitizer ? "the importer cltest" : "crashed (aborted)"));
     EXPECT_TRUE(contains(failure_of_text("throw_in_thread"), "thrown where nobody catches"));
     EXPECT_TRUE(contains(failure_of_text("exit 0"), "ended the worker process (exit code 0) without a result"));
     EXPECT_TRUE(contains(failure_of_text("exit 42"), "exit code 42"));

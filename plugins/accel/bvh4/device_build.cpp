@@ -20,7 +20,7 @@ using rt::of;
 
 // The most primitives of the subtrees to which the passes descend. A level of a pass has fewer than 1024 nodes then
 // (BVH4_LEVEL): trees have less than 2^28 primitives. Each of the smallest is made by one work-item (BVH4_PENDING).
-constexpr uint64_t kSubtrees[] = {1u << 22, 1u << 13, 1u << 4};
+constexpr uint64_t kSubtrees[] = {1u << 22, 1u << 12, 1u << 4};
 constexpr uint64_t kGroupsPerUnit = 16;  // work-groups of a pass over many subtrees or leaves
 
 }  // namespace
