@@ -46,7 +46,7 @@ void each_index(uint32_t count, const Body& body) {
         for (uint32_t i; (i = next++) < count;) body(i);
     };
     std::vector<std::thread> threads;
-    const uint32_t others = std::min(std::max(std::thread::hardware_concurrency(), 4u), count) - 1;
+    const uint32_t others = std::min(std::max(std::thread::hardware_concurrency(), 1u), count) - 1;
     for (uint32_t t = 0; !is_inside && t < others; ++t) threads.emplace_back(work);
     const bool was_inside = is_inside;
     work();

@@ -17,7 +17,8 @@
 #include "base/elapsed.hpp"
 #include "base/parallel_for.hpp"
 
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && !defined(__clang__)
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__) && \
+    !defined(__clang__)
 #define EACH_ISA __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define EACH_ISA

@@ -12,7 +12,7 @@ int32_t build(const rt_host* host, const rt_build_input*, const rt_build_output*
 }
 
 int32_t pack(const rt_host*, const rt_build_input* in, const rt_topology* tree, const rt_build_output* out) {
-    int* volatile nowhere = nullptr;
+    volatile int* volatile nowhere = nullptr;
     if (in->group_count > 1) *nowhere = 1;
     Run* runs = rt::alloc<Run>(out, 0, 1);
     runs[0] = {tree->nodes[tree->roots[0]].left, tree->nodes[tree->roots[0]].right & ~RT_TOPOLOGY_LEAF};

@@ -188,6 +188,9 @@ TEST_P(Messages, CanBeActedOn) {
 // Damage that crashes assimp, or that it refuses without a place.
 TEST(ColladaMessages, NameThePlace) {
     if (!has_importer_for("a.dae")) GTEST_SKIP() << "SKIPPED: the importer for dae was not built";
+#ifdef __SANITIZE_THREAD__
+    GTEST_SKIP() << "SKIPPED: with this sanitizer's memory, assimp does not crash";
+#endif
     const std::string good = seed_of("box.dae").bytes;
     const TemporaryFolder folder;
     const auto expect = [&](const std::string& what, const std::string& instead, const std::string& why) {
