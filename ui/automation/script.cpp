@@ -302,7 +302,11 @@ std::string Script::state_text(ScriptedWindow& window) const {
     json["move_handles"] = window.state.move_handles;
     if (const auto ready = session.ready()) {
         const PoseUpdate& update = ready->main.pose_update;
-        json["update"] = {{"followed", update.followed}, {"refitted", update.refitted}, {"why", update.why}, {"ms", update.ms}};
+        json["update"] = {{"followed", update.followed},
+                          {"refitted", update.refitted},
+                          {"why", update.why},
+                          {"ms", update.ms},
+                          {"building", update.building}};
     }
     json["undo"] = session.history().undo_name();
     json["redo"] = session.history().redo_name();

@@ -143,7 +143,8 @@ void ray_rows(const Session& session, const std::vector<const PictureSide*>& sid
 // How the structure came to the pose that is shown, and what rays cost in the last poses.
 void pose_rows(const PoseUpdate& update) {
     if (!update.followed) return;
-    row_text("Pose", (update.refitted ? "refitted   " : "built anew   ") + time_text(update.ms), update.why);
+    row_text("Pose", (update.refitted ? "refitted   " : "built anew   ") + time_text(update.ms),
+             update.why + (update.building ? "; a new tree is built beside" : ""));
     const std::vector<float> costs(update.cost_ratios.begin(), update.cost_ratios.end());
     if (costs.size() < 2) return;
     char now[32];

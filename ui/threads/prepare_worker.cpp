@@ -270,24 +270,42 @@ ReadySide PrepareWorker::prepare_side(SideState& side, const Settings& settings,
     const Pose& pose = shown_.geometry();
     const std::shared_ptr<const Scene>& scene = shown_.scene();
     if (settings.shutter > 0) follower.leave_devices();  // blurred pictures move the structure on the host
-    if (follower.needs_vertices()) shown_.add_vertices();
-    MovedStructure moved = follower.refit(from, scene, pose, way_of(settings.poses), frame_ms, progress);
+    take_build(side, from, settings, progress);
+    const PoseFollower::Way way = way_of(settings.poses);
+    const bool builds_beside = follower.wants_build_beside(from, pose, way);
+    if (follower.needs_vertices() || builds_beside) shown_.add_vertices();
+    if (builds_beside) follower.build_beside(from, scene, pose, side.preparer->build_later(scene, settings));
+    MovedStructure moved = follower.refit(from, scene, pose, way, frame_ms, progress);
     if (moved.accel && moved.on_devices.empty() && side.built)
         moved.on_devices = side.built->moved_buffers(pose, moved.accel, progress);
     if (!moved.accel) shown_.add_vertices();
     const auto prepared = side.preparer->prepare(scene, settings, progress, moved);
     if (!moved.accel) {
-        const std::shared_ptr<const AccelData>& built = prepared->first()->accel;
-        follower.built(
-            from, scene, pose, built,
-            settings.shutter > 0 ? make_host_mover(scene, built) : side.preparer->mover(scene, shown_.rest(), *prepared));
         side.built = prepared;
+        follower.built(from, scene, pose, prepared->first()->accel, mover_for(side, settings, scene));
     }
     ReadySide ready = lend(side.devices, prepared);
     ready.pose_update = follower.update();
     ready.is_moved = prepared->first()->is_moved;
     if (ready.is_moved) ready.moved = prepared->first()->on_device;
     return ready;
+}
+
+// Goes over to a structure that was built beside the last poses.
+void PrepareWorker::take_build(SideState& side, const PosedFrom& from, const Settings& settings, StageProgress& progress) {
+    const PoseFollower::Built built = side.follower.take_build(from);
+    if (!built.accel) return;
+    MovedStructure structure;
+    structure.accel = built.accel;
+    side.built = side.preparer->prepare(built.scene, settings, progress, structure);
+    side.follower.built(from, built.scene, built.pose, built.accel, mover_for(side, settings, built.scene));
+}
+
+// Moves the structure in side.built.
+std::unique_ptr<PoseMover> PrepareWorker::mover_for(const SideState& side, const Settings& settings,
+                                                    const std::shared_ptr<const Scene>& scene) const {
+    if (settings.shutter > 0) return make_host_mover(scene, side.built->first()->accel);
+    return side.preparer->mover(scene, shown_.rest(), *side.built);
 }
 
 bool PrepareWorker::needs_reopen() const {

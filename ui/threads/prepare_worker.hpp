@@ -71,6 +71,9 @@ class PrepareWorker {
     };
     // Prepares what is shown for one side. The structure follows a pose.
     ReadySide prepare_side(SideState& side, const Settings& settings, double frame_ms, StageProgress& progress);
+    void take_build(SideState& side, const PosedFrom& from, const Settings& settings, StageProgress& progress);
+    std::unique_ptr<PoseMover> mover_for(const SideState& side, const Settings& settings,
+                                         const std::shared_ptr<const Scene>& scene) const;
     void prepare_sides(const PrepareRequest& request, Ready& ready, bool& whole, StageProgress& progress);
     bool needs_reopen() const;
     void renew_devices();

@@ -98,6 +98,23 @@ void warm_up(const std::shared_ptr<Device>& opened, const TraceProgram& program,
     queue.finish();
 }
 
+// settings: of a structure that is there.
+std::shared_ptr<const AccelData> build_new(const PluginRegistry& plugins, const DeviceInfo& info, const Scene& scene,
+                                           const Settings& settings, Progress& progress) {
+    const rt_plugin& plugin = *plugins.accel(settings.accel);
+    const rt_plugin& layout = plugins.layout_of(plugin);
+    // The library may have been replaced since the values were chosen.
+    const ParameterValues params = fitting_parameters(plugin, settings.accel_params);
+    const SceneCounts counts = count_scene(scene);
+    const unsigned lanes = settings.lanes > 0 ? static_cast<unsigned>(settings.lanes) : info.preferred_lanes();
+    check_fits(plan_memory(counts, scene, *layout.accel), info,
+               std::to_string(counts.references) + " primitives in " + plugin.id);
+    progress.stage(std::string("building ") + plugin.id);
+    return std::make_shared<AccelData>(
+        build_accel(scene, plugin, params, progress,
+                    {&layout, device_for_builders(info, lanes), settings.debug ? BuildPlace::worker : BuildPlace::automatic}));
+}
+
 }  // namespace
 
 Preparer::Preparer(const PluginRegistry& plugins, std::shared_ptr<Device> device)
@@ -147,23 +164,21 @@ std::shared_ptr<const AccelData> Preparer::build(const std::shared_ptr<const Sce
     return build_or_last(scene, resolved, progress);
 }
 
+std::function<std::shared_ptr<const AccelData>(Progress&)> Preparer::build_later(std::shared_ptr<const Scene> scene,
+                                                                                 const Settings& settings) const {
+    return [&plugins = plugins_, info = info_, scene = std::move(scene), settings](Progress& progress) {
+        Settings resolved = settings;
+        resolve_accel(plugins, kind_of({info}), resolved);
+        return build_new(plugins, info, *scene, resolved, progress);
+    };
+}
+
 std::shared_ptr<const AccelData> Preparer::build_or_last(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                                          Progress& progress) {
-    const rt_plugin& plugin = *plugins_.accel(settings.accel);
-    const rt_plugin& layout = plugins_.layout_of(plugin);
-    // The library may have been replaced since the values were chosen.
-    const ParameterValues params = fitting_parameters(plugin, settings.accel_params);
     if (last_ && !last_->is_moved && last_->scene == scene && asks_for(*last_->accel, settings)) return last_->accel;
-    const SceneCounts counts = count_scene(*scene);
-    const unsigned lanes = settings.lanes > 0 ? static_cast<unsigned>(settings.lanes) : info_.preferred_lanes();
-    check_fits(plan_memory(counts, *scene, *layout.accel), info_,
-               std::to_string(counts.references) + " primitives in " + plugin.id);
     // The last scene is no longer in use elsewhere: free it before the next one is built.
     if (last_ && last_->scene != scene && last_.use_count() == 1) last_.reset();
-    progress.stage(std::string("building ") + plugin.id);
-    return std::make_shared<AccelData>(
-        build_accel(*scene, plugin, params, progress,
-                    {&layout, device_for_builders(info_, lanes), settings.debug ? BuildPlace::worker : BuildPlace::automatic}));
+    return build_new(plugins_, info_, *scene, settings, progress);
 }
 
 std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> scene, const Settings& settings,

@@ -4,6 +4,7 @@
 // It may run on any thread while frames continue with the previous Prepared. FrameRenderer::trace() then traces samples of one
 // frame with a Prepared. Two results of prepare() share everything that did not change between the calls.
 #pragma once
+#include <functional>
 #include <memory>
 #include <mutex>
 
@@ -39,6 +40,10 @@ class Preparer {
     // Builds the structure alone. This needs no device.
     std::shared_ptr<const AccelData> build(const std::shared_ptr<const Scene>& scene, const Settings& settings,
                                            Progress& progress);
+    // The same as a function that may be called on any thread beside everything else. It uses the plugins, and nothing of this
+    // object.
+    std::function<std::shared_ptr<const AccelData>(Progress&)> build_later(std::shared_ptr<const Scene> scene,
+                                                                           const Settings& settings) const;
     // Whether the caller should close the device and open it again. PoCL keeps at least 0.15 MB for each program that it has
     // compiled, and frees it only with the last context of the process. Editing kernels compiles hundreds of programs.
     bool needs_reopen() const;

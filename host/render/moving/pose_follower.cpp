@@ -33,15 +33,33 @@ std::string PoseFollower::why_not(const PosedFrom& from, const Pose& pose) const
 // Why trees should be built anew, although they could be refitted; empty: they should not.
 std::string PoseFollower::why_build(Way way) const {
     if (way == Way::build) return "the setting `poses` asks for it";
-    if (way == Way::automatic && policy_.wants_build())
+    if (way == Way::automatic && !beside_ && policy_.wants_build())
         return "slow rays have cost " + std::to_string(static_cast<long>(policy_.debt_ms())) + " ms since the last build";
     return {};
+}
+
+bool PoseFollower::wants_build_beside(const PosedFrom& from, const Pose& pose, Way way) const {
+    return way == Way::automatic && !beside_ && why_not(from, pose).empty() && !mover_->can_build() && policy_.wants_build();
+}
+
+void PoseFollower::build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose,
+                                BackgroundBuild::Build build) {
+    beside_.reset(new Beside{from, std::move(scene), pose, BackgroundBuild(std::move(build))});
+}
+
+PoseFollower::Built PoseFollower::take_build(const PosedFrom& from) {
+    if (beside_ && !(beside_->from == from)) beside_.reset();
+    if (!beside_ || !beside_->build.done()) return {};
+    const std::unique_ptr<Beside> done = std::move(beside_);
+    std::shared_ptr<const AccelData> accel = done->build.take();
+    return {std::move(done->scene), std::move(done->pose), std::move(accel)};
 }
 
 MovedStructure PoseFollower::refit(const PosedFrom& from, const std::shared_ptr<const Scene>& posed, const Pose& pose, Way way,
                                    double trace_ms, Progress& progress) {
     if (posed == posed_ && from == from_ && now_.accel) return now_;
     update_.followed = true;
+    update_.building = beside_ != nullptr;
     update_.refitted = false;
     update_.why = why_not(from, pose);
     if (!update_.why.empty()) return {};

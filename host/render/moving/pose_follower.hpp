@@ -11,6 +11,7 @@
 
 #include "base/progress.hpp"
 #include "render/accel/accel_build.hpp"
+#include "render/moving/background_build.hpp"
 #include "render/moving/pose_mover.hpp"
 #include "render/moving/refit_policy.hpp"
 #include "scene/motion/pose.hpp"
@@ -22,6 +23,7 @@ namespace clarity {
 struct PoseUpdate {
     bool followed = false;  // false: the scene is at rest, or nothing was done for a pose
     bool refitted = false;  // false: built anew
+    bool building = false;  // a build for one of the last poses runs beside
     std::string why;        // "rays cost 1.12 times what they cost after the last build"; "instance `door` is hidden"
     double ms = 0;
     uint64_t primitives = 0;        // that were refitted
@@ -52,6 +54,20 @@ class PoseFollower {
     // Says that this structure was built for the pose. mover: moves it to other poses.
     void built(const PosedFrom& from, std::shared_ptr<const Scene> posed, const Pose& pose,
                std::shared_ptr<const AccelData> accel, std::unique_ptr<PoseMover> mover);
+    // Builds beside refits, so that a motion does not stop for them. A build that should be made is started with
+    // build_beside(); the structure is refitted meanwhile. A build that is done is taken, prepared, and passed to built().
+    bool wants_build_beside(const PosedFrom& from, const Pose& pose, Way way) const;
+    // scene: with all vertices of the pose.
+    void build_beside(const PosedFrom& from, std::shared_ptr<const Scene> scene, const Pose& pose,
+                      BackgroundBuild::Build build);
+    struct Built {
+        std::shared_ptr<const Scene> scene;
+        Pose pose;
+        std::shared_ptr<const AccelData> accel;  // nullptr: no build is done, or it is of another scene or clip
+    };
+    // Throws what the build threw.
+    Built take_build(const PosedFrom& from);
+
     // Forgets everything: the scene is at rest, or other settings ask for another structure.
     void reset() { *this = PoseFollower(); }
     // Forgets everything if it holds buffers on devices: these will be closed.
@@ -74,6 +90,13 @@ class PoseFollower {
     std::vector<rt_u32> deformed_;  // the meshes that poses deform
     std::shared_ptr<const Scene> posed_;
     MovedStructure now_;  // of posed_
+    struct Beside {
+        PosedFrom from;
+        std::shared_ptr<const Scene> scene;
+        Pose pose;
+        BackgroundBuild build;
+    };
+    std::unique_ptr<Beside> beside_;  // nullptr: no build runs
     RefitPolicy policy_;
     double refit_ms_ = 0;
     PoseUpdate update_;

@@ -94,10 +94,8 @@ std::shared_ptr<const MultiPrepared> MultiPreparer::prepare(std::shared_ptr<cons
         return prepared;
     }
     // The device with the most memory decides whether the scene is built at all. Devices that it is too large for fail below.
-    const auto roomiest = std::max_element(
-        infos_.begin(), infos_.end(), [](const DeviceInfo& a, const DeviceInfo& b) { return a.global_bytes < b.global_bytes; });
     std::shared_ptr<const AccelData> built = given.accel;
-    if (!built) built = preparers_[size_t(roomiest - infos_.begin())]->build(scene, settings, progress);
+    if (!built) built = roomiest().build(scene, settings, progress);
     std::vector<Error> failures;
     for (size_t i = 0; i < preparers_.size(); ++i) {
         try {
@@ -125,6 +123,18 @@ std::unique_ptr<PoseMover> MultiPreparer::mover(const std::shared_ptr<const Scen
         log(LogLevel::info, "the scene moves on the host: " + why);
     }
     return make_host_mover(scene, built);
+}
+
+Preparer& MultiPreparer::roomiest() const {
+    const auto most = std::max_element(
+        infos_.begin(), infos_.end(), [](const DeviceInfo& a, const DeviceInfo& b) { return a.global_bytes < b.global_bytes; });
+    return *preparers_[size_t(most - infos_.begin())];
+}
+
+BackgroundBuild::Build MultiPreparer::build_later(std::shared_ptr<const Scene> scene, const Settings& asked) const {
+    Settings settings = asked;
+    resolve_accel(plugins_, kind_of(infos_), settings);
+    return roomiest().build_later(std::move(scene), settings);
 }
 
 bool MultiPreparer::asks_for(const AccelData& accel, const Settings& asked) const {

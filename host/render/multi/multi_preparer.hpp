@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "render/frame/preparer.hpp"
+#include "render/moving/background_build.hpp"
 #include "render/moving/pose_mover.hpp"
 
 namespace clarity {
@@ -46,6 +47,8 @@ class MultiPreparer {
     // or cannot. scene: what was prepared. rest: the same scene at rest.
     std::unique_ptr<PoseMover> mover(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Scene>& rest,
                                      const MultiPrepared& prepared) const;
+    // As Preparer::build_later(), for the device with the most memory.
+    BackgroundBuild::Build build_later(std::shared_ptr<const Scene> scene, const Settings& settings) const;
     // As Preparer::asks_for().
     bool asks_for(const AccelData& accel, const Settings& settings) const;
     bool needs_reopen() const;
@@ -55,6 +58,8 @@ class MultiPreparer {
     void open_devices(const Devices& devices);
 
  private:
+    Preparer& roomiest() const;
+
     const PluginRegistry& plugins_;
     std::vector<std::unique_ptr<Preparer>> preparers_;
     const std::vector<DeviceInfo> infos_;  // one for each preparer

@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <future>
+#include <random>
+#include <thread>
+
 #include "base/error.hpp"
 #include "support/generated.hpp"
 #include "support/workbench.hpp"
@@ -27,6 +31,16 @@ class Follower : public ::testing::Test {
         PosedMesh mesh{0, rest_->positions, rest_->normals};
         for (size_t v = 0; v < mesh.positions.size(); v += 3) mesh.positions[v] += by * mesh.positions[v + 1];
         pose.meshes.push_back(mesh);
+        return pose;
+    }
+    // Vertices in another order, so that the tree at rest is of no use; moved along x.
+    Pose mixed(float by) const {
+        Pose pose = leaning(0);
+        std::vector<float>& positions = pose.meshes[0].positions;
+        std::mt19937 random(1);
+        for (size_t v = positions.size() / 3 - 1; v > 0; --v)
+            std::swap_ranges(&positions[3 * v], &positions[3 * v] + 3, &positions[3 * (random() % v)]);
+        for (size_t v = 0; v < positions.size(); v += 3) positions[v] += by * positions[v + 1];
         return pose;
     }
     // Shows a pose as the window does. Returns whether it was refitted.
@@ -91,6 +105,61 @@ TEST_F(Follower, BuildsWhenSlowRaysHaveCostAsMuchAsABuild) {
     EXPECT_GT(poses, 0);
     EXPECT_LT(poses, 10000) << "cost ratio " << follower_.update().cost_ratios.back();
     EXPECT_NE(follower_.update().why.find("slow rays"), std::string::npos) << follower_.update().why;
+}
+
+TEST_F(Follower, BuildsBesideRefits) {
+    const PosedFrom from{rest_, "walk"};
+    const Pose last = mixed(0);
+    show(leaning(0));
+    int poses = 0;
+    while (poses < 10000 && !follower_.wants_build_beside(from, last, Way::automatic) && show(mixed(0.001f * float(poses + 1))))
+        ++poses;
+    ASSERT_TRUE(follower_.wants_build_beside(from, last, Way::automatic));
+    EXPECT_FALSE(follower_.wants_build_beside({rest_, "run"}, last, Way::automatic));
+    EXPECT_FALSE(follower_.wants_build_beside(from, last, Way::refit));
+    const auto scene = std::make_shared<const Scene>(posed(*rest_, last));
+    std::promise<void> may_end;
+    const rt_plugin& plugin = *Workbench::get().plugins().accel("bvh2");
+    follower_.build_beside(from, scene, last, [&](Progress& progress) {
+        may_end.get_future().wait();
+        return std::make_shared<const AccelData>(build_accel(*scene, plugin, default_parameters(plugin), progress));
+    });
+    EXPECT_FALSE(follower_.wants_build_beside(from, last, Way::automatic)) << "one at a time";
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_TRUE(show(mixed(0.1f * float(i + 1)))) << follower_.update().why;
+        EXPECT_TRUE(follower_.update().building);
+        EXPECT_EQ(follower_.take_build(from).accel, nullptr);
+    }
+    const float before = follower_.update().cost_ratios.back();
+    EXPECT_GT(before, 2);
+    may_end.set_value();
+    PoseFollower::Built built;
+    while (!built.accel) built = follower_.take_build(from);
+    EXPECT_EQ(built.scene, scene);
+    follower_.built(from, built.scene, built.pose, built.accel, make_host_mover(built.scene, built.accel));
+    EXPECT_TRUE(show(mixed(0.4f)));
+    EXPECT_FALSE(follower_.update().building);
+    EXPECT_LT(follower_.update().cost_ratios.back(), 1.5f) << "the tree is of about this pose";
+    EXPECT_EQ(follower_.structure()->scene.bounds.max, posed(*rest_, mixed(0.4f)).bounds().max);
+}
+
+TEST_F(Follower, ABuildBesideEndsWithTheFollower) {
+    const PosedFrom from{rest_, "walk"};
+    const auto until_cancelled = [](Progress& progress) -> std::shared_ptr<const AccelData> {
+        while (!progress.cancelled()) std::this_thread::yield();
+        throw Cancelled();
+    };
+    show(leaning(0));
+    follower_.build_beside(from, rest_, leaning(0), until_cancelled);
+    follower_.reset();
+    follower_.build_beside(from, rest_, leaning(0), until_cancelled);
+    EXPECT_EQ(follower_.take_build({rest_, "run"}).accel, nullptr) << "another clip plays";
+    follower_.build_beside(from, rest_, leaning(0),
+                           [](Progress&) -> std::shared_ptr<const AccelData> { throw Error(Exit::failed, "no memory"); });
+    const auto throws = [&] {
+        while (!follower_.take_build(from).accel) std::this_thread::yield();
+    };
+    EXPECT_THROW(throws(), Error);
 }
 
 TEST_F(Follower, TheSamePoseIsNotDoneTwice) {
