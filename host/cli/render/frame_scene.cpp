@@ -1,4 +1,4 @@
-#include "cli/frame_scene.hpp"
+#include "cli/render/frame_scene.hpp"
 
 #include <algorithm>
 #include <functional>

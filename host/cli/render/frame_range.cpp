@@ -1,4 +1,4 @@
-#include "cli/frame_range.hpp"
+#include "cli/render/frame_range.hpp"
 
 #include <charconv>
 #include <filesystem>

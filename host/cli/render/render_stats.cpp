@@ -1,4 +1,4 @@
-#include "cli/render_stats.hpp"
+#include "cli/render/render_stats.hpp"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
