@@ -227,7 +227,9 @@ TEST(Wire, a_large_mesh_is_handed_over_quickly) {
     }
     RecordProperty("hand_over_ms", std::to_string(best_ms));
     std::printf("hand-over of %u triangles: %.1f ms\n", triangles, best_ms);
+#ifndef __SANITIZE_THREAD__  // which is ten times slower
     EXPECT_LT(best_ms, 500);
+#endif
 }
 
 }  // namespace

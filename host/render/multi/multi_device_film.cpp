@@ -22,7 +22,7 @@ unsigned divided_up(unsigned a, unsigned b) {
 
 }  // namespace
 
-MultiDeviceFilm::MultiDeviceFilm(const Devices& devices) {
+MultiDeviceFilm::MultiDeviceFilm(const Devices& devices, Ranks* ranks) : ranks_(ranks) {
     std::vector<Error> failures;
     for (const std::shared_ptr<Device>& device : devices) {
         try {
@@ -134,15 +134,56 @@ void MultiDeviceFilm::cut() {
     }
     if (!first) throw last_failure_;
     const auto height = unsigned(settings_.height);
-    const unsigned tile_height = unit * std::max(1u, height / unit / kMaxTiles);
-    tile_count_ = divided_up(height, tile_height);
+    if (ranks_)
+        for (const double of_rank : ranks_->gather(unit)) unit = std::lcm(unit, unsigned(of_rank));
+    tile_height_ = unit * std::max(1u, height / unit / kMaxTiles);
+    tile_count_ = divided_up(height, tile_height_);
     for (Member& member : members_) {
         if (!member.works()) continue;
         const unsigned row = member.prepared->layout.row_height();
-        member.rows_in_tile = tile_height / row;
+        member.rows_in_tile = tile_height_ / row;
         member.rows_in_picture = divided_up(height, row);
     }
-    scheduler_->begin(tile_count_, takes_part, alike);
+    take_tiles();
+    scheduler_->begin(tiles_, takes_part, alike);
+}
+
+void MultiDeviceFilm::take_tiles() {
+    tiles_.clear();
+    if (ranks_ && rank_speeds_.empty()) rank_speeds_.assign(ranks_->count(), 0);
+    const std::vector<unsigned> rank_of =
+        ranks_ ? deal_tiles(tile_count_, rank_speeds_) : std::vector<unsigned>(tile_count_, 0);
+    for (unsigned tile = 0; tile < tile_count_; ++tile)
+        if (!ranks_ || rank_of[tile] == ranks_->rank()) tiles_.push_back(tile);
+}
+
+std::vector<PixelRows> MultiDeviceFilm::rows() const {
+    std::vector<PixelRows> rows;
+    for (const unsigned tile : tiles_) {
+        const unsigned first = tile * tile_height_, end = std::min(first + tile_height_, unsigned(settings_.height));
+        if (!rows.empty() && rows.back().first + rows.back().count == first)
+            rows.back().count += end - first;
+        else
+            rows.push_back({first, end - first});
+    }
+    return rows;
+}
+
+// After the first samples of a picture: measures how fast each rank is. Returns whether tiles should be dealt anew, because the
+// samples to come take so much less time then that the first ones may be traced again. All ranks come to the same answer.
+bool MultiDeviceFilm::deal_by_speed(unsigned end, double wall_ms) {
+    constexpr double kGain = 1.03;
+    const std::vector<unsigned> rank_of = deal_tiles(tile_count_, rank_speeds_);
+    const std::vector<double> speeds = ranks_->gather(double(tiles_.size()) * end / std::max(wall_ms, 1e-3));
+    double slowest_ms = 0, sum = 0;
+    for (unsigned r = 0; r < speeds.size(); ++r) {
+        const auto tiles = double(std::count(rank_of.begin(), rank_of.end(), r));
+        if (tiles > 0) slowest_ms = std::max(slowest_ms, tiles / speeds[r]);
+        sum += speeds[r];
+    }
+    const double best_ms = tile_count_ / sum;
+    rank_speeds_ = speeds;
+    return (settings_.spp - double(end)) * (slowest_ms - kGain * best_ms) > end * best_ms;
 }
 
 // Whether the films hold samples of such a picture. A device that no longer takes part loses its tiles.
@@ -237,6 +278,15 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
     }
     on_all([&](size_t i) { trace_part(i, {begin, sample, end, fresh, display}, count_rays, progress); });
     recover(progress);
+    if (ranks_ && fresh && sample == 0 && deal_by_speed(end, ms_since(begin))) {
+        cut();
+        for (Member& member : members_) {
+            member.stats = {};
+            member.displayed = false;
+        }
+        on_all([&](size_t i) { trace_part(i, {begin, sample, end, fresh, display}, count_rays, progress); });
+        recover(progress);
+    }
     return gathered(ms_since(begin));
 }
 
@@ -247,7 +297,7 @@ std::vector<std::vector<unsigned>> MultiDeviceFilm::orphans() const {
         for (const unsigned tile : member.tiles) owned[tile] = true;
     std::vector<std::vector<unsigned>> more(members_.size());
     std::vector<double> owed(members_.size(), 0.0);
-    for (unsigned tile = 0; tile < tile_count_; ++tile) {
+    for (const unsigned tile : tiles_) {
         if (owned[tile]) continue;
         for (size_t i = 0; i < members_.size(); ++i)
             owed[i] += members_[i].works() ? std::max(scheduler_->share(i), 1e-6) : -1.0;

@@ -10,6 +10,7 @@
 #include "render/frame/frame_renderer.hpp"
 #include "render/multi/device_threads.hpp"
 #include "render/multi/multi_preparer.hpp"
+#include "render/multi/ranks.hpp"
 #include "render/multi/tile_scheduler.hpp"
 
 namespace clarity {
@@ -27,8 +28,9 @@ class SamplesLost : public Error {
 // Used from one thread. A device that fails takes no further part. Functions throw its error when no device is left.
 class MultiDeviceFilm {
  public:
-    // Throws what FrameRenderer's constructor throws if no device can hold a film.
-    explicit MultiDeviceFilm(const Devices& devices);
+    // ranks: other processes, each of which traces a part of the picture; nullptr: none. Must outlive this object. Throws what
+    // FrameRenderer's constructor throws if no device can hold a film.
+    explicit MultiDeviceFilm(const Devices& devices, Ranks* ranks = nullptr);
 
     // Traces samples [sample, end): see MultiFrameRenderer::trace(). display: RGBA8 of the whole picture; if not null, each
     // device copies its displayed rows there as soon as it is done.
@@ -41,6 +43,9 @@ class MultiDeviceFilm {
     // Calls work(i, renderer of device i) in parallel for each device that has tiles. Repeats after a failure, until all tiles
     // are read.
     void read(const std::function<void(size_t, FrameRenderer&)>& work);
+
+    // The rows of the picture that this process traces: all, without other ranks.
+    std::vector<PixelRows> rows() const;
 
     size_t size() const { return members_.size(); }
     const std::shared_ptr<Device>& device(size_t i) const { return members_[i].device; }
@@ -69,6 +74,8 @@ class MultiDeviceFilm {
         uint8_t* display;
     };
     void cut();
+    void take_tiles();
+    bool deal_by_speed(unsigned end, double wall_ms);
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& tiles);
     double trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress, uint8_t* display = nullptr);
@@ -86,7 +93,10 @@ class MultiDeviceFilm {
     std::shared_ptr<const MultiPrepared> prepared_;
     Settings settings_;
     View view_;
-    unsigned tile_count_ = 0;
+    unsigned tile_count_ = 0, tile_height_ = 1;
+    std::vector<unsigned> tiles_;  // of this process; ascending
+    Ranks* const ranks_;
+    std::vector<double> rank_speeds_;  // tiles a millisecond, of each rank; empty: not known
     Error last_failure_{Exit::failed, "no device takes part"};
     std::unique_ptr<DeviceThreads> threads_;  // last, so that the threads end first
 };

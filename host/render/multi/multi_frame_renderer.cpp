@@ -15,6 +15,7 @@ namespace clarity {
 struct MultiFrameRenderer::Impl {
     std::unique_ptr<FrameRenderer> alone;  // used if there is only one device; the rest is then unused
     std::unique_ptr<MultiDeviceFilm> shared;
+    Ranks* ranks = nullptr;  // nullptr: this process traces the whole picture
     // The picture that was traced last.
     std::shared_ptr<const MultiPrepared> prepared;
     unsigned width = 0, height = 0;
@@ -32,6 +33,11 @@ struct MultiFrameRenderer::Impl {
         FloatImage image{width, height, channels, {}};
         image.pixels.resize(size_t(width) * height * channels);
         return image;
+    }
+
+    // Completes the picture of rank 0.
+    void collect(size_t pixel_bytes, void* picture) const {
+        if (ranks) collect_rows(*ranks, shared->rows(), width * pixel_bytes, height, static_cast<char*>(picture));
     }
 
     // Returns memory that all devices write to. It is pinned by the first GPU that works.
@@ -57,11 +63,12 @@ struct MultiFrameRenderer::Impl {
     }
 };
 
-MultiFrameRenderer::MultiFrameRenderer(const Devices& devices) : impl_(std::make_unique<Impl>()) {
-    if (devices.size() == 1)
+MultiFrameRenderer::MultiFrameRenderer(const Devices& devices, Ranks* ranks) : impl_(std::make_unique<Impl>()) {
+    impl_->ranks = ranks;
+    if (devices.size() == 1 && !ranks)
         impl_->alone = std::make_unique<FrameRenderer>(devices[0]);
     else
-        impl_->shared = std::make_unique<MultiDeviceFilm>(devices);
+        impl_->shared = std::make_unique<MultiDeviceFilm>(devices, ranks);
 }
 MultiFrameRenderer::~MultiFrameRenderer() = default;
 
@@ -95,6 +102,7 @@ FloatImage MultiFrameRenderer::read_values() {
     if (im.alone) return im.alone->read_values();
     FloatImage image = im.image(im.aov().value_channels());
     im.shared->read([&](size_t, FrameRenderer& frames) { frames.read_values(image); });
+    im.collect(image.channels * sizeof(float), image.pixels.data());
     return image;
 }
 
@@ -105,6 +113,7 @@ FloatImage MultiFrameRenderer::read_distance() {
     FloatImage image = im.image(1);
     std::vector<char> known(im.shared->size(), true);
     im.shared->read([&](size_t i, FrameRenderer& frames) { known[i] = frames.read_distance(image); });
+    im.collect(sizeof(float), image.pixels.data());
     return std::find(known.begin(), known.end(), false) == known.end() ? image : FloatImage{};
 }
 
@@ -125,6 +134,7 @@ ByteImage MultiFrameRenderer::read_display(const Settings& settings, FrameStats*
             frames.read_display(settings, rgba.get(), times[i]);
         });
     }
+    im.collect(4, rgba.get());
     for (size_t i = 0; stats && i < times.size(); ++i) {
         merge_times(stats->kernels, times[i]);
         for (DeviceShare& share : stats->devices)

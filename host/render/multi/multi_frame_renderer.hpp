@@ -10,6 +10,7 @@
 
 #include "render/frame/frame_renderer.hpp"
 #include "render/multi/multi_preparer.hpp"
+#include "render/multi/ranks.hpp"
 
 namespace clarity {
 
@@ -18,7 +19,9 @@ class MultiFrameRenderer {
  public:
     // A device that cannot hold a film causes a warning, as long as another can. Throws what FrameRenderer's constructor
     // throws.
-    explicit MultiFrameRenderer(const Devices& devices);
+    // ranks: other processes that trace parts of the picture. Rank 0 reads the whole picture, while the others call the same
+    // functions and get their part. Must outlive this object.
+    explicit MultiFrameRenderer(const Devices& devices, Ranks* ranks = nullptr);
     ~MultiFrameRenderer();
 
     // Traces samples [sample, sample + samples) of the picture; sample 0 starts a new picture. See FrameRenderer::trace(). The

@@ -10,20 +10,21 @@ constexpr double kNewest = 0.5;  // weight of the last picture in the known shar
 
 }  // namespace
 
-void TileScheduler::begin(unsigned tile_count, const std::vector<bool>& takes_part, bool alike) {
+void TileScheduler::begin(const std::vector<unsigned>& tiles, const std::vector<bool>& takes_part, bool alike) {
     learn();
     if (takes_part != takes_part_) shares_.clear();
     takes_part_ = takes_part;
     measured_.assign(measured_.size(), {});
     reserved_.assign(measured_.size(), {});
     left_.clear();
+    const auto tile_count = static_cast<unsigned>(tiles.size());
     const auto taking = static_cast<unsigned>(std::count(takes_part.begin(), takes_part.end(), true));
     // Each tile that is assigned dynamically costs one launch. Tiles assigned in advance cost nothing, but the slowest device
     // then decides when the picture is done.
     const bool known = !shares_.empty();
     unsigned few = known ? taking : std::max(taking, alike ? tile_count / 16 : tile_count);
     if (taking < 2 || (known && alike)) few = 0;
-    assign_in_advance(tile_count, std::min(tile_count, few));
+    assign_in_advance(tiles, std::min(tile_count, few));
     if (few == 0) give_each_one();
     dynamic_ = !left_.empty();
 }
@@ -46,12 +47,12 @@ void TileScheduler::learn() {
 
 // Assigns tiles in advance. Each tile goes to the device that is furthest behind its share, so that every device gets tiles
 // from all parts of the picture.
-void TileScheduler::assign_in_advance(unsigned tile_count, unsigned left_over) {
+void TileScheduler::assign_in_advance(const std::vector<unsigned>& tiles, unsigned left_over) {
     const size_t unassigned = measured_.size();
     std::vector<double> share(unassigned + 1), owed(unassigned + 1, 0.0);
-    share[unassigned] = tile_count > 0 ? double(left_over) / tile_count : 0;
+    share[unassigned] = tiles.empty() ? 0 : double(left_over) / double(tiles.size());
     for (size_t i = 0; i < unassigned; ++i) share[i] = share_locked(i) * (1 - share[unassigned]);
-    for (unsigned tile = 0; tile < tile_count; ++tile) {
+    for (const unsigned tile : tiles) {
         for (size_t i = 0; i <= unassigned; ++i) owed[i] += share[i];
         const size_t to = size_t(std::max_element(owed.begin(), owed.end()) - owed.begin());
         owed[to] -= 1;

@@ -16,9 +16,9 @@ class TileScheduler {
  public:
     explicit TileScheduler(size_t device_count) : measured_(device_count) {}
 
-    // Starts a new picture. takes_part: for each device. alike: these devices are of the same kind, so that most tiles can be
-    // assigned before their speeds are known. Must not run in parallel with other calls.
-    void begin(unsigned tile_count, const std::vector<bool>& takes_part, bool alike);
+    // Starts a new picture. tiles: their numbers, ascending. takes_part: for each device. alike: these devices are of the same
+    // kind, so that most tiles can be assigned before their speeds are known. Must not run in parallel with other calls.
+    void begin(const std::vector<unsigned>& tiles, const std::vector<bool>& takes_part, bool alike);
     // Whether some tiles are assigned dynamically, after those assigned in advance.
     bool dynamic() const { return dynamic_; }
     // Returns more tiles for a device. Empty if none are left that it would finish before the other devices do.
@@ -34,7 +34,7 @@ class TileScheduler {
         double speed() const { return ms > 0 ? tiles / ms : 0; }
     };
     void learn();
-    void assign_in_advance(unsigned tile_count, unsigned left_over);
+    void assign_in_advance(const std::vector<unsigned>& tiles, unsigned left_over);
     void give_each_one();
     double share_locked(size_t device) const;
 

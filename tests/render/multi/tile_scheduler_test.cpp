@@ -10,6 +10,12 @@ using namespace clarity;
 
 namespace {
 
+std::vector<unsigned> numbers(unsigned count) {
+    std::vector<unsigned> all(count);
+    std::iota(all.begin(), all.end(), 0u);
+    return all;
+}
+
 struct Played {
     std::vector<unsigned> tiles;  // number of tiles of each device
     std::vector<double> ends;     // time at which each device is done, ms
@@ -18,7 +24,7 @@ struct Played {
 
 // Simulates a picture. ms: time of a tile on each device. Every tile must be assigned exactly once.
 Played play(TileScheduler& scheduler, unsigned count, const std::vector<double>& ms, bool alike) {
-    scheduler.begin(count, std::vector<bool>(ms.size(), true), alike);
+    scheduler.begin(numbers(count), std::vector<bool>(ms.size(), true), alike);
     Played played{std::vector<unsigned>(ms.size()), std::vector<double>(ms.size(), 0.0)};
     std::vector<unsigned> assigned(count);
     std::vector<bool> done(ms.size());
@@ -89,7 +95,7 @@ TEST(TileScheduler, ASlowDeviceDoesNotDelayThePicture) {
 
 TEST(TileScheduler, AnExcludedDeviceGetsNoTile) {
     TileScheduler scheduler(3);
-    scheduler.begin(10, {true, false, true}, true);
+    scheduler.begin(numbers(10), {true, false, true}, true);
     EXPECT_TRUE(scheduler.next(1).empty());
     EXPECT_EQ(scheduler.share(1), 0);
     size_t assigned = 0;
@@ -101,7 +107,7 @@ TEST(TileScheduler, AnExcludedDeviceGetsNoTile) {
 // Neighbouring tiles cost about the same, so each device needs tiles from all parts of the picture.
 TEST(TileScheduler, TilesOfADeviceAreSpreadOverThePicture) {
     TileScheduler scheduler(2);
-    scheduler.begin(100, {true, true}, true);
+    scheduler.begin(numbers(100), {true, true}, true);
     for (const size_t device : {0, 1}) {
         const std::vector<unsigned> tiles = scheduler.next(device);
         ASSERT_GT(tiles.size(), 30u);
