@@ -34,6 +34,9 @@ class MultiDeviceFilm {
     // device copies its displayed rows there as soon as it is done.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
                      unsigned sample, unsigned end, bool count_rays, Progress& progress, uint8_t* display = nullptr);
+    // The next picture begins with these sums of `samples` samples (FrameRenderer::read_sums()): the next trace() starts with
+    // sample `samples` and deals all tiles anew.
+    void resume(std::shared_ptr<const FloatImage> sums, unsigned samples);
     // Whether every device has copied all of its rows to `display`. If so, each device's `times` get those of this work.
     bool displayed(std::vector<std::vector<KernelTime>>& times) const;
     // The number of samples that all devices have completed.
@@ -68,9 +71,16 @@ class MultiDeviceFilm {
         bool fresh;
         uint8_t* display;
     };
+    // What the films hold before the first sample that is traced here.
+    struct Start {
+        std::shared_ptr<const FloatImage> sums;  // null: nothing
+        unsigned samples = 0;
+        bool is_new = false;  // no sample after it has been traced
+    };
     void cut();
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& tiles);
+    void put_start(Member& member);
     double trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress, uint8_t* display = nullptr);
     void trace_part(size_t index, const Batch& batch, bool count_rays, Progress& progress);
     std::vector<std::vector<unsigned>> orphans() const;
@@ -86,6 +96,7 @@ class MultiDeviceFilm {
     std::shared_ptr<const MultiPrepared> prepared_;
     Settings settings_;
     View view_;
+    Start start_;
     unsigned tile_count_ = 0;
     Error last_failure_{Exit::failed, "no device takes part"};
     std::unique_ptr<DeviceThreads> threads_;  // last, so that the threads end first
