@@ -32,6 +32,8 @@ find_package(ZLIB QUIET)
 clarity_require(ZLIB::ZLIB zlib1g-dev)
 pkg_check_modules(SECCOMP QUIET IMPORTED_TARGET libseccomp)
 clarity_require(PkgConfig::SECCOMP libseccomp-dev)
+pkg_check_modules(XXHASH QUIET IMPORTED_TARGET libxxhash)
+clarity_require(PkgConfig::XXHASH libxxhash-dev)
 pkg_check_modules(STB QUIET IMPORTED_TARGET stb)
 clarity_require(PkgConfig::STB libstb-dev)
 # Headers only, for code that compiles stb into itself and must not be linked with the library.

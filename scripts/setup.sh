@@ -7,7 +7,7 @@ build_dir=build/release
 # program needs at run time. libgl1-mesa-dri: OpenGL in software, so that the window also opens on a virtual display.
 build_packages="g++ cmake ninja-build make pkg-config
     ocl-icd-opencl-dev opencl-c-headers opencl-clhpp-headers libassimp-dev libopenmesh-dev libglm-dev libstb-dev libopenexr-dev
-    libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
+    libcli11-dev nlohmann-json3-dev libtbb-dev libseccomp-dev libxxhash-dev zlib1g-dev libimgui-dev libglfw3-dev libepoxy-dev
     libgl1-mesa-dri fonts-dejavu-core"
 # The tests compare with Embree, run kernels on PoCL and oclgrind, and open the window on a virtual display.
 test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format

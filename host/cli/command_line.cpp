@@ -134,12 +134,26 @@ void add_pose(CLI::App& app, PoseOptions& pose) {
 
 void add_render(CLI::App& app, RenderOptions& render) {
     single(app.add_option("-o,--output", render.output, "Picture to write: .png, .exr or .pfm; #### is the frame's number"))
-        ->type_name("OUT")
-        ->required();
+        ->type_name("OUT");
     single(app.add_option("--frames", render.frames,
                           "Numbers of the frames to render; frame n shows a scene that moves at n / fps seconds"))
         ->type_name("A-B[/STEP]");
-    app.add_flag("--skip-existing", render.skip_existing, "Leave the pictures that are there already as they are");
+    single(app.add_option("--frames-of", render.frames_of,
+                          "Only the K-th of N shares of --frames: every N-th frame, from the K-th on (1/N is the first share)"))
+        ->type_name("K/N");
+    app.add_flag("--skip-existing", render.skip_existing,
+                 "Leave out frames that are there already, whole, with a record (OUT as .json) of the same scene and settings");
+    single(app.add_option("--checkpoint", render.checkpoint,
+                          "Save the samples so far to this file from time to time, and when the picture is interrupted"))
+        ->type_name("FILE");
+    single(app.add_option("--every", render.every_s, "Seconds between two checkpoints"))
+        ->type_name("S")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+    single(app.add_option("--resume", render.resume, "Go on with the samples of a checkpoint, and save further ones there"))
+        ->type_name("FILE");
+    app.add_flag("--verify", render.verify,
+                 "SCENE are records of frames (out_*.json): render these frames again, and compare them with their pictures");
     single(app.add_option("--fps", render.fps, "Frames a second; default: those of the clip, else 24"))
         ->type_name("F")
         ->check(CLI::Range(1e-3, 1e6));

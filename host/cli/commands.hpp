@@ -45,10 +45,15 @@ struct RenderOptions {
     std::string frames;  // A-B[/S]; "": one frame with number 1
     PoseOptions pose;
     double fps = 0;              // of the frames; 0: the clip's own
-    bool skip_existing = false;  // pictures that are there already are not rendered again
-    unsigned repeat = 1;         // how often each picture is traced, for timing
-    std::string stats_file;      // file for the statistics; "-": stdout; "": none
-    bool watch = false;          // render again after each change of a kernel, plugin library or scene file
+    std::string frames_of;       // K/N: every N-th of these frames, from the K-th on; "": all
+    bool skip_existing = false;  // pictures that are there already, with a record that fits, are not rendered again
+    // Files from which an interrupted picture goes on; # as in `output`. "": none.
+    std::string checkpoint, resume;
+    double every_s = 60;     // time between two checkpoints
+    bool verify = false;     // scene.files are records of frames: they are rendered again and compared
+    unsigned repeat = 1;     // how often each picture is traced, for timing
+    std::string stats_file;  // file for the statistics; "-": stdout; "": none
+    bool watch = false;      // render again after each change of a kernel, plugin library or scene file
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);

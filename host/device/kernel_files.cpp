@@ -227,6 +227,13 @@ std::string kernel_text(const std::string& name) {
                                                ": build the program again");
 }
 
+std::vector<std::string> kernel_names() {
+    std::vector<std::string> names;
+    for (const Embedded& file : kEmbedded) names.emplace_back(file.name);
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
 std::string plugin_kernel_name(const rt_plugin& plugin, const rt_cl_file& file) {
     return file.name ? folder_of(plugin) + "/" + file.name : "";
 }

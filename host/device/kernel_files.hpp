@@ -27,6 +27,9 @@ namespace clarity {
 // no such text, or if rt_types.h or rt_shared.h on disk differ from the program's.
 std::string kernel_text(const std::string& name);
 
+// Returns the names of all files of cl/ that are inside the program, in a fixed order.
+std::vector<std::string> kernel_names();
+
 // Returns the text of a plugin's file, with the files that it includes (kernel_includes.hpp). Throws Error(kernel_build_failed)
 // if its types on disk differ from those that it was compiled with, or if a file that it includes cannot be read.
 std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file);

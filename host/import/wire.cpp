@@ -9,16 +9,16 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cerrno>
 #include <cstring>
 #include <type_traits>
+
+#include "import/scene_sections.hpp"
 
 namespace clarity::import {
 namespace {
 
 constexpr uint64_t kMagic = 0x31656E6563536C43;  // "ClScene1"
-constexpr uint32_t kSectionCount = 47;
 constexpr uint64_t kPieceAlignment = 64;
 // Writing is not sealed, because the reader gives pages back behind its reading, which counts as writing. The reader copies
 // each byte once and checks the copy, so that what is written later does nothing.
@@ -31,162 +31,6 @@ struct Header {
     uint64_t magic, total_bytes;
     Section sections[kSectionCount];
 };
-struct WireGlobals {
-    std::array<float, 3> background, ambient;
-    uint32_t up_axis, pad;
-    double unit_scale;
-};
-struct WireMesh {
-    uint32_t name_bytes, first_vertex, vertex_count, first_triangle, triangle_count, polygon_count;
-};
-struct WireInstance {
-    uint32_t name_bytes, mesh, material, visible, node, root, moving_mesh;
-    Affine world_from_object, node_from_object;
-};
-struct WireMaterial {
-    uint32_t name_bytes;
-    rt_material values;
-};
-struct WireLight {
-    uint32_t name_bytes, node;
-    rt_light values;
-    std::array<float, 3> at_node;
-};
-struct WireCamera {
-    uint32_t name_bytes, node;
-    std::array<float, 3> eye, target, up, node_eye, node_target, node_up;
-    float fov_y_rad;
-};
-struct WireNode {
-    uint32_t name_bytes, pad;
-    rt_node_desc values;  // its name is NULL
-};
-struct WireClip {
-    uint32_t name_bytes, rig, first_layer, layer_count;
-    double begin_s, end_s, fps;
-};
-struct WireSequence {
-    uint32_t name_bytes, first_mesh, mesh_count, first_number, number_count, pad;
-    double fps;
-};
-struct WireMorph {
-    uint32_t name_bytes, mesh, first_target, target_count;
-    double weight;
-};
-
-// The members of Scene which are not plain arrays, converted to plain arrays.
-struct Converted {
-    std::vector<WireGlobals> globals;
-    std::vector<WireMesh> meshes;
-    std::vector<WireInstance> instances;
-    std::vector<WireMaterial> materials;
-    std::vector<WireLight> lights;
-    std::vector<WireCamera> cameras;
-    std::vector<WireNode> nodes;
-    std::vector<WireClip> clips;
-    std::vector<WireMorph> morphs;
-    std::vector<WireSequence> sequences;
-    std::vector<uint32_t> shape_kinds, warnings, edits, sources;  // length of each text in `names`, in bytes
-    std::vector<char> names;
-};
-
-// Writing and reading use the same list of sections, so that they always agree.
-template <class S, class C, class Visitor>
-void visit(S& s, C& c, Visitor&& v) {
-    v(c.globals), v(s.positions), v(s.normals), v(s.uvs), v(s.triangles), v(s.triangle_materials), v(c.meshes), v(c.instances);
-    v(s.spheres), v(s.planes), v(s.polygons), v(s.polygon_corners), v(c.shape_kinds), v(s.shapes), v(s.shape_parts);
-    v(s.shape_numbers), v(c.materials), v(s.textures), v(s.texels), v(c.lights);
-    v(c.cameras), v(c.nodes), v(c.clips), v(c.morphs);
-    auto& m = s.motion;
-    v(m.layers), v(m.channels), v(m.key_times), v(m.key_values), v(m.key_handles), v(m.key_spans), v(m.skins), v(m.bones);
-    v(m.weights), v(m.shares), v(m.morph_targets), v(m.morph_vertices), v(m.morph_positions), v(m.morph_normals), v(m.frames);
-    v(m.frame_times), v(m.frame_positions), v(m.sequence_numbers), v(c.sequences), v(c.warnings), v(c.edits), v(c.sources),
-        v(c.names);
-}
-
-Converted convert(const Scene& s) {
-    Converted c;
-    const auto name = [&](const std::string& text) {
-        c.names.insert(c.names.end(), text.begin(), text.end());
-        return static_cast<uint32_t>(text.size());
-    };
-    c.globals.push_back({s.background, s.ambient, s.up_axis, 0, s.unit_scale});
-    for (const Mesh& m : s.meshes) {
-        c.meshes.push_back({name(m.name), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
-    }
-    for (const Instance& i : s.instances)
-        c.instances.push_back({name(i.name), i.mesh, i.material, i.visible, i.node, i.root, i.moving_mesh, i.world_from_object,
-                               i.node_from_object});
-    for (const ShapeKind& kind : s.shape_kinds) c.shape_kinds.push_back(name(kind.id));
-    for (const Material& m : s.materials) c.materials.push_back({name(m.name), m.values});
-    for (const Light& l : s.lights) c.lights.push_back({name(l.name), l.node, l.values, l.at_node});
-    for (const Camera& k : s.cameras)
-        c.cameras.push_back({name(k.name), k.node, k.eye, k.target, k.up, k.node_eye, k.node_target, k.node_up, k.fov_y_rad});
-    for (const Node& n : s.motion.nodes) c.nodes.push_back({name(n.name), 0, n.values});
-    for (const Clip& k : s.motion.clips)
-        c.clips.push_back({name(k.name), k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps});
-    for (const Morph& m : s.motion.morphs) c.morphs.push_back({name(m.name), m.mesh, m.first_target, m.target_count, m.weight});
-    for (const FileSequence& q : s.motion.sequences)
-        c.sequences.push_back({name(q.pattern), q.first_mesh, q.mesh_count, q.first_number, q.number_count, 0, q.fps});
-    for (const std::string& warning : s.warnings) c.warnings.push_back(name(warning));
-    for (const SceneEdit& edit : s.edits)
-        for (const std::string* text : {&edit.key, &edit.value, &edit.where}) c.edits.push_back(name(*text));
-    for (const std::string& source : s.sources) c.sources.push_back(name(source));
-    return c;
-}
-
-// Converts back to a Scene. Returns false if the names do not match their lengths.
-bool convert_back(const Converted& c, Scene& s) {
-    size_t at = 0;
-    bool good = c.globals.size() == 1;
-    const auto name = [&](uint32_t bytes) {
-        good = good && bytes <= c.names.size() - at;
-        if (!good) return std::string();
-        at += bytes;
-        return std::string(c.names.data() + at - bytes, bytes);
-    };
-    if (!good) return false;
-    const WireGlobals& g = c.globals.front();
-    s.background = g.background;
-    s.ambient = g.ambient;
-    s.up_axis = g.up_axis;
-    s.unit_scale = g.unit_scale;
-    for (const WireMesh& m : c.meshes) {
-        s.meshes.push_back(
-            {name(m.name_bytes), m.first_vertex, m.vertex_count, m.first_triangle, m.triangle_count, m.polygon_count});
-    }
-    for (const WireInstance& i : c.instances)
-        s.instances.push_back({name(i.name_bytes), i.mesh, i.material, i.world_from_object, i.visible != 0, i.node, i.root,
-                               i.moving_mesh, i.node_from_object});
-    for (const uint32_t bytes : c.shape_kinds) s.shape_kinds.push_back({name(bytes), nullptr});
-    for (const WireMaterial& m : c.materials) s.materials.push_back({name(m.name_bytes), m.values});
-    for (const WireLight& l : c.lights) s.lights.push_back({name(l.name_bytes), l.values, l.node, l.at_node, 0});
-    for (const WireCamera& k : c.cameras)
-        s.cameras.push_back(
-            {name(k.name_bytes), k.eye, k.target, k.up, k.fov_y_rad, k.node, k.node_eye, k.node_target, k.node_up, 0});
-    for (const WireNode& n : c.nodes) {
-        s.motion.nodes.push_back({name(n.name_bytes), n.values});
-        s.motion.nodes.back().values.name = nullptr;
-    }
-    for (const WireClip& k : c.clips)
-        s.motion.clips.push_back({name(k.name_bytes), k.rig, k.first_layer, k.layer_count, k.begin_s, k.end_s, k.fps});
-    for (const WireMorph& m : c.morphs)
-        s.motion.morphs.push_back({name(m.name_bytes), m.mesh, m.first_target, m.target_count, m.weight});
-    for (const WireSequence& q : c.sequences)
-        s.motion.sequences.push_back({name(q.name_bytes), q.first_mesh, q.mesh_count, q.first_number, q.number_count, q.fps});
-    for (const uint32_t bytes : c.warnings) s.warnings.push_back(name(bytes));
-    good = good && c.edits.size() % 3 == 0;
-    for (size_t i = 0; good && i < c.edits.size(); i += 3) {
-        SceneEdit edit;
-        edit.key = name(c.edits[i]);
-        edit.value = name(c.edits[i + 1]);
-        edit.where = name(c.edits[i + 2]);
-        s.edits.push_back(std::move(edit));
-    }
-    for (const uint32_t bytes : c.sources) s.sources.push_back(name(bytes));
-    return good && at == c.names.size();
-}
-
 // Bytes that both processes hold at the same time while an array goes from one to the other.
 constexpr uint64_t kBytesAtOnce = uint64_t(4) << 20;
 // Bytes that are copied out of the file at once: they stay in the processor's cache until they are in their array.

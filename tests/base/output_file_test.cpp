@@ -1,5 +1,6 @@
 // Files appear complete or not at all, also if the writer is killed in the middle.
 #include "base/files/output_file.hpp"
+#include "base/host_name.hpp"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -106,15 +107,21 @@ TEST(OutputFile, AKilledWriteLeavesNothingOnceTheFolderIsWrittenAgain) {
     EXPECT_EQ(names_in(scratch), std::vector<std::string>{"b.txt"});
 }
 
+// In a folder that several machines share, a lock may be seen on one of them only: files of other hosts stay.
 TEST(OutputFile, LeftoversAreRemovedButNotFilesThatAreBeingWritten) {
     const Scratch scratch;
-    scratch.write(".clarity-999999999-0.tmp", "left by a process that is gone");
-    const std::string living = scratch.write(".clarity-999999999-1.tmp", "being written on another machine");
+    const std::string ours = ".clarity-" + clarity::host_name() + "-", theirs = ".clarity-" + clarity::host_name() + "-7-";
+    scratch.write(ours + "999999999-1700000000-0.tmp", "left by a process that is gone");
+    scratch.write(theirs + "999999999-1700000000-0.tmp", "being written on another machine, whose name begins like ours");
+    const std::string living = scratch.write(ours + "999999999-1700000000-1.tmp", "being written by another process");
     scratch.write(".clarity-notes", "not ours");
     const int file = open(living.c_str(), O_WRONLY | O_CLOEXEC);
     ASSERT_EQ(flock(file, LOCK_EX | LOCK_NB), 0);
     clarity::write_text_file(scratch.path("a.txt"), "a");
-    EXPECT_EQ(names_in(scratch), (std::vector<std::string>{".clarity-999999999-1.tmp", ".clarity-notes", "a.txt"}));
+    std::vector<std::string> left = {theirs + "999999999-1700000000-0.tmp", ours + "999999999-1700000000-1.tmp",
+                                     ".clarity-notes", "a.txt"};
+    std::sort(left.begin(), left.end());
+    EXPECT_EQ(names_in(scratch), left);
     close(file);
 }
 

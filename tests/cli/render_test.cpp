@@ -112,7 +112,9 @@ TEST_F(Render, FloatFormatsHoldTheFirstHit) {
 TEST_F(Render, FramesAreNumbered) {
     const ProgramResult result = run_program(words({"-o", out("f_###.png"), "--frames", "8-12/2", "--time", "1.5"}));
     ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(files(), (std::vector<std::string>{"f_008.png", "f_010.png", "f_012.png"}));
+    EXPECT_EQ(files(),
+              (std::vector<std::string>{"f_008.json", "f_008.png", "f_010.json", "f_010.png", "f_012.json", "f_012.png"}))
+        << "each picture, and its record";
     EXPECT_EQ(scratch_.read("out/f_008.png"), scratch_.read("out/f_012.png")) << "this scene does not move";
     EXPECT_NE(result.err.find("--time 1.5: the scene does not move"), std::string::npos) << result.err;
 }
@@ -122,19 +124,19 @@ TEST_F(Render, FramesOfAMovingScene) {
     scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     scene_ = scratch_.write("moving.scene",
                             "camera main eye 0 0 9\nload cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\n");
-    ASSERT_EQ(run_program(words({"-o", out("f_#.png"), "--frames", "0-4/2", "--fps", "2"})).exit_code, 0);
-    ASSERT_EQ(run_program(words({"-o", out("rest.png")})).exit_code, 0);
-    ASSERT_EQ(run_program(words({"-o", out("one.png"), "--time", "1", "--clip", "animate"})).exit_code, 0);
-    EXPECT_EQ(scratch_.read("out/f_0.png"), scratch_.read("out/rest.png"));
-    EXPECT_EQ(scratch_.read("out/f_2.png"), scratch_.read("out/one.png"));
-    EXPECT_NE(scratch_.read("out/f_4.png"), scratch_.read("out/one.png"));
+    ASSERT_EQ(run_program(words({"-o", out("f_#.pfm"), "--frames", "0-4/2", "--fps", "2"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("rest.pfm")})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("one.pfm"), "--time", "1", "--clip", "animate"})).exit_code, 0);
+    EXPECT_EQ(scratch_.read("out/f_0.pfm"), scratch_.read("out/rest.pfm"));
+    EXPECT_EQ(scratch_.read("out/f_2.pfm"), scratch_.read("out/one.pfm"));
+    EXPECT_NE(scratch_.read("out/f_4.pfm"), scratch_.read("out/one.pfm"));
     const ProgramResult info = run_program({"info", scene_, "--json", "--time", "2"});
     ASSERT_EQ(info.exit_code, 0) << info.err;
     const nlohmann::json json = nlohmann::json::parse(info.out);
     EXPECT_NEAR(json["bounds"]["max"][0].get<double>(), 2, 1e-6);
     EXPECT_EQ(json["animations"][0]["name"], "animate");
     EXPECT_EQ(json["animations"][0]["end_s"], 2);
-    const ProgramResult unknown = run_program(words({"-o", out("x.png"), "--clip", "walk"}));
+    const ProgramResult unknown = run_program(words({"-o", out("x.pfm"), "--clip", "walk"}));
     EXPECT_EQ(unknown.exit_code, 2);
     EXPECT_NE(unknown.err.find("animate"), std::string::npos) << unknown.err;
 }
@@ -144,37 +146,12 @@ TEST_F(Render, ClipsByNumber) {
     scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     scene_ = scratch_.write("moving.scene",
                             "camera main eye 0 0 9\nload cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\n");
-    ASSERT_EQ(run_program(words({"-o", out("name.png"), "--time", "1", "--clip", "animate"})).exit_code, 0);
-    ASSERT_EQ(run_program(words({"-o", out("number.png"), "--time", "1", "--clip", "0"})).exit_code, 0);
-    EXPECT_EQ(scratch_.read("out/name.png"), scratch_.read("out/number.png"));
-    const ProgramResult unknown = run_program(words({"-o", out("x.png"), "--time", "1", "--clip", "1"}));
+    ASSERT_EQ(run_program(words({"-o", out("name.pfm"), "--time", "1", "--clip", "animate"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("number.pfm"), "--time", "1", "--clip", "0"})).exit_code, 0);
+    EXPECT_EQ(scratch_.read("out/name.pfm"), scratch_.read("out/number.pfm"));
+    const ProgramResult unknown = run_program(words({"-o", out("x.pfm"), "--time", "1", "--clip", "1"}));
     EXPECT_EQ(unknown.exit_code, 2);
     EXPECT_NE(unknown.err.find("0 animate"), std::string::npos) << unknown.err;
-}
-
-// --skip-existing renders what is missing, byte for byte as a whole run does, and leaves the other files alone.
-TEST_F(Render, ExistingFramesAreSkipped) {
-    scratch_.write("cube.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    scene_ = scratch_.write("moving.scene",
-                            "camera main eye 0 0 9\nload cube.obj name car\nanimate car translate 0 0 0 0  2 1 0 0\n");
-    ASSERT_EQ(run_program(words({"-o", out("all_##.png"), "--frames", "2-6/2", "--fps", "3"})).exit_code, 0);
-    scratch_.write("out/f_04.png", "not touched");
-    const std::vector<std::string> again = {"-o", out("f_##.png"), "--frames", "2-6/2", "--fps", "3", "--skip-existing"};
-    ProgramResult result = run_program(words(again));
-    ASSERT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_EQ(scratch_.read("out/f_04.png"), "not touched");
-    EXPECT_EQ(scratch_.read("out/f_02.png"), scratch_.read("out/all_02.png"));
-    EXPECT_EQ(scratch_.read("out/f_06.png"), scratch_.read("out/all_06.png"));
-    EXPECT_NE(result.err.find("1 of 3 pictures"), std::string::npos) << result.err;
-    fs::remove(out("f_06.png"));
-    ASSERT_EQ(run_program(words(again)).exit_code, 0);
-    EXPECT_EQ(scratch_.read("out/f_06.png"), scratch_.read("out/all_06.png"));
-    // If all are there, the scene is not even read.
-    scene_ = scratch_.write("broken.scene", "spher\n");
-    result = run_program(words(again));
-    EXPECT_EQ(result.exit_code, 0) << result.err;
-    EXPECT_NE(result.err.find("3 of 3 pictures"), std::string::npos) << result.err;
-    EXPECT_EQ(run_program(words({"-o", out("f_##.png"), "--skip-existing", "--watch"})).exit_code, 2);
 }
 
 // A warning of the importer, and one of --time: each is printed once.
@@ -197,13 +174,13 @@ TEST_F(Render, AWarningIsPrintedOnce) {
 }
 
 TEST_F(Render, CameraAndLightChangeThePicture) {
-    ASSERT_EQ(run_program(words({"-o", out("a.png")})).exit_code, 0);
-    ASSERT_EQ(run_program(words({"-o", out("b.png"), "--camera", "-3,2,5,0,1,0,50"})).exit_code, 0);
-    ASSERT_EQ(run_program(words({"-o", out("c.png"), "--light", "-3,6,4"})).exit_code, 0);
-    ASSERT_EQ(run_program(words({"-o", out("d.png"), "--camera", "main"})).exit_code, 0);
-    EXPECT_NE(scratch_.read("out/a.png"), scratch_.read("out/b.png"));
-    EXPECT_NE(scratch_.read("out/a.png"), scratch_.read("out/c.png"));
-    EXPECT_EQ(scratch_.read("out/a.png"), scratch_.read("out/d.png"));
+    ASSERT_EQ(run_program(words({"-o", out("a.pfm")})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("b.pfm"), "--camera", "-3,2,5,0,1,0,50"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("c.pfm"), "--light", "-3,6,4"})).exit_code, 0);
+    ASSERT_EQ(run_program(words({"-o", out("d.pfm"), "--camera", "main"})).exit_code, 0);
+    EXPECT_NE(scratch_.read("out/a.pfm"), scratch_.read("out/b.pfm"));
+    EXPECT_NE(scratch_.read("out/a.pfm"), scratch_.read("out/c.pfm"));
+    EXPECT_EQ(scratch_.read("out/a.pfm"), scratch_.read("out/d.pfm"));
 }
 
 TEST_F(Render, QuietPrintsNothingVerbosePrintsMore) {

@@ -6,15 +6,18 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <ctime>
 #include <memory>
 #include <mutex>
 #include <set>
 
 #include "base/error.hpp"
+#include "base/host_name.hpp"
 
 namespace clarity {
 namespace {
@@ -43,21 +46,33 @@ std::string descriptor_path(int file) {
     return "/proc/self/fd/" + std::to_string(file);
 }
 
-// ".clarity-PID-N.tmp": the dot hides the file, and the program's name explains where a file that was left by a power cut comes
-// from.
-constexpr const char *kPrefix = ".clarity-", *kSuffix = ".tmp";
+// ".clarity-HOST-PID-START-N.tmp": the dot hides the file, and the program's name explains where a file that was left by a
+// power cut comes from. START, seconds since 1970, keeps processes apart that get one number after each other.
+std::string temporary_prefix() {
+    return ".clarity-" + host_name() + "-";
+}
+constexpr const char* kSuffix = ".tmp";
 std::string next_temporary_name(const std::string& folder) {
     static std::atomic<unsigned> number{0};
-    return folder + kPrefix + std::to_string(getpid()) + "-" + std::to_string(number++) + kSuffix;
+    static const long start = static_cast<long>(time(nullptr));
+    return folder + temporary_prefix() + std::to_string(getpid()) + "-" + std::to_string(start) + "-" +
+           std::to_string(number++) + kSuffix;
 }
+// Three numbers between prefix and suffix: the name of another host may begin like this one's.
 bool is_temporary_name(const std::string& name) {
-    const size_t prefix = std::strlen(kPrefix), suffix = std::strlen(kSuffix);
-    return name.size() > prefix + suffix && name.compare(0, prefix, kPrefix) == 0 &&
-           name.compare(name.size() - suffix, suffix, kSuffix) == 0;
+    const std::string prefix = temporary_prefix();
+    const size_t suffix = std::strlen(kSuffix);
+    if (name.size() <= prefix.size() + suffix || name.compare(0, prefix.size(), prefix) != 0 ||
+        name.compare(name.size() - suffix, suffix, kSuffix) != 0)
+        return false;
+    const std::string numbers = name.substr(prefix.size(), name.size() - prefix.size() - suffix);
+    return numbers.find_first_not_of("0123456789-") == std::string::npos &&
+           std::count(numbers.begin(), numbers.end(), '-') == 2;
 }
 
-// Removes temporary files of killed processes from `folder`. A running writer holds a lock on its file. The system releases the
-// lock when the process ends, also on another machine that shares the folder. Failures are ignored: the next write tries again.
+// Removes temporary files of this host's killed processes from `folder`. A running writer holds a lock on its file, which the
+// system releases when the process ends. Files of other hosts stay: some shared file systems have locks that only one host
+// sees. Failures are ignored: the next write tries again.
 void remove_leftovers(const std::string& folder) {
     const std::unique_ptr<DIR, int (*)(DIR*)> all(opendir(folder.c_str()), closedir);
     if (!all) return;
@@ -155,6 +170,11 @@ void OutputFile::write(const void* data, size_t bytes) {
         at += written;
         bytes -= static_cast<size_t>(written);
     }
+}
+
+void OutputFile::sync() {
+    // Pipes and some file systems have nothing to wait for.
+    if (fsync(file_) != 0 && errno != EINVAL && errno != ENOTSUP && errno != EROFS) fail("cannot be written", errno);
 }
 
 void OutputFile::commit() {

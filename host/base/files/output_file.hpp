@@ -7,7 +7,8 @@ namespace clarity {
 
 // A new file. It is invisible to others until commit() gives it its name or replaces an older file of that name. A file that is
 // not committed leaves nothing behind, even if the process is killed. Exception: where the file system has no files without a
-// name (NFS, FAT), a killed process leaves `.clarity-PID-N.tmp`; the next process that writes into the folder removes it.
+// name (NFS, FAT), a killed process leaves `.clarity-HOST-PID-START-N.tmp`; the next process of that host that writes into the
+// folder removes it.
 // `path` may also be a device or a pipe (/dev/stdout), which is written directly. Every failure throws Error(failed), which
 // names the file and the reason. For one thread at a time.
 class OutputFile {
@@ -18,6 +19,8 @@ class OutputFile {
     OutputFile& operator=(const OutputFile&) = delete;
 
     void write(const void* data, size_t bytes);
+    // Waits until what was written is on the disk, so that the file is also whole if the power fails after commit().
+    void sync();
     // Finishes the file: afterwards it is complete and has its name.
     void commit();
 

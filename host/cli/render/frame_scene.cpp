@@ -4,7 +4,9 @@
 #include <functional>
 #include <utility>
 
+#include "base/digest.hpp"
 #include "cli/pose_options.hpp"
+#include "import/scene_digest.hpp"
 
 namespace clarity {
 namespace {
@@ -31,6 +33,7 @@ void FrameScene::take(std::shared_ptr<const Scene> imported) {
     imported_ = std::move(imported);
     rest_ = imported_;
     scene_.reset();
+    digest_.clear();
     if (!imported_) return;
     const InstanceEdits instances = instance_edits(*imported_, words_.edits);
     if (!instances.empty()) rest_ = std::make_shared<const Scene>(with_edits(*imported_, instances));
@@ -40,9 +43,42 @@ bool FrameScene::follows_frames() const {
     return !options_.frames.empty() && !pose_.time_s && (moves(*imported_) || has_path_);
 }
 
-void FrameScene::place(std::optional<int> frame) {
+PoseOptions FrameScene::pose_of(std::optional<int> frame) const {
     PoseOptions pose = pose_;
     if (frame) pose.time_s = time_of_frame(*frame, frame_rate(find_clip(*imported_, pose.clip), options_.fps));
+    return pose;
+}
+
+void FrameScene::describe(Digest& digest, std::optional<int> frame) {
+    if (digest_.empty()) digest_ = import::scene_digest(*imported_);
+    digest.add(digest_);
+    digest.add(options_.trace.camera);
+    digest.add(options_.trace.light);
+    for (const Word& word : words_.edits) digest.add(word.key), digest.add(word.value);
+    const PoseOptions pose = pose_of(frame);
+    const bool at_rest = !pose.time_s && pose.clip.empty(), plays = moves(*imported_) || has_path_;
+    digest.add(frame ? "frame" : "");  // which follows a camera path in any case
+    if (at_rest || !plays) return;
+    const ClipInfo clip = find_clip(*imported_, pose.clip);
+    const double time_s = pose.time_s.value_or(clip.begin_s);
+    const double open_s = blurs(words_.settings) ? words_.settings.shutter / frame_rate(clip, options_.fps) : 0;
+    digest.add(clip.name);
+    digest.add_value(time_s);
+    digest.add_value(open_s);
+    if (imported_->motion.sequences.empty()) return;
+    // The scene knows the numbers of a sequence's files only. Those that the picture shows are read.
+    for (const double at : {time_s - open_s / 2, time_s, time_s + open_s / 2}) {
+        for (const PosedMesh& mesh : evaluate(*imported_, clip.name, at, std::ref(sequences_)).meshes) {
+            digest.add_value(mesh.mesh);
+            digest.add_bytes(mesh.positions.data(), mesh.positions.size() * sizeof(float));
+            digest.add_bytes(mesh.normals.data(), mesh.normals.size() * sizeof(float));
+        }
+        if (open_s == 0) break;
+    }
+}
+
+void FrameScene::place(std::optional<int> frame) {
+    const PoseOptions pose = pose_of(frame);
     const bool at_rest = !pose.time_s && pose.clip.empty(), plays = moves(*imported_) || has_path_;
     const bool is_still = at_rest || (has_path_ && !moves(*imported_));
     scene_ = is_still ? rest_ : std::make_shared<const Scene>(at_pose(*rest_, pose, std::ref(sequences_)));

@@ -1,5 +1,4 @@
 // clarity render: renders a scene to picture files, without a window.
-#include <algorithm>
 #include <chrono>
 #include <condition_variable>
 #include <cstdio>
@@ -8,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <thread>
 #include <utility>
 
 #include "base/elapsed.hpp"
@@ -15,14 +15,21 @@
 #include "base/files/file_watch.hpp"
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
+#include "base/host_name.hpp"
 #include "base/log.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
-#include "cli/render/frame_range.hpp"
+#include "cli/render/frame_claim.hpp"
+#include "cli/render/frame_record.hpp"
 #include "cli/render/frame_scene.hpp"
+#include "cli/render/picture_checkpoint.hpp"
+#include "cli/render/picture_digest.hpp"
+#include "cli/render/picture_tracer.hpp"
+#include "cli/render/render_checks.hpp"
 #include "cli/render/render_progress.hpp"
 #include "cli/render/render_stats.hpp"
+#include "cli/render/verify.hpp"
 #include "device/kernel_watch.hpp"
 #include "plugin/library_watch.hpp"
 #include "render/multi/multi_device_film.hpp"
@@ -33,38 +40,13 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Each repetition stores two times of 8 bytes, and there is one more pass to warm up: with this bound neither memory nor the
-// pass counter comes near its limit.
-constexpr unsigned kMaxRepeat = 1000000;
-
-// Checks all options which can be checked before any work is done. Throws Error.
-void check_options(const RenderOptions& options, const Settings& settings, const FrameRange& range) {
-    check_output_path(frame_path(options.output, range.first));
-    if (range.count() > 1 && frame_path(options.output, 1) == frame_path(options.output, 2))
-        throw Error(Exit::usage, "--frames " + options.frames + " would write " + std::to_string(range.count()) +
-                                     " pictures to " + options.output + ": put #### into its name, for the frame's number");
-    if (writes_display(options.output) && uint64_t(settings.width) * uint64_t(settings.height) > kPngMaxPixels)
-        throw Error(Exit::usage, "--size: a PNG of so many pixels is beyond its encoder; write .exr or .pfm");
-    if (!options.stats_file.empty() && options.stats_file != "-") check_writable(options.stats_file);
-    if (options.repeat < 1 || options.repeat > kMaxRepeat)
-        throw Error(Exit::usage, "--repeat " + std::to_string(options.repeat) + ": expected a number from 1 to " +
-                                     std::to_string(kMaxRepeat));
-    check_pose(options.pose);
-    if (options.skip_existing && options.watch)
-        throw Error(Exit::usage, "--skip-existing leaves the pictures that --watch is to render again; leave one of them out");
-    // The numbers of a camera can be checked without a scene, its name cannot.
-    const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
-                                                         options.trace.camera.find_first_of("0123456789+-.") != 0);
-    make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
-}
-
 class RenderJob {
  public:
     RenderJob(const PluginRegistry& plugins, const RenderOptions& options)
         : options_(options),
           words_(read_trace_options(plugins, options.trace)),
           settings_(words_.settings),
-          range_(options.frames.empty() ? FrameRange{} : parse_frame_range(options.frames)),
+          range_(frames_of(options)),
           plugins_(plugins),
           bar_(options.quiet),
           scene_(plugins, options, words_, bar_) {
@@ -73,9 +55,12 @@ class RenderJob {
     }
 
     int run() {
-        check_options(options_, settings_, range_);
+        check_render_options(options_, settings_, range_);
         check_scene(plugins_, options_.scene);
-        if (!next(range_.first)) return static_cast<int>(tell_skipped(0));
+        if (range_.count() == 0) {
+            log(LogLevel::info, "--frames-of " + options_.frames_of + ": there are fewer frames, so that this share is empty");
+            return static_cast<int>(Exit::done);
+        }
         const CancelOnSignal cancel(bar_);
         take_devices(open_devices(choose_devices(words_.device)));
         for (const DeviceInfo& info : stats_.devices) log(LogLevel::debug, "device " + info.id() + " " + info.name);
@@ -87,22 +72,62 @@ class RenderJob {
     // Imports, builds and compiles what is not up to date, then renders all pictures.
     Exit round(Progress& progress) {
         if (!scene_.imported()) import(progress);
-        const bool moving = scene_.follows_frames();
+        moving_ = scene_.follows_frames();
+        still_digest_.clear();
         std::optional<MultiFrameRenderer> frames;  // made when its program has been compiled, which prepare() can cancel
-        long rendered = 0;
-        for (auto number = next(range_.first); number; number = next(long(*number) + range_.step), ++rendered) {
-            if (moving || !scene_.placed()) scene_.place(moving ? number : std::nullopt);
-            if (moving || rendered == 0) prepare(progress);
-            if (!frames) frames.emplace(devices_);
-            const bool whole = render(*frames, *number, progress);
-            if (!whole) return Exit::interrupted;
+        std::vector<int> left;
+        for (long number = range_.first; number <= range_.last; number += range_.step) left.push_back(int(number));
+        for (long rendered = 0;;) {
+            std::vector<int> claimed;  // by other processes
+            for (const int number : left) {
+                if (progress.cancelled()) return Exit::interrupted;
+                const std::string digest = digest_of(number);
+                std::unique_ptr<FrameClaim> claim;
+                if (options_.skip_existing) {
+                    if (is_there(number, digest)) continue;
+                    claim = FrameClaim::take(frame_path(options_.output, number));
+                    if (!claim) claimed.push_back(number);
+                    // The process that had the claim may just have finished.
+                    if (!claim || is_there(number, digest)) continue;
+                }
+                const auto begin = Clock::now();
+                if (moving_ || !scene_.placed()) scene_.place(moving_ ? std::optional<int>(number) : std::nullopt);
+                if (moving_ || rendered == 0) prepare(progress);
+                if (!frames) frames.emplace(devices_);
+                if (!render(*frames, {number, digest, begin}, progress)) return Exit::interrupted;
+                ++rendered;
+            }
+            left = std::move(claimed);
+            if (left.empty()) {
+                if (rendered > 0) report();
+                return tell_skipped(rendered);
+            }
+            if (!wait_for_others(left.size(), progress)) return Exit::interrupted;
         }
-        if (rendered > 0) report();
-        return tell_skipped(rendered);
     }
 
-    std::optional<int> next(long from) const {
-        return next_frame(range_, from, options_.skip_existing ? options_.output : std::string());
+    // Whether frames are recorded, and their pictures have their names only when they are complete.
+    bool records() const { return !options_.frames.empty() || options_.skip_existing; }
+
+    std::string digest_of(int number) {
+        const auto digest = [&](std::optional<int> frame) { return picture_digest(scene_, settings_, frame, options_.output); };
+        if (moving_) return digest(number);
+        if (still_digest_.empty()) still_digest_ = digest(std::nullopt);
+        return still_digest_;
+    }
+
+    bool is_there(int number, const std::string& digest) const {
+        return is_rendered(frame_path(options_.output, number), digest);
+    }
+
+    // Waits a moment until other processes have finished their frames, or their claims have expired. Returns false after a
+    // signal.
+    bool wait_for_others(size_t how_many, Progress& progress) {
+        if (!std::exchange(waits_, true))
+            log(LogLevel::info, std::to_string(how_many) + " of " + std::to_string(range_.count()) +
+                                    " pictures are being rendered by other processes; waiting for them");
+        for (int i = 0; i < 5 && !progress.cancelled(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        return !progress.cancelled();
     }
 
     Exit tell_skipped(long rendered) const {
@@ -234,119 +259,103 @@ class RenderJob {
         log(LogLevel::debug, line);
     }
 
-    // Renders one picture, with --repeat several times. Returns false if interrupted; the samples done so far are then written.
-    bool render(MultiFrameRenderer& frames, int number, Progress& progress) {
-        bar_.stage("rendering " + std::filesystem::path(frame_path(options_.output, number)).filename().string());
+    struct Frame {
+        int number;
+        std::string digest;
+        Clock::time_point begin;
+    };
+
+    // Renders one picture, with --repeat several times. Returns false if interrupted. The samples done so far are then in the
+    // checkpoint; without one, they are written as the picture, unless pictures have to be complete.
+    bool render(MultiFrameRenderer& frames, const Frame& frame, Progress& progress) {
+        const std::string path = frame_path(options_.output, frame.number);
+        bar_.stage("rendering " + std::filesystem::path(path).filename().string());
+        const auto all = unsigned(settings_.spp);
+        PictureCheckpoint checkpoint(options_, frame.number, frame.digest, way_of_tracing(stats_.devices, *stats_.prepared),
+                                     all);
+        resumed_ = 0;
         // The first pass counts rays, which costs a little time, and warms up caches; timed passes come after it.
         const bool warm_up = options_.repeat > 1;
         const unsigned passes = options_.repeat + (warm_up ? 1 : 0);
-        unsigned samples = 0;
-        for (unsigned pass = 0; pass < passes; ++pass) {
-            const bool count = pass == 0, timed = !(warm_up && pass == 0);
-            samples = trace_pass(frames, count, timed, double(pass) / passes, 1.0 / passes, progress);
-            if (samples < unsigned(settings_.spp)) break;
-        }
-        const bool whole = samples == unsigned(settings_.spp);
+        PictureTracer::Traced traced{all, true};
+        for (unsigned pass = 0; pass < passes && traced.samples == all; ++pass)
+            traced = trace_pass(frames, checkpoint, pass == 0, !(warm_up && pass == 0), double(pass) / passes, 1.0 / passes,
+                                progress);
+        const bool whole = traced.samples == all;
         bar_.clear();
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
-        // A picture with fewer samples than asked for would be taken for a whole one the next time.
-        const bool keep = samples > 0 && (whole || !options_.skip_existing);
-        if (keep) {
-            if (!whole) take_time_to_stop();
-            write(frames, number);
+        if (!whole) take_time_to_stop();
+        if (!whole && checkpoint.saves()) {
+            if (traced.exact && traced.samples > checkpoint.saved()) checkpoint.save(frames, traced.samples);
+            tell_interrupted(checkpoint.saved() == 0
+                                 ? "no sample was complete, nothing is written"
+                                 : checkpoint.path() + " holds " + std::to_string(checkpoint.saved()) + " of " +
+                                       std::to_string(all) + " samples a pixel; the same command with --resume " +
+                                       checkpoint.path() + " goes on with them");
+            return false;
         }
-        if (!whole)
-            log(LogLevel::warning,
-                "interrupted: " + (!keep ? (samples == 0 ? "no sample was complete" : "the picture was not complete") +
-                                               std::string(", nothing is written")
-                                         : frame_path(options_.output, number) + " holds " + std::to_string(samples) + " of " +
-                                               std::to_string(settings_.spp) + " samples a pixel"));
+        // A picture with fewer samples than asked for would be taken for a whole one the next time.
+        if (whole || (traced.samples > 0 && !records())) write(frames, frame, path);
+        if (whole)
+            checkpoint.remove();
+        else if (traced.samples > 0 && !records())
+            tell_interrupted(path + " holds " + std::to_string(traced.samples) + " of " + std::to_string(all) +
+                             " samples a pixel");
+        else
+            tell_interrupted((traced.samples == 0 ? "no sample was complete" : "the picture was not complete") +
+                             std::string(", nothing is written"));
         return whole;
     }
 
-    FrameStats trace_samples(MultiFrameRenderer& frames, unsigned first, unsigned how_many, bool count, Progress& progress) {
-        if (!blur_) return frames.trace(prepared_, settings_, scene_.view(), first, count, progress, how_many);
-        FrameStats stats;
-        for (unsigned i = first; i < first + how_many; ++i) {
-            PartOf part(progress, double(i - first) / how_many, 1.0 / how_many);
-            const MotionBlur::Sample& sample = blur_->at(i, scene_.view(), part);
-            const FrameStats one = frames.trace(sample.prepared, settings_, scene_.view(sample), i, count, part);
-            add_stats(stats, one);
-            add_shares(stats.devices, one.devices);
-        }
-        return stats;
-    }
+    static void tell_interrupted(const std::string& what) { log(LogLevel::warning, "interrupted: " + what); }
 
-    // Traces all samples of one frame. Returns the number of complete samples.
-    unsigned trace_pass(MultiFrameRenderer& frames, bool count, bool timed, double from, double share, Progress& progress) {
-        if (count) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
-        double device_ms = 0, wall_ms = 0;
-        const auto all = unsigned(settings_.spp);
-        std::vector<DeviceShare> devices;
-        for (unsigned sample = 0, next = std::min(all, 2u); sample < all;
-             sample += std::exchange(next, batch(wall_ms, sample + next))) {
-            const double at = from + share * sample / all;
-            // A short sample is one launch, during which cancelling is not checked.
-            if (!progress.report(float(at))) return sample;
-            PartOf part(progress, at, share * next / all);
-            FrameStats frame;
+    PictureTracer::Traced trace_pass(MultiFrameRenderer& frames, PictureCheckpoint& checkpoint, bool counts, bool timed,
+                                     double from, double share, Progress& progress) {
+        PictureTracer::Pass pass;
+        pass.counts = counts, pass.timed = timed, pass.from = from, pass.share = share;
+        if (checkpoint.saves()) pass.between = [&](unsigned samples) { checkpoint.offer(frames, samples); };
+        for (;;) {
+            pass.first = resumed_ = checkpoint.resume(frames, prepared_, settings_);
             try {
-                frame = trace_samples(frames, sample, next, count, part);
-            } catch (const Cancelled&) {
-                return frames.samples();
-            } catch (const SamplesLost&) {
-                return trace_pass(frames, count, timed, from, share, progress);
-            }
-            device_ms += frame.device_ms;
-            wall_ms += frame.wall_ms;
-            add_shares(devices, frame.devices);
-            if (count) {
-                stats_.primary += frame.primary;
-                stats_.shadow += frame.shadow;
-                stats_.secondary += frame.secondary;
-                stats_.dropped += frame.dropped;
-                stats_.overflowed += frame.overflowed;
+                return PictureTracer(frames, settings_, stats_).trace({prepared_, scene_, blur_.get()}, pass, progress);
+            } catch (const SamplesLost&) {  // of a device that takes no further part: the other devices begin again
             }
         }
-        stats_.shares = devices;
-        if (timed) {
-            stats_.frame_ms.push_back(device_ms);
-            stats_.wall_ms.push_back(wall_ms);
-        }
-        return all;
     }
 
-    // Number of samples to trace in the next batch, after `done` samples took wall_ms: about 100 ms. Longer batches delay the
-    // progress bar; shorter ones make several devices wait for each other more often.
-    unsigned batch(double wall_ms, unsigned done) const {
-        constexpr double kBatchMs = 100;
-        const double each = std::max(wall_ms / done, 1e-3);
-        return std::min(unsigned(std::clamp(kBatchMs / each, 1.0, 1024.0)),
-                        unsigned(settings_.spp) - std::min(done, unsigned(settings_.spp)));
-    }
-
-    static void add_shares(std::vector<DeviceShare>& sum, const std::vector<DeviceShare>& more) {
-        if (sum.size() != more.size()) sum.assign(more.size(), {});
-        for (size_t i = 0; i < more.size(); ++i) {
-            DeviceShare total = more[i];
-            total.device_ms += sum[i].device_ms;
-            total.wall_ms += sum[i].wall_ms;
-            total.launches += sum[i].launches;
-            sum[i] = total;
-        }
-    }
-
-    void write(MultiFrameRenderer& frames, int number) {
-        const std::string path = frame_path(options_.output, number);
+    void write(MultiFrameRenderer& frames, const Frame& frame, const std::string& path) {
         const bool png = writes_display(path);
         const FloatImage values = png ? FloatImage{} : frames.read_values();
         const ByteImage display = png ? frames.read_display(settings_) : ByteImage{};
         if (stats_.first_picture_ms == 0) stats_.first_picture_ms = ms_since(begin_);
-        write_image(path, values, display);
+        const std::string command = render_words(options_, moving_ ? std::optional<int>(frame.number) : std::nullopt);
+        PictureNotes notes;
+        notes.texts = {{"Software", std::string("clarity ") + CLARITY_VERSION}, {"Command", command}, {"Digest", frame.digest}};
+        notes.sync = records() || !options_.checkpoint.empty() || !options_.resume.empty();
+        write_image(path, values, display, notes);
+        if (records()) record(frame, path, command, png ? pixel_digest(display) : pixel_digest(values));
         char times[96] = "";
         if (!stats_.frame_ms.empty())
             std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
         log(LogLevel::info, path + times);
+    }
+
+    void record(const Frame& frame, const std::string& path, const std::string& command, const std::string& pixels) {
+        FrameRecord record;
+        record.frame = frame.number;
+        record.picture = std::filesystem::path(path).filename().string();
+        record.digest = frame.digest;
+        record.pixels = pixels;
+        record.file_digest = file_digest(path);
+        record.seconds = seconds_since(frame.begin);
+        record.samples = unsigned(settings_.spp);
+        record.of_resumed = resumed_;
+        record.host = host_name();
+        record.device = devices_name(stats_.devices);
+        record.command = command;
+        record.options = options_;
+        if (!options_.frames.empty()) record.options.frames = std::to_string(frame.number);
+        write_record(record, record_path(path));
     }
 
     void report() {
@@ -375,6 +384,10 @@ class RenderJob {
     Devices devices_;
     std::function<bool()> superseded_;  // with --watch: true if a save has made this round obsolete
     FrameScene scene_;
+    bool moving_ = false;       // each frame shows the scene at a time of its own
+    std::string still_digest_;  // of the picture, if it is the same in all frames; empty: not yet known
+    bool waits_ = false;        // the user has been told that other processes render
+    unsigned resumed_ = 0;      // samples of the picture that a checkpoint had
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;
     std::unique_ptr<MotionBlur> blur_;  // nullptr: all samples of a picture are at one time
@@ -384,6 +397,7 @@ class RenderJob {
 }  // namespace
 
 int run_render(const PluginRegistry& plugins, const RenderOptions& options) {
+    if (options.verify) return run_verify(plugins, options);
     return RenderJob(plugins, options).run();
 }
 

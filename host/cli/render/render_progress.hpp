@@ -25,6 +25,20 @@ class PartOf : public Progress {
     const double from_, share_;
 };
 
+// Reports progress, but is never cancelled: for work that must come to its end.
+class Uncancelled : public Progress {
+ public:
+    explicit Uncancelled(Progress& whole) : whole_(whole) {}
+    bool report(float fraction) override {
+        whole_.report(fraction);
+        return true;
+    }
+    bool cancelled() const override { return false; }
+
+ private:
+    Progress& whole_;
+};
+
 // Cancels a round of --watch, without a message, when a saved file has made it obsolete.
 class UntilSaved : public Progress {
  public:

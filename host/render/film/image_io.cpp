@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "base/files/output_file.hpp"
+#include "render/film/png_text.hpp"
 
 // Static, because the window links the stb library too.
 #define STB_IMAGE_WRITE_STATIC
@@ -24,6 +25,7 @@
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStdIO.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #endif
 
 namespace clarity {
@@ -61,7 +63,14 @@ void check_size(const std::string& path, unsigned width, unsigned height, unsign
                                       " values, but " + std::to_string(found) + " were given");
 }
 
-void write_png(const std::string& path, const ByteImage& image) {
+void write_whole(const std::string& path, const std::string& bytes, const PictureNotes& notes) {
+    OutputFile file(path);
+    file.write(bytes.data(), bytes.size());
+    if (notes.sync) file.sync();
+    file.commit();
+}
+
+void write_png(const std::string& path, const ByteImage& image, const PictureNotes& notes) {
     check_size(path, image.width, image.height, 4, image.pixels.size());
     const size_t pixels = size_t(image.width) * image.height;
     if (pixels > kPngMaxPixels)
@@ -75,28 +84,27 @@ void write_png(const std::string& path, const ByteImage& image) {
         packed.resize(3 * pixels);
         for (size_t i = 0; i < pixels; ++i) std::memcpy(&packed[3 * i], &image.pixels[4 * i], 3);
     }
-    OutputFile file(path);
     struct Sink {
-        OutputFile& file;
-        std::exception_ptr failure;  // an exception must not pass through the C library
-    } sink{file, nullptr};
+        std::string bytes;
+        bool failed = false;  // an exception must not pass through the C library
+    } sink;
     const auto append = [](void* context, void* data, int bytes) {
         Sink& to = *static_cast<Sink*>(context);
         try {
-            to.file.write(data, static_cast<size_t>(bytes));
+            to.bytes.append(static_cast<const char*>(data), static_cast<size_t>(bytes));
         } catch (...) {
-            to.failure = std::current_exception();
+            to.failed = true;
         }
     };
     const int done =
         stbi_write_png_to_func(append, &sink, static_cast<int>(image.width), static_cast<int>(image.height), channels,
                                opaque ? packed.data() : image.pixels.data(), static_cast<int>(image.width) * channels);
-    if (sink.failure) std::rethrow_exception(sink.failure);
-    if (!done) throw Error(Exit::failed, path + ": not written: the PNG encoder ran out of memory");
-    file.commit();
+    if (!done || sink.failed) throw Error(Exit::failed, path + ": not written: the PNG encoder ran out of memory");
+    add_png_texts(sink.bytes, notes.texts);
+    write_whole(path, sink.bytes, notes);
 }
 
-void write_pfm(const std::string& path, const FloatImage& image) {
+void write_pfm(const std::string& path, const FloatImage& image, const PictureNotes& notes) {
     if (image.channels != 1 && image.channels != 3)
         throw Error(Exit::failed,
                     path + ": not written: PFM holds 1 or 3 channels, this picture has " + std::to_string(image.channels));
@@ -119,6 +127,7 @@ void write_pfm(const std::string& path, const FloatImage& image) {
         file.write(values, row * sizeof(float));
 #endif
     }
+    if (notes.sync) file.sync();
     file.commit();
 }
 
@@ -141,11 +150,12 @@ class ExrStream : public Imf::OStream {
     uint64_t at_ = 0;
 };
 
-std::string encode_exr(const std::string& path, const FloatImage& image) {
+std::string encode_exr(const std::string& path, const FloatImage& image, const PictureNotes& notes) {
     std::vector<const char*> names = {"Y"};
     if (image.channels == 3) names = {"R", "G", "B"};
     Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
     header.compression() = Imf::ZIP_COMPRESSION;
+    for (const auto& [key, value] : notes.texts) header.insert(key, Imf::StringAttribute(value));
     Imf::FrameBuffer frame;
     // The library's slices are not const, but an output file only reads them.
     char* base = reinterpret_cast<char*>(const_cast<float*>(image.pixels.data()));
@@ -164,32 +174,32 @@ std::string encode_exr(const std::string& path, const FloatImage& image) {
     return bytes;
 }
 
-void write_exr(const std::string& path, const FloatImage& image) {
+void write_exr(const std::string& path, const FloatImage& image, const PictureNotes& notes) {
     if (image.channels != 1 && image.channels != 3)
         throw Error(Exit::failed,
                     path + ": not written: 1 or 3 channels are supported, this picture has " + std::to_string(image.channels));
     std::string bytes;
     try {
-        bytes = encode_exr(path, image);
+        bytes = encode_exr(path, image, notes);
     } catch (const std::exception& e) {
         throw Error(Exit::failed, path + ": not written: OpenEXR says: " + e.what());
     }
-    write_text_file(path, bytes);
+    write_whole(path, bytes, notes);
 }
 #else
-void write_exr(const std::string& path, const FloatImage&) {
+void write_exr(const std::string& path, const FloatImage&, const PictureNotes&) {
     check_ending(path);
 }
 #endif
 
 }  // namespace
 
-void write_image(const std::string& path, const FloatImage& values, const ByteImage& display) {
+void write_image(const std::string& path, const FloatImage& values, const ByteImage& display, const PictureNotes& notes) {
     check_ending(path);
     const Format format = format_of(path);
-    if (format == Format::png) return write_png(path, display);
+    if (format == Format::png) return write_png(path, display, notes);
     check_size(path, values.width, values.height, values.channels, values.pixels.size());
-    return format == Format::exr ? write_exr(path, values) : write_pfm(path, values);
+    return format == Format::exr ? write_exr(path, values, notes) : write_pfm(path, values, notes);
 }
 
 bool writes_display(const std::string& path) {

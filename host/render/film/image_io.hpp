@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "render/film/byte_image.hpp"
@@ -17,10 +18,16 @@ struct FloatImage {
 // The PNG encoder counts bytes in an int.
 inline constexpr uint64_t kPngMaxPixels = 1u << 27;
 
+// What a picture's file says besides its pixels.
+struct PictureNotes {
+    std::vector<std::pair<std::string, std::string>> texts;  // key, value in UTF-8; PNG and EXR keep them
+    bool sync = false;                                       // wait for the disk before the file gets its name
+};
+
 // Writes a picture in the format of the path's ending: .png from `display`; .exr or .pfm from `values` (1 or 3 channels; +inf
 // and -1 are exact). Writes a temporary file in the same folder, then renames it. Throws Error(failed) with file and reason,
 // and Error(usage) for another ending.
-void write_image(const std::string& path, const FloatImage& values, const ByteImage& display);
+void write_image(const std::string& path, const FloatImage& values, const ByteImage& display, const PictureNotes& notes = {});
 // Whether write_image() uses `display` for this path. The other image may then be empty.
 bool writes_display(const std::string& path);
 // Throws Error(usage) if the ending is unknown or the folder is missing or not writable. Call it before any work.

@@ -328,6 +328,29 @@ void FrameRenderer::read_values(FloatImage& image) {
     });
 }
 
+void FrameRenderer::read_sums(FloatImage& image) {
+    Impl& im = *impl_;
+    wrap_cl_errors(*im.device, "reading the film", [&] {
+        read_bands(im.device->queue(), im.film.get(), im.group_rows().bands(), im.film_bytes(im.width), image.pixels.data());
+        im.device->queue().finish();
+    });
+}
+
+void FrameRenderer::write_sums(const Prepared& prepared, const Settings& settings, const FloatImage& sums,
+                               const SharedRows* shared) {
+    Impl& im = *impl_;
+    wrap_cl_errors(*im.device, "putting samples back", [&] {
+        Progress never_cancelled;
+        im.begin({prepared, settings, View{}, shared, never_cancelled});
+        const std::vector<rt_u32> rows(im.rows.begin() + std::ptrdiff_t(shared ? shared->begin : 0), im.rows.end());
+        const size_t row_bytes = im.film_bytes(im.width);
+        for (const Band& band : GroupRows{im.width, im.height, im.layout.row_height(), rows}.bands())
+            im.device->queue().enqueueWriteBuffer(im.film.get(), CL_FALSE, band.first * row_bytes, band.count * row_bytes,
+                                                  reinterpret_cast<const char*>(sums.pixels.data()) + band.first * row_bytes);
+        im.device->queue().finish();
+    });
+}
+
 FloatImage FrameRenderer::read_distance() {
     FloatImage image = impl_->image(1);
     return read_distance(image) ? image : FloatImage{};

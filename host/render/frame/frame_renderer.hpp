@@ -64,6 +64,12 @@ class FrameRenderer {
     // false if the distance is not known.
     void read_values(FloatImage& image);
     bool read_distance(FloatImage& image);
+    // The film as it is, for checkpoints of colours: 4 channels, sums of r, g and b and the number of samples. read_sums()
+    // writes the traced rows into an image of the whole picture. write_sums() puts rows back, those of `shared` from its
+    // `begin` on, so that trace() goes on with the sample after them. The arguments are those of that trace().
+    void read_sums(FloatImage& image);
+    void write_sums(const Prepared& prepared, const Settings& settings, const FloatImage& sums,
+                    const SharedRows* shared = nullptr);
     // Writes the traced rows into a picture of the whole size: RGBA8, top row first. Only for colours.
     void read_display(const Settings& settings, uint8_t* rgba, std::vector<KernelTime>& times);
     // Appends the times of that work if trace() did it (SharedRows::display).

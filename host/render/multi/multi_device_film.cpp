@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <numeric>
+#include <utility>
 
 #include "base/elapsed.hpp"
 #include "base/log.hpp"
@@ -209,6 +210,16 @@ void MultiDeviceFilm::give(Member& member, const std::vector<unsigned>& tiles) {
     }
 }
 
+void MultiDeviceFilm::resume(std::shared_ptr<const FloatImage> sums, unsigned samples) {
+    start_ = {std::move(sums), samples, true};
+}
+
+// Fills the rows that were just given to a member with the samples that the picture began with.
+void MultiDeviceFilm::put_start(Member& member) {
+    if (start_.sums && member.rows.begin < member.rows.rows.size())
+        member.frames->write_sums(*member.prepared, settings_, *start_.sums, &member.rows);
+}
+
 // Traces the rows that were given to a member. Returns the time, ms by the host's clock.
 double MultiDeviceFilm::trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress,
                                    uint8_t* display) {
@@ -236,6 +247,7 @@ void MultiDeviceFilm::trace_part(size_t index, const Batch& batch, bool count_ra
     if (batch.fresh && scheduler_->dynamic()) {
         for (auto tiles = scheduler_->next(index); !tiles.empty(); tiles = scheduler_->next(index)) {
             give(member, tiles);
+            put_start(member);
             scheduler_->took(index, tiles.size(), trace_rows(member, sample, false, progress));
         }
         if (count_rays && !member.tiles.empty()) {
@@ -247,6 +259,7 @@ void MultiDeviceFilm::trace_part(size_t index, const Batch& batch, bool count_ra
         since = Clock::now();
     } else if (batch.fresh) {
         give(member, scheduler_->next(index));
+        put_start(member);
     }
     member.rows.begin = 0;
     if (first < end) {
@@ -263,11 +276,12 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
                                   uint8_t* display) {
     const auto begin = Clock::now();
     for (Member& member : members_) member.displayed = false;
-    const bool fresh = sample == 0 || !goes_on(*prepared, settings);
+    if (sample == 0) start_ = {};
+    const bool fresh = sample == 0 || std::exchange(start_.is_new, false) || !goes_on(*prepared, settings);
     prepared_ = prepared;
     settings_ = settings;
     view_ = view;
-    if (fresh && sample > 0 && blurs(settings)) throw SamplesLost();
+    if (fresh && sample > start_.samples && blurs(settings)) throw SamplesLost();
     if (fresh)
         cut();
     else
@@ -310,7 +324,7 @@ std::vector<std::vector<unsigned>> MultiDeviceFilm::orphans() const {
 
 // Traces the tiles of failed devices again, with all samples that are complete elsewhere.
 void MultiDeviceFilm::recover(Progress& progress) {
-    for (unsigned complete = samples(); complete > 0;) {
+    for (unsigned complete = samples(); complete > start_.samples;) {
         const std::vector<std::vector<unsigned>> more = orphans();
         if (std::all_of(more.begin(), more.end(), [](const auto& tiles) { return tiles.empty(); })) return;
         if (blurs(settings_)) throw SamplesLost();
@@ -318,7 +332,8 @@ void MultiDeviceFilm::recover(Progress& progress) {
             if (more[i].empty()) return;
             members_[i].displayed = false;
             give(members_[i], more[i]);
-            trace_rows(members_[i], {0, complete}, false, progress);
+            put_start(members_[i]);
+            trace_rows(members_[i], {start_.samples, complete - start_.samples}, false, progress);
         });
     }
 }

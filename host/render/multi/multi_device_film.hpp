@@ -36,6 +36,9 @@ class MultiDeviceFilm {
     // device copies its displayed rows there as soon as it is done.
     FrameStats trace(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings, const View& view,
                      unsigned sample, unsigned end, bool count_rays, Progress& progress, uint8_t* display = nullptr);
+    // The next picture begins with these sums of `samples` samples (FrameRenderer::read_sums()): the next trace() starts with
+    // sample `samples` and deals all tiles anew.
+    void resume(std::shared_ptr<const FloatImage> sums, unsigned samples);
     // Whether every device has copied all of its rows to `display`. If so, each device's `times` get those of this work.
     bool displayed(std::vector<std::vector<KernelTime>>& times) const;
     // The number of samples that all devices have completed.
@@ -73,11 +76,18 @@ class MultiDeviceFilm {
         bool fresh;
         uint8_t* display;
     };
+    // What the films hold before the first sample that is traced here.
+    struct Start {
+        std::shared_ptr<const FloatImage> sums;  // null: nothing
+        unsigned samples = 0;
+        bool is_new = false;  // no sample after it has been traced
+    };
     void cut();
     void take_tiles();
     bool deal_by_speed(unsigned end, double wall_ms);
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& tiles);
+    void put_start(Member& member);
     double trace_rows(Member& member, const Samples& samples, bool count_rays, Progress& progress, uint8_t* display = nullptr);
     void trace_part(size_t index, const Batch& batch, bool count_rays, Progress& progress);
     std::vector<std::vector<unsigned>> orphans() const;
@@ -93,6 +103,7 @@ class MultiDeviceFilm {
     std::shared_ptr<const MultiPrepared> prepared_;
     Settings settings_;
     View view_;
+    Start start_;
     unsigned tile_count_ = 0, tile_height_ = 1;
     std::vector<unsigned> tiles_;  // of this process; ascending
     Ranks* const ranks_;

@@ -97,6 +97,29 @@ FrameStats MultiFrameRenderer::trace(const std::shared_ptr<const MultiPrepared>&
                            meanwhile);
 }
 
+FloatImage MultiFrameRenderer::read_sums() {
+    Impl& im = *impl_;
+    FloatImage image = im.image(im.aov().film_channels());
+    if (im.alone)
+        im.alone->read_sums(image);
+    else
+        im.shared->read([&](size_t, FrameRenderer& frames) { frames.read_sums(image); });
+    return image;
+}
+
+void MultiFrameRenderer::resume(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
+                                std::shared_ptr<const FloatImage> sums, unsigned samples) {
+    Impl& im = *impl_;
+    im.prepared = prepared;
+    im.width = unsigned(settings.width);
+    im.height = unsigned(settings.height);
+    im.samples = samples;
+    if (im.alone)
+        im.alone->write_sums(*prepared->first(), settings, *sums);
+    else
+        im.shared->resume(std::move(sums), samples);
+}
+
 FloatImage MultiFrameRenderer::read_values() {
     Impl& im = *impl_;
     if (im.alone) return im.alone->read_values();

@@ -34,6 +34,14 @@ class MultiFrameRenderer {
     // The number of complete samples, also after a trace() that was cancelled.
     unsigned samples() const;
 
+    // For checkpoints, of colours only. read_sums(): the film itself, 4 channels: sums of r, g and b, and the number of
+    // samples. Call it between two trace(), because a cancelled one leaves a film in which some pixels have a sample more.
+    // resume(): puts such sums back. The next trace(), with these arguments and `samples` as its first sample, goes on with the
+    // bits that the picture would have had; also on other devices, which then share the picture anew.
+    FloatImage read_sums();
+    void resume(const std::shared_ptr<const MultiPrepared>& prepared, const Settings& settings,
+                std::shared_ptr<const FloatImage> sums, unsigned samples);
+
     // As in FrameRenderer.
     FloatImage read_values();
     FloatImage read_distance();

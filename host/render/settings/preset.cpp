@@ -6,6 +6,7 @@
 #include "base/files/output_file.hpp"
 #include "base/files/read_file.hpp"
 #include "base/numbers.hpp"
+#include "base/shell_word.hpp"
 #include "plugin/parameters.hpp"
 #include "render/settings/accel_choice.hpp"
 
@@ -36,15 +37,6 @@ std::vector<Word> words_of(const Json& object, const std::string& name, const st
         words.push_back({key, text});
     }
     return words;
-}
-
-// Quotes a text so that a shell takes it for one word.
-std::string shell_word(const std::string& text) {
-    static const std::string plain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
-    if (!text.empty() && text.find_first_not_of(plain) == std::string::npos) return text;
-    std::string out = "'";
-    for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
-    return out + "'";
 }
 
 }  // namespace

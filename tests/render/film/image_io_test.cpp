@@ -29,6 +29,7 @@
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
 #include <OpenEXR/ImfInputFile.h>
+#include <OpenEXR/ImfStringAttribute.h>
 #endif
 
 namespace fs = std::filesystem;
@@ -162,6 +163,40 @@ TEST_F(ImageIo, ExrIsExact) {
     EXPECT_TRUE(same_bits(read_exr(path("b.exr"), {"Y"}).pixels, image.pixels));
 #else
     EXPECT_NE(failure_of([&] { check_output_path(path("a.exr")); }).second.find("libopenexr-dev"), std::string::npos);
+#endif
+}
+
+// Notes stand before the pixels, so that a reader finds them at the beginning of the file, and change no pixel.
+TEST_F(ImageIo, NotesAreKept) {
+    const ByteImage image = sample_bytes(37, 11, true);
+    PictureNotes notes;
+    notes.texts = {{"Command", "clarity render a.scene"}, {"Digest", "00ff"}, {"Place", "M\xc3\xbcnchen"}};
+    notes.sync = true;
+    write_image(path("a.png"), {}, image, notes);
+    const std::string png = scratch_.read("a.png");
+    const auto chunk = [&](const std::string& name, const std::string& data) {
+        const std::string bytes{0, 0, char(data.size() >> 8), char(data.size())};
+        const size_t at = png.find(bytes + name + data);
+        return at != std::string::npos && at < png.find("IDAT");
+    };
+    EXPECT_TRUE(chunk("tEXt", std::string("Command\0clarity render a.scene", 30)));
+    EXPECT_TRUE(chunk("tEXt", std::string("Digest\0", 7) + "00ff"));
+    EXPECT_TRUE(chunk("iTXt", "Place" + std::string(5, '\0') + "M\xc3\xbcnchen")) << "tEXt is Latin-1";
+    int width = 0, height = 0, channels = 0;
+    stbi_uc* pixels = stbi_load(path("a.png").c_str(), &width, &height, &channels, 4);
+    ASSERT_NE(pixels, nullptr) << stbi_failure_reason();
+    EXPECT_EQ(std::memcmp(pixels, image.pixels.data(), image.pixels.size()), 0);
+    stbi_image_free(pixels);
+#ifdef CLARITY_HAVE_OPENEXR
+    const FloatImage values = sample_values(33, 40, 3);
+    write_image(path("a.exr"), values, {}, notes);
+    EXPECT_TRUE(same_bits(read_exr(path("a.exr"), {"R", "G", "B"}).pixels, values.pixels));
+    const Imf::InputFile file(path("a.exr").c_str());
+    for (const auto& [key, value] : notes.texts) {
+        const auto* text = file.header().findTypedAttribute<Imf::StringAttribute>(key);
+        ASSERT_NE(text, nullptr) << key;
+        EXPECT_EQ(text->value(), value);
+    }
 #endif
 }
 

@@ -1,0 +1,43 @@
+#include "base/digest.hpp"
+
+#include <xxhash.h>
+
+#include <cstdio>
+#include <new>
+
+namespace clarity {
+
+void Digest::Free::operator()(XXH3_state_s* state) const {
+    XXH3_freeState(state);
+}
+
+Digest::Digest() : state_(XXH3_createState()) {
+    if (!state_) throw std::bad_alloc();
+    XXH3_128bits_reset(state_.get());
+}
+Digest::~Digest() = default;
+
+void Digest::add_bytes(const void* data, size_t bytes) {
+    if (bytes > 0) XXH3_128bits_update(state_.get(), data, bytes);
+}
+
+void Digest::add(const std::string& text) {
+    add_value(uint64_t(text.size()));
+    add_bytes(text.data(), text.size());
+}
+
+std::string Digest::hex() const {
+    const XXH128_hash_t hash = XXH3_128bits_digest(state_.get());
+    char text[33];
+    std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                  static_cast<unsigned long long>(hash.low64));
+    return text;
+}
+
+std::string digest_of(const std::string& content) {
+    Digest digest;
+    digest.add_bytes(content.data(), content.size());
+    return digest.hex();
+}
+
+}  // namespace clarity

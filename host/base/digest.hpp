@@ -1,0 +1,43 @@
+// digest.hpp -- a digest of 128 bits that tells contents apart: XXH3 of Yann Collet's xxHash, about as fast as memory is read.
+// It is no protection against somebody who wants two contents to look alike.
+#pragma once
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <type_traits>
+
+struct XXH3_state_s;
+
+namespace clarity {
+
+// Collects contents piece by piece. Used from one thread.
+class Digest {
+ public:
+    Digest();
+    ~Digest();
+    Digest(const Digest&) = delete;
+    Digest& operator=(const Digest&) = delete;
+
+    void add_bytes(const void* data, size_t bytes);
+    // Adds the length, too, so that "ab", "c" differs from "a", "bc".
+    void add(const std::string& text);
+    template <class T>
+    void add_value(const T& value) {
+        static_assert(std::is_arithmetic_v<T>, "a struct may have padding");
+        add_bytes(&value, sizeof value);
+    }
+    // The digest of what was added so far: 32 digits in hexadecimal.
+    std::string hex() const;
+
+ private:
+    struct Free {
+        void operator()(XXH3_state_s* state) const;
+    };
+    std::unique_ptr<XXH3_state_s, Free> state_;
+};
+
+// The digest of a whole content.
+std::string digest_of(const std::string& content);
+
+}  // namespace clarity

@@ -1,0 +1,85 @@
+#include "cli/render/picture_digest.hpp"
+
+#include <algorithm>
+
+#include "base/digest.hpp"
+#include "base/numbers.hpp"
+#include "device/kernel_files.hpp"
+#include "render/kernels/program_cache.hpp"
+#include "render/settings/aov.hpp"
+
+namespace clarity {
+namespace {
+
+// Settings that change how a picture is traced, but not the picture.
+bool chooses_a_way(const std::string& key) {
+    static const char* const keys[] = {"poses", "tracer", "packet", "lanes", "portable", "debug"};
+    return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
+}
+
+// Settings that act when values become colours of a PNG.
+bool chooses_colors(const std::string& key) {
+    static const char* const keys[] = {"exposure", "tone", "scale_max"};
+    return std::find(std::begin(keys), std::end(keys), key) != std::end(keys);
+}
+
+void add_settings_to(Digest& digest, const Settings& settings, bool display) {
+    const bool cost = find_aov(settings.aov).about == Aov::About::cost;
+    for (const Setting& row : settings_table()) {
+        if ((!cost && chooses_a_way(row.key)) || (!display && chooses_colors(row.key))) continue;
+        digest.add(row.key);
+        digest.add(row.get(settings));
+    }
+    if (!cost) return;
+    digest.add(settings.accel);
+    for (const double parameter : settings.accel_params) digest.add_value(parameter);
+}
+
+void add_kernels_to(Digest& digest, const Scene& scene) {
+    for (const std::string& name : kernel_names()) digest.add(name), digest.add(kernel_text(name));
+    for (const ShapeKind& kind : scene.shape_kinds)
+        if (kind.plugin) digest.add(plugin_kernel_text(*kind.plugin, kind.plugin->primitive->kernels));
+}
+
+}  // namespace
+
+std::string picture_digest(FrameScene& scene, const Settings& settings, std::optional<int> frame, const std::string& output) {
+    Digest digest;
+    digest.add(CLARITY_VERSION);
+    add_kernels_to(digest, *scene.imported());
+    add_settings_to(digest, settings, writes_display(output));
+    scene.describe(digest, frame);
+    return digest.hex();
+}
+
+std::string pixel_digest(const FloatImage& image) {
+    Digest digest;
+    for (const unsigned size : {image.width, image.height, image.channels}) digest.add_value(size);
+    digest.add_bytes(image.pixels.data(), image.pixels.size() * sizeof(float));
+    return digest.hex();
+}
+
+std::string pixel_digest(const ByteImage& image) {
+    Digest digest;
+    for (const unsigned size : {image.width, image.height}) digest.add_value(size);
+    digest.add_bytes(image.pixels.data(), image.pixels.size());
+    return digest.hex();
+}
+
+std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const Prepared& prepared) {
+    Digest digest;
+    const KernelSource source = kernel_for(prepared, prepared.program->row.kind);
+    digest.add(source.text);
+    digest.add(source.options);
+    for (const double parameter : prepared.settings.accel_params) digest.add_value(parameter);
+    // Devices of one kind give the same bits, however many they are.
+    std::vector<std::string> kinds;
+    for (const DeviceInfo& device : devices) kinds.push_back(device.name + " (" + device.driver + ")");
+    std::sort(kinds.begin(), kinds.end());
+    kinds.erase(std::unique(kinds.begin(), kinds.end()), kinds.end());
+    std::string way;
+    for (const std::string& kind : kinds) way += kind + ", ";
+    return way + prepared.settings.accel + ", " + prepared.settings.tracer + ", kernel " + digest.hex().substr(0, 8);
+}
+
+}  // namespace clarity

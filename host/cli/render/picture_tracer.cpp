@@ -1,0 +1,94 @@
+#include "cli/render/picture_tracer.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "cli/render/render_progress.hpp"
+#include "render/frame/frame_stats.hpp"
+
+namespace clarity {
+namespace {
+
+// About how long a batch takes. Longer batches delay the progress bar; shorter ones make several devices wait for each other
+// more often.
+constexpr double kBatchMs = 100;
+// A picture with checkpoints is not stopped in the middle of a batch that is shorter than this, because the film could not be
+// saved then. The program's end may wait that long (interrupt.hpp).
+constexpr double kWaitedForMs = 400;
+
+void add_shares(std::vector<DeviceShare>& sum, const std::vector<DeviceShare>& more) {
+    if (sum.size() != more.size()) sum.assign(more.size(), {});
+    for (size_t i = 0; i < more.size(); ++i) {
+        DeviceShare total = more[i];
+        total.device_ms += sum[i].device_ms;
+        total.wall_ms += sum[i].wall_ms;
+        total.launches += sum[i].launches;
+        sum[i] = total;
+    }
+}
+
+}  // namespace
+
+FrameStats PictureTracer::trace_samples(const Picture& picture, unsigned first, unsigned how_many, bool count,
+                                        Progress& progress) {
+    const FrameScene& scene = picture.scene;
+    if (!picture.blur) return frames_.trace(picture.prepared, settings_, scene.view(), first, count, progress, how_many);
+    FrameStats stats;
+    for (unsigned i = first; i < first + how_many; ++i) {
+        PartOf part(progress, double(i - first) / how_many, 1.0 / how_many);
+        const MotionBlur::Sample& sample = picture.blur->at(i, scene.view(), part);
+        const FrameStats one = frames_.trace(sample.prepared, settings_, scene.view(sample), i, count, part);
+        add_stats(stats, one);
+        add_shares(stats.devices, one.devices);
+    }
+    return stats;
+}
+
+PictureTracer::Traced PictureTracer::trace(const Picture& picture, const Pass& pass, Progress& progress) {
+    if (pass.counts) stats_.primary = stats_.shadow = stats_.secondary = stats_.dropped = stats_.overflowed = 0;
+    const auto all = unsigned(settings_.spp);
+    double device_ms = 0, wall_ms = 0;
+    std::vector<DeviceShare> devices;
+    for (unsigned sample = pass.first, next = std::min(all - sample, 2u); sample < all;) {
+        const double at = pass.from + pass.share * sample / all;
+        // A short sample is one launch, during which cancelling is not checked.
+        if (!progress.report(float(at))) return {sample, true};
+        PartOf part(progress, at, pass.share * next / all);
+        Uncancelled whole(part);
+        const unsigned done = sample - pass.first;
+        const bool waits = pass.between && done > 0 && wall_ms / done * next < kWaitedForMs;
+        FrameStats frame;
+        try {
+            frame = trace_samples(picture, sample, next, pass.counts, waits ? static_cast<Progress&>(whole) : part);
+        } catch (const Cancelled&) {
+            return {frames_.samples(), false};
+        }
+        device_ms += frame.device_ms;
+        wall_ms += frame.wall_ms;
+        add_shares(devices, frame.devices);
+        if (pass.counts) {
+            stats_.primary += frame.primary;
+            stats_.shadow += frame.shadow;
+            stats_.secondary += frame.secondary;
+            stats_.dropped += frame.dropped;
+            stats_.overflowed += frame.overflowed;
+        }
+        sample += next;
+        if (pass.between && sample < all) pass.between(sample);
+        next = batch(wall_ms, sample - pass.first, all - sample);
+    }
+    stats_.shares = devices;
+    if (pass.timed) {
+        stats_.frame_ms.push_back(device_ms);
+        stats_.wall_ms.push_back(wall_ms);
+    }
+    return {all, true};
+}
+
+// Number of samples to trace in the next batch, after `done` samples took wall_ms.
+unsigned PictureTracer::batch(double wall_ms, unsigned done, unsigned left) {
+    const double each = std::max(wall_ms / done, 1e-3);
+    return std::min(unsigned(std::clamp(kBatchMs / each, 1.0, 1024.0)), left);
+}
+
+}  // namespace clarity

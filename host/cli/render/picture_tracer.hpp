@@ -1,0 +1,48 @@
+// picture_tracer.hpp -- traces the samples of one picture in batches.
+#pragma once
+#include <functional>
+#include <memory>
+
+#include "base/progress.hpp"
+#include "cli/render/frame_scene.hpp"
+#include "cli/render/render_stats.hpp"
+#include "render/multi/multi_frame_renderer.hpp"
+
+namespace clarity {
+
+// Used from one thread. The references must outlive it.
+class PictureTracer {
+ public:
+    // What is traced; blur is null if all samples are at one time.
+    struct Picture {
+        std::shared_ptr<const MultiPrepared> prepared;
+        const FrameScene& scene;
+        MotionBlur* blur;
+    };
+    struct Pass {
+        unsigned first = 0;                                  // sample; those before it are in the film
+        bool counts = true, timed = true;                    // whether the statistics get its rays, and its times
+        double from = 0, share = 1;                          // of the progress
+        std::function<void(unsigned samples)> between = {};  // if set, called after each batch, when the film is exact
+    };
+    struct Traced {
+        unsigned samples = 0;  // complete ones in the film
+        bool exact = true;     // no pixel of the film has more of them
+    };
+    PictureTracer(MultiFrameRenderer& frames, const Settings& settings, RenderStats& stats)
+        : frames_(frames), settings_(settings), stats_(stats) {}
+
+    // Traces the samples of a picture from pass.first on, until all are there or `progress` cancels. Adds to the statistics.
+    // Throws what MultiFrameRenderer::trace() throws, but not Cancelled.
+    Traced trace(const Picture& picture, const Pass& pass, Progress& progress);
+
+ private:
+    FrameStats trace_samples(const Picture& picture, unsigned first, unsigned how_many, bool count, Progress& progress);
+    static unsigned batch(double wall_ms, unsigned done, unsigned left);
+
+    MultiFrameRenderer& frames_;
+    const Settings& settings_;
+    RenderStats& stats_;
+};
+
+}  // namespace clarity

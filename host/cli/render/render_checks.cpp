@@ -1,0 +1,64 @@
+#include "cli/render/render_checks.hpp"
+
+#include <string>
+
+#include "base/error.hpp"
+#include "base/files/frame_path.hpp"
+#include "base/files/output_file.hpp"
+#include "cli/render/frame_record.hpp"
+#include "cli/render/picture_checkpoint.hpp"
+#include "render/film/image_io.hpp"
+
+namespace clarity {
+namespace {
+
+// Each repetition stores two times of 8 bytes, and there is one more pass to warm up: with this bound neither memory nor the
+// pass counter comes near its limit.
+constexpr unsigned kMaxRepeat = 1000000;
+
+// The records lie beside the pictures, and must not replace another file of this run.
+void check_records(const RenderOptions& options, const FrameRange& range) {
+    if (options.frames.empty() && !options.skip_existing) return;
+    for (const std::string* other : {&options.stats_file, &options.checkpoint, &options.resume})
+        for (long frame = range.first; !other->empty() && frame <= range.last; frame += range.step)
+            if (frame_path(*other, int(frame)) == record_path(frame_path(options.output, int(frame))))
+                throw Error(Exit::usage,
+                            "`" + frame_path(*other, int(frame)) +
+                                "` is the record of a frame, which is written beside its picture; choose another name");
+}
+
+}  // namespace
+
+FrameRange frames_of(const RenderOptions& options) {
+    if (options.frames.empty()) return {};
+    const FrameRange all = parse_frame_range(options.frames);
+    return options.frames_of.empty() ? all : share_of_frames(all, options.frames_of);
+}
+
+void check_render_options(const RenderOptions& options, const Settings& settings, const FrameRange& range) {
+    if (options.output.empty())
+        throw Error(Exit::usage, "--output is required: `-o out.png` (`clarity render --help` explains)");
+    check_output_path(frame_path(options.output, range.first));
+    if (range.count() > 1 && frame_path(options.output, 1) == frame_path(options.output, 2))
+        throw Error(Exit::usage, "--frames " + options.frames + " would write " + std::to_string(range.count()) +
+                                     " pictures to " + options.output + ": put #### into its name, for the frame's number");
+    if (writes_display(options.output) && uint64_t(settings.width) * uint64_t(settings.height) > kPngMaxPixels)
+        throw Error(Exit::usage, "--size: a PNG of so many pixels is beyond its encoder; write .exr or .pfm");
+    if (!options.stats_file.empty() && options.stats_file != "-") check_writable(options.stats_file);
+    if (options.repeat < 1 || options.repeat > kMaxRepeat)
+        throw Error(Exit::usage, "--repeat " + std::to_string(options.repeat) + ": expected a number from 1 to " +
+                                     std::to_string(kMaxRepeat));
+    check_pose(options.pose);
+    if (options.skip_existing && options.watch)
+        throw Error(Exit::usage, "--skip-existing leaves the pictures that --watch is to render again; leave one of them out");
+    if (!options.frames_of.empty() && options.frames.empty())
+        throw Error(Exit::usage, "--frames-of " + options.frames_of + ": is a share of --frames, which is missing");
+    check_checkpoint_options(options, settings, range.count());
+    check_records(options, range);
+    // The numbers of a camera can be checked without a scene, its name cannot.
+    const bool named = !options.trace.camera.empty() && (options.trace.camera.find(',') == std::string::npos ||
+                                                         options.trace.camera.find_first_of("0123456789+-.") != 0);
+    make_view(Scene{}, 1, named ? std::string() : options.trace.camera, options.trace.light);
+}
+
+}  // namespace clarity
