@@ -154,6 +154,8 @@ void add_render(CLI::App& app, RenderOptions& render) {
         ->type_name("FILE");
     app.add_flag("--verify", render.verify,
                  "SCENE are records of frames (out_*.json): render these frames again, and compare them with their pictures");
+    app.add_flag("--mpi", render.mpi,
+                 "Share each picture with the other processes that mpirun has started: mpirun -n 4 clarity render ... --mpi");
     single(app.add_option("--fps", render.fps, "Frames a second; default: those of the clip, else 24"))
         ->type_name("F")
         ->check(CLI::Range(1e-3, 1e6));

@@ -51,6 +51,7 @@ struct RenderOptions {
     std::string checkpoint, resume;
     double every_s = 60;     // time between two checkpoints
     bool verify = false;     // scene.files are records of frames: they are rendered again and compared
+    bool mpi = false;        // this process is one of several that mpirun has started
     unsigned repeat = 1;     // how often each picture is traced, for timing
     std::string stats_file;  // file for the statistics; "-": stdout; "": none
     bool watch = false;      // render again after each change of a kernel, plugin library or scene file

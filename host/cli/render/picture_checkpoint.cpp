@@ -22,13 +22,15 @@ const std::string& save_pattern(const RenderOptions& options) {
 
 }  // namespace
 
-PictureCheckpoint::PictureCheckpoint(const RenderOptions& options, int frame, std::string digest, std::string way, unsigned of)
+PictureCheckpoint::PictureCheckpoint(const RenderOptions& options, int frame, std::string digest, std::string way, unsigned of,
+                                     Ranks* ranks)
     : resumed_(frame_path(options.resume, frame)),
       path_(frame_path(save_pattern(options), frame)),
       digest_(std::move(digest)),
       way_(std::move(way)),
       every_s_(options.every_s),
-      of_(of) {}
+      of_(of),
+      ranks_(ranks) {}
 
 unsigned PictureCheckpoint::resume(MultiFrameRenderer& frames, const std::shared_ptr<const MultiPrepared>& prepared,
                                    const Settings& settings) {
@@ -47,18 +49,22 @@ unsigned PictureCheckpoint::resume(MultiFrameRenderer& frames, const std::shared
         throw Error(Exit::failed, resumed_ + ": holds " + std::to_string(checkpoint.samples) + " samples of " +
                                       std::to_string(sums.width) + "x" + std::to_string(sums.height) +
                                       " pixels, which do not fit this picture; leave --resume out to begin it anew");
-    if (checkpoint.way != way_)
+    const bool tells = !ranks_ || ranks_->rank() == 0;
+    if (tells && checkpoint.way != way_)
         log(LogLevel::warning, resumed_ + ": was traced with " + checkpoint.way + ", and the picture goes on with " + way_ +
                                    ": its last bits may differ from those of a picture that was traced in one go");
     frames.resume(prepared, settings, checkpoint.sums, checkpoint.samples);
     saved_ = resumed_ == path_ ? checkpoint.samples : 0;
-    log(LogLevel::info,
-        resumed_ + ": goes on after " + std::to_string(checkpoint.samples) + " of " + std::to_string(of_) + " samples");
+    if (tells)
+        log(LogLevel::info,
+            resumed_ + ": goes on after " + std::to_string(checkpoint.samples) + " of " + std::to_string(of_) + " samples");
     return checkpoint.samples;
 }
 
 void PictureCheckpoint::offer(MultiFrameRenderer& frames, unsigned samples) {
-    if (saves() && seconds_since(last_) >= every_s_) save(frames, samples);
+    if (!saves()) return;
+    const bool is_time = seconds_since(last_) >= every_s_;
+    if (ranks_ ? ranks_->gather(is_time)[0] > 0 : is_time) save(frames, samples);
 }
 
 void PictureCheckpoint::save(MultiFrameRenderer& frames, unsigned samples) {
@@ -68,14 +74,14 @@ void PictureCheckpoint::save(MultiFrameRenderer& frames, unsigned samples) {
     checkpoint.samples = samples;
     checkpoint.of = of_;
     checkpoint.sums = std::make_shared<const FloatImage>(frames.read_sums());
-    save_checkpoint(path_, checkpoint);
+    if (!ranks_ || ranks_->rank() == 0) save_checkpoint(path_, checkpoint);
     saved_ = samples;
     last_ = Clock::now();
     log(LogLevel::debug, path_ + ": " + std::to_string(samples) + " of " + std::to_string(of_) + " samples");
 }
 
 void PictureCheckpoint::remove() {
-    if (saves()) std::remove(path_.c_str());
+    if (saves() && (!ranks_ || ranks_->rank() == 0)) std::remove(path_.c_str());
     saved_ = 0;
 }
 

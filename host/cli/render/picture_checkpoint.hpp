@@ -12,8 +12,10 @@ namespace clarity {
 // Used from one thread.
 class PictureCheckpoint {
  public:
-    // frame: the number for # in the names. digest, way: as in Checkpoint. of: samples of the whole picture.
-    PictureCheckpoint(const RenderOptions& options, int frame, std::string digest, std::string way, unsigned of);
+    // frame: the number for # in the names. digest, way: as in Checkpoint. of: samples of the whole picture. ranks: processes
+    // that share the picture, of which the first saves it; all call the same functions. nullptr: none.
+    PictureCheckpoint(const RenderOptions& options, int frame, std::string digest, std::string way, unsigned of,
+                      Ranks* ranks = nullptr);
 
     bool saves() const { return !path_.empty(); }
     const std::string& path() const { return path_; }
@@ -34,6 +36,7 @@ class PictureCheckpoint {
     const std::string resumed_, path_, digest_, way_;
     const double every_s_;
     const unsigned of_;
+    Ranks* const ranks_;
     unsigned saved_ = 0;
     Clock::time_point last_ = Clock::now();
 };

@@ -29,8 +29,9 @@ class PictureTracer {
         unsigned samples = 0;  // complete ones in the film
         bool exact = true;     // no pixel of the film has more of them
     };
-    PictureTracer(MultiFrameRenderer& frames, const Settings& settings, RenderStats& stats)
-        : frames_(frames), settings_(settings), stats_(stats) {}
+    // ranks: other processes that trace parts of the picture; nullptr: none.
+    PictureTracer(MultiFrameRenderer& frames, const Settings& settings, RenderStats& stats, Ranks* ranks)
+        : frames_(frames), settings_(settings), stats_(stats), ranks_(ranks) {}
 
     // Traces the samples of a picture from pass.first on, until all are there or `progress` cancels. Adds to the statistics.
     // Throws what MultiFrameRenderer::trace() throws, but not Cancelled.
@@ -43,6 +44,7 @@ class PictureTracer {
     MultiFrameRenderer& frames_;
     const Settings& settings_;
     RenderStats& stats_;
+    Ranks* const ranks_;
 };
 
 }  // namespace clarity

@@ -31,6 +31,7 @@
 #include "cli/render/render_stats.hpp"
 #include "cli/render/verify.hpp"
 #include "device/kernel_watch.hpp"
+#include "mpi/mpi_ranks.hpp"
 #include "plugin/library_watch.hpp"
 #include "render/multi/multi_device_film.hpp"
 #include "render/multi/multi_frame_renderer.hpp"
@@ -42,13 +43,15 @@ using Clock = std::chrono::steady_clock;
 
 class RenderJob {
  public:
-    RenderJob(const PluginRegistry& plugins, const RenderOptions& options)
+    // mpi: the ranks of which this process is one; nullptr: it renders alone.
+    RenderJob(const PluginRegistry& plugins, const RenderOptions& options, MpiRanks* mpi)
         : options_(options),
+          mpi_(mpi),
           words_(read_trace_options(plugins, options.trace)),
           settings_(words_.settings),
           range_(frames_of(options)),
           plugins_(plugins),
-          bar_(options.quiet),
+          bar_(options.quiet || !is_first()),
           scene_(plugins, options, words_, bar_) {
         stats_.files = options.scene.files;
         stats_.settings = settings_;
@@ -62,7 +65,8 @@ class RenderJob {
             return static_cast<int>(Exit::done);
         }
         const CancelOnSignal cancel(bar_);
-        take_devices(open_devices(choose_devices(words_.device)));
+        const std::vector<DeviceInfo> chosen = choose_devices(words_.device);
+        take_devices(open_devices(mpi_ ? mpi_->own(chosen) : chosen));
         for (const DeviceInfo& info : stats_.devices) log(LogLevel::debug, "device " + info.id() + " " + info.name);
         if (options_.watch) return watch();
         return static_cast<int>(round(bar_));
@@ -83,17 +87,13 @@ class RenderJob {
                 if (progress.cancelled()) return Exit::interrupted;
                 const std::string digest = digest_of(number);
                 std::unique_ptr<FrameClaim> claim;
-                if (options_.skip_existing) {
-                    if (is_there(number, digest)) continue;
-                    claim = FrameClaim::take(frame_path(options_.output, number));
-                    if (!claim) claimed.push_back(number);
-                    // The process that had the claim may just have finished.
-                    if (!claim || is_there(number, digest)) continue;
-                }
+                const Todo todo = of_first(is_first() ? todo_of(number, digest, claim) : Todo::render);
+                if (todo == Todo::wait) claimed.push_back(number);
+                if (todo != Todo::render) continue;
                 const auto begin = Clock::now();
                 if (moving_ || !scene_.placed()) scene_.place(moving_ ? std::optional<int>(number) : std::nullopt);
                 if (moving_ || rendered == 0) prepare(progress);
-                if (!frames) frames.emplace(devices_);
+                if (!frames) frames.emplace(devices_, mpi_);
                 if (!render(*frames, {number, digest, begin}, progress)) return Exit::interrupted;
                 ++rendered;
             }
@@ -104,6 +104,20 @@ class RenderJob {
             }
             if (!wait_for_others(left.size(), progress)) return Exit::interrupted;
         }
+    }
+
+    // Of several ranks the first decides, writes files and speaks.
+    bool is_first() const { return !mpi_ || mpi_->rank() == 0; }
+
+    enum class Todo { render, skip, wait };
+    Todo of_first(Todo todo) const { return mpi_ ? static_cast<Todo>(int(mpi_->gather(double(todo))[0])) : todo; }
+    // What is done about a frame; wait: another process has claimed it.
+    Todo todo_of(int number, const std::string& digest, std::unique_ptr<FrameClaim>& claim) const {
+        if (!options_.skip_existing) return Todo::render;
+        if (is_there(number, digest)) return Todo::skip;
+        claim = FrameClaim::take(frame_path(options_.output, number));
+        if (!claim) return Todo::wait;
+        return is_there(number, digest) ? Todo::skip : Todo::render;  // the process that had the claim may just have finished
     }
 
     // Whether frames are recorded, and their pictures have their names only when they are complete.
@@ -240,8 +254,10 @@ class RenderJob {
 
     void import(Progress& progress) {
         const auto begin = Clock::now();
-        scene_.take(std::make_shared<const Scene>(
-            import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress)));
+        const auto import = [&] {
+            return import::import_scene(plugins_, options_.scene.files, options_.scene.import, progress);
+        };
+        scene_.take(std::make_shared<const Scene>(mpi_ ? mpi_->share_scene(import) : import()));
         stats_.import_ms = ms_since(begin);
     }
 
@@ -272,7 +288,7 @@ class RenderJob {
         bar_.stage("rendering " + std::filesystem::path(path).filename().string());
         const auto all = unsigned(settings_.spp);
         PictureCheckpoint checkpoint(options_, frame.number, frame.digest, way_of_tracing(stats_.devices, *stats_.prepared),
-                                     all);
+                                     all, mpi_);
         resumed_ = 0;
         // The first pass counts rays, which costs a little time, and warms up caches; timed passes come after it.
         const bool warm_up = options_.repeat > 1;
@@ -286,7 +302,8 @@ class RenderJob {
         if (!whole && !interrupted() && superseded_ && superseded_()) return false;  // the next round writes it
         if (!whole) take_time_to_stop();
         if (!whole && checkpoint.saves()) {
-            if (traced.exact && traced.samples > checkpoint.saved()) checkpoint.save(frames, traced.samples);
+            // Ranks stop at different samples.
+            if (!mpi_ && traced.exact && traced.samples > checkpoint.saved()) checkpoint.save(frames, traced.samples);
             tell_interrupted(checkpoint.saved() == 0
                                  ? "no sample was complete, nothing is written"
                                  : checkpoint.path() + " holds " + std::to_string(checkpoint.saved()) + " of " +
@@ -295,10 +312,11 @@ class RenderJob {
             return false;
         }
         // A picture with fewer samples than asked for would be taken for a whole one the next time.
-        if (whole || (traced.samples > 0 && !records())) write(frames, frame, path);
+        const bool partial = !whole && traced.samples > 0 && !records() && !mpi_;
+        if (whole || partial) write(frames, frame, path);
         if (whole)
             checkpoint.remove();
-        else if (traced.samples > 0 && !records())
+        else if (partial)
             tell_interrupted(path + " holds " + std::to_string(traced.samples) + " of " + std::to_string(all) +
                              " samples a pixel");
         else
@@ -307,7 +325,9 @@ class RenderJob {
         return whole;
     }
 
-    static void tell_interrupted(const std::string& what) { log(LogLevel::warning, "interrupted: " + what); }
+    void tell_interrupted(const std::string& what) const {
+        if (is_first()) log(LogLevel::warning, "interrupted: " + what);
+    }
 
     PictureTracer::Traced trace_pass(MultiFrameRenderer& frames, PictureCheckpoint& checkpoint, bool counts, bool timed,
                                      double from, double share, Progress& progress) {
@@ -317,7 +337,7 @@ class RenderJob {
         for (;;) {
             pass.first = resumed_ = checkpoint.resume(frames, prepared_, settings_);
             try {
-                return PictureTracer(frames, settings_, stats_).trace({prepared_, scene_, blur_.get()}, pass, progress);
+                return PictureTracer(frames, settings_, stats_, mpi_).trace({prepared_, scene_, blur_.get()}, pass, progress);
             } catch (const SamplesLost&) {  // of a device that takes no further part: the other devices begin again
             }
         }
@@ -327,6 +347,8 @@ class RenderJob {
         const bool png = writes_display(path);
         const FloatImage values = png ? FloatImage{} : frames.read_values();
         const ByteImage display = png ? frames.read_display(settings_) : ByteImage{};
+        if (mpi_) add_rays_of_ranks();
+        if (!is_first()) return;
         if (stats_.first_picture_ms == 0) stats_.first_picture_ms = ms_since(begin_);
         const std::string command = render_words(options_, moving_ ? std::optional<int>(frame.number) : std::nullopt);
         PictureNotes notes;
@@ -338,6 +360,15 @@ class RenderJob {
         if (!stats_.frame_ms.empty())
             std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
         log(LogLevel::info, path + times);
+    }
+
+    void add_rays_of_ranks() {
+        for (uint64_t* const count :
+             {&stats_.primary, &stats_.shadow, &stats_.secondary, &stats_.dropped, &stats_.overflowed}) {
+            double sum = 0;
+            for (const double of_rank : mpi_->gather(double(*count))) sum += of_rank;
+            *count = static_cast<uint64_t>(sum);
+        }
     }
 
     void record(const Frame& frame, const std::string& path, const std::string& command, const std::string& pixels) {
@@ -359,6 +390,7 @@ class RenderJob {
     }
 
     void report() {
+        if (!is_first()) return;
         if (stats_.dropped > 0)
             log(LogLevel::warning, std::to_string(stats_.dropped) +
                                        " rays were dropped because a pixel's ray slots were full: raise --ray-slots (now " +
@@ -375,6 +407,7 @@ class RenderJob {
     }
 
     const RenderOptions& options_;
+    MpiRanks* const mpi_;
     const Clock::time_point begin_ = Clock::now();
     TraceWords words_;
     const Settings& settings_;
@@ -398,7 +431,11 @@ class RenderJob {
 
 int run_render(const PluginRegistry& plugins, const RenderOptions& options) {
     if (options.verify) return run_verify(plugins, options);
-    return RenderJob(plugins, options).run();
+    if (!options.mpi) return RenderJob(plugins, options, nullptr).run();
+    MpiRanks ranks;
+    const int code = RenderJob(plugins, options, &ranks).run();
+    if (code == static_cast<int>(Exit::done)) ranks.finish();
+    return code;
 }
 
 }  // namespace clarity

@@ -170,12 +170,13 @@ std::vector<PixelRows> MultiDeviceFilm::rows() const {
     return rows;
 }
 
-// After the first samples of a picture: measures how fast each rank is. Returns whether tiles should be dealt anew, because the
-// samples to come take so much less time then that the first ones may be traced again. All ranks come to the same answer.
-bool MultiDeviceFilm::deal_by_speed(unsigned end, double wall_ms) {
+// After the first samples of a picture: measures how fast each rank is, by its devices' clocks, because the host may have
+// compiled kernels meanwhile. Returns whether tiles should be dealt anew, because the samples to come take so much less time
+// then that the first ones may be traced again. All ranks come to the same answer.
+bool MultiDeviceFilm::deal_by_speed(unsigned end, double device_ms) {
     constexpr double kGain = 1.03;
     const std::vector<unsigned> rank_of = deal_tiles(tile_count_, rank_speeds_);
-    const std::vector<double> speeds = ranks_->gather(double(tiles_.size()) * end / std::max(wall_ms, 1e-3));
+    const std::vector<double> speeds = ranks_->gather(double(tiles_.size()) * end / std::max(device_ms, 1e-3));
     double slowest_ms = 0, sum = 0;
     for (unsigned r = 0; r < speeds.size(); ++r) {
         const auto tiles = double(std::count(rank_of.begin(), rank_of.end(), r));
@@ -292,7 +293,7 @@ FrameStats MultiDeviceFilm::trace(const std::shared_ptr<const MultiPrepared>& pr
     }
     on_all([&](size_t i) { trace_part(i, {begin, sample, end, fresh, display}, count_rays, progress); });
     recover(progress);
-    if (ranks_ && fresh && sample == 0 && deal_by_speed(end, ms_since(begin))) {
+    if (ranks_ && fresh && sample == 0 && deal_by_speed(end, gathered(0).device_ms)) {
         cut();
         for (Member& member : members_) {
             member.stats = {};

@@ -84,7 +84,7 @@ class MultiDeviceFilm {
     };
     void cut();
     void take_tiles();
-    bool deal_by_speed(unsigned end, double wall_ms);
+    bool deal_by_speed(unsigned end, double device_ms);
     bool goes_on(const MultiPrepared& prepared, const Settings& settings);
     void give(Member& member, const std::vector<unsigned>& tiles);
     void put_start(Member& member);

@@ -104,6 +104,7 @@ FloatImage MultiFrameRenderer::read_sums() {
         im.alone->read_sums(image);
     else
         im.shared->read([&](size_t, FrameRenderer& frames) { frames.read_sums(image); });
+    im.collect(image.channels * sizeof(float), image.pixels.data());
     return image;
 }
 
