@@ -51,6 +51,8 @@ void check_render_options(const RenderOptions& options, const Settings& settings
     check_pose(options.pose);
     if (options.skip_existing && options.watch)
         throw Error(Exit::usage, "--skip-existing leaves the pictures that --watch is to render again; leave one of them out");
+    if (options.all_aovs && !holds_layers(options.output))
+        throw Error(Exit::usage, "--aov all: only an .exr holds several quantities; name one, or one quantity");
     if (!options.frames_of.empty() && options.frames.empty())
         throw Error(Exit::usage, "--frames-of " + options.frames_of + ": is a share of --frames, which is missing");
     check_checkpoint_options(options, settings, range.count());
