@@ -113,7 +113,7 @@ class RenderJob {
     std::string digest_of(int number) {
         const auto digest = [&](std::optional<int> frame) {
             const std::string one = picture_digest(scene_, settings_, frame, options_.output);
-            return options_.all_aovs ? digest_of(one + " all") : one;
+            return options_.all_aovs ? clarity::digest_of(one + " all") : one;
         };
         if (moving_) return digest(number);
         if (still_digest_.empty()) still_digest_ = digest(std::nullopt);
