@@ -325,6 +325,8 @@ CommandLine parse_command_line(int argc, char** argv) {
     add_scene(*render, p.scene)->required();
     add_render(*render, p.render);
     add_trace(*render, p.trace);
+    CLI::Option* aov = render->get_option("--aov");
+    aov->description(aov->get_description() + "; all: colours and first hit as layers of one .exr");
     render->callback([&] {
         line.command = [parsed](const PluginRegistry& registry) {
             RenderOptions options = parsed->render;

@@ -50,6 +50,7 @@ struct RenderOptions {
     // Files from which an interrupted picture goes on; # as in `output`. "": none.
     std::string checkpoint, resume;
     double every_s = 60;     // time between two checkpoints
+    bool all_aovs = false;   // --aov all, which is taken out of trace.settings: colours and layers of the first hit
     bool verify = false;     // scene.files are records of frames: they are rendered again and compared
     bool mpi = false;        // this process is one of several that mpirun has started
     unsigned repeat = 1;     // how often each picture is traced, for timing
@@ -58,6 +59,9 @@ struct RenderOptions {
     bool quiet = false;
 };
 int run_render(const PluginRegistry& plugins, const RenderOptions& options);
+// options.verify: writes a line for each record to stdout. Returns 0 if all pictures are those that were recorded and rendering
+// them gives the same pixels again, else 1.
+int run_verify(const PluginRegistry& plugins, const RenderOptions& options);
 
 struct ViewCommand {
     SceneOptions scene;

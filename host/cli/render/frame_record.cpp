@@ -37,6 +37,7 @@ RecordJson options_json(const RenderOptions& options) {
     json["accel"] = options.trace.accel;
     json["set"] = options.trace.sets;
     json["settings"] = options.trace.settings;
+    json["all_aovs"] = options.all_aovs;
     json["camera"] = options.trace.camera;
     json["light"] = options.trace.light;
     json["preset"] = options.trace.preset.empty() ? "" : absolute(options.trace.preset);
@@ -56,6 +57,7 @@ RenderOptions options_of(const RecordJson& json) {
     json.at("accel").get_to(options.trace.accel);
     json.at("set").get_to(options.trace.sets);
     json.at("settings").get_to(options.trace.settings);
+    json.at("all_aovs").get_to(options.all_aovs);
     json.at("camera").get_to(options.trace.camera);
     json.at("light").get_to(options.trace.light);
     json.at("preset").get_to(options.trace.preset);
@@ -83,7 +85,7 @@ void write_record(const FrameRecord& record, const std::string& path) {
                              {"file_digest", record.file_digest},
                              {"seconds", record.seconds},
                              {"samples", record.samples},
-                             {"samples_of_checkpoint", record.of_resumed},
+                             {"samples_of_checkpoint", record.of_checkpoint},
                              {"host", record.host},
                              {"device", record.device},
                              {"version", CLARITY_VERSION},
@@ -105,7 +107,7 @@ FrameRecord read_record(const std::string& path) {
         json.at("file_digest").get_to(record.file_digest);
         json.at("seconds").get_to(record.seconds);
         json.at("samples").get_to(record.samples);
-        json.at("samples_of_checkpoint").get_to(record.of_resumed);
+        json.at("samples_of_checkpoint").get_to(record.of_checkpoint);
         json.at("host").get_to(record.host);
         json.at("device").get_to(record.device);
         json.at("command").get_to(record.command);
@@ -155,7 +157,9 @@ std::string render_words(const RenderOptions& options, std::optional<int> frame)
     add("--camera", options.trace.camera);
     add("--light", options.trace.light);
     for (const std::string& word : options.trace.sets) add("--set", word);
-    for (const auto& [key, value] : options.trace.settings) add("--set", key + "=" + value);
+    for (const auto& [key, value] : options.trace.settings)
+        if (!options.all_aovs || key != "aov") add("--set", key + "=" + value);
+    if (options.all_aovs) add("--aov", "all");
     if (frame) add("--frames", std::to_string(*frame));
     if (options.fps > 0) add("--fps", exact_text(options.fps));
     if (options.pose.time_s) line += " --time=" + exact_text(*options.pose.time_s);

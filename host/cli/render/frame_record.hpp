@@ -10,14 +10,14 @@ namespace clarity {
 
 struct FrameRecord {
     int frame = 0;
-    std::string picture;                   // name of its file, without the folder
-    std::string digest;                    // picture_digest()
-    std::string pixels;                    // digest of the pixels before they were encoded
-    std::string file_digest;               // of the picture's file, so that a record of another file is noticed
-    double seconds = 0;                    // for preparing and rendering
-    unsigned samples = 0, of_resumed = 0;  // of a pixel; how many of them come from a checkpoint
-    std::string host, device, command;     // command: render_words()
-    RenderOptions options;                 // that render this frame alone: scene, trace, frames, pose and fps
+    std::string picture;                      // name of its file, without the folder
+    std::string digest;                       // picture_digest()
+    std::string pixels;                       // digest of the pixels before they were encoded
+    std::string file_digest;                  // of the picture's file, so that a record of another file is noticed
+    double seconds = 0;                       // for preparing and rendering
+    unsigned samples = 0, of_checkpoint = 0;  // of a pixel; how many of them come from a checkpoint
+    std::string host, device, command;        // command: render_words()
+    RenderOptions options;                    // that render this frame alone: scene, trace, frames, pose and fps
 };
 
 // The path of the record of a picture.

@@ -10,17 +10,19 @@
 #include <thread>
 #include <utility>
 
+#include "base/digest.hpp"
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/files/file_watch.hpp"
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
-#include "base/host_name.hpp"
 #include "base/log.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
+#include "cli/render/aov_layers.hpp"
 #include "cli/render/frame_claim.hpp"
+#include "cli/render/frame_output.hpp"
 #include "cli/render/frame_record.hpp"
 #include "cli/render/frame_scene.hpp"
 #include "cli/render/picture_checkpoint.hpp"
@@ -29,7 +31,6 @@
 #include "cli/render/render_checks.hpp"
 #include "cli/render/render_progress.hpp"
 #include "cli/render/render_stats.hpp"
-#include "cli/render/verify.hpp"
 #include "device/kernel_watch.hpp"
 #include "mpi/mpi_ranks.hpp"
 #include "plugin/library_watch.hpp"
@@ -47,13 +48,13 @@ class RenderJob {
     RenderJob(const PluginRegistry& plugins, const RenderOptions& options, MpiRanks* mpi)
         : options_(options),
           mpi_(mpi),
-          words_(read_trace_options(plugins, options.trace)),
+          words_(read_trace_options(plugins, options_.trace)),
           settings_(words_.settings),
-          range_(frames_of(options)),
+          range_(frames_of(options_)),
           plugins_(plugins),
-          bar_(options.quiet || !is_first()),
-          scene_(plugins, options, words_, bar_) {
-        stats_.files = options.scene.files;
+          bar_(options_.quiet || !is_first()),
+          scene_(plugins, options_, words_, bar_) {
+        stats_.files = options_.scene.files;
         stats_.settings = settings_;
     }
 
@@ -124,7 +125,10 @@ class RenderJob {
     bool records() const { return !options_.frames.empty() || options_.skip_existing; }
 
     std::string digest_of(int number) {
-        const auto digest = [&](std::optional<int> frame) { return picture_digest(scene_, settings_, frame, options_.output); };
+        const auto digest = [&](std::optional<int> frame) {
+            const std::string one = picture_digest(scene_, settings_, frame, options_.output);
+            return options_.all_aovs ? clarity::digest_of(one + " all") : one;
+        };
         if (moving_) return digest(number);
         if (still_digest_.empty()) still_digest_ = digest(std::nullopt);
         return still_digest_;
@@ -313,7 +317,7 @@ class RenderJob {
         }
         // A picture with fewer samples than asked for would be taken for a whole one the next time.
         const bool partial = !whole && traced.samples > 0 && !records() && !mpi_;
-        if (whole || partial) write(frames, frame, path);
+        if (whole || partial) write(frames, frame, path, progress);
         if (whole)
             checkpoint.remove();
         else if (partial)
@@ -343,19 +347,24 @@ class RenderJob {
         }
     }
 
-    void write(MultiFrameRenderer& frames, const Frame& frame, const std::string& path) {
-        const bool png = writes_display(path);
-        const FloatImage values = png ? FloatImage{} : frames.read_values();
-        const ByteImage display = png ? frames.read_display(settings_) : ByteImage{};
+    void write(MultiFrameRenderer& frames, const Frame& frame, const std::string& path, Progress& progress) {
+        FramePixels pixels;
+        if (writes_display(path))
+            pixels.display = frames.read_display(settings_);
+        else
+            pixels.values = frames.read_values();
+        if (options_.all_aovs)
+            pixels.layers = trace_aov_layers(frames, *preparer_, scene_.scene(), scene_.view(), settings_, progress);
         if (mpi_) add_rays_of_ranks();
         if (!is_first()) return;
         if (stats_.first_picture_ms == 0) stats_.first_picture_ms = ms_since(begin_);
-        const std::string command = render_words(options_, moving_ ? std::optional<int>(frame.number) : std::nullopt);
-        PictureNotes notes;
-        notes.texts = {{"Software", std::string("clarity ") + CLARITY_VERSION}, {"Command", command}, {"Digest", frame.digest}};
-        notes.sync = records() || !options_.checkpoint.empty() || !options_.resume.empty();
-        write_image(path, values, display, notes);
-        if (records()) record(frame, path, command, png ? pixel_digest(display) : pixel_digest(values));
+        FrameFile file;
+        file.path = path, file.digest = frame.digest, file.frame = frame.number, file.moves = moving_;
+        file.samples = unsigned(settings_.spp), file.of_checkpoint = resumed_;
+        file.device = devices_name(stats_.devices);
+        file.has_record = records();
+        file.begin = frame.begin;
+        write_frame(options_, file, std::move(pixels));
         char times[96] = "";
         if (!stats_.frame_ms.empty())
             std::snprintf(times, sizeof times, "  %.2f ms, %.1f Mrays/s", median_frame_ms(stats_), mrays_per_s(stats_));
@@ -369,24 +378,6 @@ class RenderJob {
             for (const double of_rank : mpi_->gather(double(*count))) sum += of_rank;
             *count = static_cast<uint64_t>(sum);
         }
-    }
-
-    void record(const Frame& frame, const std::string& path, const std::string& command, const std::string& pixels) {
-        FrameRecord record;
-        record.frame = frame.number;
-        record.picture = std::filesystem::path(path).filename().string();
-        record.digest = frame.digest;
-        record.pixels = pixels;
-        record.file_digest = file_digest(path);
-        record.seconds = seconds_since(frame.begin);
-        record.samples = unsigned(settings_.spp);
-        record.of_resumed = resumed_;
-        record.host = host_name();
-        record.device = devices_name(stats_.devices);
-        record.command = command;
-        record.options = options_;
-        if (!options_.frames.empty()) record.options.frames = std::to_string(frame.number);
-        write_record(record, record_path(path));
     }
 
     void report() {
@@ -406,7 +397,7 @@ class RenderJob {
             write_text_file(options_.stats_file, json);
     }
 
-    const RenderOptions& options_;
+    const RenderOptions options_;
     MpiRanks* const mpi_;
     const Clock::time_point begin_ = Clock::now();
     TraceWords words_;
@@ -431,9 +422,9 @@ class RenderJob {
 
 int run_render(const PluginRegistry& plugins, const RenderOptions& options) {
     if (options.verify) return run_verify(plugins, options);
-    if (!options.mpi) return RenderJob(plugins, options, nullptr).run();
+    if (!options.mpi) return RenderJob(plugins, with_all_aovs(options), nullptr).run();
     MpiRanks ranks;
-    const int code = RenderJob(plugins, options, &ranks).run();
+    const int code = RenderJob(plugins, with_all_aovs(options), &ranks).run();
     if (code == static_cast<int>(Exit::done)) ranks.finish();
     return code;
 }

@@ -53,6 +53,8 @@ void check_render_options(const RenderOptions& options, const Settings& settings
         throw Error(Exit::usage, "--skip-existing leaves the pictures that --watch is to render again; leave one of them out");
     if (options.mpi && options.watch)
         throw Error(Exit::usage, "--mpi renders once, and --watch waits for changes; leave one of them out");
+    if (options.all_aovs && !holds_layers(options.output))
+        throw Error(Exit::usage, "--aov all: only an .exr holds several quantities; name one, or one quantity");
     if (!options.frames_of.empty() && options.frames.empty())
         throw Error(Exit::usage, "--frames-of " + options.frames_of + ": is a share of --frames, which is missing");
     check_checkpoint_options(options, settings, range.count());

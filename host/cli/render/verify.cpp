@@ -1,11 +1,11 @@
-#include "cli/render/verify.hpp"
-
+// clarity render --verify: renders frames again from their records, and compares.
 #include <cstdio>
 #include <filesystem>
 
 #include "base/error.hpp"
 #include "base/files/temporary_folder.hpp"
 #include "base/printable.hpp"
+#include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/render/frame_record.hpp"
 

@@ -150,44 +150,49 @@ class ExrStream : public Imf::OStream {
     uint64_t at_ = 0;
 };
 
-std::string encode_exr(const std::string& path, const FloatImage& image, const PictureNotes& notes) {
-    std::vector<const char*> names = {"Y"};
-    if (image.channels == 3) names = {"R", "G", "B"};
-    Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));
+std::string encode_exr(const std::string& path, const std::vector<PictureLayer>& layers, const PictureNotes& notes) {
+    const FloatImage& first = layers.front().values;
+    Imf::Header header(static_cast<int>(first.width), static_cast<int>(first.height));
     header.compression() = Imf::ZIP_COMPRESSION;
     for (const auto& [key, value] : notes.texts) header.insert(key, Imf::StringAttribute(value));
     Imf::FrameBuffer frame;
-    // The library's slices are not const, but an output file only reads them.
-    char* base = reinterpret_cast<char*>(const_cast<float*>(image.pixels.data()));
-    const size_t pixel_bytes = image.channels * sizeof(float);
-    for (size_t c = 0; c < names.size(); ++c) {
-        header.channels().insert(names[c], Imf::Channel(Imf::FLOAT));
-        frame.insert(names[c], Imf::Slice(Imf::FLOAT, base + c * sizeof(float), pixel_bytes, pixel_bytes * image.width));
+    for (const PictureLayer& layer : layers) {
+        const FloatImage& image = layer.values;
+        const char* names = image.channels == 1 ? "Y" : layer.name.empty() ? "RGB" : "XYZ";
+        // The library's slices are not const, but an output file only reads them.
+        char* base = reinterpret_cast<char*>(const_cast<float*>(image.pixels.data()));
+        const size_t pixel_bytes = image.channels * sizeof(float);
+        for (size_t c = 0; names[c]; ++c) {
+            const std::string name = (layer.name.empty() ? "" : layer.name + ".") + names[c];
+            header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+            frame.insert(name, Imf::Slice(Imf::FLOAT, base + c * sizeof(float), pixel_bytes, pixel_bytes * image.width));
+        }
     }
     std::string bytes;
     ExrStream stream(path, bytes);
     {
         Imf::OutputFile file(stream, header);  // its destructor writes the line table
         file.setFrameBuffer(frame);
-        file.writePixels(static_cast<int>(image.height));
+        file.writePixels(static_cast<int>(first.height));
     }
     return bytes;
 }
 
-void write_exr(const std::string& path, const FloatImage& image, const PictureNotes& notes) {
-    if (image.channels != 1 && image.channels != 3)
-        throw Error(Exit::failed,
-                    path + ": not written: 1 or 3 channels are supported, this picture has " + std::to_string(image.channels));
+void write_exr(const std::string& path, const std::vector<PictureLayer>& layers, const PictureNotes& notes) {
+    for (const PictureLayer& layer : layers)
+        if (layer.values.channels != 1 && layer.values.channels != 3)
+            throw Error(Exit::failed, path + ": not written: 1 or 3 channels are supported, this picture has " +
+                                          std::to_string(layer.values.channels));
     std::string bytes;
     try {
-        bytes = encode_exr(path, image, notes);
+        bytes = encode_exr(path, layers, notes);
     } catch (const std::exception& e) {
         throw Error(Exit::failed, path + ": not written: OpenEXR says: " + e.what());
     }
     write_whole(path, bytes, notes);
 }
 #else
-void write_exr(const std::string& path, const FloatImage&, const PictureNotes&) {
+void write_exr(const std::string& path, const std::vector<PictureLayer>&, const PictureNotes&) {
     check_ending(path);
 }
 #endif
@@ -199,7 +204,19 @@ void write_image(const std::string& path, const FloatImage& values, const ByteIm
     const Format format = format_of(path);
     if (format == Format::png) return write_png(path, display, notes);
     check_size(path, values.width, values.height, values.channels, values.pixels.size());
-    return format == Format::exr ? write_exr(path, values, notes) : write_pfm(path, values, notes);
+    return format == Format::exr ? write_exr(path, {{"", values}}, notes) : write_pfm(path, values, notes);
+}
+
+void write_layers(const std::string& path, const std::vector<PictureLayer>& layers, const PictureNotes& notes) {
+    check_ending(path);
+    for (const PictureLayer& layer : layers)
+        check_size(path, layers.front().values.width, layers.front().values.height, layer.values.channels,
+                   layer.values.pixels.size());
+    write_exr(path, layers, notes);
+}
+
+bool holds_layers(const std::string& path) {
+    return format_of(path) == Format::exr;
 }
 
 bool writes_display(const std::string& path) {

@@ -28,6 +28,17 @@ struct PictureNotes {
 // and -1 are exact). Writes a temporary file in the same folder, then renames it. Throws Error(failed) with file and reason,
 // and Error(usage) for another ending.
 void write_image(const std::string& path, const FloatImage& values, const ByteImage& display, const PictureNotes& notes = {});
+
+// Some channels of a file with several: "" for the colours, else the layer's name, as in "normal.X".
+struct PictureLayer {
+    std::string name;
+    FloatImage values;  // 1 channel: NAME.Y; 3: R, G, B of colours, else NAME.X, NAME.Y, NAME.Z
+};
+// Writes layers of equal size into one EXR. Throws as write_image().
+void write_layers(const std::string& path, const std::vector<PictureLayer>& layers, const PictureNotes& notes = {});
+// Whether the path's ending is that of a format with layers.
+bool holds_layers(const std::string& path);
+
 // Whether write_image() uses `display` for this path. The other image may then be empty.
 bool writes_display(const std::string& path);
 // Throws Error(usage) if the ending is unknown or the folder is missing or not writable. Call it before any work.

@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <cstring>
@@ -197,6 +198,21 @@ TEST_F(ImageIo, NotesAreKept) {
         ASSERT_NE(text, nullptr) << key;
         EXPECT_EQ(text->value(), value);
     }
+#endif
+}
+
+TEST_F(ImageIo, LayersAreExact) {
+#ifdef CLARITY_HAVE_OPENEXR
+    const FloatImage colors = sample_values(33, 40, 3), t = sample_values(33, 40, 1);
+    FloatImage normal = colors;
+    std::reverse(normal.pixels.begin(), normal.pixels.end());
+    write_layers(path("a.exr"), {{"", colors}, {"normal", normal}, {"t", t}});
+    EXPECT_TRUE(same_bits(read_exr(path("a.exr"), {"R", "G", "B"}).pixels, colors.pixels));
+    EXPECT_TRUE(same_bits(read_exr(path("a.exr"), {"normal.X", "normal.Y", "normal.Z"}).pixels, normal.pixels));
+    EXPECT_TRUE(same_bits(read_exr(path("a.exr"), {"t.Y"}).pixels, t.pixels));
+    const auto refused = failure_of([&] { write_layers(path("b.exr"), {{"", colors}, {"t", sample_values(33, 39, 1)}}); });
+    EXPECT_EQ(refused.first, Exit::failed) << "layers of other sizes";
+    EXPECT_EQ(file_count(), 1u);
 #endif
 }
 

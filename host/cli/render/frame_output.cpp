@@ -1,0 +1,52 @@
+#include "cli/render/frame_output.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "base/digest.hpp"
+#include "base/elapsed.hpp"
+#include "base/host_name.hpp"
+#include "cli/render/frame_record.hpp"
+#include "cli/render/picture_digest.hpp"
+
+namespace clarity {
+namespace {
+
+void record_frame(const RenderOptions& options, const FrameFile& file, const std::string& command, const std::string& pixels) {
+    FrameRecord record;
+    record.frame = file.frame;
+    record.picture = std::filesystem::path(file.path).filename().string();
+    record.digest = file.digest;
+    record.pixels = pixels;
+    record.file_digest = file_digest(file.path);
+    record.seconds = seconds_since(file.begin);
+    record.samples = file.samples;
+    record.of_checkpoint = file.of_checkpoint;
+    record.host = host_name();
+    record.device = file.device;
+    record.command = command;
+    record.options = options;
+    if (!options.frames.empty()) record.options.frames = std::to_string(file.frame);
+    write_record(record, record_path(file.path));
+}
+
+}  // namespace
+
+void write_frame(const RenderOptions& options, const FrameFile& file, FramePixels pixels) {
+    const std::string command = render_words(options, file.moves ? std::optional<int>(file.frame) : std::nullopt);
+    PictureNotes notes;
+    notes.texts = {{"Software", std::string("clarity ") + CLARITY_VERSION}, {"Command", command}, {"Digest", file.digest}};
+    // A frame that others wait for, or that took long, must outlast a power cut.
+    notes.sync = file.has_record || !options.checkpoint.empty() || !options.resume.empty();
+    std::string digest = writes_display(file.path) ? pixel_digest(pixels.display) : pixel_digest(pixels.values);
+    if (options.all_aovs) {
+        for (const PictureLayer& layer : pixels.layers) digest = digest_of(digest + pixel_digest(layer.values));
+        pixels.layers.insert(pixels.layers.begin(), {"", std::move(pixels.values)});
+        write_layers(file.path, pixels.layers, notes);
+    } else {
+        write_image(file.path, pixels.values, pixels.display, notes);
+    }
+    if (file.has_record) record_frame(options, file, command, digest);
+}
+
+}  // namespace clarity
