@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstring>
 
 #include "base/error.hpp"
 
@@ -33,12 +34,12 @@ void on_signal(int) {
     set_deadline(kStopSeconds);
 }
 
+char last_words[512] =
+    "\nwarning: interrupted: the OpenCL driver did not stop, so the program was ended; nothing more is written\n";
+
 // Nothing is lost by ending here: files have their names only when they are complete, and the kernel ends our workers with us.
 void on_deadline(int) {
-    static const char text[] =
-        "\nwarning: interrupted: the OpenCL driver did not stop, so the program was ended; nothing more is "
-        "written\n";
-    const ssize_t written = ::write(STDERR_FILENO, text, sizeof text - 1);
+    const ssize_t written = ::write(STDERR_FILENO, last_words, std::strlen(last_words));
     (void)written;
     _exit(static_cast<int>(Exit::interrupted));
 }
@@ -75,6 +76,11 @@ CancelOnSignal::~CancelOnSignal() {
 
 bool interrupted() {
     return came;
+}
+
+void say_at_deadline(const std::string& text) {
+    const std::string words = text.empty() ? text : "\nwarning: interrupted: " + text.substr(0, 480) + "\n";
+    std::memcpy(last_words, words.c_str(), words.size() + 1);
 }
 
 void take_time_to_stop() {

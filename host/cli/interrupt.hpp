@@ -2,6 +2,8 @@
 // point comes within kStopSeconds, because a driver is in the middle of a compilation or of a launch that cannot be stopped,
 // the program ends where it is. A second signal ends the program at once.
 #pragma once
+#include <string>
+
 #include "base/progress.hpp"
 
 namespace clarity {
@@ -23,5 +25,8 @@ bool interrupted();
 // The safe point is reached: what follows ends by itself, such as the writing of a large picture, and may take its time. Call
 // it before finished parts are written. Without a signal it does nothing.
 void take_time_to_stop();
+
+// What is printed if the program has to end where it is, instead of a text about drivers. At most 500 bytes of it. "": nothing.
+void say_at_deadline(const std::string& text);
 
 }  // namespace clarity

@@ -60,7 +60,7 @@ class RenderJob {
 
     int run() {
         check_render_options(options_, settings_, range_);
-        check_scene(plugins_, options_.scene);
+        if (is_first()) check_scene(plugins_, options_.scene);
         if (range_.count() == 0) {
             log(LogLevel::info, "--frames-of " + options_.frames_of + ": there are fewer frames, so that this share is empty");
             return static_cast<int>(Exit::done);
@@ -294,6 +294,7 @@ class RenderJob {
         PictureCheckpoint checkpoint(options_, frame.number, frame.digest, way_of_tracing(stats_.devices, *stats_.prepared),
                                      all, mpi_);
         resumed_ = 0;
+        if (mpi_) say_at_deadline(words_of_rank(checkpoint));
         // The first pass counts rays, which costs a little time, and warms up caches; timed passes come after it.
         const bool warm_up = options_.repeat > 1;
         const unsigned passes = options_.repeat + (warm_up ? 1 : 0);
@@ -327,6 +328,15 @@ class RenderJob {
             tell_interrupted((traced.samples == 0 ? "no sample was complete" : "the picture was not complete") +
                              std::string(", nothing is written"));
         return whole;
+    }
+
+    // Rank 0 waits for ranks that have ended; mpirun then ends it, too.
+    std::string words_of_rank(const PictureCheckpoint& checkpoint) const {
+        if (!is_first()) return {};
+        const std::string what = "not all ranks have stopped in time; the picture is not written; ";
+        return what + (checkpoint.saves() ? "once " + checkpoint.path() + " is there, the same command with --resume " +
+                                                checkpoint.path() + " goes on with its samples"
+                                          : "with --checkpoint FILE, the same command with --resume FILE would go on");
     }
 
     void tell_interrupted(const std::string& what) const {
