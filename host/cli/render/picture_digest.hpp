@@ -4,6 +4,7 @@
 #include <string>
 
 #include "cli/render/frame_scene.hpp"
+#include "render/film/image_io.hpp"
 #include "render/multi/multi_preparer.hpp"
 
 namespace clarity {

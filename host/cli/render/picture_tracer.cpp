@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "base/error.hpp"
 #include "cli/render/render_progress.hpp"
 #include "render/frame/frame_stats.hpp"
 

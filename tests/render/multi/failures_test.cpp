@@ -82,6 +82,24 @@ TEST_F(FailingDevice, OthersTakeOverBetweenSamples) {
     expect_whole(team, warnings);
 }
 
+// Of a picture that goes on from sums, the tiles of a lost device begin with these sums again.
+TEST_F(FailingDevice, OthersTakeOverInAPictureThatGoesOn) {
+    Team first("0:0/2");
+    first.trace(scene_, settings_, view_, 0, 2);
+    const auto sums = std::make_shared<const FloatImage>(first.frames.read_sums());
+    for (const bool at_once : {true, false}) {
+        Team team("0:0/2");
+        const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
+        Warnings warnings;
+        team.frames.resume(prepared, settings_, sums, 2);
+        if (at_once) lose(team, 1);
+        team.frames.trace(prepared, settings_, view_, 2, false, team.progress, 1);
+        if (!at_once) lose(team, 1);
+        EXPECT_EQ(team.frames.trace(prepared, settings_, view_, 3, false, team.progress, 1).samples, 4u);
+        expect_whole(team, warnings);
+    }
+}
+
 TEST_F(FailingDevice, OthersTakeOverBeforeItsFilmIsReadBack) {
     Team team("0:0/2");
     const auto prepared = team.preparer.prepare(scene_, settings_, team.progress);
