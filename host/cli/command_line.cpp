@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "base/error.hpp"
+#include "cli/help/bash_completion.hpp"
+#include "cli/help/man_page.hpp"
 
 namespace clarity {
 namespace {
@@ -278,7 +280,7 @@ std::vector<std::string> with_command(const CLI::App& app, int argc, char** argv
     const auto is_command = [&](const std::string& word) {
         for (const CLI::App* sub : app.get_subcommands({}))
             if (sub->get_name() == word) return true;
-        return word == "-h" || word == "--help" || word == "--version";
+        return word == "-h" || word == "--help" || word == "--version" || word.compare(0, 9, "--help-as") == 0;
     };
     if (words.empty() || !is_command(words.front())) words.insert(words.begin(), "view");
     return words;
@@ -395,6 +397,15 @@ CommandLine parse_command_line(int argc, char** argv) {
         sub->get_formatter()->column_width(34);
         sub->footer(kExitCodes);
     }
+
+    single(app.add_option_function<std::string>(
+               "--help-as",
+               [&app](const std::string& reader) {
+                   throw CLI::CallForVersion(reader == "man" ? man_page(app, CLARITY_VERSION) : bash_completion(app), 0);
+               },
+               "Print the help of all commands as a page for man, or as completion for bash, and exit"))
+        ->type_name("READER")
+        ->check(CLI::IsMember({"man", "bash"}));
 
     std::vector<std::string> words = with_command(app, argc, argv);
     try {

@@ -1,0 +1,49 @@
+# Manual page, completion, desktop file, icon, recipes for farms, and what `cpack` makes of all that is installed: a .deb, and a .tar.gz
+# that runs from any folder. In build/release: cpack -G DEB, cpack -G TGZ.
+
+# Made from the program's own help. --help-as opens no device and loads no plugin.
+set(page ${PROJECT_BINARY_DIR}/share/man/man1/clarity.1.gz)
+set(completion ${PROJECT_BINARY_DIR}/share/bash-completion/completions/clarity)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/man/man1 ${PROJECT_BINARY_DIR}/share/bash-completion/completions)
+add_custom_command(OUTPUT ${page} ${completion} DEPENDS clarity VERBATIM
+  COMMAND sh -c "\"$1\" --help-as man > \"$2.text\" && gzip -9nc \"$2.text\" > \"$2\" && rm \"$2.text\" && \"$1\" --help-as bash > \"$3\"" sh
+    $<TARGET_FILE:clarity> ${page} ${completion})
+add_custom_target(manual ALL DEPENDS ${page} ${completion})
+add_dependencies(program manual)
+install(FILES ${page} DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${completion} DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions)
+
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/share/ DESTINATION ${CMAKE_INSTALL_DATADIR} USE_SOURCE_PERMISSIONS)
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/share/clarity/farm ${PROJECT_BINARY_DIR}/share/clarity/farm SYMBOLIC)
+
+# The .tar.gz brings libraries along, in a folder of its own. RPATH, and not RUNPATH, is also asked for the libraries of libraries and of
+# plugins. In the .deb the folder is missing and costs a look.
+set(CLARITY_LIBRARY_FOLDER ${CMAKE_INSTALL_LIBDIR}/clarity/libraries)
+file(RELATIVE_PATH from_program ${CMAKE_INSTALL_FULL_BINDIR} ${CMAKE_INSTALL_FULL_LIBDIR}/clarity/libraries)
+set_target_properties(clarity PROPERTIES INSTALL_RPATH "$ORIGIN/${from_program}")
+target_link_options(clarity PRIVATE -Wl,--disable-new-dtags)
+
+set(CPACK_GENERATOR DEB TGZ)
+set(CPACK_PACKAGE_NAME clarity)
+set(CPACK_PACKAGE_VENDOR Clarity)
+set(CPACK_PACKAGE_CONTACT "Clarity <clarity@localhost>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "ray-tracing workbench on OpenCL")
+set(CPACK_PACKAGE_DESCRIPTION "Clarity renders scenes by ray tracing on GPUs, or on CPUs through PoCL. Its window shows what structures and
+settings cost while it traces. The package has the program, its importers and structures, the SDK for more of
+them, sample scenes, and recipes for farms of machines.")
+set(CPACK_RESOURCE_FILE_README ${PROJECT_SOURCE_DIR}/README.md)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_MONOLITHIC_INSTALL ON)
+set(CPACK_PROJECT_CONFIG_FILE ${PROJECT_SOURCE_DIR}/cmake/package_kind.cmake)
+set(CPACK_CLARITY_LIBRARY_FOLDER ${CLARITY_LIBRARY_FOLDER})
+set(CPACK_CLARITY_SCRIPT ${PROJECT_SOURCE_DIR}/cmake/package_libraries.cmake)
+
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION graphics)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+# The window draws with OpenGL, which GLFW and epoxy load while they run.
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "util-linux")
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, libgl1, libgl1-mesa-dri, fonts-dejavu-core")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, slurm-client, ffmpeg, imagemagick")
+include(CPack)
