@@ -23,13 +23,10 @@ split_frames() {
     ((last >= first && step >= 1)) || die "frames '$1': the smaller number comes first, and the step is at least 1"
 }
 
-# picture OUT NUMBER: the name of a frame, in which a run of # is the number with as many digits.
+# picture OUT NUMBER: the name of a frame, in which the last run of # is the number with as many digits.
 picture() {
-    local hashes=${1##*/}
-    hashes=${hashes#"${hashes%%#*}"} hashes=${hashes%%[!#]*}
-    [ -n "$hashes" ] || die "output '$1': put #### into its name, for the frame's number"
-    local at=${1%"$hashes"*} rest=${1##*"$hashes"}
-    printf '%s%0*d%s\n' "$at" "${#hashes}" "$2" "$rest"
+    [[ $1 =~ ^(.*[^#]|)(#+)([^#/]*)$ ]] || die "output '$1': put #### into its name, for the frame's number"
+    printf '%s%0*d%s\n' "${BASH_REMATCH[1]}" "${#BASH_REMATCH[2]}" "$2" "${BASH_REMATCH[3]}"
 }
 
 # count_pictures OUT FIRST LAST STEP: how many of these pictures are there.
