@@ -16,6 +16,9 @@ test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format
 # Additional packages for scripts/full_test.
 check_packages="clang-tidy"
 
+# For its step `farm`: a cluster on this machine.
+farm_packages="slurm-wlm munge ffmpeg python3"
+
 say() { printf '%s\n' "$*" >&2; }
 die() {
     say "$(basename "$0"): $*"

@@ -6,15 +6,10 @@ die() {
     exit 2
 }
 
-# Runs a command that the kernel kills when this shell dies, so that no program is left on a node whose job is gone.
+# Words before a command that the kernel kills when this shell dies, so that no program is left on a node whose job is gone.
 # Where util-linux is too old for that (before 2.33), the job's cgroup has to do it.
-if setpriv --pdeathsig KILL true 2>/dev/null; then
-    tied() { setpriv --pdeathsig KILL "$@"; }
-    tied_prefix="setpriv --pdeathsig KILL"
-else
-    tied() { "$@"; }
-    tied_prefix=""
-fi
+tied_prefix="setpriv --pdeathsig KILL"
+$tied_prefix true 2>/dev/null || tied_prefix=""
 
 # split_frames A-B[/STEP]: sets first, last, step.
 split_frames() {
@@ -29,36 +24,30 @@ picture() {
     printf '%s%0*d%s\n' "${BASH_REMATCH[1]}" "${#BASH_REMATCH[2]}" "$2" "${BASH_REMATCH[3]}"
 }
 
-# count_pictures OUT FIRST LAST STEP: how many of these pictures are there.
-count_pictures() {
-    local n=0 frame
-    for ((frame = $2; frame <= $3; frame += $4)); do
-        if [ -s "$(picture "$1" "$frame")" ]; then n=$((n + 1)); fi
-    done
-    echo "$n"
-}
-
-# render_share K N FRAMES OUT SCENE [OPTION...]: renders frames K, K + N, K + 2N, ... of FRAMES (K from 1), those that are there left out.
-# After a crash it begins again, three times as long as no new picture comes. SIGTERM to this shell ends the program, which then leaves no
-# part of a picture. Returns 0 if all pictures of the share are there, 130 after SIGTERM, else the program's exit code. Sets `fresh`, the
-# number of new pictures.
+# render_share K N FRAMES OUT SCENE [OPTION...]: renders the K-th of N shares of FRAMES (K from 1: every N-th frame, from the K-th on). Frames
+# that are there already with the record of the same scene and settings are left out; a frame that was interrupted goes on with its checkpoint.
+# After a crash it begins again, three times as long as no picture and no checkpoint comes. SIGTERM to this shell ends the program.
+# Returns 0 if all pictures of the share are there, 130 after SIGTERM, else the program's exit code. Sets `advanced` to 1 if something was done.
 render_share() {
-    local share=$1 shares=$2 frames=$3 out=$4 first last step before now tries=0 code stopped="" child=""
+    local share=$1 shares=$2 frames=$3 out=$4 first last step frame before now tries=0 code stopped="" child=""
+    local files=() saves=()
     shift 4
     split_frames "$frames"
     picture "$out" "$first" >/dev/null
     mkdir -p "$(dirname "$out")" || return 1
-    first=$((first + (share - 1) * step)) step=$((step * shares)) fresh=0
-    if ((first > last)); then
-        say "share $share of $shares: there are fewer frames than shares, so nothing is left to do"
-        return 0
-    fi
-    before=$(count_pictures "$out" "$first" "$last" "$step")
-    local begin=$before
+    advanced=0
+    # Only colours are sums of samples, which a checkpoint can hold.
+    [[ " $* " == *" --aov"* ]] || saves=(--checkpoint "${out%.*}.checkpoint" --resume "${out%.*}.checkpoint")
+    for ((frame = first + (share - 1) * step; frame <= last; frame += step * shares)); do
+        files+=("$(picture "$out" "$frame")" "$(picture "${out%.*}.checkpoint" "$frame")")
+    done
+    # Inode and time of each file: a new picture changes them, also one in the place of an old one.
+    state() { stat -c '%i %Y %n' "${files[@]}" 2>/dev/null; }
+    before=$(state)
     trap 'stopped=1; [ -z "$child" ] || kill -TERM "$child" 2>/dev/null' TERM INT
     while :; do
         # A plain command, so that $! is the program itself and a signal reaches it.
-        $tied_prefix "$clarity" render "$@" --frames "$first-$last/$step" --skip-existing -o "$out" </dev/null &
+        $tied_prefix "$clarity" render "$@" --frames "$frames" --frames-of "$share/$shares" --skip-existing "${saves[@]}" -o "$out" </dev/null &
         child=$!
         # A signal ends `wait` before the program has ended.
         while :; do
@@ -66,18 +55,18 @@ render_share() {
             code=$?
             kill -0 "$child" 2>/dev/null || break
         done
-        wait "$child" 2>/dev/null
         child=""
-        now=$(count_pictures "$out" "$first" "$last" "$step")
-        fresh=$((now - begin))
+        now=$(state)
+        if [ "$now" != "$before" ]; then advanced=1 tries=0; fi
+        before=$now
         [ -z "$stopped" ] || { code=130; break; }
         # Wrong options, no device, a scene that cannot be read, a kernel that does not compile: trying again changes nothing.
         case $code in 0 | 2 | 3 | 4 | 5) break ;; esac
-        if ((now > before)); then tries=0; fi
-        before=$now
         tries=$((tries + 1))
         if ((tries >= 3)); then break; fi
-        say "clarity ended with exit code $code; $now pictures of this share are there; it begins again"
+        # A checkpoint of other settings would be refused again and again.
+        if ((tries == 2)); then saves=("${saves[@]:0:2}"); fi
+        say "clarity ended with exit code $code; it begins again"
     done
     trap - TERM INT
     return "$code"
