@@ -45,7 +45,11 @@ render_share() {
     state() { stat -c '%i %Y %n' "${files[@]}" 2>/dev/null; }
     before=$(state)
     trap 'stopped=1; [ -z "$child" ] || kill -TERM "$child" 2>/dev/null' TERM INT
-    while [ -z "$stopped" ] || { code=130 && break; }; do
+    while :; do
+        if [ -n "$stopped" ]; then
+            code=130
+            break
+        fi
         # A plain command, so that $! is the program itself and a signal reaches it.
         $tied_prefix "$clarity" render "$@" --frames "$frames" --frames-of "$share/$shares" --skip-existing "${saves[@]}" -o "$out" </dev/null &
         child=$!
