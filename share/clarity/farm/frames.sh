@@ -53,6 +53,7 @@ render_share() {
         # A plain command, so that $! is the program itself and a signal reaches it.
         $tied_prefix "$clarity" render "$@" --frames "$frames" --frames-of "$share/$shares" --skip-existing "${saves[@]}" -o "$out" </dev/null &
         child=$!
+        [ -z "$stopped" ] || kill -TERM "$child" # the signal came before $child was known
         # A signal ends `wait` before the program has ended.
         while :; do
             wait "$child"
