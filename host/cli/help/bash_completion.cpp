@@ -75,7 +75,9 @@ std::string bash_completion(const CLI::App& app) {
         "    local word=${COMP_WORDS[COMP_CWORD]} before=${COMP_WORDS[COMP_CWORD - 1]} command=${COMP_WORDS[1]} words=\"\"\n"
         "    COMPREPLY=()\n"
         "    if ((COMP_CWORD == 1)); then\n"
-        "        COMPREPLY=($(compgen -W \"" + all + "\" -- \"$word\") $(compgen -f -- \"$word\"))\n"
+        "        COMPREPLY=($(compgen -W \"" +
+        all +
+        "\" -- \"$word\") $(compgen -f -- \"$word\"))\n"
         "        return\n"
         "    fi\n"
         "    case $command in\n";

@@ -5,8 +5,8 @@
 namespace clarity {
 namespace {
 
-// Text for man(7): a backslash begins a command there, so does a point or an apostrophe at the beginning of a line. A plain hyphen
-// would become a typographic one, which nobody can paste into a shell.
+// Text for man(7): a backslash begins a command there, so does a point or an apostrophe at the beginning of a line. A plain
+// hyphen would become a typographic one, which nobody can paste into a shell.
 std::string escaped(const std::string& text) {
     std::string out;
     bool line_begins = true;
@@ -75,7 +75,8 @@ std::string man_page(const CLI::App& app, const std::string& version) {
     for (const CLI::App* command : commands) out += ".br\n\\fBclarity " + escaped(command->get_name()) + "\\fR [OPTIONS]...\n";
     out += ".SH DESCRIPTION\n" + lines(app.get_description()) + options(app);
     for (const CLI::App* command : commands)
-        out += ".SH CLARITY " + upper(escaped(command->get_name())) + "\n" + lines(command->get_description()) + options(*command);
+        out +=
+            ".SH CLARITY " + upper(escaped(command->get_name())) + "\n" + lines(command->get_description()) + options(*command);
     return out + ".SH EXIT CODES AND ENVIRONMENT\n" + lines(app.get_footer());
 }
 
