@@ -6,7 +6,7 @@ file(GLOB program "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/bin/clarity")
 file(GLOB plugins "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/lib*/clarity/plugins/*/*.so"
   "${CPACK_TEMPORARY_INSTALL_DIRECTORY}/lib*/*/clarity/plugins/*/*.so")
 if(NOT program OR NOT plugins)
-  message(FATAL_ERROR "the package has no program or no plugins in ${CPACK_TEMPORARY_INSTALL_DIRECTORY}: build the target `all` first")
+  message(FATAL_ERROR "the package has no program or no plugins in ${CPACK_TEMPORARY_INSTALL_DIRECTORY}: build the target `program` first")
 endif()
 file(GET_RUNTIME_DEPENDENCIES EXECUTABLES ${program} MODULES ${plugins} RESOLVED_DEPENDENCIES_VAR found
   UNRESOLVED_DEPENDENCIES_VAR missing PRE_EXCLUDE_REGEXES ${base})

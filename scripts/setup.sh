@@ -17,7 +17,7 @@ test_packages="pocl-opencl-icd libgtest-dev libembree-dev oclgrind clang-format
 check_packages="clang-tidy"
 
 # For its step `farm`: a cluster on this machine.
-farm_packages="slurm-wlm munge ffmpeg python3"
+farm_packages="slurm-wlm munge ffmpeg python3 libopenmpi-dev openmpi-bin"
 
 say() { printf '%s\n' "$*" >&2; }
 die() {

@@ -17,6 +17,7 @@
 #include "base/files/frame_path.hpp"
 #include "base/files/output_file.hpp"
 #include "base/log.hpp"
+#include "base/statistics.hpp"
 #include "cli/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/progress_bar.hpp"
@@ -358,6 +359,8 @@ class RenderJob {
     }
 
     void write(MultiFrameRenderer& frames, const Frame& frame, const std::string& path, Progress& progress) {
+        if (mpi_) gather_stats();
+        const auto all_done = Clock::now();
         FramePixels pixels;
         if (writes_display(path))
             pixels.display = frames.read_display(settings_);
@@ -365,7 +368,7 @@ class RenderJob {
             pixels.values = frames.read_values();
         if (options_.all_aovs)
             pixels.layers = trace_aov_layers(frames, *preparer_, scene_.scene(), scene_.view(), settings_, progress);
-        if (mpi_) add_rays_of_ranks();
+        stats_.collect_ms = ms_since(all_done);
         if (!is_first()) return;
         if (stats_.first_picture_ms == 0) stats_.first_picture_ms = ms_since(begin_);
         FrameFile file;
@@ -381,7 +384,11 @@ class RenderJob {
         log(LogLevel::info, path + times);
     }
 
-    void add_rays_of_ranks() {
+    // Waits until all ranks have traced their parts.
+    void gather_stats() {
+        const std::vector<double> device_ms = mpi_->gather(median(stats_.frame_ms)), wall_ms = mpi_->gather(median(stats_.wall_ms));
+        stats_.ranks.clear();
+        for (size_t r = 0; r < wall_ms.size(); ++r) stats_.ranks.push_back({device_ms[r], wall_ms[r]});
         for (uint64_t* const count :
              {&stats_.primary, &stats_.shadow, &stats_.secondary, &stats_.dropped, &stats_.overflowed}) {
             double sum = 0;

@@ -89,6 +89,11 @@ std::string stats_json(const RenderStats& stats) {
     json["frames_timed"] = stats.frame_ms.size();
     json["frame_ms"] = times_json(stats.frame_ms);
     json["frame_wall_ms"] = times_json(stats.wall_ms);
+    if (!stats.ranks.empty()) {
+        for (const RankTimes& rank : stats.ranks)
+            json["ranks"].push_back({{"frame_ms", rounded(rank.frame_ms)}, {"frame_wall_ms", rounded(rank.wall_ms)}});
+        json["collect_ms"] = rounded(stats.collect_ms);
+    }
     json["build_ms"] = rounded(accel.build_ms);
     json["pack_ms"] = rounded(accel.pack_ms);
     json["upload_ms"] = rounded(prepared.upload_ms);

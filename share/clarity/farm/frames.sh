@@ -26,7 +26,7 @@ picture() {
 
 # render_share K N FRAMES OUT SCENE [OPTION...]: renders the K-th of N shares of FRAMES (K from 1: every N-th frame, from the K-th on). Frames
 # that are there already with the record of the same scene and settings are left out; a frame that was interrupted goes on with its checkpoint.
-# After a crash it begins again, three times as long as no picture and no checkpoint comes. SIGTERM to this shell ends the program.
+# After a crash it begins again, up to five runs in a row that bring no picture and no checkpoint. SIGTERM to this shell ends the program.
 # Returns 0 if all pictures of the share are there, 130 after SIGTERM, else the program's exit code. Sets `advanced` to 1 if something was done.
 render_share() {
     local share=$1 shares=$2 frames=$3 out=$4 first last step frame before now tries=0 code stopped="" child=""
@@ -46,9 +46,14 @@ render_share() {
     before=$(state)
     trap 'stopped=1; [ -z "$child" ] || kill -TERM "$child" 2>/dev/null' TERM INT
     while :; do
+        if [ -n "$stopped" ]; then
+            code=130
+            break
+        fi
         # A plain command, so that $! is the program itself and a signal reaches it.
         $tied_prefix "$clarity" render "$@" --frames "$frames" --frames-of "$share/$shares" --skip-existing "${saves[@]}" -o "$out" </dev/null &
         child=$!
+        [ -z "$stopped" ] || kill -TERM "$child" # the signal came before $child was known
         # A signal ends `wait` before the program has ended.
         while :; do
             wait "$child"
@@ -63,10 +68,13 @@ render_share() {
         # Wrong options, no device, a scene that cannot be read, a kernel that does not compile: trying again changes nothing.
         case $code in 0 | 2 | 3 | 4 | 5) break ;; esac
         tries=$((tries + 1))
-        if ((tries >= 3)); then break; fi
+        if ((tries >= 5)); then break; fi
         # A checkpoint of other settings would be refused again and again.
         if ((tries == 2)); then saves=("${saves[@]:0:2}"); fi
         say "clarity ended with exit code $code; it begins again"
+        # What was wrong for a moment, such as memory or the file server, may be right then.
+        sleep "$tries" &
+        wait $!
     done
     trap - TERM INT
     return "$code"
