@@ -14,6 +14,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "check/builds/build_checks.hpp"
+#include "check/builds/device_checks.hpp"
 #include "check/check.hpp"
 #include "check/hits/hits_checks.hpp"
 #include "check/importers/import_checks.hpp"
@@ -168,7 +169,9 @@ std::vector<Check> kernel_checks(const PluginRecord& record, const Arguments& ar
         return arguments.phase == "accesses" ? shape_access_checks(*record.plugin, open, options)
                                              : shape_checks(*record.plugin, layout, open, options);
     if (arguments.phase == "accesses") return access_checks(*record.plugin, layout, open, options);
-    return hits_checks(*record.plugin, layout, open, options);
+    std::vector<Check> checks = hits_checks(*record.plugin, layout, open, options);
+    checks.insert(checks.begin(), device_check(*record.plugin, open, arguments.quick));
+    return checks;
 }
 
 std::vector<Check> key_value_checks(const Arguments& arguments) {

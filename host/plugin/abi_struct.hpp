@@ -8,6 +8,7 @@
 #include <cstring>
 #include <string>
 
+#include "rt_device.h"
 #include "rt_plugin.h"
 #include "rt_refit.h"
 
@@ -71,6 +72,8 @@ inline constexpr uint32_t kLeastBytes<rt_vertex_frames> = 32;
 // Extensions have sizes of their own.
 template <>
 inline constexpr uint32_t kLeastBytes<rt_refit> = 16;
+template <>
+inline constexpr uint32_t kLeastBytes<rt_device_build> = 64;
 
 // More than any struct of the ABI will have, and far less than a random word is likely to hold.
 inline constexpr uint32_t kMostBytes = 4096;

@@ -6,10 +6,6 @@
 
 namespace clarity {
 
-// Of its first release.
-template <>
-inline constexpr uint32_t kLeastBytes<rt_device_build> = 64;
-
 rt_refit refit_of(const rt_plugin& plugin) {
     for (const rt_extension* e = plugin.extensions; e && e->name; ++e)
         if (std::strcmp(e->name, RT_REFIT) == 0 && e->version == RT_REFIT_VERSION && plugin.accel)
@@ -19,8 +15,7 @@ rt_refit refit_of(const rt_plugin& plugin) {
 
 rt_device_build device_build_of(const rt_plugin& plugin) {
     for (const rt_extension* e = plugin.extensions; e && e->name; ++e)
-        if (std::strcmp(e->name, RT_DEVICE_BUILD) == 0 && e->version == RT_DEVICE_BUILD_VERSION && plugin.accel &&
-            e->data_bytes >= kLeastBytes<rt_device_build>)
+        if (std::strcmp(e->name, RT_DEVICE_BUILD) == 0 && e->version == RT_DEVICE_BUILD_VERSION && plugin.accel)
             return copied<rt_device_build>(e->data, e->data_bytes);
     return {};
 }

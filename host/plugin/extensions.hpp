@@ -8,7 +8,7 @@ namespace clarity {
 // The extension `refit` of a structure; refit is nullptr if it has none of a version that this host knows. The tables of
 // plugins are the registry's copies.
 rt_refit refit_of(const rt_plugin& plugin);
-// The extension `device_build`; topology and pack are nullptr if it has none.
+// The extension `device_build`; topology, pack and refit are nullptr if it has none of a version that this host knows.
 rt_device_build device_build_of(const rt_plugin& plugin);
 
 }  // namespace clarity

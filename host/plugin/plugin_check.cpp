@@ -173,16 +173,35 @@ std::string check_accel(const rt_accel& accel) {
     return {};
 }
 
+std::string check_device_build(const rt_device_build& build) {
+    if (std::string why = check_text("the name of its kernel file", build.kernels.name, true); !why.empty()) return why;
+    if (!build.kernels.text || !*build.kernels.text)
+        return "its kernel file has no text: embed <id>_build.cl (clarity_add_plugin does) and point kernels.text at it";
+    if (!build.topology && !build.pack && !build.refit) return "topology, pack and refit are all NULL: one of them is needed";
+    if (build.pack && !build.elements) return "pack goes with elements, which is NULL";
+    if (build.pack && !build.refit) return "pack goes with refit, which is NULL: the host refits what it packs on the device";
+    if (build.refit && !build.ranges) return "refit goes with ranges, which is NULL";
+    return {};
+}
+
 std::string check_extensions(const rt_plugin& plugin) {
     for (const rt_extension* e = plugin.extensions; e && e->name; ++e) {
         if (std::string why = check_text("the name of an extension", e->name, true); !why.empty()) return why;
         if (e->data_bytes > 0 && !e->data)
             return std::string("extension '") + e->name + "' has data_bytes " + std::to_string(e->data_bytes) +
                    ", but its data is NULL";
-        if (std::strcmp(e->name, RT_REFIT) != 0 || e->version != RT_REFIT_VERSION) continue;
-        if (std::string why = check_bytes<rt_refit>("rt_refit", e->data_bytes, "data_bytes"); !why.empty()) return why;
-        if (!plugin.accel) return "extension 'refit' belongs to acceleration structures only";
-        if (!static_cast<const rt_refit*>(e->data)->refit) return "extension 'refit': its function refit is NULL";
+        if (std::strcmp(e->name, RT_REFIT) == 0 && e->version == RT_REFIT_VERSION) {
+            if (std::string why = check_bytes<rt_refit>("rt_refit", e->data_bytes, "data_bytes"); !why.empty()) return why;
+            if (!plugin.accel) return "extension 'refit' belongs to acceleration structures only";
+            if (!static_cast<const rt_refit*>(e->data)->refit) return "extension 'refit': its function refit is NULL";
+        }
+        if (std::strcmp(e->name, RT_DEVICE_BUILD) == 0 && e->version == RT_DEVICE_BUILD_VERSION) {
+            if (std::string why = check_bytes<rt_device_build>("rt_device_build", e->data_bytes, "data_bytes"); !why.empty())
+                return why;
+            if (!plugin.accel) return "extension 'device_build' belongs to acceleration structures only";
+            if (std::string why = check_device_build(copied<rt_device_build>(e->data, e->data_bytes)); !why.empty())
+                return "extension 'device_build': " + why;
+        }
     }
     return {};
 }

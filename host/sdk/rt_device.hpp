@@ -1,11 +1,37 @@
-// rt_device.hpp -- rt_device.h for C++: the steps of a plan.
+// rt_device.hpp -- rt_device.h for C++: the table of the extension, and the steps of a plan.
+//
+//   constexpr rt_device_build kBuild = rt::device_topology(rt::file(kFiles, "my_tree_build.cl"), rt::guarded<plan>);
+//   constexpr rt_extension kExtensions[] = {rt::extension(kBuild), rt::kNoMoreExtensions};
 #pragma once
 #include <cstring>
 #include <vector>
 
 #include "rt_device.h"
+#include "rt_plugin.hpp"
 
 namespace rt {
+
+using PlanTopology = decltype(rt_device_build::topology);
+using PlanElements = decltype(rt_device_build::elements);
+using PlanPack = decltype(rt_device_build::pack);
+using FindRanges = decltype(rt_device_build::ranges);
+using PlanRefit = decltype(rt_device_build::refit);
+// A builder whose trees other structures pack.
+constexpr rt_device_build device_topology(rt_cl_file kernels, PlanTopology topology) {
+    return {sizeof(rt_device_build), 0, kernels, topology, nullptr, nullptr, nullptr, nullptr};
+}
+// A layout whose finished trees the device refits.
+constexpr rt_device_build device_refit(rt_cl_file kernels, FindRanges ranges, PlanRefit refit) {
+    return {sizeof(rt_device_build), 0, kernels, nullptr, nullptr, nullptr, ranges, refit};
+}
+// A layout that the device packs, too.
+constexpr rt_device_build device_layout(rt_cl_file kernels, PlanElements elements, PlanPack pack, FindRanges ranges,
+                                        PlanRefit refit) {
+    return {sizeof(rt_device_build), 0, kernels, nullptr, elements, pack, ranges, refit};
+}
+constexpr rt_extension extension(const rt_device_build& data) {
+    return {RT_DEVICE_BUILD, RT_DEVICE_BUILD_VERSION, sizeof data, &data};
+}
 
 // Adds steps to a plan until one fails; the host has then recorded why. Without an exception: `return steps.result();`.
 class DeviceSteps {
@@ -42,14 +68,13 @@ class DeviceSteps {
     bool ok_ = true;
 };
 
-// Arguments of kernels.
+// Arguments of kernels: a buffer, a uint, a float.
 inline rt_device_arg of(rt_u32 buffer) {
     return {buffer, 0};
 }
 inline rt_device_arg number(uint64_t value) {
     return {RT_NONE, static_cast<rt_u32>(value)};
 }
-
 inline rt_device_arg real(float value) {
     rt_device_arg arg{RT_NONE, 0};
     std::memcpy(&arg.value, &value, sizeof value);

@@ -12,7 +12,7 @@
 #include <thread>
 #include <vector>
 
-#include "rt_plugin.hpp"
+#include "rt_device.hpp"
 // needs the types of rt_types.h, so it must follow the headers above:
 #include "broken_types.h"
 
@@ -266,6 +266,38 @@ int32_t refit(const rt_host* host, const rt_refit_input* in, const rt_refit_outp
     return RT_OK;
 }
 
+// Positions stand in the order of the nodes: a node's own, then those of its children.
+int32_t ranges(const rt_host*, const rt_built* built, rt_u32 group, rt_tree_ranges* out) {
+    const auto* const nodes = static_cast<const broken_node*>(built->slots[0]);
+    const rt_u32 root = built->roots[group];
+    const rt_u32 end = group + 1 < built->group_count ? built->roots[group + 1] : rt_u32(built->slot_counts[0]);
+    out->first_element = root;
+    out->element_count = end - root;
+    for (rt_u32 at = end; at-- > root;) {
+        rt_u32* const range = out->ranges + 2 * size_t{at};
+        const broken_node& node = nodes[at];
+        if (node.count == BROKEN_EMPTY) continue;
+        const rt_u32* const child = out->ranges + 2 * size_t{node.first};
+        range[0] = node.count > 0 ? node.first : child[0];
+        range[1] = node.count > 0 ? node.count : child[1] + child[3];
+    }
+    if (is("device_ranges_short") && out->ranges[2 * size_t{root} + 1] > 0) --out->ranges[2 * size_t{root} + 1];
+    return RT_OK;
+}
+
+int32_t device_refit(const rt_host*, const rt_device_plan* plan, const rt_device_tree* tree, rt_u32 blocks, rt_u32 costs,
+                     const double*) {
+    using rt::number;
+    using rt::of;
+    const uint64_t each = rt::elements_each(plan), elements = tree->element_count[0];
+    const int defect = is("device_refit_forgets") ? 1 : is("device_refit_outside") ? 2 : is("device_no_costs") ? 3 : 0;
+    rt::DeviceSteps steps(plan);
+    steps.launch("broken_refit", (elements + each - 1) / each,
+                 {of(tree->slots[0]), of(tree->ranges), of(blocks), number(tree->count), number(tree->first_element[0]),
+                  number(elements), number(each), of(costs), number(uint64_t(defect))});
+    return steps.result();
+}
+
 constexpr rt_cl_file kFiles[] = {
 #include "broken.inc"
 };
@@ -274,7 +306,9 @@ constexpr rt_accel kAccel = rt::accel(kSlots, rt::file(kFiles, "broken_types.h")
                                       rt::guarded<build>, rt::guarded<levels>, rt::Traits());
 
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
-constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
+constexpr rt_device_build kDeviceBuild =
+    rt::device_refit(rt::file(kFiles, "broken_build.cl"), rt::guarded<ranges>, rt::guarded<device_refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::extension(kDeviceBuild), rt::kNoMoreExtensions};
 
 }  // namespace
 

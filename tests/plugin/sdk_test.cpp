@@ -7,6 +7,7 @@
 
 #include "base/error.hpp"
 #include "plugin/host_services.hpp"
+#include "rt_device.hpp"
 #include "rt_plugin.hpp"
 
 namespace {
@@ -128,6 +129,39 @@ static_assert(sizeof(rt_refit_output) == 32 && offsetof(rt_refit_output, slots) 
 constexpr rt_refit kRefit = rt::refit(nullptr);
 constexpr rt_extension kRefits[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
 static_assert(kRefits[0].version == 1 && kRefits[0].data_bytes == 16 && kRefits[1].name == nullptr);
+
+// So is the extension device_build.
+static_assert(sizeof(rt_device_arg) == 8 && offsetof(rt_device_arg, value) == 4);
+static_assert(sizeof(rt_device_plan) == 88 && offsetof(rt_device_plan, group_items) == 4 &&
+              offsetof(rt_device_plan, units) == 8 && offsetof(rt_device_plan, has_warps) == 12 &&
+              offsetof(rt_device_plan, ctx) == 16 && offsetof(rt_device_plan, buffer) == 24 &&
+              offsetof(rt_device_plan, launch) == 32 && offsetof(rt_device_plan, fill) == 40 &&
+              offsetof(rt_device_plan, sort) == 48 && offsetof(rt_device_plan, scan) == 56 &&
+              offsetof(rt_device_plan, bounds) == 64 && offsetof(rt_device_plan, blocks) == 72 &&
+              offsetof(rt_device_plan, curve) == 80);
+static_assert(sizeof(rt_device_input) == 24 && offsetof(rt_device_input, prims) == 4 && offsetof(rt_device_input, count) == 8 &&
+              offsetof(rt_device_input, params) == 16);
+static_assert(sizeof(rt_device_topology) == 24 && offsetof(rt_device_topology, nodes) == 4 &&
+              offsetof(rt_device_topology, counts) == 8 && offsetof(rt_device_topology, order) == 12 &&
+              offsetof(rt_device_topology, depth) == 16 && offsetof(rt_device_topology, root) == 20);
+static_assert(sizeof(rt_device_tree) == 56 && offsetof(rt_device_tree, slot_count) == 4 &&
+              offsetof(rt_device_tree, slots) == 8 && offsetof(rt_device_tree, first_element) == 16 &&
+              offsetof(rt_device_tree, element_count) == 24 && offsetof(rt_device_tree, root) == 32 &&
+              offsetof(rt_device_tree, first_leaf) == 36 && offsetof(rt_device_tree, count) == 40 &&
+              offsetof(rt_device_tree, ranges) == 48);
+static_assert(sizeof(rt_device_output) == 32 && offsetof(rt_device_output, leaves) == 4 &&
+              offsetof(rt_device_output, ctx) == 8 && offsetof(rt_device_output, root) == 16 &&
+              offsetof(rt_device_output, define) == 24);
+static_assert(sizeof(rt_tree_ranges) == 32 && offsetof(rt_tree_ranges, first_element) == 8 &&
+              offsetof(rt_tree_ranges, element_count) == 16 && offsetof(rt_tree_ranges, ranges) == 24);
+static_assert(sizeof(rt_device_build) == 64 && offsetof(rt_device_build, kernels) == 8 &&
+              offsetof(rt_device_build, topology) == 24 && offsetof(rt_device_build, elements) == 32 &&
+              offsetof(rt_device_build, pack) == 40 && offsetof(rt_device_build, ranges) == 48 &&
+              offsetof(rt_device_build, refit) == 56);
+constexpr rt_device_build kDeviceBuild = rt::device_topology(kFiles[1], nullptr);
+constexpr rt_extension kDeviceBuilds[] = {rt::extension(kDeviceBuild), rt::kNoMoreExtensions};
+static_assert(kDeviceBuilds[0].version == 1 && kDeviceBuilds[0].data_bytes == 64 &&
+              kDeviceBuild.kernels.text == kFiles[1].text);
 
 constexpr rt_extension kExtensions[] = {{"org.example.paint", 2, 0, nullptr}, {nullptr, 0, 0, nullptr}};
 static_assert(rt::with_extensions(kPlugin, kExtensions).extensions == kExtensions &&

@@ -114,11 +114,14 @@ void CheckedScene::compile(const Variant& variant) {
 }
 
 Traced CheckedScene::trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit) {
-    const auto at = prepared(variant);
+    return trace(*prepared(variant), rays, any_hit);
+}
+
+Traced CheckedScene::trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit) {
     Traced traced;
     RayQuery query;
     query.any_hit = any_hit;
-    queries_->trace(*at, RayBlocks(rays, at->layout.lanes), query, &traced.hits);
+    queries_->trace(in, RayBlocks(rays, in.layout.lanes), query, &traced.hits);
     traced.overflows = queries_->overflows();
     return traced;
 }

@@ -40,10 +40,12 @@ class CheckedScene {
     // Compiles on first use. Throws Error.
     void compile(const Variant& variant);
     Traced trace(const Variant& variant, const std::vector<rt_ray>& rays, bool any_hit);
+    // For scenes that move on the device: the structure as it was built, what rays need of it, and rays in a copy of that.
+    const std::shared_ptr<const AccelData>& accel() const { return accel_; }
+    std::shared_ptr<const Prepared> prepared(const Variant& variant);
+    Traced trace(const Prepared& in, const std::vector<rt_ray>& rays, bool any_hit);
 
  private:
-    std::shared_ptr<const Prepared> prepared(const Variant& variant);
-
     std::shared_ptr<const Scene> scene_;
     BuildCase case_;
     std::shared_ptr<Device> device_;

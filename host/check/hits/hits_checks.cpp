@@ -8,6 +8,7 @@
 #include "base/files/output_file.hpp"
 #include "check/hits/brute_force.hpp"
 #include "check/hits/checked_scene.hpp"
+#include "check/hits/device_hits.hpp"
 #include "check/hits/judge.hpp"
 #include "check/hits/ray_sets.hpp"
 #include "check/hits/report_picture.hpp"
@@ -292,6 +293,7 @@ std::vector<Check> hits_checks(const rt_plugin& plugin, const rt_plugin* layout,
     checks.push_back({"hits.refit", "rays in a scene that moved after the build", [=](const Step& step) {
                           return refits ? refit(*refitted, step) : Outcome::skipped("the plugin does not offer `refit`");
                       }});
+    checks.push_back(device_hits_check(plugin, layout, open));
     return checks;
 }
 

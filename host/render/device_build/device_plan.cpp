@@ -11,6 +11,8 @@
 namespace clarity {
 namespace {
 
+constexpr uint64_t kBox = sizeof(rt_prim);
+
 DevicePlan& plan_of(void* ctx) {
     return *static_cast<DevicePlan*>(ctx);
 }
@@ -33,15 +35,27 @@ struct DevicePlan::Calls {
         }
         return RT_FAILED;
     }
-    static cl::Buffer known(DevicePlan& plan, rt_u32 number) {
+    // bytes: that a step of the host's reads or writes there.
+    static cl::Buffer known(DevicePlan& plan, rt_u32 number, uint64_t bytes = 0) {
         if (number >= plan.buffers_.size())
             throw Error(Exit::failed, "it named buffer " + std::to_string(number) + " of a plan that has " +
                                           std::to_string(plan.buffers_.size()));
+        const uint64_t has = plan.buffers_[number].getInfo<CL_MEM_SIZE>();
+        if (bytes > has)
+            throw Error(Exit::failed, "a step would take " + std::to_string(bytes) + " bytes of buffer " +
+                                          std::to_string(number) + ", which has " + std::to_string(has));
         return plan.buffers_[number];
+    }
+    static void step(DevicePlan& plan, std::function<void()> run) {
+        if (plan.steps_.size() >= RT_DEVICE_STEPS)
+            throw Error(Exit::failed, "it planned more than " + std::to_string(RT_DEVICE_STEPS) + " steps");
+        plan.steps_.push_back(std::move(run));
     }
     static rt_u32 buffer(void* ctx, uint64_t bytes) {
         rt_u32 number = RT_NONE;
         guarded(ctx, [&](DevicePlan& plan) {
+            if (plan.buffers_.size() >= RT_DEVICE_BUFFERS)
+                throw Error(Exit::failed, "it asked for more than " + std::to_string(RT_DEVICE_BUFFERS) + " buffers");
             const cl::Buffer made = plan.kernels_.buffer(bytes);
             plan.kernels_.device().queue().enqueueFillBuffer(made, cl_uchar{0}, 0, made.getInfo<CL_MEM_SIZE>());
             number = plan.add(made);
@@ -68,64 +82,70 @@ struct DevicePlan::Calls {
                 throw Error(Exit::failed, std::string("its kernel ") + name + " cannot be planned: " + e.what() +
                                               " failed with OpenCL error " + std::to_string(e.err()));
             }
-            if (groups > 0) plan.steps_.push_back([&plan, kernel, groups] { plan.kernels_.launch(kernel, groups); });
+            if (groups > 0) step(plan, [&plan, kernel, groups] { plan.kernels_.launch(kernel, groups); });
         });
     }
     static int32_t fill(void* ctx, rt_u32 buffer, uint64_t words, rt_u32 value) {
         return guarded(ctx, [&](DevicePlan& plan) {
-            const cl::Buffer filled = known(plan, buffer);
+            const cl::Buffer filled = known(plan, buffer, 4 * words);
             if (words > 0)
-                plan.steps_.push_back([&plan, filled, words, value] {
+                step(plan, [&plan, filled, words, value] {
                     plan.kernels_.device().queue().enqueueFillBuffer(filled, cl_uint{value}, 0, 4 * words);
                 });
         });
     }
     static int32_t sort(void* ctx, rt_u32 keys, rt_u32 values, uint64_t count, rt_u32 bits) {
         return guarded(ctx, [&](DevicePlan& plan) {
-            const cl::Buffer by = known(plan, keys), sorted = known(plan, values);
+            const cl::Buffer by = known(plan, keys, 8 * count), sorted = known(plan, values, 4 * count);
+            if (bits < 1 || bits > 64)
+                throw Error(Exit::failed, "it asked for a sort by " + std::to_string(bits) + " bits: keys have 64");
+            if (count == 0) return;
             const auto sorter = std::make_shared<DeviceSort>(plan.kernels_, count, SortKeys::bits64);
             plan.bytes_ += sorter->bytes();
-            plan.steps_.push_back([sorter, by, sorted, count, bits] { sorter->run(by, sorted, count, bits); });
+            step(plan, [sorter, by, sorted, count, bits] { sorter->run(by, sorted, count, bits); });
         });
     }
     static int32_t scan(void* ctx, rt_u32 data, uint64_t count) {
         return guarded(ctx, [&](DevicePlan& plan) {
-            const cl::Buffer scanned = known(plan, data);
+            const cl::Buffer scanned = known(plan, data, 4 * count);
+            if (count == 0) return;
             const auto scanner = std::make_shared<DeviceScan>(plan.kernels_, count);
             plan.bytes_ += scanner->bytes();
-            plan.steps_.push_back([scanner, scanned, count] { scanner->run(scanned, count); });
+            step(plan, [scanner, scanned, count] { scanner->run(scanned, count); });
         });
     }
     static int32_t bounds(void* ctx, rt_u32 boxes, uint64_t count, rt_u32 result) {
         return guarded(ctx, [&](DevicePlan& plan) {
-            const cl::Buffer reduced = known(plan, boxes), to = known(plan, result);
+            const cl::Buffer reduced = known(plan, boxes, kBox * count), to = known(plan, result, 12 * sizeof(float));
             const auto reducer = std::make_shared<DeviceReduce>(plan.kernels_);
             plan.bytes_ += reducer->bytes();
-            plan.steps_.push_back([reducer, reduced, count, to] { reducer->run(reduced, 0, count, to); });
+            step(plan, [reducer, reduced, count, to] { reducer->run(reduced, 0, count, to); });
         });
     }
     static int32_t curve(void* ctx, rt_u32 boxes, uint64_t count, rt_u32 axis_bits, rt_u32 keys, rt_u32 order) {
         return guarded(ctx, [&](DevicePlan& plan) {
-            const cl::Buffer from = known(plan, boxes), to_keys = known(plan, keys), to_order = known(plan, order);
+            const cl::Buffer from = known(plan, boxes, kBox * count), to_keys = known(plan, keys, 8 * count),
+                             to_order = known(plan, order, 4 * count);
             if (axis_bits < 1 || axis_bits > 21)
                 throw Error(Exit::failed,
                             "it asked for a curve of " + std::to_string(axis_bits) + " bits an axis: 1 to 21 fit");
             const auto curve = std::make_shared<DeviceCurve>(plan.kernels_, count, axis_bits);
             plan.bytes_ += curve->bytes();
-            plan.steps_.push_back([=] { curve->run(from, count, to_keys, to_order); });
+            step(plan, [=] { curve->run(from, count, to_keys, to_order); });
         });
     }
     static rt_u32 blocks(void* ctx, rt_u32 boxes, rt_u32 order, uint64_t count) {
         rt_u32 number = RT_NONE;
         guarded(ctx, [&](DevicePlan& plan) {
-            const cl::Buffer from = known(plan, boxes), places = order == RT_NONE ? from : known(plan, order);
+            const cl::Buffer from = known(plan, boxes, kBox * count),
+                             places = order == RT_NONE ? from : known(plan, order, 4 * count);
             const cl::Buffer made = plan.kernels_.buffer(DeviceBlocks::bytes(count));
             plan.bytes_ += DeviceBlocks::bytes(count);
             number = plan.add(made);
             const auto blocks = std::make_shared<DeviceBlocks>(plan.kernels_);
             const bool ordered = order != RT_NONE;
-            plan.steps_.push_back(
-                [blocks, from, places, ordered, count, made] { blocks->run(from, ordered ? &places : nullptr, count, made); });
+            step(plan,
+                 [blocks, from, places, ordered, count, made] { blocks->run(from, ordered ? &places : nullptr, count, made); });
         });
         return number;
     }

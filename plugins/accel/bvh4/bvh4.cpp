@@ -12,6 +12,7 @@
 #include "node_memory.hpp"
 #include "pack.hpp"
 #include "refit.hpp"
+#include "rt_device.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "bvh4_types.h"
 
@@ -53,17 +54,10 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
 constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build_tree>, rt::guarded<levels>, kTraits,
                                       rt::guarded<pack_trees<pack, BVH4_LEAF_MAX>>);
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
-constexpr rt_device_build kDeviceBuild = {sizeof(rt_device_build),
-                                          0,
-                                          rt::file(kFiles, "bvh4_build.cl"),
-                                          nullptr,
-                                          device_elements,
-                                          rt::guarded<device_pack>,
-                                          rt::guarded<device_ranges>,
-                                          rt::guarded<device_refit>};
-constexpr rt_extension kExtensions[] = {rt::extension(kRefit),
-                                        {RT_DEVICE_BUILD, RT_DEVICE_BUILD_VERSION, sizeof kDeviceBuild, &kDeviceBuild},
-                                        rt::kNoMoreExtensions};
+constexpr rt_device_build kDeviceBuild =
+    rt::device_layout(rt::file(kFiles, "bvh4_build.cl"), device_elements, rt::guarded<device_pack>, rt::guarded<device_ranges>,
+                      rt::guarded<device_refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::extension(kDeviceBuild), rt::kNoMoreExtensions};
 static_assert(kAccel.types.text && kAccel.traverse.text && kDeviceBuild.kernels.text, "the kernel files are embedded");
 
 }  // namespace

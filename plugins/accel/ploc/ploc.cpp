@@ -2,7 +2,7 @@
 // as one by the surface area heuristic, and which can be built on the device that traces it. bvh4 packs and traces it.
 #include "host_build.hpp"
 #include "plan.hpp"
-#include "rt_plugin.hpp"
+#include "rt_device.hpp"
 
 namespace ploc {
 namespace {
@@ -11,10 +11,8 @@ constexpr rt_cl_file kFiles[] = {
 #include "ploc.inc"
 };
 constexpr rt_accel kAccel = rt::topology("bvh4", rt::guarded<topology>, rt::Traits());
-constexpr rt_device_build kBuild = {
-    sizeof(rt_device_build), 0, rt::file(kFiles, "ploc_build.cl"), rt::guarded<plan>, nullptr, nullptr, nullptr, nullptr};
-constexpr rt_extension kExtensions[] = {{RT_DEVICE_BUILD, RT_DEVICE_BUILD_VERSION, sizeof kBuild, &kBuild},
-                                        rt::kNoMoreExtensions};
+constexpr rt_device_build kBuild = rt::device_topology(rt::file(kFiles, "ploc_build.cl"), rt::guarded<plan>);
+constexpr rt_extension kExtensions[] = {rt::extension(kBuild), rt::kNoMoreExtensions};
 static_assert(kBuild.kernels.text, "the kernel file is embedded");
 
 }  // namespace
