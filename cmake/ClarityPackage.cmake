@@ -45,5 +45,5 @@ set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 # The window draws with OpenGL, which GLFW and epoxy load while they run.
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "util-linux")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "pocl-opencl-icd | opencl-icd, libgl1, libgl1-mesa-dri, fonts-dejavu-core")
-set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, slurm-client, ffmpeg, imagemagick")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, slurm-client, openmpi-bin, ffmpeg, imagemagick")
 include(CPack)

@@ -30,24 +30,32 @@ std::vector<fs::path> places() {
     return places;
 }
 
+// Parts that MPI's library loads later find its symbols only if they are global.
+void* open_library(const std::string& file) {
+    void* const library = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
+    if (!library)
+        throw Error(Exit::usage, std::string("--mpi: ") + dlerror() +
+                                     "; install Open MPI (Debian: libopenmpi3, openmpi-bin), or load its module");
+    return library;
+}
+
 const clarity_mpi_module* load() {
     std::string tried;
+#ifdef CLARITY_MPI_LIBRARY
     for (const fs::path& path : places()) {
         std::error_code ignored;
         if (!fs::exists(path, ignored)) {
             tried += (tried.empty() ? "" : ", ") + path.string();
             continue;
         }
-        // Parts that Open MPI loads later find its symbols only if they are global.
-        void* const library = dlopen(path.c_str(), RTLD_NOW | RTLD_GLOBAL);
-        if (!library)
-            throw Error(Exit::usage,
-                        std::string("--mpi: ") + dlerror() + "; install Open MPI (Debian: libopenmpi3, openmpi-bin)");
-        const auto* module = static_cast<const clarity_mpi_module*>(dlsym(library, CLARITY_MPI_MODULE_SYMBOL));
+        open_library(CLARITY_MPI_LIBRARY);
+        const auto* module = static_cast<const clarity_mpi_module*>(dlsym(open_library(path), CLARITY_MPI_MODULE_SYMBOL));
         if (!module) throw Error(Exit::usage, "--mpi: " + path.string() + " is of another version of this program");
         return module;
     }
-    throw Error(Exit::usage, "--mpi: this program was built without MPI: there is no " + tried +
+#endif
+    throw Error(Exit::usage, "--mpi: this program was built without MPI" +
+                                 (tried.empty() ? std::string() : ": there is no " + tried) +
                                  "; build it where libopenmpi-dev is installed");
 }
 

@@ -87,7 +87,7 @@ Outcome trace_moved(const rt_plugin& plugin, const rt_plugin* layout, const std:
     for (const BuildForm form : {BuildForm::groups, BuildForm::serial}) {
         step(std::string("preparing the scene, ") + form_text(form), kDeviceLimit_s);
         const auto prepared = scene.prepared(variant);
-        DeviceMotion motion(device, rest, scene.accel(), prepared->on_device, form);
+        DeviceMotion motion(device, rest, scene.accel(), prepared->on_device, nullptr, form);
         if (!motion.cannot().empty()) return Outcome::skipped(motion.cannot());
         using Update = DeviceMotion::Update;
         struct Turn {

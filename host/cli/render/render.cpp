@@ -386,7 +386,8 @@ class RenderJob {
 
     // Waits until all ranks have traced their parts.
     void gather_stats() {
-        const std::vector<double> device_ms = mpi_->gather(median(stats_.frame_ms)), wall_ms = mpi_->gather(median(stats_.wall_ms));
+        const std::vector<double> device_ms = mpi_->gather(median(stats_.frame_ms)),
+                                  wall_ms = mpi_->gather(median(stats_.wall_ms));
         stats_.ranks.clear();
         for (size_t r = 0; r < wall_ms.size(); ++r) stats_.ranks.push_back({device_ms[r], wall_ms[r]});
         for (uint64_t* const count :

@@ -22,8 +22,8 @@ struct RenderStats {
     double import_ms = 0;
     double first_picture_ms = 0;            // from the start of the command until the first picture is in memory
     std::vector<double> frame_ms, wall_ms;  // one entry per timed frame with all its samples: device clock, host clock
-    std::vector<RankTimes> ranks;  // empty: one process renders
-    double collect_ms = 0;         // from the moment that all ranks are done until the first one has the last picture
+    std::vector<RankTimes> ranks;           // empty: one process renders
+    double collect_ms = 0;                  // from the moment that all ranks are done until the first one has the last picture
     uint64_t primary = 0, shadow = 0, secondary = 0, dropped = 0, overflowed = 0;  // of one frame
 };
 
