@@ -149,6 +149,7 @@ TEST_F(Watch, ASaveCancelsTheCurrentRender) {
     scratch_.write("a.scene", scene_text("0 1 0"));
     ASSERT_TRUE(watcher.says("rendering a.pfm", 2)) << watcher.said();
     EXPECT_FALSE(fs::exists(picture())) << "a partial picture of the old scene was written";
+    std::this_thread::sleep_for(std::chrono::milliseconds(500));  // until some samples are there
     EXPECT_EQ(watcher.interrupt(), 130) << watcher.said();
     EXPECT_TRUE(fs::exists(picture())) << "the accumulated samples must be written: " << watcher.said();
 }
