@@ -203,6 +203,10 @@ TEST_F(Frames, ClaimsExpire) {
     ProgramResult result = render("f_#.png", all);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(files(), (std::vector<std::string>{"f_1.json", "f_1.png", "f_2.json", "f_2.png"}));
+    // Of a process that was killed just before its end.
+    scratch_.write("out/.f_1.png.claim", clarity::host_name() + " 999999999\n");
+    EXPECT_EQ(render("f_#.png", all).exit_code, 0);
+    EXPECT_EQ(files().size(), 4u) << "the claim of a complete frame is left";
     fs::remove(out("f_2.png"));
     scratch_.write("out/.f_2.png.claim", "another-host 1\n");
     RunOptions options;
