@@ -242,8 +242,8 @@ TEST_F(Frames, SeveralProcessesShareOneRange) {
 
 // At any moment of its life: what has a final name is whole, and the next process completes the rest.
 TEST_F(Frames, ProcessesThatAreKilledLeaveCompleteFrames) {
-    const std::vector<std::string> all = {"--frames", "1-24", "--spp", "4096", "--skip-existing"};
-    ASSERT_EQ(render("serial_##.png", {"--frames", "1-24", "--spp", "4096"}).exit_code, 0);
+    const std::vector<std::string> all = {"--frames", "1-24", "--spp", "2048", "--skip-existing"};
+    ASSERT_EQ(render("serial_##.png", {"--frames", "1-24", "--spp", "2048"}).exit_code, 0);
     const auto check = [&](bool complete) {
         for (int frame = 1; frame <= 24; ++frame) {
             char name[32];
