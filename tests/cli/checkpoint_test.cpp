@@ -91,15 +91,18 @@ TEST_F(CheckpointedPictures, OptionsThatDoNotFit) {
 
 // The command that a scheduler starts again and again.
 TEST_F(CheckpointedPictures, GoOnAfterManyKills) {
-    ASSERT_EQ(render("whole.pfm", {}).exit_code, 0);
+    const std::string spp = "5000";  // seconds on any machine, so that several kills come in time
+    ASSERT_EQ(render("whole.pfm", {"--spp", spp}).exit_code, 0);
     RunOptions options;
     options.signal = SIGKILL;
     int kills = 0;
     for (ProgramResult result;; ++kills) {
         ASSERT_LT(kills, 60) << result.err;
-        options.signal_after_s = 0.9 + 0.07 * (kills % 9);
+        // Ever later, so that a slow machine comes to the end, too.
+        options.signal_after_s = 0.7 + 0.07 * (kills % 9) + 0.03 * kills;
         const bool two = kills % 2 == 1;  // on two devices, every other time
-        result = render("a.pfm", {"--resume", out("a.ckpt"), "--every", "0.05", "--device", two ? "cpu/2" : "cpu"}, options);
+        result = render(
+            "a.pfm", {"--spp", spp, "--resume", out("a.ckpt"), "--every", "0.05", "--device", two ? "cpu/2" : "cpu"}, options);
         if (result.exit_code == 0) break;
         ASSERT_EQ(result.exit_code, 128 + SIGKILL) << result.err;
         EXPECT_FALSE(fs::exists(out("a.pfm")));

@@ -203,6 +203,10 @@ TEST_F(Frames, ClaimsExpire) {
     ProgramResult result = render("f_#.png", all);
     EXPECT_EQ(result.exit_code, 0) << result.err;
     EXPECT_EQ(files(), (std::vector<std::string>{"f_1.json", "f_1.png", "f_2.json", "f_2.png"}));
+    // Of a process that was killed just before its end.
+    scratch_.write("out/.f_1.png.claim", clarity::host_name() + " 999999999\n");
+    EXPECT_EQ(render("f_#.png", all).exit_code, 0);
+    EXPECT_EQ(files().size(), 4u) << "the claim of a complete frame is left";
     fs::remove(out("f_2.png"));
     scratch_.write("out/.f_2.png.claim", "another-host 1\n");
     RunOptions options;
@@ -238,8 +242,8 @@ TEST_F(Frames, SeveralProcessesShareOneRange) {
 
 // At any moment of its life: what has a final name is whole, and the next process completes the rest.
 TEST_F(Frames, ProcessesThatAreKilledLeaveCompleteFrames) {
-    const std::vector<std::string> all = {"--frames", "1-24", "--spp", "4096", "--skip-existing"};
-    ASSERT_EQ(render("serial_##.png", {"--frames", "1-24", "--spp", "4096"}).exit_code, 0);
+    const std::vector<std::string> all = {"--frames", "1-24", "--spp", "2048", "--skip-existing"};
+    ASSERT_EQ(render("serial_##.png", {"--frames", "1-24", "--spp", "2048"}).exit_code, 0);
     const auto check = [&](bool complete) {
         for (int frame = 1; frame <= 24; ++frame) {
             char name[32];

@@ -97,6 +97,12 @@ std::unique_ptr<FrameClaim> FrameClaim::take(const std::string& picture) {
     return std::unique_ptr<FrameClaim>(new FrameClaim(std::move(impl)));
 }
 
+void FrameClaim::remove_expired(const std::string& picture) {
+    const std::string path = claim_path(picture);
+    struct stat status {};
+    if (stat(path.c_str(), &status) == 0 && has_expired(path)) unlink(path.c_str());
+}
+
 FrameClaim::~FrameClaim() {
     {
         const std::lock_guard<std::mutex> lock(impl_->mutex);

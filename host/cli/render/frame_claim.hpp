@@ -16,6 +16,8 @@ class FrameClaim {
     // Returns nullptr if another process has a claim that has not expired. Where no file can be written, the claim is this
     // process's own secret.
     static std::unique_ptr<FrameClaim> take(const std::string& picture);
+    // Of a picture that is complete: removes what a process left that was killed just then.
+    static void remove_expired(const std::string& picture);
     ~FrameClaim();
     FrameClaim(const FrameClaim&) = delete;
     FrameClaim& operator=(const FrameClaim&) = delete;

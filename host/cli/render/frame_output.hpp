@@ -16,7 +16,7 @@ struct FramePixels {
     std::vector<PictureLayer> layers;
 };
 struct FrameFile {
-    std::string path, digest;  // digest: picture_digest()
+    std::string path, digest;  // digest: PictureDigests::of()
     int frame = 1;
     bool moves = false;       // each frame is another picture
     bool has_record = false;  // which is written after the picture

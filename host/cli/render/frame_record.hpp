@@ -11,7 +11,7 @@ namespace clarity {
 struct FrameRecord {
     int frame = 0;
     std::string picture;                      // name of its file, without the folder
-    std::string digest;                       // picture_digest()
+    std::string digest;                       // PictureDigests::of()
     std::string pixels;                       // digest of the pixels before they were encoded
     std::string file_digest;                  // of the picture's file, so that a record of another file is noticed
     double seconds = 0;                       // for preparing and rendering

@@ -43,13 +43,24 @@ void add_kernels_to(Digest& digest, const Scene& scene) {
 
 }  // namespace
 
-std::string picture_digest(FrameScene& scene, const Settings& settings, std::optional<int> frame, const std::string& output) {
+PictureDigests::PictureDigests(FrameScene& scene, const Settings& settings, const RenderOptions& options) : scene_(scene) {
     Digest digest;
     digest.add(CLARITY_VERSION);
     add_kernels_to(digest, *scene.imported());
-    add_settings_to(digest, settings, writes_display(output));
-    scene.describe(digest, frame);
-    return digest.hex();
+    add_settings_to(digest, settings, writes_display(options.output));
+    digest.add_value(options.all_aovs);
+    common_ = digest.hex();
+}
+
+const std::string& PictureDigests::of(std::optional<int> frame) {
+    std::string& known = known_[frame];
+    if (known.empty()) {
+        Digest digest;
+        digest.add(common_);
+        scene_.describe(digest, frame);
+        known = digest.hex();
+    }
+    return known;
 }
 
 std::string pixel_digest(const FloatImage& image) {

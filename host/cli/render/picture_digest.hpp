@@ -1,5 +1,6 @@
 // picture_digest.hpp -- tells whether two runs render the same picture.
 #pragma once
+#include <map>
 #include <optional>
 #include <string>
 
@@ -9,12 +10,23 @@
 
 namespace clarity {
 
-// 32 hexadecimal digits, from all that a frame's picture depends on: the scene, what options and presets change in it, the
-// time, the settings, the kernels' texts and the program's version. It does not depend on paths, threads, devices or tiles, nor
-// on how rays are traced: accel, tracer, packet and lanes make the same picture, apart from quantities that say what tracing
-// cost. scene: imported. frame: a number if frames differ (FrameScene::follows_frames()). output: its format decides whether
-// tone mapping counts. Throws Error if a kernel or a file of a sequence cannot be read.
-std::string picture_digest(FrameScene& scene, const Settings& settings, std::optional<int> frame, const std::string& output);
+// Digests of the frames of one scene: 32 hexadecimal digits, from all that a picture depends on: the scene, what options and
+// presets change in it, the time, the settings, the kernels' texts and the program's version. They do not depend on paths,
+// threads, devices or tiles, nor on how rays are traced: accel, tracer, packet and lanes make the same picture, apart from
+// quantities that say what tracing cost. Used from one thread.
+class PictureDigests {
+ public:
+    // scene: imported; it must outlive this. options.output: its format decides whether tone mapping counts. Throws Error if a
+    // kernel cannot be read.
+    PictureDigests(FrameScene& scene, const Settings& settings, const RenderOptions& options);
+    // frame: its number, if frames differ (FrameScene::follows_frames()). Throws Error if a file of a sequence cannot be read.
+    const std::string& of(std::optional<int> frame);
+
+ private:
+    FrameScene& scene_;
+    std::string common_;  // of all that is the same in all frames
+    std::map<std::optional<int>, std::string> known_;
+};
 
 // What decides the last bits of a picture besides: devices and drivers, structure, tracer and the text of the kernel.
 std::string way_of_tracing(const std::vector<DeviceInfo>& devices, const Prepared& prepared);

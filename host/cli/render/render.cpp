@@ -10,7 +10,6 @@
 #include <thread>
 #include <utility>
 
-#include "base/digest.hpp"
 #include "base/elapsed.hpp"
 #include "base/error.hpp"
 #include "base/files/file_watch.hpp"
@@ -79,21 +78,22 @@ class RenderJob {
     Exit round(Progress& progress) {
         if (!scene_.imported()) import(progress);
         moving_ = scene_.follows_frames();
-        still_digest_.clear();
+        PictureDigests digests(scene_, settings_, options_);
         std::optional<MultiFrameRenderer> frames;  // made when its program has been compiled, which prepare() can cancel
         std::vector<int> left;
         for (long number = range_.first; number <= range_.last; number += range_.step) left.push_back(int(number));
         for (long rendered = 0;;) {
             std::vector<int> claimed;  // by other processes
             for (const int number : left) {
-                if (progress.cancelled()) return Exit::interrupted;
-                const std::string digest = digest_of(number);
+                if (progress.cancelled()) throw Cancelled();
+                const std::optional<int> shown = moving_ ? std::optional<int>(number) : std::nullopt;
+                const std::string& digest = digests.of(shown);
                 std::unique_ptr<FrameClaim> claim;
                 const Todo todo = of_first(is_first() ? todo_of(number, digest, claim) : Todo::render);
                 if (todo == Todo::wait) claimed.push_back(number);
                 if (todo != Todo::render) continue;
                 const auto begin = Clock::now();
-                if (moving_ || !scene_.placed()) scene_.place(moving_ ? std::optional<int>(number) : std::nullopt);
+                if (moving_ || !scene_.placed()) scene_.place(shown);
                 if (moving_ || rendered == 0) prepare(progress);
                 if (!frames) frames.emplace(devices_, mpi_);
                 if (!render(*frames, {number, digest, begin}, progress)) return Exit::interrupted;
@@ -104,7 +104,7 @@ class RenderJob {
                 if (rendered > 0) report();
                 return tell_skipped(rendered);
             }
-            if (!wait_for_others(left.size(), progress)) return Exit::interrupted;
+            wait_for_others(left.size(), progress);
         }
     }
 
@@ -125,28 +125,19 @@ class RenderJob {
     // Whether frames are recorded, and their pictures have their names only when they are complete.
     bool records() const { return !options_.frames.empty() || options_.skip_existing; }
 
-    std::string digest_of(int number) {
-        const auto digest = [&](std::optional<int> frame) {
-            const std::string one = picture_digest(scene_, settings_, frame, options_.output);
-            return options_.all_aovs ? clarity::digest_of(one + " all") : one;
-        };
-        if (moving_) return digest(number);
-        if (still_digest_.empty()) still_digest_ = digest(std::nullopt);
-        return still_digest_;
-    }
-
     bool is_there(int number, const std::string& digest) const {
-        return is_rendered(frame_path(options_.output, number), digest);
+        const std::string path = frame_path(options_.output, number);
+        if (!is_rendered(path, digest)) return false;
+        FrameClaim::remove_expired(path);
+        return true;
     }
 
-    // Waits a moment until other processes have finished their frames, or their claims have expired. Returns false after a
-    // signal.
-    bool wait_for_others(size_t how_many, Progress& progress) {
+    // Waits a moment until other processes have finished their frames, or their claims have expired.
+    void wait_for_others(size_t how_many, const Progress& progress) {
         if (!std::exchange(waits_, true))
             log(LogLevel::info, std::to_string(how_many) + " of " + std::to_string(range_.count()) +
                                     " pictures are being rendered by other processes; waiting for them");
         for (int i = 0; i < 5 && !progress.cancelled(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds(100));
-        return !progress.cancelled();
     }
 
     Exit tell_skipped(long rendered) const {
@@ -426,10 +417,9 @@ class RenderJob {
     Devices devices_;
     std::function<bool()> superseded_;  // with --watch: true if a save has made this round obsolete
     FrameScene scene_;
-    bool moving_ = false;       // each frame shows the scene at a time of its own
-    std::string still_digest_;  // of the picture, if it is the same in all frames; empty: not yet known
-    bool waits_ = false;        // the user has been told that other processes render
-    unsigned resumed_ = 0;      // samples of the picture that a checkpoint had
+    bool moving_ = false;   // each frame shows the scene at a time of its own
+    bool waits_ = false;    // the user has been told that other processes render
+    unsigned resumed_ = 0;  // samples of the picture that a checkpoint had
     std::unique_ptr<MultiPreparer> preparer_;
     std::shared_ptr<const MultiPrepared> prepared_;
     std::unique_ptr<MotionBlur> blur_;  // nullptr: all samples of a picture are at one time
