@@ -5,6 +5,7 @@
  * by level, each pass to subtrees 512 times smaller (device_build.cpp), and in the end each work-item has small subtrees to itself.
  * Within a pass a level holds subtrees that do not overlap, so it fits into local memory whatever the tree is. The nodes of a round
  * are taken together from one counter: their order differs from run to run, the tree does not. */
+#include "cl/build/fit.h"
 #include "cl/rt_shared.h"
 #include "bvh4_types.h"
 
@@ -359,52 +360,25 @@ RT_BUILD_KERNEL bvh4_write_leaves(const global float *nodes, const global uint *
 }
 
 /* Writes the box of a child of a node, from those of the primitives below it. Returns the child's share of the expected cost of a ray. */
-RT_INLINE float bvh4_fit(global float *node, uint turn, uint slot, const global uint2 *ranges, const global rt_block *blocks, uint count,
-                         uint first_leaf, float node_cost, float primitive_cost)
+RT_INLINE float bvh4_fit(const rt_fit *fit, global float *nodes, uint index, uint slot)
 {
-    const uint code = as_uint(node[4u * (6u ^ turn) + slot]);
+    global float *const node = nodes + 32ul * index + slot;
+    const uint turn = index & 7u, code = as_uint(node[4u * (6u ^ turn)]);
     if (code == BVH4_EMPTY) return 0.0f; /* its box is that of nothing */
     const bool leaf = code >= BVH4_LEAF;
-    const uint2 below =
-        leaf ? (uint2)(BVH4_LEAF_FIRST(code) - first_leaf, BVH4_LEAF_COUNT(code)) : ranges[BVH4_INDEX(code)];
-    const rt_block box = rt_box_of_range(blocks, count, below.x, below.x + below.y);
-    node[4u * (0u ^ turn) + slot] = box.lo.x;
-    node[4u * (1u ^ turn) + slot] = box.lo.y;
-    node[4u * (2u ^ turn) + slot] = box.lo.z;
-    node[4u * (3u ^ turn) + slot] = box.hi.x;
-    node[4u * (4u ^ turn) + slot] = box.hi.y;
-    node[4u * (5u ^ turn) + slot] = box.hi.z;
-    return rt_block_area(box) * (leaf ? primitive_cost * (float)below.y : node_cost);
+    const uint2 below = leaf ? (uint2)(BVH4_LEAF_FIRST(code) - fit->first_leaf, BVH4_LEAF_COUNT(code))
+                             : fit->ranges[BVH4_INDEX(code)];
+    const rt_block box = rt_fit_box(fit, below);
+    node[4u * (0u ^ turn)] = box.lo.x;
+    node[4u * (1u ^ turn)] = box.lo.y;
+    node[4u * (2u ^ turn)] = box.lo.z;
+    node[4u * (3u ^ turn)] = box.hi.x;
+    node[4u * (4u ^ turn)] = box.hi.y;
+    node[4u * (5u ^ turn)] = box.hi.z;
+    return rt_fit_cost(fit, box, leaf, below.y);
 }
-
-/* Fits the nodes first_node .. first_node + elements - 1 to the boxes of the primitives below them, which come from `blocks`. count:
- * of primitives. costs: see rt_device_build::refit. On a GPU four neighbouring work-items share a node: each fits one child. */
-RT_BUILD_KERNEL bvh4_refit(global float *nodes, const global uint2 *ranges, const global rt_block *blocks, uint count,
-                           uint first_node, uint elements, uint each, uint first_leaf, uint root, float node_cost,
-                           float primitive_cost, global float *costs)
-{
-    const uint begin = RT_GROUP_NUMBER * each, end = min(begin + each, elements);
-#if RT_GROUP == 1
-    const uint at_once = 1u, mine = 0u, first_slot = 0u, slots = 4u;
-    float cost[4];
-#else
-    local float of_group[RT_GROUP];
-    const uint at_once = RT_GROUP / 4u, mine = RT_ITEM / 4u, first_slot = RT_ITEM % 4u, slots = 1u;
-    local float *const cost = of_group + 4u * mine;
-#endif
-    for (uint next = begin; next < end; next += at_once) {
-        const uint e = next + mine, index = first_node + e;
-        const uint2 all = e < end ? ranges[index] : (uint2)(0u);
-        for (uint s = first_slot; s < first_slot + slots; ++s)
-            cost[s] = all.y == 0u ? 0.0f
-                                  : bvh4_fit(nodes + 32ul * index, index & 7u, s, ranges, blocks, count, first_leaf, node_cost,
-                                             primitive_cost);
-        RT_LOCAL_BARRIER();
-        if (e < end && first_slot == 0u) {
-            float sum = cost[0] + cost[1] + cost[2] + cost[3];
-            if (index == root) sum += node_cost * rt_block_area(rt_box_of_range(blocks, count, all.x, all.x + all.y));
-            costs[e] = sum;
-        }
-        RT_LOCAL_BARRIER();
-    }
-}
+#define RT_FIT_KERNEL bvh4_refit
+#define RT_FIT_NODE float
+#define RT_FIT_WIDTH 4u
+#define RT_FIT_CHILD bvh4_fit
+#include "cl/build/fit_nodes.h"

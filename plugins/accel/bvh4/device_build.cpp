@@ -1,11 +1,12 @@
 #include "device_build.hpp"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <vector>
 
 #include "clarity_bvh/parameters.hpp"
-#include "clarity_bvh/refit/refit.hpp"
+#include "clarity_bvh/refit/device_refit.hpp"
 #include "clarity_bvh/wide/wide_build.hpp"
 #include "node_memory.hpp"
 #include "rt_device.hpp"
@@ -79,45 +80,20 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
     return steps.result();
 }
 
-// Nodes stand in depth-first order, so a child comes after its parent.
 int32_t device_ranges(const rt_host* host, const rt_built* built, rt_u32 group, rt_tree_ranges* out) {
     const auto* const nodes = static_cast<const clarity::bvh::WideNode<4>*>(built->slots[0]);
-    rt_refit_input roots{};
-    roots.group_count = built->group_count;
-    roots.roots = built->roots;
-    const uint32_t root = built->roots[group], end = clarity::bvh::GroupEnds(&roots, built->slot_counts[0]).end_of(root);
-    out->first_element = root;
-    out->element_count = end - root;
-    for (uint32_t at = end; at-- > root;) {
-        uint64_t first = ~uint64_t{0}, last = 0, count = 0;
-        for (const uint32_t child : settled_node(nodes, at).child) {
-            if (child == clarity::bvh::kEmpty) continue;
-            const bool leaf = clarity::bvh::is_leaf(child);
-            const uint32_t begin = leaf ? clarity::bvh::leaf_first(child) : out->ranges[2 * uint64_t{child}];
-            const uint32_t below = leaf ? clarity::bvh::leaf_count(child) : out->ranges[2 * uint64_t{child} + 1];
-            first = std::min<uint64_t>(first, begin);
-            last = std::max<uint64_t>(last, uint64_t{begin} + below);
-            count += below;
-        }
-        if (count == 0) continue;
-        if (last - first != count) return host->fail(host->ctx, "the positions below a node do not stand side by side");
-        out->ranges[2 * uint64_t{at}] = static_cast<rt_u32>(first);
-        out->ranges[2 * uint64_t{at} + 1] = static_cast<rt_u32>(count);
-    }
-    return RT_OK;
+    return clarity::bvh::find_ranges(host, built, group, out, [&](uint32_t at) {
+        std::array<uint32_t, 4> codes;
+        const clarity::bvh::WideNode<4> node = settled_node(nodes, at);
+        std::copy_n(node.child, codes.size(), codes.begin());
+        return codes;
+    });
 }
 
 int32_t device_refit(const rt_host*, const rt_device_plan* plan, const rt_device_tree* tree, rt_u32 blocks, rt_u32 costs,
                      const double* params) {
     const clarity::bvh::Rules rules = clarity::bvh::wide_rules(params);
-    const uint64_t each = rt::elements_each(plan), elements = tree->element_count[0];
-    rt::DeviceSteps steps(plan);
-    steps.launch(
-        "bvh4_refit", (elements + each - 1) / each,
-        {of(tree->slots[0]), of(tree->ranges), of(blocks), number(tree->count), number(tree->first_element[0]),
-         number(elements), number(each), number(tree->first_leaf), number(tree->root),
-         rt::real(static_cast<float>(rules.traversal_cost)), rt::real(static_cast<float>(rules.intersection_cost)), of(costs)});
-    return steps.result();
+    return clarity::bvh::plan_refit(plan, "bvh4_refit", tree, blocks, costs, {rules.traversal_cost, rules.intersection_cost});
 }
 
 }  // namespace bvh4

@@ -6,9 +6,11 @@
 #include "clarity_bvh/assemble.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "clarity_bvh/wide/wide_levels.hpp"
+#include "device_refit.hpp"
 #include "incoherent.hpp"
 #include "pack.hpp"
 #include "refit.hpp"
+#include "rt_device.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "bvh8_types.h"
 
@@ -59,8 +61,10 @@ int32_t levels(const rt_host* host, const rt_built* built, rt_u32 group, rt_u32 
 constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<build_tree>, rt::guarded<levels>, kTraits,
                                       rt::guarded<pack_trees<pack, BVH8_LEAF_MAX>>);
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
-constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
-static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
+constexpr rt_device_build kDeviceRefit =
+    rt::device_refit(rt::file(kFiles, "bvh8_build.cl"), rt::guarded<device_ranges>, rt::guarded<device_refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::extension(kDeviceRefit), rt::kNoMoreExtensions};
+static_assert(kAccel.types.text && kAccel.traverse.text && kDeviceRefit.kernels.text, "the kernel files are embedded");
 
 }  // namespace
 }  // namespace bvh8

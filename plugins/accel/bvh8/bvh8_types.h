@@ -31,7 +31,7 @@ typedef struct bvh8_node {
 #define BVH8_MAKE_LEAF(first, count) (BVH8_LEAF | ((count) << 28) | (first))
 #define BVH8_EMPTY BVH8_MAKE_LEAF(0u, 0u)
 
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) && defined(RT_LANES) /* kernels of builds have none */
 #include "bvh8_node.h"
 #if RT_LANES > 1
 /* Whether a packet is traced as an incoherent one because its rays start far apart. That gains nothing in trees in which

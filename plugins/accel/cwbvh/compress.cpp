@@ -36,20 +36,26 @@ Below below(const cwbvh::WideNode& node) {
 
 void compress(const rt_host* host, const WideNodes& wide, const rt_build_output* out) {
     const rt_u32 chunk_count = (wide.node_count + kChunk - 1) / kChunk;
+    std::vector<rt_u32> roots = *wide.roots;
+    std::sort(roots.begin(), roots.end());
     const auto each_of = [&](rt_u32 chunk, const auto& do_one) {
-        const rt_u32 end = std::min(wide.node_count, (chunk + 1) * kChunk);
-        for (rt_u32 i = chunk * kChunk; i < end; ++i) do_one(i);
+        const rt_u32 begin = chunk * kChunk, end = std::min(wide.node_count, begin + kChunk);
+        auto root = std::lower_bound(roots.begin(), roots.end(), begin);
+        for (rt_u32 i = begin; i < end; ++i) {
+            const bool is_root = root != roots.end() && *root == i;
+            if (is_root) ++root;
+            do_one(i, is_root);
+        }
     };
     std::vector<Below> before(chunk_count);
     rt::parallel_for(host, chunk_count, [&](rt_u32 c) {
-        each_of(c, [&](rt_u32 i) {
+        each_of(c, [&](rt_u32 i, bool is_root) {
             const Below own = below(wide.nodes[i]);
-            before[c].nodes += own.nodes;
+            before[c].nodes += own.nodes + (is_root ? 1 : 0);
             before[c].primitives += own.primitives;
         });
     });
-    const auto root_count = static_cast<rt_u32>(wide.roots->size());
-    Below sum{root_count, 0};  // the roots come first
+    Below sum;
     for (Below& chunk : before) {
         const Below own = chunk;
         chunk = sum;
@@ -57,27 +63,27 @@ void compress(const rt_host* host, const WideNodes& wide, const rt_build_output*
         sum.primitives += own.primitives;
     }
 
-    // The index of a node depends on its parent, so all indices are computed before any node is written.
+    // The index of a node depends on its parent, so all indices are computed before any node is written. A root comes before
+    // its children, so that the nodes of a group stand together.
     const Scratch<rt_u32> place(wide.node_count);
-    for (rt_u32 g = 0; g < root_count; ++g) {
-        place.data()[(*wide.roots)[g]] = g;
-        rt::root(out, g, g);
-    }
     rt::parallel_for(host, chunk_count, [&](rt_u32 c) {
         auto next = static_cast<rt_u32>(before[c].nodes);
-        each_of(c, [&](rt_u32 i) {
+        each_of(c, [&](rt_u32 i, bool is_root) {
+            if (is_root) place.data()[i] = next++;
             for (const rt_u32 child : wide.nodes[i].child)
                 if (is_node(child)) place.data()[child] = next++;
         });
     });
+    for (rt_u32 g = 0; g < roots.size(); ++g) rt::root(out, g, place.data()[(*wide.roots)[g]]);
 
     auto* const nodes = rt::alloc<cwbvh_node>(out, 0, wide.node_count);
     rt_u32* const refs = rt::leaves(out, wide.ref_count);
     rt::parallel_for(host, chunk_count, [&](rt_u32 c) {
         auto next_child = static_cast<rt_u32>(before[c].nodes), next_leaf = static_cast<rt_u32>(before[c].primitives);
-        each_of(c, [&](rt_u32 i) {
+        each_of(c, [&](rt_u32 i, bool is_root) {
             const cwbvh::WideNode& from = wide.nodes[i];
             cwbvh_node to{};
+            if (is_root) ++next_child;
             to.first_child = next_child;
             to.first_leaf = next_leaf;
             for (rt_u32 slot = 0; slot < 8; ++slot) {

@@ -7,8 +7,10 @@
 #include "clarity_bvh/assemble.hpp"
 #include "clarity_bvh/parameters.hpp"
 #include "compressed_levels.hpp"
+#include "device_refit.hpp"
 #include "pack.hpp"
 #include "refit.hpp"
+#include "rt_device.hpp"
 // needs the types of rt_shared.h, so it must follow the headers above:
 #include "cwbvh_types.h"
 
@@ -43,8 +45,10 @@ constexpr rt_accel kAccel = rt::accel(kSlots, kTypes, kTraversal, rt::guarded<bu
                                       rt::Traits().merit(0.5f, 1.35f), rt::guarded<pack_trees<pack, CWBVH_LEAF_MAX>>);
 
 constexpr rt_refit kRefit = rt::refit(rt::guarded<refit>);
-constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::kNoMoreExtensions};
-static_assert(kAccel.types.text && kAccel.traverse.text, "the kernel files are embedded");
+constexpr rt_device_build kDeviceRefit =
+    rt::device_refit(rt::file(kFiles, "cwbvh_build.cl"), rt::guarded<device_ranges>, rt::guarded<device_refit>);
+constexpr rt_extension kExtensions[] = {rt::extension(kRefit), rt::extension(kDeviceRefit), rt::kNoMoreExtensions};
+static_assert(kAccel.types.text && kAccel.traverse.text && kDeviceRefit.kernels.text, "the kernel files are embedded");
 
 }  // namespace
 }  // namespace cwbvh

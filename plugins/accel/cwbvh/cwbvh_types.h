@@ -30,12 +30,17 @@ typedef struct cwbvh_node {
 #define CWBVH_LEAF_MAX 4u
 #define CWBVH_BIAS 32768.0f
 #define CWBVH_MARGIN (1.0f / 128.0f)
+/* The smallest cell for which the steps of a ray are normal numbers, and the largest for which CWBVH_BIAS cells stay below FLT_MAX;
+ * what is added to an exponent in `cells`. */
+#define CWBVH_LEAST_EXPONENT (-100)
+#define CWBVH_MOST_EXPONENT 112
+#define CWBVH_EXPONENT_BIAS 127
 
 #define CWBVH_INNER(node) ((node)->cells >> 24)
 /* The number of elements of a row before the one with this bit. */
 #define CWBVH_RANK(row, bit) popcount((row) & ((bit)-1u))
 
-#ifdef __OPENCL_VERSION__
+#if defined(__OPENCL_VERSION__) && defined(RT_LANES) /* kernels of builds have none */
 
 /* Four planes, as CWBVH_BIAS + q. */
 #ifdef __NV_CL_C_VERSION

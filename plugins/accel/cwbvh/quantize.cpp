@@ -11,10 +11,8 @@ namespace {
 using clarity::bvh::Grid;
 using clarity::bvh::kEmpty;
 
-constexpr int kExponentBias = 127;  // as in a float
-// The smallest cell for which the steps of a ray are normal numbers, and the largest for which CWBVH_BIAS cells stay below
-// FLT_MAX.
-constexpr clarity::bvh::GridRule kRule{CWBVH_BIAS, CWBVH_MARGIN, -100, 112};
+constexpr int kExponentBias = CWBVH_EXPONENT_BIAS;  // as in a float
+constexpr clarity::bvh::GridRule kRule{CWBVH_BIAS, CWBVH_MARGIN, CWBVH_LEAST_EXPONENT, CWBVH_MOST_EXPONENT};
 
 // Eight numbers of 0..255 as bytes, the first one lowest.
 uint64_t bytes_of(const int numbers[8]) {

@@ -26,7 +26,7 @@ class CompressedRefit {
  public:
     static constexpr uint32_t kWidth = 8, kBlock = 64;
 
-    CompressedRefit(cwbvh_node* nodes, const rt_refit_input* in) : nodes_(nodes), in_(in) {}
+    CompressedRefit(cwbvh_node* nodes, const rt_refit_input* in) : nodes_(nodes), ends_(in, in->slot_counts[0]), in_(in) {}
 
     RefitUnit unit(uint32_t group) const {
         const cwbvh_node& root = nodes_[in_->roots[group]];
@@ -49,9 +49,7 @@ class CompressedRefit {
     template <class Each>
     void subtrees(uint32_t group, Each&& each) const {
         const uint32_t root = in_->roots[group];
-        const uint32_t end = group + 1 < in_->group_count ? nodes_[in_->roots[group + 1]].first_child
-                                                          : static_cast<uint32_t>(in_->slot_counts[0]);
-        each(RefitSubtree{root, nodes_[root].first_child, end});
+        each(RefitSubtree{root, nodes_[root].first_child, ends_.end_of(root)});
     }
     // The descendants of the children follow each other in the order in which the tree was built, not in that of the slots.
     uint32_t children(const RefitSubtree& tree, RefitSubtree out[kWidth]) const {
@@ -113,6 +111,7 @@ class CompressedRefit {
 
  private:
     cwbvh_node* const nodes_;
+    const GroupEnds ends_;
     const rt_refit_input* const in_;
 };
 

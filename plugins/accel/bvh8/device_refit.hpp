@@ -1,0 +1,11 @@
+// device_refit.hpp -- the refit on the device: see rt_device.h.
+#pragma once
+#include "rt_device.h"
+
+namespace bvh8 {
+
+int32_t device_ranges(const rt_host* host, const rt_built* built, rt_u32 group, rt_tree_ranges* out);
+int32_t device_refit(const rt_host* host, const rt_device_plan* plan, const rt_device_tree* tree, rt_u32 blocks, rt_u32 costs,
+                     const double* params);
+
+}  // namespace bvh8
