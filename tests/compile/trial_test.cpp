@@ -18,6 +18,7 @@ class Trials : public ::testing::Test {
     void SetUp() override {
         if (run_program({"devices"}).exit_code == 3) GTEST_SKIP() << "no OpenCL device on this machine";
         fs::copy(fs::path(CLARITY_SOURCE_DIR) / "cl", scratch_.path("cl"), fs::copy_options::recursive);
+        fs::create_directories(scratch_.path("plugins/accel"));
         for (const char* id : {"linear", "bvh2"})
             fs::copy(fs::path(CLARITY_SOURCE_DIR) / "plugins/accel" / id, scratch_.path(std::string("plugins/accel/") + id),
                      fs::copy_options::recursive);
@@ -49,7 +50,8 @@ class Trials : public ::testing::Test {
     size_t kept() const {
         std::error_code error;
         size_t count = 0;
-        for (fs::directory_iterator file(scratch_.path("cache/clarity/tried_kernels"), error), end; !error && file != end; ++file)
+        for (fs::directory_iterator file(scratch_.path("cache/clarity/tried_kernels"), error), end; !error && file != end;
+             ++file)
             ++count;
         return count;
     }

@@ -28,7 +28,7 @@ namespace {
 using worker::MessageKind;
 
 // Limits in seconds of processor time, of all threads. A frame of this size takes a few milliseconds.
-constexpr double kBuildLimit_s = 30, kCompileLimit_s = 3600, kTraceLimit_s = 8;
+constexpr double kBuildLimit_s = 30, kCompileLimit_s = 3600, kTraceLimit_s = 4;
 constexpr int kWidth = 64, kHeight = 48, kDepth = 5;
 
 void say_step(const std::string& step, double limit_s) {
@@ -41,7 +41,7 @@ class TrialProgress : public Progress {
  public:
     void stage(const std::string& text) override {
         if (text == kFirstLaunchStage)
-            say_step("they were launched for the first time, on one pixel", kTraceLimit_s + 4 * seconds_since(begin_));
+            say_step("they were launched for the first time, on one pixel", kTraceLimit_s + 3 * seconds_since(begin_));
         else
             say_step(text, text.find("building") == 0 ? kBuildLimit_s : kCompileLimit_s);
         begin_ = std::chrono::steady_clock::now();
