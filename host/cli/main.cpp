@@ -13,7 +13,9 @@
 #include "cli/interrupt.hpp"
 #include "compile/compile.hpp"
 #include "import/import.hpp"
+#include "plugin/load_trial.hpp"
 #include "render/accel/build_in_worker.hpp"
+#include "render/trial/trial.hpp"
 
 namespace clarity {
 namespace {
@@ -74,6 +76,8 @@ int main(int argc, char** argv) {
     if (argc > 1 && std::strcmp(argv[1], "check-worker") == 0) return clarity::check::check_worker_main(argc, argv);
     if (argc > 1 && std::strcmp(argv[1], "build-worker") == 0) return clarity::build_worker_main(argc, argv);
     if (argc > 1 && std::strcmp(argv[1], "compile-worker") == 0) return clarity::compile_worker_main(argc, argv);
+    if (argc > 1 && std::strcmp(argv[1], "trial-worker") == 0) return clarity::trial_worker_main(argc, argv);
+    if (argc > 1 && std::strcmp(argv[1], "load-worker") == 0) return clarity::load_worker_main(argc, argv);
     const int code = clarity::run_and_report(argc, argv);
     errno = 0;
     if (std::fflush(stdout) != 0 || std::ferror(stdout)) {

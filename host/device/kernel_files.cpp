@@ -136,6 +136,8 @@ struct Texts {
         std::string path;  // "": embedded
         size_t hash;
         std::string library;  // which it is embedded in; "": this program
+        bool edited = false;
+        unsigned edited_line = 0;
     };
     std::mutex mutex;
     std::map<std::string, Last> last;
@@ -146,11 +148,23 @@ Texts& texts() {
     return *all;
 }
 
-// Records a text. The revision grows if it differs from the last one of that name.
-std::string remember(const std::string& shown_name, const fs::path& path, std::string text, const fs::path& library = {}) {
+// Counts from 1.
+unsigned first_line_that_differs(const std::string& text, const std::string& other) {
+    const auto differ = std::mismatch(text.begin(), text.end(), other.begin(), other.end()).first;
+    return static_cast<unsigned>(1 + std::count(text.begin(), differ, '\n'));
+}
+
+// Records a text. The revision grows if it differs from the last one of that name. built_in: what it should be if nobody has
+// edited it; nullptr: not known.
+std::string remember(const std::string& shown_name, const fs::path& path, std::string text, const fs::path& library = {},
+                     const char* built_in = nullptr) {
     Texts& all = texts();
     const std::lock_guard<std::mutex> lock(all.mutex);
-    const Texts::Last now{path.string(), std::hash<std::string>()(text), library.string()};
+    Texts::Last now{path.string(), std::hash<std::string>()(text), library.string()};
+    if (built_in && text != built_in) {
+        now.edited = true;
+        now.edited_line = *built_in ? first_line_that_differs(text, built_in) : 0;
+    }
     const auto [entry, first] = all.last.insert({shown_name, now});
     if (!first && entry->second.hash != now.hash) ++all.revision;
     entry->second = now;
@@ -159,8 +173,7 @@ std::string remember(const std::string& shown_name, const fs::path& path, std::s
 
 void require_same(const fs::path& path, const std::string& text, const std::string& compiled, const std::string& rebuild) {
     if (text == compiled) return;
-    const auto differ = std::mismatch(text.begin(), text.end(), compiled.begin(), compiled.end()).first;
-    const auto line = static_cast<unsigned>(1 + std::count(text.begin(), differ, '\n'));
+    const unsigned line = first_line_that_differs(text, compiled);
     const std::string why = "differs from what " + rebuild;
     throw Error(Exit::kernel_build_failed, path.string() + ":" + std::to_string(line) + ": " + why, {},
                 {path.string(), line, 0, why});
@@ -219,7 +232,7 @@ std::string kernel_text(const std::string& name) {
             require_same(where.kernels / name, text, embedded,
                          "this program was compiled with, so its structs may: build the program again, or set "
                          "CLARITY_KERNEL_PATH=embedded to run the kernels inside it");
-        return remember("cl/" + name, where.kernels / name, std::move(text));
+        return remember("cl/" + name, where.kernels / name, std::move(text), {}, embedded ? embedded : "");
     }
     if (embedded) return remember("cl/" + name, {}, embedded);
     throw Error(Exit::kernel_build_failed, "no kernel source `" + name + "` in this program" +
@@ -274,7 +287,11 @@ std::string plugin_kernel_text(const rt_plugin& plugin, const rt_cl_file& file) 
         if (!as_built && (beside || place.kind == PluginPlace::sources))
             say_once(LogLevel::info, path, text,
                      path + ": is used; it differs from the text built into " + library_of(plugin).string());
-        remember(shown, path, std::move(text));
+        // What is built in has its parts in it, so that a line can be named only for a file without parts.
+        if (as_built)
+            remember(shown, path, std::move(text));
+        else
+            remember(shown, path, text, {}, included_parts(text).empty() && file.text ? file.text : "");
         used = path;
         result = whole;
     }
@@ -297,6 +314,15 @@ std::string kernel_place(const std::string& shown_name) {
     const Texts::Last& last = found->second;
     if (!last.path.empty()) return last.path;
     return last.library.empty() ? shown_name : fs::path(shown_name).filename().string() + " inside " + last.library;
+}
+
+std::vector<EditedKernel> edited_kernels() {
+    Texts& all = texts();
+    const std::lock_guard<std::mutex> lock(all.mutex);
+    std::vector<EditedKernel> edited;
+    for (const auto& [name, last] : all.last)
+        if (last.edited) edited.push_back({name, last.path, last.edited_line});
+    return edited;
 }
 
 uint64_t kernel_text_revision() {

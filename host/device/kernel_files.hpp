@@ -47,6 +47,15 @@ std::string kernel_place(const std::string& shown_name);
 // date.
 uint64_t kernel_text_revision();
 
+// A text in force that differs from the one inside the program or its library.
+struct EditedKernel {
+    std::string shown_name;  // as in the program's text
+    std::string path;
+    unsigned line;  // the first that differs; 0: one of the files that it includes differs
+};
+// Those among the texts that were last read, in the order of their names.
+std::vector<EditedKernel> edited_kernels();
+
 // Returns every path that provides a text now, or would if the file existed; for FileWatch. Empty if only embedded text counts.
 // The parts of a plugin are those that its files include at the time of the call.
 std::vector<std::string> kernel_candidates(const std::vector<const rt_plugin*>& plugins);

@@ -16,6 +16,7 @@
 #include "base/log.hpp"
 #include "base/lower.hpp"
 #include "plugin/elf_file.hpp"
+#include "plugin/load_trial.hpp"
 #include "plugin/plugin_check.hpp"
 #include "plugin/plugin_copy.hpp"
 
@@ -48,6 +49,8 @@ PluginRecord load_checked(const std::string& path) {
     if (record.why.empty()) record.why = check_plugin_head(symbol.head, symbol.bytes);
     if (!record.why.empty()) return record;
 
+    record.why = try_to_load(path);
+    if (!record.why.empty()) return record;
     const std::string full = fs::absolute(path).string();  // dlopen would look up a bare name in the system's library folders
     void* library = dlopen(full.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) {

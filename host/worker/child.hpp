@@ -14,6 +14,8 @@ inline constexpr const char* kImportGreeting = "clarity import worker 1";
 inline constexpr const char* kBuildGreeting = "clarity build worker 1";
 inline constexpr const char* kCheckGreeting = "clarity check worker 1";
 inline constexpr const char* kCompileGreeting = "clarity compile worker 1";
+inline constexpr const char* kLoadGreeting = "clarity load worker 1";
+inline constexpr const char* kTrialGreeting = "clarity trial worker 1";
 
 // Begins a worker process: it ends when its parent does, logs to the parent, reports the cause of its death, and greets.
 // Returns false, after a line on stderr, if this process was not started as a worker. parent: pid of the parent; 0: not known.

@@ -81,6 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
         Refusal{"old_abi", {"ABI version 0", "this host speaks 2", "rebuild"}},
         Refusal{"not_constant", {"zero in the file", "constexpr"}},
         Refusal{"aborts_when_loaded", {"ABI version 3", "this host speaks 2"}},
+        Refusal{"crashes_when_loaded", {"crashed the process that opened it (aborted", "build it or copy it again"}},
         Refusal{"wrong_digest", {"digest", "0x", "rt_plugin.h", "rebuild"}},
         Refusal{"small_struct", {"rt_plugin has struct_bytes 80", "ABI version 2 has 88", "rebuild"}},
         Refusal{"large_struct", {"struct_bytes", "exports", "bytes"}},
@@ -289,6 +290,23 @@ TEST(NoPlugin, DamagedTables) {
             !clarity::read_elf_symbol(scratch.write("damaged.so", damaged), "rt_plugin_v1", symbol).empty() || !symbol.found;
     }
     EXPECT_GT(refused, 100u);
+}
+
+// Flipped bits anywhere: the file is refused or sound, and this process goes on.
+TEST(NoPlugin, FlippedBitsOfALibraryThatIsOpened) {
+    const Scratch scratch;
+    const std::string bytes = read_file(library("sound"));
+    std::mt19937 random(2);
+    size_t refused = 0, crashed = 0;
+    for (int round = 0; round < 60; ++round) {
+        std::string damaged = bytes;
+        for (int i = 0; i < 64; ++i) damaged[random() % damaged.size()] ^= static_cast<char>(1u << (random() % 8));
+        const auto record = clarity::load_plugin(scratch.write("flipped" + std::to_string(round) + ".so", damaged));
+        refused += record.plugin == nullptr;
+        crashed += record.why.find("the process that opened it") != std::string::npos;
+    }
+    EXPECT_GT(refused, 10u);
+    RecordProperty("crashed", static_cast<int>(crashed));
 }
 
 }  // namespace

@@ -128,6 +128,32 @@ TEST_F(Watch, RendersAgainAfterAnEditAMistakeAndItsRepair) {
     EXPECT_EQ(watcher.interrupt(), 0) << watcher.said();
 }
 
+TEST_F(Watch, ALoopWithoutEndNeverRunsHere) {
+    Environment environment;  // as users have it; most tests compile in their own process
+    environment.set("CLARITY_COMPILE", "worker");
+    environment.set("XDG_CACHE_HOME", scratch_.path("cache"));
+    const std::string kernel = "cl/tracers/iterative.cl", sound = scratch_.read(kernel);
+    const std::string store = "rt_put_pixels(frame, origin, sums, film);";
+    ASSERT_NE(sound.find(store), std::string::npos) << "the line that this test edits";
+    std::vector<std::string> all = words();
+    all.insert(all.end(), {"--device", "cpu", "--tracer", "iterative", "--lanes", "1", "--accel", "linear"});
+    Watcher watcher(all, scratch_.path("cl"), scratch_.path("said"));
+    ASSERT_TRUE(watcher.says(kWaiting)) << watcher.said();
+    const auto save = [&](const std::string& before_store) {
+        std::string edited = sound;
+        scratch_.write(kernel, edited.replace(edited.find(store), 0, before_store));
+    };
+    save("while (sums[0].x < 2.0f) sums[0].y += 1.0f;\n");
+    ASSERT_TRUE(watcher.says(kWaiting, 2)) << watcher.said();
+    EXPECT_NE(watcher.said().find("did not come to an end"), std::string::npos) << watcher.said();
+    EXPECT_NE(watcher.said().find(scratch_.path(kernel) + ", changed from line"), std::string::npos) << watcher.said();
+    EXPECT_EQ(corner(), (std::array<float, 3>{1, 0, 0})) << "the last good picture stays";
+    save("for (uint i = 0; i < RT_MAX_PIXELS; ++i) sums[i] = sums[i].zyxw;\n");
+    ASSERT_TRUE(watcher.says(kWaiting, 3)) << watcher.said();
+    EXPECT_EQ(corner(), (std::array<float, 3>{0, 0, 1})) << watcher.said();
+    EXPECT_EQ(watcher.interrupt(), 0) << watcher.said();
+}
+
 TEST_F(Watch, StartsWithABrokenSceneAndExitsWithTheLastError) {
     scratch_.write("a.scene", "sphere of nothing\n");
     Watcher watcher(words(), scratch_.path("cl"), scratch_.path("said"));

@@ -95,6 +95,35 @@ TEST_F(KernelEdit, AMistakeIsReportedUntilItIsRepaired) {
     EXPECT_EQ(window->exit_code(), 0);
 }
 
+// The kernel is tried in a worker first. It never runs in the window's process, where nothing could stop it.
+TEST_F(KernelEdit, ALoopWithoutEndLeavesThePictureAlone) {
+    auto users = environment();
+    users["CLARITY_COMPILE"] = "worker";
+    users["XDG_CACHE_HOME"] = folder.path() + "/cache";
+    const auto window = open(users);
+    for (const char* change : {"accel linear", "set lanes 1"}) ASSERT_EQ(window->command(change), "");
+    window->settle();
+    const Pixels before = window->picture();
+    const std::string store = "rt_put_pixels(frame, origin, sums, film);";
+    const size_t at = good.find(store);
+    ASSERT_NE(at, std::string::npos) << "cl/tracers/iterative.cl has changed: edit something else of it here";
+    write(std::string(good).insert(at, "while (sums[0].x < 1e30f) sums[0].y += 1.0f;\n"));
+    const auto begin = std::chrono::steady_clock::now();
+    ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state["messages"] == 1; }));
+    EXPECT_LT(seconds_since(begin), 30.0) << "15 s where nothing else runs";
+    const std::string message = window->state()["message"];
+    EXPECT_NE(message.find("did not come to an end"), std::string::npos) << message;
+    EXPECT_NE(message.find("iterative.cl"), std::string::npos) << message;
+    window->settle();
+    EXPECT_EQ(difference(before, window->picture(), 0), 0);
+    write(swapped());
+    ASSERT_TRUE(window->reaches([](const nlohmann::json& state) { return state["message"] == "" && !state["behind"]; }));
+    window->settle();
+    EXPECT_EQ(difference(blue_for_red(before), window->picture(), 0), 0);
+    window->quit();
+    EXPECT_EQ(window->exit_code(), 0);
+}
+
 TEST_F(KernelEdit, ABurstOfEditsShowsTheLastText) {
     const auto window = open(environment());
     const Pixels before = window->picture();

@@ -12,6 +12,7 @@
 #include "render/settings/accel_choice.hpp"
 #include "render/settings/aov.hpp"
 #include "render/settings/view.hpp"
+#include "render/trial/trial.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -213,9 +214,14 @@ std::shared_ptr<const Prepared> Preparer::prepare(std::shared_ptr<const Scene> s
         progress.report(-1);
         const auto start = std::chrono::steady_clock::now();
         bool fresh = false;
-        const auto program = programs_->get(kernel_for(*next, kind_for(find_aov(next->settings.aov))), &fresh, progress);
+        const KernelSource source = kernel_for(*next, kind_for(find_aov(next->settings.aov)));
+        const auto program = programs_->get(source, &fresh, progress);
         next->program = program;
-        if (fresh) warm_up(device_, *program, *next);
+        try_kernels({source, *next, info_}, progress);
+        if (fresh) {
+            progress.stage(kFirstLaunchStage);
+            warm_up(device_, *program, *next);
+        }
         if (film.valid()) film.get();
         next->compile_ms = fresh ? ms_since(start) : 0;
         next->compile_cached = !fresh;

@@ -1,0 +1,15 @@
+// load_trial.hpp -- opens a library in a worker process before this process does. The dynamic loader and a library's
+// constructors run at once; a damaged file crashes them.
+#pragma once
+#include <string>
+
+namespace clarity {
+
+// Opens and checks a library that is not known (known_libraries.hpp) in a worker. Returns an empty text if that worker came to
+// an end, or could not be started; otherwise how it died: the library must then not be opened here. Thread-safe.
+std::string try_to_load(const std::string& path);
+
+// Main function of the worker (`clarity load-worker ...`, which people do not call).
+int load_worker_main(int argc, char** argv);
+
+}  // namespace clarity

@@ -1,0 +1,113 @@
+#include "render/trial/trial_scene.hpp"
+
+#include <cmath>
+
+namespace clarity {
+namespace {
+
+enum : rt_u32 { kMatt, kGlass, kMirror, kTextured };
+
+// A sphere with bumps: rows x columns pairs of triangles.
+void add_bumps(Scene& scene, rt_u32 material) {
+    constexpr rt_u32 kRows = 16, kColumns = 32;
+    constexpr float kPi = 3.14159265f;
+    Mesh mesh;
+    mesh.name = "bumps";
+    mesh.first_vertex = scene.vertex_count();
+    mesh.first_triangle = scene.triangle_count();
+    for (rt_u32 row = 0; row <= kRows; ++row)
+        for (rt_u32 column = 0; column <= kColumns; ++column) {
+            const float v = float(row) / kRows, u = float(column) / kColumns;
+            const float up = v * kPi, round = u * 2 * kPi, radius = 1 + 0.1f * std::sin(5 * up) * std::cos(4 * round);
+            const float direction[3] = {std::sin(up) * std::cos(round), std::cos(up), std::sin(up) * std::sin(round)};
+            for (const float d : direction) scene.positions.push_back(radius * d);
+            for (const float d : direction) scene.normals.push_back(d);
+            scene.uvs.push_back(u);
+            scene.uvs.push_back(v);
+        }
+    for (rt_u32 row = 0; row < kRows; ++row)
+        for (rt_u32 column = 0; column < kColumns; ++column) {
+            const rt_u32 a = mesh.first_vertex + row * (kColumns + 1) + column, b = a + kColumns + 1;
+            for (const rt_u32 corner : {a, b, a + 1, a + 1, b, b + 1}) scene.triangles.push_back(corner);
+        }
+    mesh.vertex_count = scene.vertex_count() - mesh.first_vertex;
+    mesh.triangle_count = scene.triangle_count() - mesh.first_triangle;
+    mesh.polygon_count = mesh.triangle_count;
+    scene.triangle_materials.resize(scene.triangle_count(), material);
+    scene.meshes.push_back(mesh);
+}
+
+void add_floor(Scene& scene, rt_u32 material) {
+    Mesh mesh;
+    mesh.name = "floor";
+    mesh.first_vertex = scene.vertex_count();
+    mesh.first_triangle = scene.triangle_count();
+    for (const float x : {-6.0f, 6.0f})
+        for (const float z : {-6.0f, 6.0f}) {
+            for (const float p : {x, -1.2f, z}) scene.positions.push_back(p);
+            for (const float n : {0.0f, 1.0f, 0.0f}) scene.normals.push_back(n);
+            scene.uvs.push_back(x);
+            scene.uvs.push_back(z);
+        }
+    for (const rt_u32 corner : {0u, 1u, 2u, 2u, 1u, 3u}) scene.triangles.push_back(mesh.first_vertex + corner);
+    mesh.vertex_count = 4;
+    mesh.triangle_count = mesh.polygon_count = 2;
+    scene.triangle_materials.resize(scene.triangle_count(), material);
+    scene.meshes.push_back(mesh);
+}
+
+void place(Scene& scene, rt_u32 mesh, rt_u32 material, const Affine& where) {
+    Instance instance;
+    instance.name = scene.meshes[mesh].name;
+    instance.mesh = mesh;
+    instance.material = material;
+    instance.world_from_object = where;
+    scene.instances.push_back(instance);
+}
+
+void add_materials(Scene& scene, bool textures) {
+    scene.materials.assign(4, Material{"", default_material()});
+    scene.materials[kGlass].values.refract = 0.8f;
+    scene.materials[kMirror].values.reflect = 0.7f;
+    if (!textures) return;
+    scene.materials[kTextured].values.texture = 0;
+    scene.textures.push_back({0, 2, 2, 0});
+    for (const uint32_t texel : {0xFF2040C0u, 0xFFE0E0E0u, 0xFF40C020u, 0xFF808080u}) scene.texels.push_back(texel);
+}
+
+}  // namespace
+
+Scene trial_scene(const SceneFeatures& features) {
+    Scene scene;
+    add_materials(scene, features.textures);
+    add_bumps(scene, kGlass);
+    add_floor(scene, kTextured);
+    if (!features.normals) scene.normals = {};
+    if (!features.uvs && !features.textures) scene.uvs = {};
+    place(scene, 0, RT_NONE, kIdentity);
+    place(scene, 1, RT_NONE, kIdentity);
+    if (features.instances) {  // turned, stretched and mirrored
+        place(scene, 0, kMirror, {0.6f, 0, 0.8f, -2.5f, 0, 0.7f, 0, 0, -0.8f, 0, 0.6f, -1});
+        place(scene, 0, kMatt, {-0.8f, 0, 0, 2.4f, 0, 1.1f, 0, 0.2f, 0, 0, 0.5f, -1});
+    }
+    if (features.spheres) {
+        scene.spheres.push_back({{-1.2f, -0.7f, 1.5f}, 0.5f, kMirror});
+        scene.spheres.push_back({{1.3f, -0.8f, 1.4f}, 0.4f, kGlass});
+    }
+    if (features.polygons) {
+        for (const float corner :
+             {-3.0f, -1.0f, -3.0f, 0.0f, 0.5f, -3.0f, 3.0f, -1.0f, -3.0f, 3.0f, 3.0f, -3.0f, -3.0f, 3.0f, -3.0f})  // not convex
+            scene.polygon_corners.push_back(corner);
+        scene.polygons.push_back({0, 5, kMatt});
+    }
+    if (features.planes) scene.planes.push_back({{0, 1, 0}, -1.5f, kMatt});
+    Light light;
+    light.values = {{4, 6, 5}, RT_LIGHT_POINT, {40, 40, 40}, 0};
+    scene.lights.push_back(light);
+    Camera camera;
+    camera.eye = {0, 1, 6};
+    scene.cameras.push_back(camera);
+    return scene;
+}
+
+}  // namespace clarity

@@ -1,0 +1,13 @@
+// trial_scene.hpp -- the small scene on which kernels are tried. It is made by formula.
+#pragma once
+#include "render/kernels/scene_features.hpp"
+#include "scene/scene.hpp"
+
+namespace clarity {
+
+// About 1000 triangles, an object of glass and a mirror, one light and a camera. It has instances, spheres, polygons, planes,
+// normals, texture coordinates and textures as the features say, so that its kernels are those of any scene with them. Shapes
+// are left out.
+Scene trial_scene(const SceneFeatures& features);
+
+}  // namespace clarity
