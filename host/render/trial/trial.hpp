@@ -22,9 +22,9 @@ struct Trial {
 };
 
 // Tries the kernels if they are not the program's own and have not passed before. CLARITY_TRIAL is `off` (never) or `on` (on
-// all devices). Unset: on CPUs, if programs are compiled in a worker (compile.hpp); a GPU's driver ends kernels that run for too long, and
-// the trial has not been tried there. Never inside a worker. Throws
-// Error(kernel_build_failed), which says what failed and in which files, and Cancelled. For any thread.
+// all devices). Unset: on CPUs, if programs are compiled in a worker (compile.hpp); a GPU's driver ends kernels that run for
+// too long, and the trial has not been tried there. Never inside a worker. Throws Error(kernel_build_failed), which says what
+// failed and in which files, and Cancelled. For any thread.
 void try_kernels(const Trial& trial, Progress& progress);
 
 // Main function of the worker (`clarity trial-worker ...`, which people do not call).

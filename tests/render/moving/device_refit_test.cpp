@@ -52,7 +52,7 @@ TEST_P(DeviceRefit, GivesTheBytesOfTheHost) {
     Settings settings;
     settings.lanes = 1;
     const auto prepared = prepare_queries(*device, scene_of_trees(), built, settings, progress);
-    DeviceMotion motion(device, scene_of_trees(), built, prepared->on_device, GetParam().form);
+    DeviceMotion motion(device, scene_of_trees(), built, prepared->on_device, nullptr, GetParam().form);
     ASSERT_EQ(motion.cannot(), "");
     MovingAccel host(scene_of_trees(), built);
     for (const float phase : {0.0f, 1.0f, 2.0f, 5.0f, 0.0f}) {
