@@ -54,7 +54,7 @@ start_cluster() {
     munged --force --socket="$cluster/munge/socket" --key-file="$cluster/munge/key" --pid-file="$cluster/munge/pid" \
         --log-file="$cluster/munge/log" --seed-file="$cluster/munge/seed" 2>>"$cluster/munge/out" || return 1
     # cred_expire: a job that is queued again waits until its credentials have expired. The other times are short for the same reason: that a
-    # lost task is noticed within seconds. MaxBatchRequeue: Slurm holds a job back after five times, which tests reach in minutes.
+    # lost task is noticed within seconds.
     cat >"$SLURM_CONF" <<CONF
 ClusterName=virtual
 SlurmctldHost=$(hostname)
@@ -85,7 +85,6 @@ KillWait=5
 CompleteWait=0
 MinJobAge=3600
 JobRequeue=1
-MaxBatchRequeue=1000
 JobCompType=jobcomp/none
 AccountingStorageType=accounting_storage/none
 SchedulerType=sched/backfill
