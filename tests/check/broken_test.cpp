@@ -136,10 +136,10 @@ TEST(Report, APictureShowsWhichPixelsDiffer) {
         EXPECT_TRUE(entry.path().extension() == ".png" || entry.path().extension() == ".rays") << entry.path() << " is left";
 }
 
-// Rays in a tree that the device has packed by wrong counts miss what stands at no place of the leaf order.
-TEST(Device, RaysMissWhatIsCountedWrongly) {
-    expect_found(check("device_counts", {"--only", "hits.device"}, 1),
-                 {"device_counts", "hits.device", {"after a build", "wrong"}});
+// Rays in a tree that lacks a primitive.
+TEST(Device, RaysMissWhatIsInNoLeaf) {
+    expect_found(check("device_loses", {"--only", "hits.device"}, 1),
+                 {"device_loses", "hits.device", {"after a build", "wrong"}});
 }
 
 // Without a defect the same plugin passes: so the tests above fail because of the defect.
