@@ -1,5 +1,6 @@
 #include "plugin/load_trial.hpp"
 
+#include <dlfcn.h>
 #include <unistd.h>
 
 #include <cstdio>
@@ -72,9 +73,15 @@ int load_worker_main(int argc, char** argv) {
     const long parent = argc == 6 ? std::strtol(argv[5], nullptr, 10) : 0;
     if (!worker::begin_worker(worker::kLoadGreeting, parent, instead)) return static_cast<int>(Exit::usage);
     load_plugin(library);  // the parent finds out itself why a library is refused
+    // Its destructors would run at the end of the program.
+    const std::string full = std::filesystem::absolute(library).string();
+    if (void* const handle = dlopen(full.c_str(), RTLD_NOW | RTLD_NOLOAD)) {
+        dlclose(handle);
+        dlclose(handle);  // what load_plugin() holds
+    }
     std::fflush(nullptr);
     worker::send_message(worker::kChannelFd, {worker::MessageKind::done, 0, 0, {}});
-    _exit(0);  // without destructors: those of the library are not asked for
+    _exit(0);
 }
 
 }  // namespace clarity
