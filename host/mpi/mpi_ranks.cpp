@@ -20,14 +20,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+#ifdef CLARITY_MPI_LIBRARY
 std::vector<fs::path> places() {
     const fs::path folder = program_file().parent_path();
-    std::vector<fs::path> places;
-#ifdef CLARITY_LIBRARIES_FROM_PROGRAM
-    places.push_back((folder / CLARITY_LIBRARIES_FROM_PROGRAM / "clarity/mpi.so").lexically_normal());
-#endif
-    places.push_back((folder / "../lib/clarity/mpi.so").lexically_normal());  // the layout of the build folder
-    return places;
+    // The installed program, and the layout of the build folder.
+    return {(folder / CLARITY_LIBRARIES_FROM_PROGRAM / "clarity/mpi.so").lexically_normal(),
+            (folder / "../lib/clarity/mpi.so").lexically_normal()};
 }
 
 // Parts that MPI's library loads later find its symbols only if they are global.
@@ -41,7 +39,6 @@ void* open_library(const std::string& file) {
 
 const clarity_mpi_module* load() {
     std::string tried;
-#ifdef CLARITY_MPI_LIBRARY
     for (const fs::path& path : places()) {
         std::error_code ignored;
         if (!fs::exists(path, ignored)) {
@@ -53,11 +50,13 @@ const clarity_mpi_module* load() {
         if (!module) throw Error(Exit::usage, "--mpi: " + path.string() + " is of another version of this program");
         return module;
     }
-#endif
-    throw Error(Exit::usage, "--mpi: this program was built without MPI" +
-                                 (tried.empty() ? std::string() : ": there is no " + tried) +
-                                 "; build it where libopenmpi-dev is installed");
+    throw Error(Exit::usage, "--mpi: there is no " + tried + "; install the program again, with this library");
 }
+#else
+const clarity_mpi_module* load() {
+    throw Error(Exit::usage, "--mpi: this program was built without MPI; build it where libopenmpi-dev is installed");
+}
+#endif
 
 // A file in memory, closed at the end.
 class MemoryFile {
