@@ -10,6 +10,7 @@
 #include "base/log.hpp"
 #include "compile/compile_in_worker.hpp"
 #include "compile/program_store.hpp"
+#include "device/kernel_files.hpp"
 #include "worker/channel.hpp"
 
 namespace clarity {
@@ -33,7 +34,8 @@ std::optional<cl::Program> program_of(Device& device, const std::vector<char>& b
 struct DeviceRequest {
     DeviceRequest(const DeviceInfo& of, const CompileRequest& request)
         : info(of),
-          launches(of.pocl && request.ends_on_zeros),
+          // A kernel that was edited may end on zeros or not.
+          launches(of.pocl && request.ends_on_zeros && edited_kernels().empty()),
           options(request.options + (launches ? " -cl-kernel-arg-info" : "")),
           key(program_key(of, request.source, options)) {}
     const DeviceInfo& info;
