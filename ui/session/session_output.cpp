@@ -23,7 +23,8 @@ void Session::take_saved() {
 uint64_t Session::save_picture(const std::string& path) {
     check_output_path(path);
     if (!ready_) throw Error(Exit::usage, path + ": cannot save, because there is no picture yet; open a scene first");
-    return frames_.save(path);
+    post_frame();  // the command is that of the posted job
+    return frames_.save(path, render_command(path));
 }
 
 Preset Session::desired_preset(EditedView base) const {

@@ -74,16 +74,16 @@ void FrameThread::want_distance(bool wanted) {
     changed_.notify_all();
 }
 
-uint64_t FrameThread::save(const std::string& path) {
+uint64_t FrameThread::save(const std::string& path, const std::string& command) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    to_save_.push_back({++last_save_, path, {}});
+    to_save_.push_back({{++last_save_, path, {}}, command, job_.revision, job_.display_revision});
     changed_.notify_all();
     return last_save_;
 }
 
 void FrameThread::cancel_save(uint64_t number) {
     const std::lock_guard<std::mutex> lock(mutex_);
-    const auto it = [&](const Saved& waiting) { return waiting.number == number; };
+    const auto it = [&](const Save& waiting) { return waiting.outcome.number == number; };
     to_save_.erase(std::remove_if(to_save_.begin(), to_save_.end(), it), to_save_.end());
 }
 
@@ -186,19 +186,26 @@ void FrameThread::run() {
 }
 
 void FrameThread::save_waiting() {
-    std::vector<Saved> waiting;
+    std::vector<Save> waiting;
     std::shared_ptr<const Picture> picture;
+    uint64_t revision = 0, display_revision = 0;
     {
         const std::lock_guard<std::mutex> lock(mutex_);
         waiting.swap(to_save_);
         picture = latest_;
+        revision = job_.revision;
+        display_revision = job_.display_revision;
     }
-    for (Saved& outcome : waiting) {
+    for (Save& save : waiting) {
+        Saved& outcome = save.outcome;
+        PictureNotes notes = picture_notes();
+        if (save.revision == revision && save.display_revision == display_revision)
+            notes.texts.emplace_back("Command", save.command);
         try {
             if (writes_display(outcome.path))
-                write_image(outcome.path, {}, picture->main.image);
+                write_image(outcome.path, {}, picture->main.image, notes);
             else
-                write_image(outcome.path, tracers_[0].frames->read_values(), {});
+                write_image(outcome.path, tracers_[0].frames->read_values(), {}, notes);
         } catch (const std::exception& error) {
             outcome.failure = error.what();
         }

@@ -40,8 +40,9 @@ class FrameThread {
     std::vector<float> times(unsigned side = 0) const;
     // Whether pictures carry the distances of their camera rays from now on.
     void want_distance(bool wanted);
-    // Writes the main picture once all of its samples are traced. Returns the number of the save, which take_saved() repeats.
-    uint64_t save(const std::string& path);
+    // Writes the main picture once all of its samples are traced. The file names `command`, which makes the picture of the last
+    // job, unless another job is posted before. Returns the number of the save, which take_saved() repeats.
+    uint64_t save(const std::string& path, const std::string& command);
     // Drops the save with this number, unless it is being written already.
     void cancel_save(uint64_t number);
     // Stops the frame in progress and releases everything this thread holds on a device, so that devices can be closed. Returns
@@ -64,6 +65,11 @@ class FrameThread {
         uint64_t kernel_revision = 0;  // revision of the film's kernels
         std::unique_ptr<MotionBlur> blur;
         std::shared_ptr<const Ready> blur_of;  // what it was made for
+    };
+    struct Save {
+        Saved outcome;
+        std::string command;  // of the job with these revisions
+        uint64_t revision = 0, display_revision = 0;
     };
     // A traced picture, the images of which may still be in flight to the host.
     struct Traced {
@@ -110,9 +116,10 @@ class FrameThread {
     std::shared_ptr<const Picture> latest_;
     std::string failure_;
     FrameTimes times_[2];
-    std::vector<Saved> to_save_, saved_;  // saves that wait; finished saves which take_saved() has not returned yet
-    uint64_t last_save_ = 0;              // number of the last save
-    std::thread thread_;                  // last member: the thread starts when all others exist
+    std::vector<Save> to_save_;  // saves that wait
+    std::vector<Saved> saved_;   // finished saves which take_saved() has not returned yet
+    uint64_t last_save_ = 0;     // number of the last save
+    std::thread thread_;         // last member: the thread starts when all others exist
 };
 
 }  // namespace clarity::ui

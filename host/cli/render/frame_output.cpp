@@ -34,8 +34,8 @@ void record_frame(const RenderOptions& options, const FrameFile& file, const std
 
 void write_frame(const RenderOptions& options, const FrameFile& file, FramePixels pixels) {
     const std::string command = render_words(options, file.moves ? std::optional<int>(file.frame) : std::nullopt);
-    PictureNotes notes;
-    notes.texts = {{"Software", std::string("clarity ") + CLARITY_VERSION}, {"Command", command}, {"Digest", file.digest}};
+    PictureNotes notes = picture_notes();
+    notes.texts.insert(notes.texts.end(), {{"Command", command}, {"Digest", file.digest}});
     // A frame that others wait for, or that took long, must outlast a power cut.
     notes.sync = file.has_record || !options.checkpoint.empty() || !options.resume.empty();
     std::string digest = writes_display(file.path) ? pixel_digest(pixels.display) : pixel_digest(pixels.values);

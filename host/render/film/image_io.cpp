@@ -199,6 +199,10 @@ void write_exr(const std::string& path, const std::vector<PictureLayer>&, const 
 
 }  // namespace
 
+PictureNotes picture_notes() {
+    return {{{"Software", std::string("clarity ") + CLARITY_VERSION}}, false};
+}
+
 void write_image(const std::string& path, const FloatImage& values, const ByteImage& display, const PictureNotes& notes) {
     check_ending(path);
     const Format format = format_of(path);
