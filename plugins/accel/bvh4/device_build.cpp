@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <iterator>
 #include <vector>
 
 #include "clarity_bvh/parameters.hpp"
@@ -19,10 +18,8 @@ namespace {
 using rt::number;
 using rt::of;
 
-// The most primitives of the subtrees to which the passes descend. A level of a pass has fewer than 1024 nodes then
-// (BVH4_LEVEL): trees have less than 2^28 primitives. Each of the smallest is made by one work-item (BVH4_PENDING).
-constexpr uint64_t kSubtrees[] = {1u << 22, 1u << 12, 1u << 4};
-constexpr uint64_t kGroupsPerUnit = 16;  // work-groups of a pass over many subtrees or leaves
+// Of kernel memory: what a binary node takes in, and a node that is to be written (bvh4_build.cl).
+constexpr uint64_t kChoiceBytes = 32, kTaskBytes = 8;
 
 }  // namespace
 
@@ -36,45 +33,23 @@ int32_t device_pack(const rt_host*, const rt_device_plan* plan, const rt_device_
                     const rt_device_topology* topology, const rt_device_tree* tree, const rt_device_output* out) {
     const uint64_t n = input->count, each = rt::elements_each(plan), elements = tree->element_count[0];
     const uint32_t max_leaf = clarity::bvh::wide_rules(input->params).max_leaf;
-    // Lists of subtrees, which do not overlap: the first has the root alone, the others a subtree for two primitives at most.
     const bool has_root = topology->root != RT_NONE;
-    const uint64_t places = n / 2 + 1, passes = std::size(kSubtrees);
     rt::DeviceSteps steps(plan);
-    const rt_u32 lists = steps.buffer(16 * (2 + passes * places)), used = steps.buffer(4),
-                 open_leaves = steps.buffer(8 * places);
-    const auto launch = [&](const char* kernel, uint64_t groups, std::initializer_list<rt_device_arg> more) {
-        std::vector<rt_device_arg> args = {of(input->prims),
-                                           of(topology->nodes),
-                                           of(topology->counts),
-                                           of(topology->order),
-                                           number(max_leaf),
-                                           number(tree->first_element[0]),
-                                           number(tree->first_leaf),
-                                           of(tree->slots[0]),
-                                           of(tree->ranges),
-                                           of(out->leaves),
-                                           of(used),
-                                           of(open_leaves)};
+    const rt_u32 choices = steps.buffer(kChoiceBytes * n), used = steps.buffer(4), tasks = steps.buffer(kTaskBytes * elements),
+                 below = steps.buffer(4 * n);
+    const auto launch = [&](const char* kernel, uint64_t items, std::initializer_list<rt_device_arg> more) {
+        std::vector<rt_device_arg> args = {of(input->prims),    of(topology->nodes), of(topology->counts),
+                                           of(topology->order), number(max_leaf),    number(n)};
         args.insert(args.end(), more);
-        steps.launch(kernel, groups, args);
+        steps.launch(kernel, (items + each - 1) / each, args);
     };
-    launch("bvh4_begin", (elements + each - 1) / each,
-           {number(n), number(elements), number(each), of(has_root ? topology->root : used), number(has_root), of(lists),
-            number(passes), number(places)});
-    uint64_t from = 0, groups = 1;
-    for (size_t pass = 0; pass < passes; ++pass) {
-        if (n <= kSubtrees[pass]) continue;
-        const uint64_t to = 2 + pass * places;
-        launch("bvh4_open", groups, {number(kSubtrees[pass]), of(lists), number(from), number(to)});
-        from = to;
-        groups = plan->units * kGroupsPerUnit;
-    }
-    const uint64_t needed = places / plan->group_items + 1;
-    if (n > 1) {
-        const uint64_t most = std::min(needed, plan->units * kGroupsPerUnit);
-        launch("bvh4_close", groups == 1 ? 1 : most, {of(lists), number(from)});
-        steps.launch("bvh4_write_leaves", most, {of(topology->nodes), of(topology->order), of(open_leaves), of(out->leaves)});
-    }
+    launch("bvh4_choose", std::max<uint64_t>(n, 1), {number(each), of(choices), of(used)});
+    launch("bvh4_number", std::max<uint64_t>(n, 1),
+           {number(each), of(choices), of(has_root ? topology->root : used), number(has_root), of(used), of(tasks), of(below),
+            of(out->leaves)});
+    launch("bvh4_write", elements,
+           {number(elements), number(each), of(choices), of(used), of(tasks), of(below), number(tree->first_element[0]),
+            number(tree->first_leaf), of(tree->slots[0]), of(tree->ranges)});
     out->root(out->ctx, static_cast<rt_u32>(tree->first_element[0]));
     out->define(out->ctx, "BVH4_STACK", clarity::bvh::stack_places(3 * topology->depth));
     return steps.result();
