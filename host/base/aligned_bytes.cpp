@@ -8,16 +8,20 @@
 #include <cstring>
 #include <mutex>
 
+#include "base/physical_memory.hpp"
+
 namespace clarity {
 namespace {
 
 constexpr size_t kMapped = 1u << 17;  // bytes; blocks from this size on are mapped, so that each page is cleared on first use
 constexpr size_t kLargePage = 1u << 21, kPage = 1u << 16;  // bytes; ordinary pages are at most kPage on any machine
 
-// Bytes to map for a block. The last large page is used whole if at least half of it is needed; otherwise the size is rounded
-// up to kPage.
+// Bytes to map for a block. Large blocks have few sizes, so that the next build, whose structure is a little smaller or larger,
+// finds one; pages that are not used are no memory. Otherwise the last large page is used whole if at least half of it is
+// needed, or the size is rounded up to kPage.
 size_t mapped_bytes(size_t bytes) {
-    const size_t step = (bytes + kLargePage / 2) % kLargePage < kLargePage / 2 ? kLargePage : kPage;
+    size_t step = (bytes + kLargePage / 2) % kLargePage < kLargePage / 2 ? kLargePage : kPage;
+    for (size_t coarse = kLargePage; coarse <= bytes / 16; coarse *= 2) step = coarse;
     return (bytes + step - 1) / step * step;
 }
 
@@ -34,8 +38,7 @@ void* map_large(size_t bytes) {
     return first + before;
 }
 
-// Freed blocks, the latest one last. A block is reused only for exactly its size: a scene which is built again asks for the
-// same sizes. Thread-safe.
+// Freed blocks, the latest one last. A block is reused only for exactly its size. Thread-safe.
 class SpareBlocks {
  public:
     void* take(size_t bytes) {
@@ -46,11 +49,13 @@ class SpareBlocks {
     }
     void give(void* p, size_t bytes) {
         const std::lock_guard<std::mutex> lock(mutex_);
-        if (bytes > AlignedBytes::kKept) {
+        const size_t most = AlignedBytes::most_kept();
+        if (bytes > most) {
             munmap(p, bytes);
             return;
         }
-        while (count_ == kMost || sum_ + bytes > AlignedBytes::kKept) {
+        if (bytes >= kLargePage) madvise(p, bytes, MADV_FREE);  // the system may take the pages, and reads then give zeros
+        while (count_ == kMost || sum_ + bytes > most) {
             const size_t oldest = blocks_[0].bytes;
             munmap(remove(0), oldest);
         }
@@ -116,6 +121,11 @@ void FreeMemory::operator()(void* p) const {
 
 void AlignedBytes::free(void* data, size_t bytes) {
     FreeMemory{bytes >= kMapped ? mapped_bytes(bytes) : 0, false}(data);
+}
+
+size_t AlignedBytes::most_kept() {
+    static const size_t most = std::max(size_t{64} << 20, static_cast<size_t>(physical_memory_bytes() / 8));
+    return most;
 }
 
 size_t AlignedBytes::kept() {

@@ -38,9 +38,10 @@ class AlignedBytes {
     void* release() { return data_.release(); }
     static void free(void* data, size_t bytes);
 
-    // Freed mapped blocks are kept for the next build of the same scene, the latest ones first, up to kKept bytes in all: the
-    // system would have to clear new pages.
-    static constexpr size_t kKept = size_t{64} << 20;
+    // Freed mapped blocks are kept for the next build of the same scene, the latest ones first, up to this many bytes in all:
+    // the system would have to clear new pages, which takes longer than the build of a large scene. It may take pages of large
+    // blocks back when memory is short.
+    static size_t most_kept();
     // Bytes of the freed blocks that are kept now.
     static size_t kept();
 

@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/log.hpp"
 #include "base/memory_text.hpp"
+#include "base/physical_memory.hpp"
 #include "base/printable.hpp"
 #include "device/pocl_cache.hpp"
 #include "worker/child.hpp"
@@ -24,7 +25,7 @@ uint64_t most_compiler_bytes() {
     const char* text = std::getenv("CLARITY_COMPILE_MEMORY");
     if (const uint64_t mebibytes = text ? std::strtoull(text, nullptr, 10) : 0; mebibytes > 0 && mebibytes < (1u << 30))
         return mebibytes << 20;
-    return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) / 4 * 3;
+    return physical_memory_bytes() / 4 * 3;
 }
 
 class CompileSupervisor : public worker::Supervisor {

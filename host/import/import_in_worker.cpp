@@ -9,6 +9,7 @@
 
 #include "base/error.hpp"
 #include "base/log.hpp"
+#include "base/physical_memory.hpp"
 #include "base/printable.hpp"
 #include "import/wire.hpp"
 #include "worker/child.hpp"
@@ -36,7 +37,7 @@ class Limits {
     }
     uint64_t most_memory_bytes() const {
         if (options_.memory_limit_bytes > 0) return options_.memory_limit_bytes;
-        return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE)) / 4 * 3;
+        return physical_memory_bytes() / 4 * 3;
     }
 
  private:

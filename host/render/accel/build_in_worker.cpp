@@ -9,6 +9,7 @@
 #include "base/error.hpp"
 #include "base/files/library_files.hpp"
 #include "base/log.hpp"
+#include "base/physical_memory.hpp"
 #include "base/printable.hpp"
 #include "plugin/known_libraries.hpp"
 #include "render/accel/builder_wire.hpp"
@@ -29,7 +30,7 @@ std::string library_of(const rt_plugin& plugin) {
 }
 
 uint64_t physical_bytes() {
-    return static_cast<uint64_t>(sysconf(_SC_PHYS_PAGES)) * static_cast<uint64_t>(sysconf(_SC_PAGESIZE));
+    return physical_memory_bytes();
 }
 
 class BuildSupervisor : public worker::Supervisor {

@@ -13,13 +13,14 @@
 
 namespace clarity::bvh {
 
-// Keeps freed blocks for the next build, in order of their release. Without it, memory at the end of the heap would go back to
-// the system, which clears the pages again for the next allocation. The blocks of scenes up to about 150 000 primitives fit.
-// Building the same scene again asks for blocks of the same sizes.
+// Keeps freed blocks for the next build, in order of their release. Without it, memory would go back to the system, which
+// clears the pages again for the next allocation. Building the same scene again asks for blocks of the same sizes. The system
+// may take the pages of large blocks back when memory is short.
 class SpareScratch {
  public:
-    static constexpr size_t kKept = size_t{24} << 20, kMost = 16;
+    static constexpr size_t kKept = size_t{1} << 30, kMost = 16;
     static constexpr size_t kLeast = size_t{1} << 16;  // in bytes; the heap itself keeps smaller blocks
+    static constexpr size_t kLarge = size_t{1} << 21;  // in bytes: of a large page
 
     void* take(size_t bytes) {
         const std::lock_guard<std::mutex> lock(mutex_);
@@ -29,6 +30,9 @@ class SpareScratch {
     }
     void give(void* p, size_t bytes) {
         if (bytes > kKept) return std::free(p);
+#ifdef MADV_FREE
+        if (bytes >= kLarge) madvise(p, bytes, MADV_FREE);
+#endif
         const std::lock_guard<std::mutex> lock(mutex_);
         while (count_ == kMost || sum_ + bytes > kKept) std::free(remove(0));
         blocks_[count_++] = {p, bytes};
@@ -64,7 +68,7 @@ template <class T>
 class Scratch {
  public:
     explicit Scratch(uint64_t count) : count_(count) {
-        constexpr size_t kLargePage = size_t{1} << 21;
+        constexpr size_t kLargePage = SpareScratch::kLarge;
         const size_t bytes = count * sizeof(T), alignment = bytes < kLargePage ? 64 : kLargePage;
         bytes_ = (bytes + alignment) / alignment * alignment;
         if (bytes_ >= SpareScratch::kLeast) data_ = SpareScratch::instance().take(bytes_);
